@@ -1,0 +1,76 @@
+# What an engine links: libdarkroom.so, one shared object of core, gpu, graph, compose and effects, and
+# libdarkroom_looks.so, which reads looks (TOML) and table files. In the tree and installed they are Darkroom::darkroom and
+# Darkroom::looks. Included after the folders they are made of.
+
+include(CMakePackageConfigHelpers)
+
+# Objects, not archives: all of a folder goes in, and what it links comes from the folder's own target. The names of
+# this project are dropped from that list, their objects are already there.
+function(darkroom_shared_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 library "" "OUTPUT;EXPORT" "PARTS")
+  add_library(${name} SHARED)
+  foreach(part ${library_PARTS})
+    target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
+    target_link_libraries(${name} PRIVATE
+      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|compose|effects|looks)$>")
+  endforeach()
+  set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
+    LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/darkroom.map)
+  target_link_options(${name} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/darkroom.map)
+  target_include_directories(${name} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<BUILD_INTERFACE:${DARKROOM_GENERATED}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${name} INTERFACE cxx_std_20)
+  add_library(Darkroom::${library_EXPORT} ALIAS ${name})
+  install(TARGETS ${name} EXPORT DarkroomTargets
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endfunction()
+
+darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS core gpu graph compose effects)
+# The headers name Vulkan types; a host calls Vulkan through whatever loader it has.
+target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)
+if(TARGET darkroom_looks)
+  darkroom_shared_library(darkroom_looks_shared OUTPUT darkroom_looks EXPORT looks PARTS looks)
+  target_link_libraries(darkroom_looks_shared PUBLIC darkroom_shared)
+endif()
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/darkroom DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/looks/ DESTINATION ${CMAKE_INSTALL_DATADIR}/darkroom/looks
+  FILES_MATCHING PATTERN "*.toml")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# Before 1.0 a minor version may change the interface, a patch version may not.
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Darkroom)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/DarkroomConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/DarkroomConfig.cmake.in ${CMAKE_BINARY_DIR}/DarkroomConfig.cmake
+  INSTALL_DESTINATION ${package_folder} PATH_VARS CMAKE_INSTALL_DATADIR
+  NO_SET_AND_CHECK_MACRO)
+install(FILES ${CMAKE_BINARY_DIR}/DarkroomConfig.cmake ${CMAKE_BINARY_DIR}/DarkroomConfigVersion.cmake
+  DESTINATION ${package_folder})
+install(EXPORT DarkroomTargets NAMESPACE Darkroom:: DESTINATION ${package_folder})
+
+function(darkroom_pkg_config name description requires library)
+  set(text "prefix=\${pcfiledir}/@DARKROOM_UP@
+libdir=\${prefix}/${CMAKE_INSTALL_LIBDIR}
+includedir=\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}
+
+Name: ${name}
+Description: ${description}
+Version: ${PROJECT_VERSION}
+${requires}
+Libs: -L\${libdir} -l${library}
+Cflags: -I\${includedir}
+")
+  # From <prefix>/lib/<machine>/pkgconfig up to <prefix>, so that an installed tree can be moved.
+  file(RELATIVE_PATH up /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+  string(REPLACE "@DARKROOM_UP@" "${up}" text "${text}")
+  string(REPLACE "//" "/" text "${text}")
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/${name}.pc CONTENT "${text}" @ONLY)
+  install(FILES ${CMAKE_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()
+# Only the headers of Vulkan are needed to compile; `Requires` would bring its loader in as well.
+darkroom_pkg_config(darkroom "${PROJECT_DESCRIPTION}" "Requires.private: vulkan" darkroom)
+if(TARGET darkroom_looks)
+  darkroom_pkg_config(darkroom-looks "Looks (TOML) and table files for Darkroom" "Requires: darkroom" darkroom_looks)
+endif()

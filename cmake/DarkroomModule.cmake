@@ -1,0 +1,54 @@
+# One folder, one target: darkroom_module(NAME LIBRARIES...) builds every .cpp of the calling folder except its tests
+# into the static library darkroom_NAME, and links what it may depend on. Tests beside the code (*_test.cpp), and what
+# they share (test_support*.cpp), are collected in the property DARKROOM_TEST_SOURCES and built by tests/CMakeLists.txt.
+
+enable_testing()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+find_package(Vulkan REQUIRED)
+
+add_library(darkroom_options INTERFACE)
+# Without -fno-trapping-math and -fno-math-errno the CPU references stay scalar; neither changes a result.
+target_compile_options(darkroom_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -Wno-missing-field-initializers -fno-trapping-math -fno-math-errno)
+if(DARKROOM_SANITIZE)
+  target_compile_options(darkroom_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+    -fno-omit-frame-pointer)
+  target_link_options(darkroom_options INTERFACE -fsanitize=address,undefined)
+  # Leaks are traced back to the driver, which must still be loaded when the report is made.
+  target_sources(darkroom_options INTERFACE
+    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${PROJECT_SOURCE_DIR}/tests/keep_libraries.cpp>)
+endif()
+
+set(DARKROOM_GENERATED ${CMAKE_BINARY_DIR}/generated)
+
+function(darkroom_module name)
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  set(tests ${sources})
+  list(FILTER tests INCLUDE REGEX "(_test|/test_support[a-z_]*)\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "(_test|/test_support[a-z_]*)\\.cpp$")
+  add_library(darkroom_${name} STATIC ${sources})
+  target_include_directories(darkroom_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src
+    ${DARKROOM_GENERATED}/include)
+  target_link_libraries(darkroom_${name} PUBLIC ${ARGN} PRIVATE darkroom_options)
+  set_property(GLOBAL APPEND PROPERTY DARKROOM_TEST_SOURCES ${tests})
+endfunction()
+
+# Sets `out` to a C++ initialiser {"shown", R"(text of path)"}, and configures again when the file changes.
+function(darkroom_embed path shown out)
+  file(READ ${path} text)
+  set(${out} "    {\"${shown}\", R\"embedded(${text})embedded\"},\n" PARENT_SCOPE)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
+endfunction()
