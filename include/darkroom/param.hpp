@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A parameter is described once, beside the struct that holds it. The GLSL block, the TOML keys, the command-line flags,
+// the console variables, the sliders, the documentation and the error messages all read that one row.
+//
+//     struct Vignette {
+//         float intensity = 0.3f;
+//         float smoothness = 2.0f;
+//     };
+//     inline constexpr auto vignette_rows = describe(
+//         field<&Vignette::intensity>("How much the corners darken.", {0, 1}),
+//         field<&Vignette::smoothness>("Exponent of the falloff.", {0.1, 16}));
+//
+// A forgotten, doubled or misordered member, a default outside its range and a row without a sentence do not compile.
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+namespace darkroom {
+
+/// What a number measures; printed behind values and intervals.
+struct Unit {
+    std::string_view symbol;
+};
+namespace unit {
+inline constexpr Unit none{""}, pixels{"px"}, nits{"cd/m2"}, metres{"m"}, per_metre{"1/m"}, degrees{"deg"}, seconds{"s"};
+}
+
+enum class Scale : std::uint8_t { Linear, Log };
+
+/// The values a number may take: [min, max]. Empty unless said: a number without a range does not compile.
+struct Range {
+    double min = 0.0;
+    double max = 0.0;
+    Scale scale = Scale::Linear;
+};
+
+// The only types a parameter may have, beside float, std::int32_t and enums of 4 bytes. All are made of 4-byte scalars,
+// so a struct of them needs no padding and has the same offsets in C++ and in a std430 block of scalars.
+struct Vec2 {
+    float x = 0, y = 0;
+};
+struct Vec3 {
+    float x = 0, y = 0, z = 0;
+};
+struct Vec4 {
+    float x = 0, y = 0, z = 0, w = 0;
+};
+/// Linear Rec. 709.
+struct Rgb {
+    float r = 0, g = 0, b = 0;
+};
+struct Toggle {
+    std::uint32_t on = 0;
+    constexpr Toggle() = default;
+    constexpr Toggle(bool value) : on(value) {}
+    constexpr explicit operator bool() const { return on != 0; }
+};
+/// A function of one variable: up to 16 points, x ascending, linear between them and constant outside.
+struct Curve {
+    static constexpr std::size_t capacity = 16;
+    std::uint32_t count = 0;
+    std::array<float, capacity> x{}, y{};
+};
+/// An image or table that the host gave the Composer a name for; 0 is none. Never in the GLSL block.
+struct Resource {
+    std::uint32_t id = 0;
+};
+
+enum class Kind : std::uint8_t { Float, Int, Toggle, Choice, Vec2, Vec3, Vec4, Rgb, Curve, Resource };
+
+/// One row, free of templates: what everything derived from it reads.
+struct ParamInfo {
+    std::string_view name;
+    std::string_view doc;
+    Unit unit;
+    Range range;
+    Kind kind = Kind::Float;
+    bool is_amount = false;                    ///< 0 switches the effect off: see field().as_amount()
+    std::uint32_t word = 0;                    ///< offset in the struct, in 4-byte words
+    std::uint32_t words = 1;                   ///< size, in 4-byte words
+    std::span<const std::string_view> choices{};  ///< names in snake_case, for Kind::Choice
+    std::string_view formerly{};               ///< a former name of the key, still read
+};
+
+/// All rows of one struct, in the order of its members, and the words of its defaults.
+struct ParamTable {
+    std::string_view struct_name;
+    std::span<const ParamInfo> rows;
+    std::span<const std::uint32_t> defaults;
+
+    [[nodiscard]] std::size_t words() const { return defaults.size(); }
+    [[nodiscard]] const ParamInfo* find(std::string_view name) const {
+        for (const ParamInfo& row : rows)
+            if (row.name == name || (!row.formerly.empty() && row.formerly == name)) return &row;
+        return nullptr;
+    }
+};
+
+namespace detail {
+
+template <auto M>
+struct Member;
+template <class O, class T, T O::*M>
+struct Member<M> {
+    using Owner = O;
+    using Type = T;
+};
+
+// The compiler knows how a template argument is spelled; asking it keeps a name from being written twice. GCC and
+// Clang; the static_asserts fail first if a compiler changes its wording.
+constexpr std::string_view last_identifier(std::string_view pretty, std::string_view key) {
+    pretty.remove_prefix(pretty.find(key) + key.size());
+    pretty = pretty.substr(0, pretty.find_first_of(";]"));
+    return pretty.substr(pretty.rfind(':') + 1);
+}
+template <auto V>
+constexpr std::string_view name_of() {
+    return last_identifier(__PRETTY_FUNCTION__, "V = ");
+}
+template <class T>
+constexpr std::string_view name_of() {
+    return last_identifier(__PRETTY_FUNCTION__, "T = ");
+}
+static_assert(name_of<&Rgb::g>() == "g" && name_of<Scale::Log>() == "Log" && name_of<Range>() == "Range");
+
+/// An enumerator's name as users write it: AcesNarkowicz -> aces_narkowicz.
+struct SnakeName {
+    std::array<char, 48> text{};
+    std::size_t size = 0;
+    [[nodiscard]] constexpr std::string_view view() const { return {text.data(), size}; }
+};
+constexpr SnakeName snake_name(std::string_view pascal) {
+    SnakeName out;
+    for (std::size_t i = 0; i < pascal.size(); ++i) {
+        const bool is_upper = pascal[i] >= 'A' && pascal[i] <= 'Z';
+        if (is_upper && i > 0) out.text[out.size++] = '_';
+        out.text[out.size++] = is_upper ? static_cast<char>(pascal[i] - 'A' + 'a') : pascal[i];
+    }
+    return out;
+}
+
+template <class E>
+struct Enumerators {
+    static constexpr std::size_t limit = 32;
+    static constexpr std::size_t count = [] {
+        std::size_t n = 0;
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+            // A value without an enumerator prints as "(E)3".
+            ((n += name_of<static_cast<E>(I)>().find(')') == std::string_view::npos ? 1u : 0u), ...);
+        }(std::make_index_sequence<limit>{});
+        return n;
+    }();
+    static constexpr std::array<SnakeName, count> storage = [] {
+        std::array<SnakeName, count> out{};
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+            ((out[I] = snake_name(name_of<static_cast<E>(I)>())), ...);
+        }(std::make_index_sequence<count>{});
+        return out;
+    }();
+    static constexpr std::array<std::string_view, count> names = [] {
+        std::array<std::string_view, count> out{};
+        for (std::size_t i = 0; i < count; ++i) out[i] = storage[i].view();
+        return out;
+    }();
+};
+static_assert(Enumerators<Scale>::count == 2 && Enumerators<Scale>::names[1] == "log");
+
+template <class T>
+constexpr Kind kind_of() {
+    if constexpr (std::is_same_v<T, float>) {
+        return Kind::Float;
+    } else if constexpr (std::is_same_v<T, std::int32_t>) {
+        return Kind::Int;
+    } else if constexpr (std::is_same_v<T, Toggle>) {
+        return Kind::Toggle;
+    } else if constexpr (std::is_same_v<T, Vec2>) {
+        return Kind::Vec2;
+    } else if constexpr (std::is_same_v<T, Vec3>) {
+        return Kind::Vec3;
+    } else if constexpr (std::is_same_v<T, Vec4>) {
+        return Kind::Vec4;
+    } else if constexpr (std::is_same_v<T, Rgb>) {
+        return Kind::Rgb;
+    } else if constexpr (std::is_same_v<T, Curve>) {
+        return Kind::Curve;
+    } else if constexpr (std::is_same_v<T, Resource>) {
+        return Kind::Resource;
+    } else {
+        static_assert(std::is_enum_v<T> && sizeof(T) == 4, "not a type that a parameter may have");
+        return Kind::Choice;
+    }
+}
+
+template <class T>
+using Words = std::array<std::uint32_t, sizeof(T) / 4>;
+
+// Where a member lies: change it and see which word of the struct changed.
+template <auto M>
+constexpr std::uint32_t word_of() {
+    using Owner = typename Member<M>::Owner;
+    using Type = typename Member<M>::Type;
+    Owner changed{};
+    auto words = std::bit_cast<Words<Type>>(changed.*M);
+    for (auto& word : words) word = ~word;
+    changed.*M = std::bit_cast<Type>(words);
+    const auto before = std::bit_cast<Words<Owner>>(Owner{}), after = std::bit_cast<Words<Owner>>(changed);
+    std::uint32_t i = 0;
+    while (before[i] == after[i]) ++i;
+    return i;
+}
+
+template <class T>
+constexpr bool has_range() {
+    return std::is_same_v<T, float> || std::is_same_v<T, std::int32_t> || std::is_same_v<T, Vec2> ||
+           std::is_same_v<T, Vec3> || std::is_same_v<T, Vec4> || std::is_same_v<T, Rgb> || std::is_same_v<T, Curve>;
+}
+
+template <class T>
+constexpr bool is_inside(const T& value, const Range& range) {
+    const auto ok = [&](double v) { return v >= range.min && v <= range.max; };
+    if constexpr (std::is_same_v<T, float> || std::is_same_v<T, std::int32_t>) {
+        return ok(static_cast<double>(value));
+    } else if constexpr (std::is_same_v<T, Curve>) {
+        for (std::uint32_t i = 0; i < value.count; ++i)
+            if (!ok(value.y[i]) || (i > 0 && !(value.x[i] > value.x[i - 1]))) return false;
+        return value.count <= Curve::capacity;
+    } else {
+        for (const float v : std::bit_cast<std::array<float, sizeof(T) / 4>>(value))
+            if (!ok(v)) return false;
+        return true;
+    }
+}
+
+}  // namespace detail
+
+template <auto M>
+struct Field {
+    ParamInfo info;
+    /// The effect's main amount: in a flat table or on the command line a value above 0 turns the effect on, 0 off.
+    [[nodiscard]] constexpr Field as_amount() const {
+        Field copy = *this;
+        copy.info.is_amount = true;
+        return copy;
+    }
+    [[nodiscard]] constexpr Field formerly(std::string_view name) const {
+        Field copy = *this;
+        copy.info.formerly = name;
+        return copy;
+    }
+};
+
+/// One row. The name and the default are read from the struct; sentence, range and unit are said here.
+template <auto M>
+constexpr Field<M> field(std::string_view doc, Range range = {}, Unit unit = unit::none) {
+    using Owner = typename detail::Member<M>::Owner;
+    using Type = typename detail::Member<M>::Type;
+    if (doc.empty() || doc.back() != '.') throw "the doc of a parameter is a sentence";
+    if constexpr (detail::has_range<Type>()) {
+        if (!(range.min < range.max)) throw "the range is empty";
+        if (range.scale == Scale::Log && range.min <= 0) throw "a log range starts above zero";
+        if (!detail::is_inside(Owner{}.*M, range)) throw "the default lies outside the range";
+    }
+    ParamInfo info{.name = detail::name_of<M>(),
+                   .doc = doc,
+                   .unit = unit,
+                   .range = range,
+                   .kind = detail::kind_of<Type>(),
+                   .word = detail::word_of<M>(),
+                   .words = sizeof(Type) / 4};
+    if constexpr (std::is_enum_v<Type>) info.choices = detail::Enumerators<Type>::names;
+    return {info};
+}
+
+/// The rows of a whole struct; converts to a ParamTable that refers to it, so keep it in static storage.
+template <class Owner, std::size_t Count>
+struct Description {
+    std::array<ParamInfo, Count> rows{};
+    detail::Words<Owner> defaults = std::bit_cast<detail::Words<Owner>>(Owner{});
+    [[nodiscard]] constexpr ParamTable table() const { return {detail::name_of<Owner>(), rows, defaults}; }
+};
+
+/// Compiles only if every member is described exactly once and in order.
+template <auto... M>
+constexpr auto describe(Field<M>... fields) {
+    using Owner = std::common_type_t<typename detail::Member<M>::Owner...>;
+    static_assert(std::is_trivially_copyable_v<Owner> && std::is_standard_layout_v<Owner> && alignof(Owner) == 4);
+    static_assert((sizeof(typename detail::Member<M>::Type) + ...) == sizeof(Owner),
+                  "a member is missing from the description, or is described twice");
+    Description<Owner, sizeof...(M)> out;
+    std::uint32_t next = 0;
+    std::size_t i = 0;
+    for (const ParamInfo& info : {fields.info...}) {
+        if (info.word != next) throw "describe the members in the order they are declared";
+        next += info.words;
+        out.rows[i++] = info;
+    }
+    return out;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "core/files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+namespace darkroom {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Descriptor {
+    int number = -1;
+
+    explicit Descriptor(int opened) : number(opened) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() {
+        if (number >= 0) ::close(number);
+    }
+};
+
+tl::unexpected<Error> io_error(const fs::path& path, const char* doing, int code) {
+    return machine_error(fmt::format("{}: cannot {}: {}", path.string(), doing, std::strerror(code)));
+}
+
+// A wrong name is the user's to mend; a disk that fails is not.
+tl::unexpected<Error> open_error(const fs::path& path, int code) {
+    const std::string text = fmt::format("{}: cannot open: {}", path.string(), std::strerror(code));
+    return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG ? user_error(text) : machine_error(text);
+}
+
+Result<> write_all(int descriptor, const fs::path& path, std::span<const std::byte> content) {
+    while (!content.empty()) {
+        const ssize_t count = ::write(descriptor, content.data(), content.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return io_error(path, "write", errno);
+        content = content.subspan(static_cast<std::size_t>(count));
+    }
+    return {};
+}
+
+Result<> write_and_close(Descriptor& file, const fs::path& path, std::span<const std::byte> content) {
+    if (auto written = write_all(file.number, path, content); !written) return written;
+    const int descriptor = std::exchange(file.number, -1);
+    if (::close(descriptor) != 0) return io_error(path, "write", errno);
+    return {};
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> read_file(const fs::path& path) {
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.number < 0) return open_error(path, errno);
+    struct stat status {};
+    if (::fstat(file.number, &status) != 0) return io_error(path, "read", errno);
+    if (S_ISDIR(status.st_mode)) return user_error(fmt::format("{}: is a folder, a file is needed", path.string()));
+
+    // One byte more than the file says it has, so that the usual file ends without another round of growing.
+    std::vector<std::byte> content(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : 65536);
+    std::size_t size = 0;
+    for (;;) {
+        if (size == content.size()) content.resize(content.size() * 2);
+        const ssize_t count = ::read(file.number, content.data() + size, content.size() - size);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return io_error(path, "read", errno);
+        if (count == 0) break;
+        size += static_cast<std::size_t>(count);
+    }
+    content.resize(size);
+    return content;
+}
+
+Result<> write_file(const fs::path& path, std::span<const std::byte> content) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {
+        Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+        if (file.number < 0) return open_error(path, errno);
+        return write_and_close(file, path, content);
+    }
+    auto temporary = AtomicPath::beside(path);
+    if (!temporary) return failure(std::move(temporary));
+    Descriptor file(::open(temporary->path().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
+    if (file.number < 0) return open_error(path, errno);
+    if (auto written = write_and_close(file, path, content); !written) return written;
+    return temporary->commit();
+}
+
+AtomicPath::AtomicPath(fs::path target, fs::path temporary)
+    : target_(std::move(target)), temporary_(std::move(temporary)) {}
+
+AtomicPath::AtomicPath(AtomicPath&& other) noexcept
+    : target_(std::move(other.target_)), temporary_(std::move(other.temporary_)) {
+    other.temporary_.clear();
+}
+
+AtomicPath& AtomicPath::operator=(AtomicPath&& other) noexcept {
+    if (this == &other) return *this;
+    discard();
+    target_ = std::move(other.target_);
+    temporary_ = std::move(other.temporary_);
+    other.temporary_.clear();
+    return *this;
+}
+
+AtomicPath::~AtomicPath() { discard(); }
+
+void AtomicPath::discard() noexcept {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    temporary_.clear();
+}
+
+Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
+    if (target.filename().empty()) return user_error(fmt::format("{}: is a folder, a file is needed", target.string()));
+    std::error_code code;
+    const fs::file_status status = fs::status(target, code);
+    if (fs::is_directory(status)) return user_error(fmt::format("{}: is a folder, a file is needed", target.string()));
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        return user_error(fmt::format("{}: is no regular file and cannot be replaced", target.string()));
+    // Replacing a link would cut it; what it points to is what the user means.
+    fs::path real = target;
+    if (fs::exists(status)) {
+        const fs::path followed = fs::canonical(target, code);
+        if (!code) real = followed;
+        // A rename asks only the folder; a file that its owner protected must stay as well.
+        if (::access(real.c_str(), W_OK) != 0) return open_error(target, errno);
+    }
+
+    static std::atomic<unsigned> counter{0};
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        const std::string name = fmt::format(".{}.{}.{}.part{}", real.stem().string().substr(0, 100), ::getpid(),
+                                             counter.fetch_add(1), real.extension().string());
+        fs::path temporary = real.parent_path() / name;
+        const Descriptor file(::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666));
+        if (file.number >= 0) {
+            struct stat existing {};
+            if (::stat(real.c_str(), &existing) == 0) std::ignore = ::fchmod(file.number, existing.st_mode & 07777);
+            return AtomicPath(std::move(real), std::move(temporary));
+        }
+        if (errno != EEXIST) return io_error(target, "create", errno);
+    }
+    return machine_error(fmt::format("{}: cannot create: no free temporary name beside it", target.string()));
+}
+
+Result<> AtomicPath::commit() {
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) return io_error(target_, "create", errno);
+    temporary_.clear();
+    return {};
+}
+
+}  // namespace darkroom

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Whole files in and out. What is written appears under its name complete or not at all: it goes to a temporary file in
+// the same folder, which is then renamed. Nothing here knows a format, and nothing waits for the disk (no fsync), so
+// the promise covers errors and kills of this process, not a power cut.
+
+#include <cstddef>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace darkroom {
+
+/// The content of a file. Refuses folders; reads pipes and devices to their end.
+[[nodiscard]] Result<std::vector<std::byte>> read_file(const std::filesystem::path& path);
+
+/// Writes the file whole or not at all; on failure an existing file stays as it was. A link is followed. A target that
+/// is no regular file (a pipe, /dev/stdout) is written in place, since there is nothing to replace.
+[[nodiscard]] Result<> write_file(const std::filesystem::path& path, std::span<const std::byte> content);
+
+/// A temporary path beside a target, for writers that want a path rather than bytes. It carries the target's extension,
+/// because such writers choose the format by it. `commit` moves it over the target; without a commit the destructor
+/// removes it and the target is untouched.
+class AtomicPath {
+  public:
+    /// Reserves the temporary file (empty). Fails if the folder is missing or not writable, or if the target exists and
+    /// is no regular file.
+    [[nodiscard]] static Result<AtomicPath> beside(const std::filesystem::path& target);
+
+    AtomicPath(AtomicPath&& other) noexcept;
+    AtomicPath& operator=(AtomicPath&& other) noexcept;
+    ~AtomicPath();
+
+    [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+    [[nodiscard]] Result<> commit();
+
+  private:
+    AtomicPath(std::filesystem::path target, std::filesystem::path temporary);
+    void discard() noexcept;
+
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;  // empty once committed or moved from
+};
+
+}  // namespace darkroom
