@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the library knows of a Vulkan device: handles, one dispatch table through which every call goes (a test puts a
+// null or counting one in its place), traits, caches. Everything in gpu/ hangs on a Context.
+
+#include <vulkan/vulkan.h>
+
+#include <atomic>
+#include <cstdint>
+#include <darkroom/device.hpp>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gpu/dispatch.hpp"
+
+namespace darkroom::gpu {
+
+class ShaderCompiler;
+
+struct Traits {
+    bool is_software = false;
+    bool has_extended_storage_formats = false;  ///< shaderStorageImageExtendedFormats: r8, rg16f, r11f_g11f_b10f ...
+    bool has_storage_write_without_format = false;
+    bool has_debug_labels = false;
+    std::uint32_t max_image_dimension = 0;
+    VkDeviceSize storage_alignment = 256, uniform_alignment = 256;
+    double timestamp_period_ns = 0;  ///< 0: this queue family has no timestamps
+};
+
+class Context {
+  public:
+    Context();
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    Dispatch vk{};
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    std::uint32_t queue_family = 0;
+    VkQueue queue = VK_NULL_HANDLE;  ///< only where the library created the device
+    std::mutex queue_mutex;          ///< held while something is submitted to it
+    bool is_owner = false;           ///< of instance, device and messenger
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
+    VkSampler linear_sampler = VK_NULL_HANDLE, nearest_sampler = VK_NULL_HANDLE;
+    VkPhysicalDeviceMemoryProperties memory{};
+    Traits traits{};
+    DeviceInfo info{};
+    LogSink log;
+    std::atomic<std::uint64_t> validation_messages{0};
+    std::atomic<std::uint64_t> pipelines_created{0};  ///< counted for the tests of idea 5
+    std::mutex full_screen_mutex;                     ///< guards the next member
+    std::vector<std::uint32_t> full_screen_vertex;    ///< SPIR-V of the triangle, compiled by the first raster kernel
+    std::filesystem::path cache_folder;               ///< empty: none
+    std::unique_ptr<ShaderCompiler> shaders;
+
+    void say(Severity severity, std::string_view text) const;
+    /// The one place where a VkResult becomes an Error: "<what> failed: VK_ERROR_...".
+    [[nodiscard]] Result<> check(VkResult result, std::string_view what) const;
+    /// For images with optimal tiling.
+    [[nodiscard]] bool supports(VkFormat format, VkFormatFeatureFlags features) const;
+
+    /// Makes what every use of the device needs: samplers, pipeline cache, shader compiler, memory properties, limits.
+    /// Called once by Device, when dispatch table, handles and traits that depend on enabled features are set.
+    [[nodiscard]] Result<> finish();
+
+  private:
+    [[nodiscard]] Result<> create_samplers();
+    [[nodiscard]] Result<> create_pipeline_cache();
+    void save_pipeline_cache() const;
+    [[nodiscard]] std::filesystem::path pipeline_cache_path() const;
+    [[nodiscard]] bool is_own_pipeline_cache(std::span<const std::byte> data) const;
+};
+
+/// "VK_ERROR_DEVICE_LOST" and so on.
+[[nodiscard]] std::string result_name(VkResult result);
+
+}  // namespace darkroom::gpu

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A kernel is a function of a pixel, written once in GLSL and run as a compute shader or as a fragment shader on a
+// full-screen triangle. The body calls
+//     vec4 sample_linear(IMAGE, vec2 uv)     bilinear, clamped to the image's region; uv (0,0)-(1,1) spans the region
+//     vec4 load(IMAGE, ivec2 texel)          one texel; the texel must lie inside the region
+//     vec4 load_clamped(IMAGE, ivec2 texel)  one texel, clamped to the region
+//     vec4 gather_red(IMAGE, vec2 uv)        textureGather of the red channel
+//     ivec2 size(IMAGE)                      extent of the image's region, in texels
+// where IMAGE is a name from KernelSpec::images, and defines
+//     vec4 shade(Pixel pixel)                with one output
+//     void shade(Pixel pixel, out vec4 result[N])   with N
+// or, with KernelSpec::is_compute_only, void kernel(), which calls store_0(texel, value), store_1(...) itself or uses
+// the image2D result_0, result_1, ... and may use every built-in of a compute shader. output_size() is pixel.size.
+// Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
+// The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where
+// a region ends inside its image, gather_red() does not leave it either, but gives the last whole 2x2 block there.
+// kernel_source() writes the rest: preamble, bindings, region arithmetic, and main() of the stage.
+//
+// Set 0: binding 0 the constants (uniform buffer), binding 1 the pass block (uniform buffer), then the images in
+// order, then, in compute, the outputs.
+
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace darkroom::gpu {
+
+class Context;
+
+/// Buffers of constants are made with this usage, and bound at multiples of Traits::uniform_alignment. Measured on the
+/// software driver, 16 scalars from a storage buffer cost 40 to 90 % more than the same ones from a uniform buffer.
+inline constexpr VkBufferUsageFlags constants_usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+
+enum class Stage : std::uint8_t { Compute, Raster };
+
+struct KernelImage {
+    std::string name;
+    /// VK_FORMAT_UNDEFINED: sampled (any format). Else load() is an imageLoad of that format, the cheapest read of an
+    /// own pixel, and the image is bound in VK_IMAGE_LAYOUT_GENERAL; sampling functions are then not available.
+    VkFormat storage_format = VK_FORMAT_UNDEFINED;
+    std::string sampler_type = "sampler2D";  ///< or "sampler3D", "usampler2D", ...
+};
+
+struct KernelSpec {
+    std::string name;  ///< debug label, pipeline name
+    std::vector<KernelImage> images;
+    std::vector<VkFormat> outputs;
+    bool is_additive = false;  ///< output 0 += result instead of = result
+    /// GLSL members of the constants block, laid out as std430: scalars, vectors, mat3, mat4, arrays of scalars and
+    /// vectors with a literal size. An array can only be indexed. Empty: none.
+    std::string constants;
+    std::uint32_t custom_vectors = 0;  ///< vec4 custom[n] at the end of the pass block: per-invocation constants
+    std::string body;                  ///< GLSL: helpers and shade(); may hold #line directives
+    bool is_compute_only = false;      ///< uses shared memory, atomics or barriers: the body is then main itself
+    std::array<std::uint32_t, 2> workgroup{16, 16};
+};
+
+/// The whole shader for one stage. Pure text: tested without a device.
+[[nodiscard]] std::string kernel_source(const KernelSpec& spec, Stage stage);
+
+/// The part of an image that a frame uses. Layouts are the graph's matter.
+struct Region {
+    VkOffset2D offset{};
+    VkExtent2D extent{};
+    VkExtent2D image{};  ///< of the whole image (of the mip level the view shows)
+};
+struct Binding {
+    VkImageView view = VK_NULL_HANDLE;  ///< of one mip level where sample_linear() is called
+    Region region{};
+    bool is_nearest = false;             ///< formats that cannot be filtered
+    VkSampler sampler = VK_NULL_HANDLE;  ///< instead of the linear or nearest one, which clamp to the edge
+    VkImageLayout layout =
+        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;  ///< of a sampled image; storage images are GENERAL
+};
+
+/// Bytes of the pass block of a spec, and its content for one invocation: output region, one region an input, custom.
+[[nodiscard]] std::size_t pass_block_size(const KernelSpec& spec);
+void write_pass_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
+                      std::span<const std::array<float, 4>> custom, std::span<std::byte> out);
+
+/// Compiled for one stage: pipeline, layouts. Made at compile time of a chain or on a worker, never while recording.
+class Kernel {
+  public:
+    [[nodiscard]] static Result<std::unique_ptr<Kernel>> create(Context& context, const KernelSpec& spec, Stage stage);
+    ~Kernel();
+    [[nodiscard]] const KernelSpec& spec() const;
+    [[nodiscard]] Stage stage() const;
+    [[nodiscard]] VkDescriptorSetLayout set_layout() const;
+
+    struct Invocation {
+        VkDescriptorSet set = VK_NULL_HANDLE;  ///< of set_layout(), not in use by an unfinished frame
+        VkBuffer constants = VK_NULL_HANDLE;
+        VkDeviceSize constants_offset = 0, constants_size = 0;
+        VkBuffer pass_block = VK_NULL_HANDLE;
+        VkDeviceSize pass_block_offset = 0;  ///< the caller wrote it with write_pass_block
+        std::span<const Binding> images;
+        std::span<const Binding> outputs;  ///< all with the same region
+        std::array<std::uint32_t, 2> groups{
+            0, 0};  ///< workgroups of a compute-only kernel; 0: as many as cover the region
+    };
+    /// Updates the set and records bind + dispatch (or begin rendering, draw, end). No allocation, no wait.
+    void record(VkCommandBuffer commands, const Invocation& invocation) const;
+
+  private:
+    Kernel();
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Whether `stage` can run `spec` on this device; the error names the output or image and its format.
+[[nodiscard]] Result<> usable(const Context& context, const KernelSpec& spec, Stage stage);
+
+/// Which stage runs `spec` best on this device, from the measurements in docs/architecture.md: GPUs compute; the
+/// software driver rasterises what filters or stores wide formats and computes the rest. Formats that the stage cannot
+/// write force the other one.
+[[nodiscard]] Stage preferred_stage(const Context& context, const KernelSpec& spec);
+
+}  // namespace darkroom::gpu

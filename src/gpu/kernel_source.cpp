@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cstring>
+#include <iterator>
+
+#include "core/assert.hpp"
+#include "gpu/constants_source.hpp"
+#include "gpu/formats.hpp"
+#include "gpu/kernel.hpp"
+#include "gpu/rewrite.hpp"
+
+namespace darkroom::gpu {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> image_functions{"sample_linear", "load", "load_clamped", "gather_red",
+                                                          "size"};
+constexpr std::uint32_t first_image_binding = 2;
+
+constexpr std::string_view preamble = R"(#version 460
+#extension GL_GOOGLE_cpp_style_line_directive : require
+#extension GL_EXT_control_flow_attributes : require
+struct Pixel { ivec2 texel; vec2 uv; ivec2 size; };
+)";
+
+// Both stages reach pixel.uv by the same operations in the same order; gl_FragCoord would not do.
+constexpr std::string_view pixel_functions = R"(ivec2 output_size() { return darkroom_output.zw; }
+Pixel darkroom_pixel(ivec2 texel) {
+    precise vec2 uv = (vec2(texel) + 0.5) / vec2(darkroom_output.zw);
+    return Pixel(texel, uv, darkroom_output.zw);
+}
+)";
+
+using Text = std::back_insert_iterator<std::string>;
+
+std::string_view prefix_of(Numeric numeric) {
+    switch (numeric) {
+        case Numeric::Signed:
+            return "i";
+        case Numeric::Unsigned:
+            return "u";
+        case Numeric::Float:
+            break;
+    }
+    return "";
+}
+
+/// "v", "iv" or "uv" + "ec4" of what a sampler returns.
+std::string_view prefix_of_sampler(std::string_view type) {
+    return type.starts_with("i") ? "i" : type.starts_with("u") ? "u" : "";
+}
+
+bool is_plain_2d(std::string_view sampler_type) {
+    return sampler_type == "sampler2D" || sampler_type == "usampler2D" || sampler_type == "isampler2D";
+}
+
+void write_pass_declaration(Text text, const KernelSpec& spec) {
+    fmt::format_to(text, "layout(std140, set = 0, binding = 1) uniform DarkroomPass {{\n    ivec4 darkroom_output;\n");
+    for (const KernelImage& image : spec.images) {
+        fmt::format_to(text,
+                       "    vec4 darkroom_uv_{0};\n    vec4 darkroom_bounds_{0};\n    ivec4 darkroom_region_{0};\n",
+                       image.name);
+    }
+    if (spec.custom_vectors > 0) fmt::format_to(text, "    vec4 custom[{}];\n", spec.custom_vectors);
+    fmt::format_to(text, "}};\n");
+}
+
+void write_storage_input(Text text, const KernelImage& image, std::uint32_t binding) {
+    const FormatTraits traits = format_traits(image.storage_format);
+    const std::string_view prefix = prefix_of(traits.numeric);
+    fmt::format_to(text, "layout(set = 0, binding = {}, {}) uniform readonly {}image2D {};\n", binding,
+                   traits.glsl_qualifier, prefix, image.name);
+    fmt::format_to(
+        text,
+        "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n"
+        "{1}vec4 load_{0}(ivec2 texel) {{ return imageLoad({0}, texel + darkroom_region_{0}.xy); }}\n"
+        "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n",
+        image.name, prefix);
+}
+
+void write_sampled_input(Text text, const KernelImage& image, std::uint32_t binding, Stage stage) {
+    fmt::format_to(text, "layout(set = 0, binding = {}) uniform {} {};\n", binding, image.sampler_type, image.name);
+    if (!is_plain_2d(image.sampler_type)) return;
+    const std::string_view prefix = prefix_of_sampler(image.sampler_type);
+    fmt::format_to(
+        text,
+        "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n"
+        "{1}vec4 load_{0}(ivec2 texel) {{ return texelFetch({0}, texel + darkroom_region_{0}.xy, 0); }}\n"
+        "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n"
+        "vec2 darkroom_place_{0}(vec2 uv) {{\n"
+        "    precise vec2 place = uv * darkroom_uv_{0}.xy + darkroom_uv_{0}.zw;\n"
+        "    return clamp(place, darkroom_bounds_{0}.xy, darkroom_bounds_{0}.zw);\n"
+        "}}\n"
+        "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 0); }}\n",
+        image.name, prefix);
+    // A view has one mip level, so the implicit level of detail changes no bit; some drivers filter much faster with
+    // it.
+    const std::string_view function = stage == Stage::Raster ? "texture" : "textureLod";
+    const std::string_view level = stage == Stage::Raster ? "" : ", 0.0";
+    fmt::format_to(text, "{1}vec4 sample_linear_{0}(vec2 uv) {{ return {2}({0}, darkroom_place_{0}(uv){3}); }}\n",
+                   image.name, prefix, function, level);
+}
+
+void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index) {
+    const FormatTraits traits = format_traits(spec.outputs[index]);
+    const bool is_read = spec.is_additive && index == 0;
+    const bool has_qualifier = !traits.glsl_qualifier.empty();
+    const auto binding = first_image_binding + static_cast<std::uint32_t>(spec.images.size()) + index;
+    const std::string_view separator = has_qualifier ? ", " : "";
+    // A body that is main itself may use atomics on its outputs, which needs a format and forbids writeonly.
+    const std::string_view access = is_read || (spec.is_compute_only && has_qualifier) ? "" : "writeonly ";
+    fmt::format_to(text, "layout(set = 0, binding = {}{}{}) uniform {}{}image2D result_{};\n", binding, separator,
+                   traits.glsl_qualifier, access, prefix_of(traits.numeric), index);
+    const std::string_view old = is_read ? " + imageLoad(result_0, place)" : "";
+    fmt::format_to(text,
+                   "void store_{0}(ivec2 texel, vec4 value) {{\n"
+                   "    ivec2 place = texel + darkroom_output.xy;\n"
+                   "    imageStore(result_{0}, place, {1}vec4(value){2});\n"
+                   "}}\n",
+                   index, prefix_of(traits.numeric), old);
+}
+
+void write_outputs(Text text, const KernelSpec& spec, Stage stage) {
+    for (std::uint32_t index = 0; index < spec.outputs.size(); ++index) {
+        if (stage == Stage::Compute) {
+            write_compute_output(text, spec, index);
+        } else {
+            fmt::format_to(text, "layout(location = {0}) out {1}vec4 result_{0};\n", index,
+                           prefix_of(format_traits(spec.outputs[index]).numeric));
+        }
+    }
+}
+
+/// Declares `vec4 result[N]` and fills it.
+void write_shade_call(Text text, std::size_t output_count) {
+    if (output_count == 1) {
+        fmt::format_to(text, "        vec4 result[1] = vec4[1](shade(darkroom_pixel(texel)));\n");
+    } else {
+        fmt::format_to(text, "        vec4 result[{}];\n        shade(darkroom_pixel(texel), result);\n", output_count);
+    }
+}
+
+void write_main(Text text, const KernelSpec& spec, Stage stage) {
+    if (spec.is_compute_only) {
+        fmt::format_to(text, "void main() {{ kernel(); }}\n");
+        return;
+    }
+    const bool is_compute = stage == Stage::Compute;
+    const std::string_view place =
+        is_compute ? "ivec2(gl_GlobalInvocationID.xy)" : "ivec2(gl_FragCoord.xy) - darkroom_output.xy";
+    const std::string_view condition = is_compute ? "if (all(lessThan(texel, darkroom_output.zw))) " : "";
+    fmt::format_to(text, "void main() {{\n    ivec2 texel = {};\n    {}{{\n", place, condition);
+    write_shade_call(text, spec.outputs.size());
+    for (std::size_t index = 0; index < spec.outputs.size(); ++index) {
+        if (is_compute) {
+            fmt::format_to(text, "        store_{0}(texel, result[{0}]);\n", index);
+        } else {
+            const std::string_view prefix = prefix_of(format_traits(spec.outputs[index]).numeric);
+            fmt::format_to(text, "        result_{0} = {1}vec4(result[{0}]);\n", index, prefix);
+        }
+    }
+    fmt::format_to(text, "    }}\n}}\n");
+}
+
+struct Axis {
+    float scale = 1.0F, offset = 0.0F, lowest = 0.0F, highest = 1.0F;
+};
+
+Axis axis_of(std::int32_t offset, std::uint32_t extent, std::uint32_t image) {
+    if (image == 0) return {};
+    // Where the region ends inside the image, its edge texel must not be mixed with its neighbour, not even with a
+    // weight of zero: that may be an infinity. So the bound stays this far inside the texel's centre; less, and the
+    // rounding of the coordinate in the sampler could step over it.
+    constexpr double guard = 1.0 / (1U << 22U);
+    const double size = image;
+    const double last = offset + static_cast<double>(extent) - 1.0;
+    const bool ends_inside = offset + static_cast<double>(extent) < size;
+    return {
+        .scale = static_cast<float>(extent / size),
+        .offset = static_cast<float>(offset / size),
+        .lowest = offset > 0 ? static_cast<float>((offset + 0.5) / size + guard) : 0.0F,
+        .highest = ends_inside ? static_cast<float>((last + 0.5) / size - guard) : 1.0F,
+    };
+}
+
+template <class Value>
+void append(std::span<std::byte>& out, const Value& value) {
+    std::memcpy(out.data(), &value, sizeof value);
+    out = out.subspan(sizeof value);
+}
+
+std::array<std::int32_t, 4> rectangle(const Region& region) {
+    return {region.offset.x, region.offset.y, static_cast<std::int32_t>(region.extent.width),
+            static_cast<std::int32_t>(region.extent.height)};
+}
+
+}  // namespace
+
+std::string kernel_source(const KernelSpec& spec, Stage stage) {
+    DARKROOM_ASSERT(!spec.is_compute_only || stage == Stage::Compute);
+    std::string source(preamble);
+    const Text text = std::back_inserter(source);
+    if (stage == Stage::Compute) {
+        fmt::format_to(text, "layout(local_size_x = {}, local_size_y = {}) in;\n", spec.workgroup[0],
+                       spec.workgroup[1]);
+    }
+    write_pass_declaration(text, spec);
+    source += pixel_functions;
+    std::vector<std::string_view> names;
+    for (const KernelImage& image : spec.images) {
+        const auto binding = first_image_binding + static_cast<std::uint32_t>(names.size());
+        if (image.storage_format != VK_FORMAT_UNDEFINED) {
+            write_storage_input(text, image, binding);
+        } else {
+            write_sampled_input(text, image, binding, stage);
+        }
+        names.emplace_back(image.name);
+    }
+    write_outputs(text, spec, stage);
+    const ConstantsSource constants = constants_source(spec.constants);
+    source += constants.text;
+    const std::string body = rewrite_indexing(rewrite_image_calls(spec.body, image_functions, names), constants.arrays);
+    fmt::format_to(text, "#line 1 \"{}\"\n{}\n", spec.name, body);
+    fmt::format_to(text, "#line 1 \"{}: main\"\n", spec.name);
+    write_main(text, spec, stage);
+    return source;
+}
+
+std::size_t pass_block_size(const KernelSpec& spec) {
+    constexpr std::size_t vector_size = 16;
+    constexpr std::size_t vectors_per_image = 3;
+    return vector_size * (1 + vectors_per_image * spec.images.size() + spec.custom_vectors);
+}
+
+void write_pass_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
+                      std::span<const std::array<float, 4>> custom, std::span<std::byte> out) {
+    DARKROOM_ASSERT(images.size() == spec.images.size());
+    DARKROOM_ASSERT(custom.size() == spec.custom_vectors);
+    DARKROOM_ASSERT(out.size() >= pass_block_size(spec));
+    append(out, rectangle(output));
+    for (const Binding& image : images) {
+        const Region& region = image.region;
+        const Axis x = axis_of(region.offset.x, region.extent.width, region.image.width);
+        const Axis y = axis_of(region.offset.y, region.extent.height, region.image.height);
+        append(out, std::array{x.scale, y.scale, x.offset, y.offset});
+        append(out, std::array{x.lowest, y.lowest, x.highest, y.highest});
+        append(out, rectangle(region));
+    }
+    for (const std::array<float, 4>& vector : custom) append(out, vector);
+}
+
+}  // namespace darkroom::gpu

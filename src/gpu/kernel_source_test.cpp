@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/constants_source.hpp"
+#include "gpu/kernel.hpp"
+#include "gpu/rewrite.hpp"
+
+namespace darkroom::gpu {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> functions{"sample_linear", "load", "size"};
+constexpr std::array<std::string_view, 2> images{"scene", "bloom"};
+
+std::string rewritten(std::string_view body) { return rewrite_image_calls(body, functions, images); }
+
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+TEST(GpuRewrite, NamesTheImageInTheFunction) {
+    EXPECT_EQ(rewritten("sample_linear(scene, uv)"), "sample_linear_scene(uv)");
+    EXPECT_EQ(rewritten("size ( bloom )"), "size_bloom (  )");
+    EXPECT_EQ(rewritten("load(scene, ivec2(load(bloom, t).xy))"), "load_scene(ivec2(load_bloom(t).xy))");
+    EXPECT_EQ(rewritten("load/* of */(scene,t)"), "load_scene/* of */(t)");
+}
+
+TEST(GpuRewrite, KeepsLines) {
+    const std::string body = "load(\n    scene, // the picture\n    texel)\n";
+    EXPECT_EQ(std::ranges::count(rewritten(body), '\n'), std::ranges::count(body, '\n'));
+    EXPECT_EQ(rewritten(body), "load_scene(\n    // the picture\n    texel)\n");
+}
+
+TEST(GpuRewrite, LeavesEverythingElseAlone) {
+    for (const std::string_view text :
+         {"// load(scene, t)\n", "/* load(scene, t) */", "load(other, t)", "load(scene.x, t)", "my_load(scene, t)",
+          "pixel.size", "a.load(scene, t)", "load", "load(", "load(scene", "1load(scene, t)", "/* load(scene, t)",
+          "#line 3 \"a/b.glsl\"\n"}) {
+        EXPECT_EQ(rewritten(text), text);
+    }
+}
+
+TEST(GpuRewrite, TurnsIndexingIntoCalls) {
+    const std::vector<std::string> arrays{"curve", "weights"};
+    EXPECT_EQ(rewrite_indexing("curve[i + weights[other[2]]] + x[1]", arrays),
+              "curve_at(i + weights_at(other[2])) + x[1]");
+    EXPECT_EQ(rewrite_indexing("// curve[1]\na.curve[1] curve", arrays), "// curve[1]\na.curve[1] curve");
+}
+
+TEST(GpuConstantsSource, FollowsTheLayoutOfStd430) {
+    const ConstantsSource source =
+        constants_source("float a; // first\nfloat curve[3];\nvec3 b;\nfloat c, d; /* e */ vec2 pairs[2]; uint f;");
+    for (const std::string_view part :
+         {"layout(offset = 0) float a;", "layout(offset = 16) vec3 b;", "layout(offset = 28) float c;",
+          "layout(offset = 32) float d;", "layout(offset = 56) uint f;", "uint word = 1u + index * 1u;",
+          "uint word = 10u + index * 2u;", "uvec4 darkroom_words[4]"}) {
+        EXPECT_TRUE(has(source.text, part)) << part << "\n" << source.text;
+    }
+    EXPECT_EQ(source.arrays, (std::vector<std::string>{"curve", "pairs"}));
+    EXPECT_TRUE(constants_source("").text.empty());
+}
+
+TEST(GpuKernelSource, DiffersByStageOnlyWhereItMust) {
+    const KernelSpec spec{
+        .name = "test",
+        .images = {{.name = "scene"}, {.name = "own", .storage_format = VK_FORMAT_R16G16B16A16_SFLOAT}},
+        .outputs = {VK_FORMAT_R8G8B8A8_UNORM},
+        .body = "vec4 shade(Pixel pixel) { return sample_linear(scene, pixel.uv); }"};
+    const std::string compute = kernel_source(spec, Stage::Compute);
+    EXPECT_TRUE(has(compute, "local_size_x = 16, local_size_y = 16"));
+    EXPECT_TRUE(has(compute, "textureLod(scene, darkroom_place_scene(uv), 0.0)"));
+    EXPECT_TRUE(has(compute, "binding = 3, rgba16f) uniform readonly image2D own;"));
+    EXPECT_TRUE(has(compute, "binding = 4, rgba8) uniform writeonly image2D result_0;"));
+    const std::string raster = kernel_source(spec, Stage::Raster);
+    EXPECT_FALSE(has(raster, "local_size_x"));
+    EXPECT_TRUE(has(raster, "texture(scene, darkroom_place_scene(uv))"));
+    EXPECT_TRUE(has(raster, "layout(location = 0) out vec4 result_0;"));
+    EXPECT_TRUE(has(raster, "return sample_linear_scene(pixel.uv);"));
+    EXPECT_FALSE(has(raster, "DarkroomConstants"));
+}
+
+TEST(GpuKernelSource, FormatsWithoutAGlslNameAreWrittenWithoutOne) {
+    const KernelSpec spec{.name = "test", .outputs = {VK_FORMAT_B8G8R8A8_UNORM}, .body = ""};
+    EXPECT_TRUE(has(kernel_source(spec, Stage::Compute), "binding = 2) uniform writeonly image2D result_0;"));
+}
+
+TEST(GpuPassBlock, DescribesRegions) {
+    const KernelSpec spec{.name = "test", .images = {{.name = "scene"}}, .custom_vectors = 1};
+    ASSERT_EQ(pass_block_size(spec), 80U);
+    std::array<std::byte, 80> block{};
+    const Binding scene{.region = {.offset = {16, 0}, .extent = {32, 64}, .image = {64, 64}}};
+    const std::array<float, 4> custom{1, 2, 3, 4};
+    write_pass_block(spec, {.offset = {1, 2}, .extent = {3, 4}, .image = {9, 9}}, {&scene, 1}, {&custom, 1}, block);
+    std::array<std::int32_t, 20> integers{};
+    std::array<float, 20> floats{};
+    std::memcpy(integers.data(), block.data(), block.size());
+    std::memcpy(floats.data(), block.data(), block.size());
+    EXPECT_TRUE(std::ranges::equal(std::span(integers).first(4), std::array{1, 2, 3, 4}));
+    EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(4, 4), std::array{0.5F, 1.0F, 0.25F, 0.0F}));
+    EXPECT_NEAR(floats[8], 16.5 / 64, 1e-6);
+    EXPECT_EQ(floats[9], 0.0F) << "the region touches the image's top, where the sampler clamps";
+    EXPECT_NEAR(floats[10], 47.5 / 64, 1e-6);
+    EXPECT_LT(floats[10], 47.5F / 64);
+    EXPECT_EQ(floats[11], 1.0F);
+    EXPECT_TRUE(std::ranges::equal(std::span(integers).subspan(12, 4), std::array{16, 0, 32, 64}));
+    EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(16, 4), custom));
+}
+
+}  // namespace
+
+}  // namespace darkroom::gpu

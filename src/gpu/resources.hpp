@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// RAII for the Vulkan objects that the library makes: memory, images, buffers, descriptor sets, timers, and one-off
+// submissions on a device of our own. Nothing here is called while recording, except where it says so.
+
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gpu/context.hpp"
+
+namespace darkroom::gpu {
+
+class Memory {
+  public:
+    enum class Kind : std::uint8_t { Device, Upload, Readback };
+    Memory() = default;
+    [[nodiscard]] static Result<Memory> create(Context&, VkDeviceSize size, std::uint32_t type_bits, Kind,
+                                               std::string_view what);
+    Memory(Memory&&) noexcept;
+    Memory& operator=(Memory&&) noexcept;
+    ~Memory();
+    VkDeviceMemory handle = VK_NULL_HANDLE;
+    std::byte* mapped = nullptr;  ///< Upload and Readback: persistently mapped, coherent
+    VkDeviceSize size = 0;
+    Context* context = nullptr;
+};
+
+struct ImageInfo {
+    std::string name;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent3D extent{1, 1, 1};
+    std::uint32_t mip_levels = 1;
+    std::uint32_t array_layers = 1;
+    VkImageUsageFlags usage = 0;
+    VkImageType type = VK_IMAGE_TYPE_2D;
+};
+
+/// An image, one view of the whole and one of each mip level. With its own memory, or placed in somebody else's.
+class Image {
+  public:
+    Image() = default;
+    [[nodiscard]] static Result<Image> create(Context&, const ImageInfo&);
+    /// Placed: the memory must outlive the image.
+    [[nodiscard]] static Result<Image> place(Context&, const ImageInfo&, const Memory&, VkDeviceSize offset);
+    [[nodiscard]] static Result<VkMemoryRequirements> measure(Context&, const ImageInfo&);
+    Image(Image&&) noexcept;
+    Image& operator=(Image&&) noexcept;
+    ~Image();
+    VkImage handle = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;
+    std::vector<VkImageView> mip_views;
+    ImageInfo info{};
+    Memory memory;
+    Context* context = nullptr;
+};
+
+class Buffer {
+  public:
+    Buffer() = default;
+    [[nodiscard]] static Result<Buffer> create(Context&, VkDeviceSize size, VkBufferUsageFlags, Memory::Kind,
+                                               std::string_view name);
+    Buffer(Buffer&&) noexcept;
+    Buffer& operator=(Buffer&&) noexcept;
+    ~Buffer();
+    VkBuffer handle = VK_NULL_HANDLE;
+    Memory memory;
+    Context* context = nullptr;
+};
+
+/// Descriptor sets allocated once for a list of layouts; freed together.
+class DescriptorSets {
+  public:
+    DescriptorSets() = default;
+    [[nodiscard]] static Result<DescriptorSets> create(Context&, std::span<const VkDescriptorSetLayout> layouts);
+    DescriptorSets(DescriptorSets&&) noexcept;
+    DescriptorSets& operator=(DescriptorSets&&) noexcept;
+    ~DescriptorSets();
+    std::vector<VkDescriptorSet> sets;
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    Context* context = nullptr;
+};
+
+/// GPU timestamps, a ring of `slots` recordings of up to `marks` marks each. begin() and mark() record only.
+class Timers {
+  public:
+    Timers() = default;
+    [[nodiscard]] static Result<Timers> create(Context&, std::uint32_t slots, std::uint32_t marks);
+    Timers(Timers&&) noexcept;
+    Timers& operator=(Timers&&) noexcept;
+    ~Timers();
+    void begin(VkCommandBuffer, std::uint32_t slot);
+    void mark(VkCommandBuffer, std::uint32_t slot, std::uint32_t index);
+    /// Milliseconds between neighbouring marks of a finished recording; empty while it is not finished. Never waits.
+    std::size_t read(std::uint32_t slot, std::uint32_t count, std::span<double> milliseconds) const;
+    VkQueryPool pool = VK_NULL_HANDLE;
+    std::uint32_t marks = 0;
+    Context* context = nullptr;
+};
+
+/// Records with `body`, submits on the context's own queue and waits. For uploads, read-back, and headless work.
+[[nodiscard]] Result<> submit_and_wait(Context&, std::string_view what,
+                                       const std::function<void(VkCommandBuffer)>& body);
+
+void name_object(Context&, VkObjectType, std::uint64_t handle, const std::string& name);
+void begin_label(const Context&, VkCommandBuffer, const char* name);
+void end_label(const Context&, VkCommandBuffer);
+
+}  // namespace darkroom::gpu

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/shader.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/files.hpp"
+
+namespace darkroom::gpu {
+
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+constexpr std::uint32_t spirv_magic = 0x07230203;
+
+ShaderSource source(std::string body) {
+    return {.name = "test", .text = "#version 460\n#extension GL_GOOGLE_cpp_style_line_directive : require\n" + body};
+}
+
+class GpuShaderCache : public ::testing::Test {
+  protected:
+    void SetUp() override { std::filesystem::remove_all(folder); }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+    [[nodiscard]] std::filesystem::path only_entry() const {
+        const std::filesystem::directory_iterator entries(folder);
+        return entries == std::filesystem::directory_iterator() ? std::filesystem::path() : entries->path();
+    }
+    std::filesystem::path folder =
+        std::filesystem::path(::testing::TempDir()) /
+        ("darkroom_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    ShaderSource empty = source("layout(local_size_x = 1) in;\nvoid main() {}\n");
+};
+
+TEST_F(GpuShaderCache, GivesTheSameWordsWithoutTheCompiler) {
+    ShaderCompiler first(folder);
+    const Result<Words> made = first.compile(empty);
+    ASSERT_TRUE(made) << made.error().text;
+    EXPECT_EQ(made->front(), spirv_magic);
+    ShaderCompiler second(folder);
+    const Result<Words> found = second.compile(empty);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(*found, *made);
+    EXPECT_EQ(second.compiled, 0U);
+    EXPECT_EQ(second.from_cache, 1U);
+    EXPECT_TRUE(second.compile(source("layout(local_size_x = 2) in;\nvoid main() {}\n")));
+    EXPECT_EQ(second.compiled, 1U);
+}
+
+TEST_F(GpuShaderCache, DoesNotTrustADamagedEntry) {
+    const Result<Words> made = ShaderCompiler(folder).compile(empty);
+    ASSERT_TRUE(made);
+    std::vector<std::byte> bytes = read_file(only_entry()).value();
+    const std::vector<std::byte> whole = bytes;
+    bytes[bytes.size() / 2] ^= std::byte{1};
+    ASSERT_TRUE(write_file(only_entry(), bytes));
+    ShaderCompiler compiler(folder);
+    EXPECT_EQ(compiler.compile(empty).value(), *made);
+    EXPECT_EQ(compiler.compiled, 1U);
+    EXPECT_EQ(read_file(only_entry()).value(), whole) << "the entry is mended";
+    for (const std::size_t size : {std::size_t{0}, std::size_t{15}, std::size_t{16}, whole.size() - 4}) {
+        ASSERT_TRUE(write_file(only_entry(), std::span(whole).first(size)));
+        EXPECT_EQ(compiler.compile(empty).value(), *made) << size;
+    }
+    EXPECT_EQ(compiler.from_cache, 0U);
+}
+
+TEST(GpuShader, WorksWithoutAFolder) {
+    ShaderCompiler compiler({});
+    EXPECT_TRUE(compiler.compile(source("layout(local_size_x = 1) in;\nvoid main() {}\n")));
+    EXPECT_EQ(compiler.compiled, 1U);
+}
+
+TEST(GpuShader, ErrorsNameFileAndLine) {
+    ShaderCompiler compiler({});
+    const Result<Words> result =
+        compiler.compile(source("#line 12 \"effects/bloom/bloom.glsl\"\nvoid main() { x = 1; }\n"));
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().text, "effects/bloom/bloom.glsl:12: 'x' : undeclared identifier");
+    EXPECT_EQ(result.error().fault, Fault::User);
+}
+
+TEST(GpuShader, CompilesManyInOrder) {
+    ShaderCompiler compiler({});
+    std::vector<ShaderSource> sources;
+    for (int index = 0; index < 8; ++index) {
+        sources.push_back(source("layout(local_size_x = " + std::to_string(index + 1) + ") in;\nvoid main() {}\n"));
+    }
+    sources[5].text = "#version 460\nno\n";
+    const std::vector<Result<Words>> results = compiler.compile_all(sources);
+    ASSERT_EQ(results.size(), sources.size());
+    for (std::size_t index = 0; index < sources.size(); ++index) {
+        ASSERT_EQ(results[index].has_value(), index != 5);
+        if (index == 5) continue;
+        EXPECT_EQ(results[index].value(), compiler.compile(sources[index]).value()) << index;
+    }
+}
+
+}  // namespace
+
+}  // namespace darkroom::gpu

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <limits>
+#include <mutex>
+
+#include "gpu/resources.hpp"
+
+namespace darkroom::gpu {
+
+namespace {
+
+/// Pool and fence of one submission.
+struct Submission {
+    explicit Submission(Context& owner) : context(owner) {}
+    Submission(const Submission&) = delete;
+    Submission& operator=(const Submission&) = delete;
+    ~Submission() {
+        context.vk.DestroyFence(context.device, fence, nullptr);
+        context.vk.DestroyCommandPool(context.device, pool, nullptr);
+    }
+    Context& context;
+    VkCommandPool pool = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+};
+
+VkResult run(Context& context, Submission& submission, const std::function<void(VkCommandBuffer)>& body) {
+    const Dispatch& vk = context.vk;
+    const VkCommandPoolCreateInfo pool_info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+        .queueFamilyIndex = context.queue_family,
+    };
+    VkResult result = vk.CreateCommandPool(context.device, &pool_info, nullptr, &submission.pool);
+    if (result != VK_SUCCESS) return result;
+    const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    result = vk.CreateFence(context.device, &fence_info, nullptr, &submission.fence);
+    if (result != VK_SUCCESS) return result;
+    const VkCommandBufferAllocateInfo allocate_info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .commandPool = submission.pool,
+        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+        .commandBufferCount = 1,
+    };
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    result = vk.AllocateCommandBuffers(context.device, &allocate_info, &commands);
+    if (result != VK_SUCCESS) return result;
+    const VkCommandBufferBeginInfo begin_info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
+    };
+    result = vk.BeginCommandBuffer(commands, &begin_info);
+    if (result != VK_SUCCESS) return result;
+    body(commands);
+    result = vk.EndCommandBuffer(commands);
+    if (result != VK_SUCCESS) return result;
+    const VkCommandBufferSubmitInfo command_info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+        .commandBuffer = commands,
+    };
+    const VkSubmitInfo2 submit_info{
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+        .commandBufferInfoCount = 1,
+        .pCommandBufferInfos = &command_info,
+    };
+    {
+        const std::lock_guard lock(context.queue_mutex);
+        result = vk.QueueSubmit2(context.queue, 1, &submit_info, submission.fence);
+    }
+    if (result != VK_SUCCESS) return result;
+    return vk.WaitForFences(context.device, 1, &submission.fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+}
+
+}  // namespace
+
+Result<> submit_and_wait(Context& context, std::string_view what, const std::function<void(VkCommandBuffer)>& body) {
+    if (context.queue == VK_NULL_HANDLE) {
+        return user_error(fmt::format("{}: an adopted device has no queue of ours to submit to", what));
+    }
+    Submission submission(context);
+    return context.check(run(context, submission, body), what);
+}
+
+}  // namespace darkroom::gpu
