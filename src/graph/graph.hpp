@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The frame graph: passes declare what they read and write, `compile` decides what runs, where transient images lie in
+// shared memory, and `Schedule` derives every barrier. It knows no effect and no kernel, and needs no device: sizes and
+// memory requirements are data, so its tests run on a null device.
+//
+// 1. Declare: import host images, create transient ones, add passes in the order they shall run.
+// 2. compile(): errors that name both ends, culling, lifetimes, aliasing.
+// 3. Schedule::derive(active): barriers for the passes that are on in this frame; allocates nothing.
+// 4. Per frame: for every step of the schedule record its barriers, then the pass; then the final barriers.
+
+#include <vulkan/vulkan.h>
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace darkroom::graph {
+
+/// How a pass touches an image. From it follow the stage, the access mask, the layout and the usage flags.
+enum class Use : std::uint8_t {
+    SampledCompute,       ///< texture() or texelFetch in a compute shader
+    SampledFragment,      ///< the same in a fragment shader
+    StorageRead,          ///< imageLoad in a compute shader
+    StorageReadFragment,  ///< imageLoad in a fragment shader
+    StorageWrite,         ///< imageStore, every texel of the region written: the old content is dropped
+    StorageReadWrite,     ///< imageLoad and imageStore: the old content is kept
+    ColorWrite,           ///< colour attachment, every texel of the region written: the old content is dropped
+    ColorBlend,           ///< colour attachment, blended over the old content
+    DepthWrite,           ///< depth attachment, cleared first: the old content is dropped
+    DepthRead,            ///< depth attachment, tested only
+    TransferRead,
+    TransferWrite,
+    HostRead,
+};
+[[nodiscard]] bool is_write(Use use);
+[[nodiscard]] bool keeps_content(Use use);  ///< a write that needs what was there before
+[[nodiscard]] VkPipelineStageFlags2 stages_of(Use use);
+[[nodiscard]] VkAccessFlags2 access_of(Use use);
+[[nodiscard]] VkImageLayout layout_of(Use use);
+[[nodiscard]] VkImageUsageFlags usage_of(Use use);
+
+/// Extent in pixels: a fraction of the frame's extent, floored, at least 1; or absolute where `width` is not 0.
+struct Size {
+    std::uint32_t numerator = 1;
+    std::uint32_t denominator = 1;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+
+    [[nodiscard]] VkExtent2D of(VkExtent2D frame) const;
+    [[nodiscard]] static Size fraction(std::uint32_t denominator) { return {.denominator = denominator}; }
+};
+/// The extent of a mip level: floored halves, at least 1.
+[[nodiscard]] VkExtent2D mip_extent(VkExtent2D extent, std::uint32_t mip_level);
+
+struct ImageDesc {
+    std::string name;
+    VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT;
+    Size size{};
+    std::uint32_t mip_levels = 1;
+    std::uint32_t array_layers = 1;
+};
+
+/// What the host promises about an image it lends for a frame: where it is before, where it shall be after.
+struct ImportDesc {
+    ImageDesc image;
+    VkImageUsageFlags usage = 0;  ///< what the host created it with: a use outside is an error
+    bool is_constant = false;     ///< never written, always in SHADER_READ_ONLY_OPTIMAL (neutral images, tables)
+};
+
+/// One version of an image. A write makes a new version; the old one must not be read any more.
+struct Version {
+    std::uint32_t index = ~0u;
+    [[nodiscard]] bool is_valid() const { return index != ~0u; }
+    friend bool operator==(Version, Version) = default;
+};
+
+struct MipRange {
+    std::uint32_t first = 0;
+    std::uint32_t count = ~0u;  ///< all that follow
+};
+struct Read {
+    Version version;
+    Use use = Use::SampledCompute;
+    MipRange mips{};
+};
+struct Write {
+    Version version;  ///< the version this write replaces
+    Use use = Use::StorageWrite;
+    MipRange mips{};
+};
+
+struct PassDesc {
+    std::string name;
+    std::vector<Read> reads;
+    std::vector<Write> writes;
+    bool has_side_effect = false;  ///< never culled
+    /// Index of the toggle that switches this pass, or -1: always on.
+    std::int32_t toggle = -1;
+};
+struct PassId {
+    std::uint32_t index = ~0u;
+};
+
+/// Requirements of a transient image, asked of the device once at compile (or invented by a test).
+struct Requirements {
+    VkDeviceSize size = 0;
+    VkDeviceSize alignment = 1;
+    std::uint32_t memory_type_bits = ~0u;
+};
+using Measure = std::function<Result<Requirements>(const ImageDesc&, VkImageUsageFlags, VkExtent2D frame)>;
+
+class Compiled;
+struct Declaration;
+struct Plan;
+
+class Graph {
+  public:
+    Graph();
+    ~Graph();
+    Graph(Graph&&) noexcept;
+    Graph& operator=(Graph&&) noexcept;
+
+    [[nodiscard]] Version import(ImportDesc desc);
+    [[nodiscard]] Version create(ImageDesc desc);
+    /// An image that outlives the frame. `current` starts each frame undefined and must be written; `previous` is what
+    /// the last frame wrote (zero after a reset). Both are ordinary versions; `previous` is only read. A frame in which
+    /// the writer is off leaves the older content: whoever switches it on again resets the history.
+    struct History {
+        Version current, previous;
+    };
+    [[nodiscard]] History history(ImageDesc desc);
+
+    /// Adds a pass. Returns, for each of desc.writes, the version it makes. A write of some mip levels keeps the
+    /// others. Mistakes are kept for compile() to report, so declaring code needs no checks.
+    std::vector<Version> add(PassDesc desc);
+
+    /// If the producer of `version` is off in a frame, its readers get `instead`: the pass's own input, or a constant.
+    /// Mip levels that `instead` lacks become its last one. Without a fall-back, a write that keeps content falls back
+    /// to the version it replaces.
+    void fall_back(Version version, Version instead);
+    /// A promise of the caller: whenever `toggle` is on, `implied` is on, too. No cycles.
+    void imply(std::int32_t toggle, std::int32_t implied);
+    /// `version` is wanted after the frame: passes that lead to it are kept.
+    void keep(Version version);
+
+    /// Checks, culls, computes lifetimes and packs. Errors: use after overwrite, a version nobody writes, a cycle of
+    /// fall-backs, a toggled pass whose output is read without a fall-back, a use the host's image was not made for.
+    [[nodiscard]] Result<Compiled> compile(VkExtent2D max_extent, const Measure& measure) const;
+
+  private:
+    std::unique_ptr<Declaration> declaration_;
+};
+
+/// A physical image: an import, a transient, or one of the two images of a history.
+struct Slot {
+    enum class Kind : std::uint8_t { Import, Constant, Transient, History };
+    Kind kind = Kind::Transient;
+    ImageDesc desc;
+    VkImageUsageFlags usage = 0;  ///< union over all passes that were kept
+    std::uint32_t import_index = ~0u;
+    std::uint32_t history_index = ~0u;
+    std::uint32_t history_parity = 0;  ///< 0: written in even frames, 1: in odd ones
+    VkDeviceSize offset = 0;           ///< in the shared allocation, transients only
+    VkDeviceSize size = 0;
+    std::uint32_t first_pass = 0, last_pass = 0;  ///< lifetime, in pass order
+    VkExtent2D extent{};                          ///< at the largest frame
+    /// Histories: the layout between frames. A reset leaves both images in it.
+    VkImageLayout rest_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
+/// Where the host's image is when the frame starts, and where it shall be left.
+struct ImportState {
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< of the host's last use
+    VkAccessFlags2 access = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    VkImageLayout final_layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< UNDEFINED: leave it where it is
+    VkPipelineStageFlags2 final_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    VkAccessFlags2 final_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+};
+
+struct Barrier {
+    std::uint32_t slot = 0;
+    MipRange mips{};
+    VkPipelineStageFlags2 source_stages = 0, target_stages = 0;
+    VkAccessFlags2 source_access = 0, target_access = 0;
+    VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED, new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
+/// What compile() made. Moving it leaves the schedules made from it valid; destroying it does not.
+class Compiled {
+  public:
+    explicit Compiled(std::unique_ptr<const Plan> plan);
+    ~Compiled();
+    Compiled(Compiled&&) noexcept;
+    Compiled& operator=(Compiled&&) noexcept;
+
+    [[nodiscard]] std::span<const PassDesc> passes() const;        ///< kept ones, in order
+    [[nodiscard]] std::span<const std::string> culled() const;     ///< names of those left out
+    [[nodiscard]] std::span<const Slot> slots() const;             ///< the first ones are the imports, in their order
+    [[nodiscard]] VkDeviceSize transient_bytes() const;            ///< after aliasing
+    [[nodiscard]] VkDeviceSize transient_bytes_unaliased() const;  ///< the sum of the transient images
+    [[nodiscard]] std::uint32_t memory_type_bits() const;          ///< what all transients accept
+    [[nodiscard]] std::uint32_t kept_pass_of(PassId declared) const;  ///< ~0u if culled
+    /// The versions that a kept pass makes, one for each of its writes.
+    [[nodiscard]] std::span<const Version> made(std::uint32_t pass) const;
+    [[nodiscard]] const Plan& plan() const { return *plan_; }  ///< for schedule, checker and trace
+
+  private:
+    std::unique_ptr<const Plan> plan_;
+};
+
+struct Step {
+    std::uint32_t pass = 0;  ///< index into Compiled::passes()
+    std::uint32_t first_barrier = 0, barrier_count = 0;
+};
+
+/// The commands of one frame as plain data: what the checker walks.
+struct Recording {
+    std::span<const Step> steps;
+    std::span<const Barrier> barriers, final_barriers;
+    std::span<const std::uint8_t> toggles;  ///< 0: off; toggles beyond the span are on
+    std::uint64_t frame = 0;
+};
+
+/// One frame's order of work. Its storage is made for the worst case by the constructor, so derive() allocates nothing.
+/// It refers to what `compiled` owns: `compiled` must outlive it, but may be moved.
+///
+/// The state of images between frames: transients hold nothing and start in UNDEFINED, ordered after whatever any pass
+/// may have done to their memory. Histories rest in Slot::rest_layout. Imports are where their ImportState says.
+class Schedule {
+  public:
+    using Step = graph::Step;
+    explicit Schedule(const Compiled& compiled);
+    ~Schedule();
+    Schedule(Schedule&&) noexcept;
+    Schedule& operator=(Schedule&&) noexcept;
+
+    /// Works out which passes run, what every version resolves to, and all barriers. `toggles[i]` switches the passes
+    /// that name toggle i; those beyond the span are on. `imports` holds one state per import, in the order they were
+    /// imported; those beyond the span have the default state. `frame` tells the parity of histories. Barriers against
+    /// the previous frame on the same queue are included: on aliased memory, too.
+    void derive(std::span<const bool> toggles, std::span<const ImportState> imports, std::uint64_t frame);
+
+    [[nodiscard]] std::span<const Step> steps() const;
+    [[nodiscard]] std::span<const Barrier> barriers() const;        ///< of all steps
+    [[nodiscard]] std::span<const Barrier> final_barriers() const;  ///< after the last step: the host's layouts
+    [[nodiscard]] Recording recording() const;
+    [[nodiscard]] bool runs(std::uint32_t pass) const;  ///< is this kept pass among the steps?
+    /// The slot that a reader of `version` gets in this frame, after fall-backs. ~0u: the version was culled, or its
+    /// producer is off and has no fall-back (then nothing that runs reads it).
+    [[nodiscard]] std::uint32_t slot_of(Version version) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Proves that in `schedule` every read is ordered after, and sees, the write it needs, that no image is read in a
+/// layout it is not in, and that no two live images share memory; says which passes and image break it. Independent of
+/// how derive() works: it walks the commands and tracks what each barrier makes available and visible.
+[[nodiscard]] Result<> check(const Compiled& compiled, const Schedule& schedule, std::span<const ImportState> imports);
+/// The same for frames that follow each other on one queue; histories were reset before the first.
+[[nodiscard]] Result<> check_frames(const Compiled& compiled, std::span<const Recording> frames,
+                                    std::span<const ImportState> imports);
+
+/// A readable trace, one line a barrier or pass: what tests and `--trace` print.
+[[nodiscard]] std::string trace(const Compiled& compiled, const Schedule& schedule);
+
+}  // namespace darkroom::graph

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT
+// Barriers of one frame. Every mip level of every slot has a small state; a pass states what it wants of it; the
+// difference is a barrier.
+#include <algorithm>
+
+#include "graph/plan.hpp"
+
+namespace darkroom::graph {
+namespace {
+
+/// Where a mip level stands. A layout transition counts as a write that the stages after it have seen.
+struct MipState {
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    VkPipelineStageFlags2 write_stages = 0;  ///< to wait for, to come after the last write
+    VkAccessFlags2 write_access = 0;         ///< of that write, 0 if already made available
+    VkPipelineStageFlags2 read_stages = 0;   ///< that have read since
+    std::uint32_t seen_by = 0;               ///< uses that see the last write, one bit each
+    bool is_touched = false;
+};
+
+/// What a pass wants of a mip level.
+struct Wanted {
+    std::uint32_t uses = 0;  ///< one bit each; 0: nothing
+    VkPipelineStageFlags2 stages = 0;
+    VkAccessFlags2 access = 0;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    bool is_write = false;
+};
+
+bool is_alike(const Barrier& a, const Barrier& b) {
+    return a.slot == b.slot && a.source_stages == b.source_stages && a.target_stages == b.target_stages &&
+           a.source_access == b.source_access && a.target_access == b.target_access && a.old_layout == b.old_layout &&
+           a.new_layout == b.new_layout;
+}
+
+/// Adds a barrier of one mip level, or widens the last one by it. `first`: where the batch begins.
+void append(std::vector<Barrier>& barriers, std::size_t first, const Barrier& barrier) {
+    if (barriers.size() > first && is_alike(barriers.back(), barrier) &&
+        barriers.back().mips.first + barriers.back().mips.count == barrier.mips.first) {
+        ++barriers.back().mips.count;
+        return;
+    }
+    barriers.push_back(barrier);
+}
+
+/// The source half of a barrier after everything that happened to the level.
+void wait_for_all(const MipState& state, Barrier& barrier) {
+    const bool was_read = state.read_stages != 0;
+    // Whoever read it since waited for the write, so waiting for the readers is enough.
+    barrier.source_stages = was_read ? state.read_stages : state.write_stages;
+    barrier.source_access = was_read ? 0 : state.write_access;
+}
+
+/// Moves `state` on to what `wanted` makes of it; true if that takes `barrier`.
+bool advance(MipState& state, const Wanted& wanted, Barrier& barrier) {
+    const bool changes_layout = state.layout != wanted.layout;
+    const bool has_past = state.write_stages != 0 || state.read_stages != 0;
+    const bool is_unseen = state.write_stages != 0 && (wanted.uses & ~state.seen_by) != 0;
+    const bool is_needed = changes_layout || (wanted.is_write ? has_past : is_unseen);
+    barrier.target_stages = wanted.stages;
+    barrier.target_access = wanted.access;
+    barrier.old_layout = state.layout;
+    barrier.new_layout = wanted.layout;
+    if (wanted.is_write || changes_layout) {
+        wait_for_all(state, barrier);
+    } else {
+        barrier.source_stages = state.write_stages;
+        barrier.source_access = state.write_access;
+    }
+    if (wanted.is_write) {
+        state = {.layout = wanted.layout,
+                 .write_stages = wanted.stages,
+                 .write_access = wanted.access & all_writes,
+                 .is_touched = true};
+    } else if (changes_layout) {
+        state = {.layout = wanted.layout,
+                 .write_stages = wanted.stages,
+                 .read_stages = wanted.stages,
+                 .seen_by = wanted.uses,
+                 .is_touched = true};
+    } else {
+        state.read_stages |= wanted.stages;
+        state.seen_by |= wanted.uses;
+        state.is_touched = true;
+    }
+    return is_needed;
+}
+
+}  // namespace
+
+struct Schedule::State {
+    const Plan* plan = nullptr;
+    std::vector<std::uint8_t> toggles;
+    std::uint64_t frame = 0;
+    std::vector<std::uint32_t> resolved;  ///< per version
+    std::vector<MipMask> needed;          ///< per version
+    std::vector<std::uint8_t> is_live;    ///< per pass
+    std::vector<std::uint8_t> is_history_read;
+    std::vector<MipState> mips;
+    std::vector<Wanted> wanted;
+    std::vector<std::uint32_t> touched;  ///< slots the pass in hand uses
+    std::vector<Step> steps;
+    std::vector<Barrier> barriers, final_barriers;
+
+    explicit State(const Plan& compiled);
+    bool is_on(std::int32_t toggle) const { return toggle < 0 || toggles[static_cast<std::size_t>(toggle)] != 0; }
+    std::uint32_t slot_of(std::uint32_t version) const;
+    std::uint32_t resolve(std::uint32_t version) const;
+    void need(std::uint32_t version, MipRange range);
+    void find_live();
+    void walk(std::uint32_t pass);
+    bool mark_histories();
+    void start(std::span<const ImportState> imports);
+    void want(std::uint32_t slot, MipMask mask, Use use);
+    void add_step(std::uint32_t pass);
+    void finish(std::span<const ImportState> imports);
+};
+
+Schedule::State::State(const Plan& compiled) : plan(&compiled) {
+    std::int32_t last_toggle = -1;
+    std::size_t barrier_bound = 0, access_bound = 0;
+    std::uint32_t most_mips = 1;
+    for (const Slot& slot : plan->slots) most_mips = std::max(most_mips, slot.desc.mip_levels);
+    for (const PassDesc& pass : plan->passes) {
+        last_toggle = std::max(last_toggle, pass.toggle);
+        const std::size_t accesses = pass.reads.size() + pass.writes.size();
+        access_bound = std::max(access_bound, accesses);
+        barrier_bound += accesses * most_mips;
+    }
+    for (const VersionRecord& record : plan->versions) last_toggle = std::max(last_toggle, record.toggle);
+    toggles.resize(static_cast<std::size_t>(last_toggle + 1), 1);
+    resolved.resize(plan->versions.size(), none);
+    needed.resize(plan->versions.size());
+    is_live.resize(plan->passes.size());
+    is_history_read.resize(plan->history_count);
+    mips.resize(plan->mip_count);
+    wanted.resize(plan->mip_count);
+    touched.reserve(access_bound);
+    steps.reserve(plan->passes.size());
+    barriers.reserve(barrier_bound);
+    final_barriers.reserve(plan->mip_count);
+}
+
+std::uint32_t Schedule::State::slot_of(std::uint32_t version) const {
+    const std::uint32_t found = version < resolved.size() ? resolved[version] : none;
+    return found == none ? none : plan->image_of(found).slots[frame & 1];
+}
+
+std::uint32_t Schedule::State::resolve(std::uint32_t version) const {
+    while (version != none) {
+        const VersionRecord& record = plan->versions[version];
+        if (!is_on(record.toggle)) {
+            version = record.next();
+        } else if (record.is_culled()) {
+            version = record.replaced;  // Nobody needs what the culled pass would have written over it.
+        } else {
+            return version;
+        }
+    }
+    return none;
+}
+
+void Schedule::State::need(std::uint32_t version, MipRange range) {
+    const std::uint32_t found = resolved[version];
+    if (found != none) needed[found] |= mip_mask(range, plan->image_of(found).desc.mip_levels);
+}
+
+void Schedule::State::walk(std::uint32_t pass) {
+    const PassDesc& desc = plan->passes[pass];
+    bool is_needed = desc.has_side_effect;
+    for (const Version made : plan->made[pass]) {
+        is_needed |= (needed[made.index] & plan->versions[made.index].mips) != 0;
+    }
+    is_live[pass] = is_needed;
+    for (const Version made : plan->made[pass]) {
+        const VersionRecord& record = plan->versions[made.index];
+        const MipMask rest =
+            (needed[made.index] & ~record.mips) | (is_needed && record.keeps_content ? record.mips : 0);
+        const std::uint32_t before = resolved[record.replaced];
+        if (rest != 0 && before != none && plan->versions[before].image == record.image) needed[before] |= rest;
+    }
+    if (!is_needed) return;
+    for (const Read& read : desc.reads) need(read.version.index, read.mips);
+}
+
+/// A history whose previous image is read needs its current one written. True if that is news.
+bool Schedule::State::mark_histories() {
+    bool is_changed = false;
+    for (std::uint32_t pass = 0; pass < plan->passes.size(); ++pass) {
+        if (!is_live[pass]) continue;
+        for (const Read& read : plan->passes[pass].reads) {
+            const std::uint32_t found = resolved[read.version.index];
+            if (found == none || !plan->image_of(found).is_previous) continue;
+            const std::uint32_t history = plan->image_of(found).history_index;
+            if (is_history_read[history] != 0) continue;
+            is_history_read[history] = 1;
+            is_changed = true;
+            // What stands in for an image that is not written belongs to its readers in this frame, not to the next.
+            std::uint32_t final_version = plan->final_history_version[history];
+            while (final_version != none) {
+                const VersionRecord& record = plan->versions[final_version];
+                if (is_on(record.toggle) && !record.is_culled()) break;
+                const bool leaves_older = is_on(record.toggle) || record.keeps_content || record.is_partial;
+                final_version = leaves_older ? record.replaced : none;
+            }
+            if (final_version != none) needed[final_version] |= all_mips(plan->image_of(found).desc.mip_levels);
+        }
+    }
+    return is_changed;
+}
+
+void Schedule::State::find_live() {
+    for (std::uint32_t version = 0; version < resolved.size(); ++version) resolved[version] = resolve(version);
+    std::fill(needed.begin(), needed.end(), MipMask{0});
+    std::fill(is_history_read.begin(), is_history_read.end(), std::uint8_t{0});
+    for (std::uint32_t version = 0; version < resolved.size(); ++version) {
+        if (plan->versions[version].is_kept) need(version, {});
+    }
+    do {
+        for (auto pass = static_cast<std::uint32_t>(plan->passes.size()); pass-- > 0;) {
+            if (is_on(plan->passes[pass].toggle)) {
+                walk(pass);
+            } else {
+                is_live[pass] = 0;
+            }
+        }
+    } while (mark_histories());
+}
+
+void Schedule::State::start(std::span<const ImportState> imports) {
+    for (std::uint32_t index = 0; index < plan->slots.size(); ++index) {
+        const Slot& slot = plan->slots[index];
+        MipState state{.write_stages = plan->past[index].stages, .write_access = plan->past[index].access & all_writes};
+        if (slot.kind == Slot::Kind::Import) {
+            const ImportState host = slot.import_index < imports.size() ? imports[slot.import_index] : ImportState{};
+            state = {.layout = host.layout, .write_stages = host.stages, .write_access = host.access & all_writes};
+        }
+        const bool is_current = slot.kind == Slot::Kind::History && slot.history_parity == (frame & 1);
+        if (slot.kind == Slot::Kind::History && !is_current) {
+            state.layout = slot.rest_layout;
+            state.seen_by = none;  // finish() saw to that.
+        }
+        std::fill_n(mips.begin() + plan->first_mip[index], slot.desc.mip_levels, state);
+    }
+}
+
+void Schedule::State::want(std::uint32_t slot, MipMask mask, Use use) {
+    if (slot == none || plan->slots[slot].kind == Slot::Kind::Constant) return;
+    if (std::find(touched.begin(), touched.end(), slot) == touched.end()) touched.push_back(slot);
+    for (std::uint32_t level = 0; level < plan->slots[slot].desc.mip_levels; ++level) {
+        if (!has_mip(mask, level)) continue;
+        Wanted& all = wanted[plan->first_mip[slot] + level];
+        all.uses |= 1u << static_cast<std::uint32_t>(use);
+        all.stages |= stages_of(use);
+        all.access |= access_of(use);
+        all.layout = layout_of(use);
+        all.is_write |= is_write(use);
+    }
+}
+
+void Schedule::State::add_step(std::uint32_t pass) {
+    const PassDesc& desc = plan->passes[pass];
+    const std::size_t first = barriers.size();
+    touched.clear();
+    for (const Read& read : desc.reads) {
+        const std::uint32_t slot = slot_of(read.version.index);
+        if (slot != none) want(slot, mip_mask(read.mips, plan->slots[slot].desc.mip_levels), read.use);
+    }
+    for (std::size_t i = 0; i < desc.writes.size(); ++i) {
+        const VersionRecord& record = plan->versions[plan->made[pass][i].index];
+        want(plan->images[record.image].slots[frame & 1], record.mips, desc.writes[i].use);
+    }
+    for (const std::uint32_t slot : touched) {
+        for (std::uint32_t level = 0; level < plan->slots[slot].desc.mip_levels; ++level) {
+            const std::uint32_t index = plan->first_mip[slot] + level;
+            if (wanted[index].uses == 0) continue;
+            Barrier barrier{.slot = slot, .mips = {level, 1}};
+            if (advance(mips[index], wanted[index], barrier)) append(barriers, first, barrier);
+            wanted[index] = {};
+        }
+    }
+    steps.push_back({.pass = pass,
+                     .first_barrier = static_cast<std::uint32_t>(first),
+                     .barrier_count = static_cast<std::uint32_t>(barriers.size() - first)});
+}
+
+/// Leaves the host's images where the host wants them, and histories at rest: visible to all that may read them.
+void Schedule::State::finish(std::span<const ImportState> imports) {
+    for (std::uint32_t index = 0; index < plan->slots.size(); ++index) {
+        const Slot& slot = plan->slots[index];
+        Barrier barrier{.slot = index,
+                        .target_stages = plan->past[index].stages,
+                        .target_access = plan->past[index].access & ~all_writes,
+                        .new_layout = slot.rest_layout};
+        if (slot.kind == Slot::Kind::Import) {
+            const ImportState host = slot.import_index < imports.size() ? imports[slot.import_index] : ImportState{};
+            barrier.target_stages = host.final_stages;
+            barrier.target_access = host.final_access;
+            barrier.new_layout = host.final_layout;
+        } else if (slot.kind != Slot::Kind::History) {
+            continue;
+        }
+        if (barrier.new_layout == VK_IMAGE_LAYOUT_UNDEFINED) continue;
+        for (std::uint32_t level = 0; level < slot.desc.mip_levels; ++level) {
+            const MipState& state = mips[plan->first_mip[index] + level];
+            const bool is_elsewhere = state.layout != barrier.new_layout;
+            const bool is_unseen = (plan->past[index].reads & ~state.seen_by) != 0;
+            const bool is_needed = slot.kind == Slot::Kind::Import ? state.is_touched || is_elsewhere
+                                                                   : state.is_touched && (is_elsewhere || is_unseen);
+            if (!is_needed) continue;
+            barrier.mips = {level, 1};
+            barrier.old_layout = state.layout;
+            wait_for_all(state, barrier);
+            append(final_barriers, 0, barrier);
+        }
+    }
+}
+
+Schedule::Schedule(const Compiled& compiled) : state_(std::make_unique<State>(compiled.plan())) {}
+Schedule::~Schedule() = default;
+Schedule::Schedule(Schedule&&) noexcept = default;
+Schedule& Schedule::operator=(Schedule&&) noexcept = default;
+
+void Schedule::derive(std::span<const bool> toggles, std::span<const ImportState> imports, std::uint64_t frame) {
+    State& state = *state_;
+    for (std::size_t i = 0; i < state.toggles.size(); ++i) state.toggles[i] = i >= toggles.size() || toggles[i];
+    state.frame = frame;
+    state.steps.clear();
+    state.barriers.clear();
+    state.final_barriers.clear();
+    state.find_live();
+    state.start(imports);
+    for (std::uint32_t pass = 0; pass < state.plan->passes.size(); ++pass) {
+        if (state.is_live[pass] != 0) state.add_step(pass);
+    }
+    state.finish(imports);
+}
+
+std::span<const Step> Schedule::steps() const { return state_->steps; }
+std::span<const Barrier> Schedule::barriers() const { return state_->barriers; }
+std::span<const Barrier> Schedule::final_barriers() const { return state_->final_barriers; }
+bool Schedule::runs(std::uint32_t pass) const { return pass < state_->is_live.size() && state_->is_live[pass] != 0; }
+std::uint32_t Schedule::slot_of(Version version) const { return state_->slot_of(version.index); }
+Recording Schedule::recording() const {
+    return {.steps = state_->steps,
+            .barriers = state_->barriers,
+            .final_barriers = state_->final_barriers,
+            .toggles = state_->toggles,
+            .frame = state_->frame};
+}
+
+}  // namespace darkroom::graph

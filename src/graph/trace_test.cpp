@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// Whole traces of small graphs. No device: sizes and memory are invented.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "graph/test_graphs.hpp"
+
+namespace darkroom::graph::test {
+namespace {
+
+/// Compiles, derives one frame, lets the checker look at it, and returns the trace.
+std::string trace_of(const Graph& graph, std::span<const bool> toggles, std::span<const ImportState> imports,
+                     std::uint64_t frame = 0) {
+    const auto compiled = graph.compile(full_hd, measure);
+    if (!compiled) return compiled.error().text;
+    Schedule schedule(*compiled);
+    schedule.derive(toggles, imports, frame);
+    const auto checked = check(*compiled, schedule, imports);
+    EXPECT_TRUE(checked) << checked.error().text;
+    return trace(*compiled, schedule);
+}
+
+}  // namespace
+
+TEST(GraphTrace, OnePassFromHostToHost) {
+    Graph graph;
+    const Version color = host_image(graph, "color");
+    const Version target = host_image(graph, "target");
+    graph.keep(graph.add(
+        {.name = "copy", .reads = {{color, Use::SampledCompute}}, .writes = {{target, Use::StorageWrite}}})[0]);
+    const std::array imports{host_state(VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL),
+                             host_state(VK_IMAGE_LAYOUT_UNDEFINED)};
+    EXPECT_EQ(trace_of(graph, {}, imports),
+              "barrier color: color-output:color-write -> compute:sample, color -> read-only\n"
+              "barrier target: color-output:color-write -> compute:store, undefined -> general\n"
+              "pass copy\n"
+              "final color: compute -> fragment:sample\n"
+              "final target: compute:store -> fragment:sample, general -> read-only\n");
+}
+
+TEST(GraphTrace, SecondReaderOfTheSameStageNeedsNoBarrier) {
+    Graph graph;
+    const Version middle = graph.create(image("middle"));
+    const Version written = graph.add({.name = "write", .writes = {{middle, Use::StorageWrite}}})[0];
+    graph.add({.name = "first", .reads = {{written, Use::SampledCompute}}, .has_side_effect = true});
+    graph.add({.name = "second", .reads = {{written, Use::SampledCompute}}, .has_side_effect = true});
+    graph.add({.name = "other stage", .reads = {{written, Use::SampledFragment}}, .has_side_effect = true});
+    graph.add({.name = "other layout", .reads = {{written, Use::StorageRead}}, .has_side_effect = true});
+    EXPECT_EQ(trace_of(graph, {}, {}),
+              "barrier middle: compute|fragment:store -> compute:store, undefined -> general\n"
+              "pass write\n"
+              "barrier middle: compute:store -> compute:sample, general -> read-only\n"
+              "pass first\n"
+              "pass second\n"
+              "barrier middle: compute -> fragment:sample\n"
+              "pass other stage\n"
+              "barrier middle: compute|fragment -> compute:load, read-only -> general\n"
+              "pass other layout\n");
+}
+
+TEST(GraphTrace, WriteAfterReadWaitsWithoutFlush) {
+    Graph graph;
+    const Version middle = graph.create(image("middle"));
+    const Version first = graph.add({.name = "write", .writes = {{middle, Use::StorageWrite}}})[0];
+    graph.add({.name = "read", .reads = {{first, Use::StorageRead}}, .has_side_effect = true});
+    const Version second = graph.add({.name = "again", .writes = {{first, Use::StorageWrite}}})[0];
+    graph.add({.name = "end", .reads = {{second, Use::StorageRead}}, .has_side_effect = true});
+    EXPECT_EQ(trace_of(graph, {}, {}),
+              "barrier middle: compute:store -> compute:store, undefined -> general\n"
+              "pass write\n"
+              "barrier middle: compute:store -> compute:load\n"
+              "pass read\n"
+              "barrier middle: compute -> compute:store\n"
+              "pass again\n"
+              "barrier middle: compute:store -> compute:load\n"
+              "pass end\n");
+}
+
+TEST(GraphTrace, PyramidMovesOneLevelAtATime) {
+    Graph graph;
+    Version pyramid = graph.create(image("pyramid", 3));
+    pyramid = graph.add({.name = "bright", .writes = {{pyramid, Use::StorageWrite, {0, 1}}}})[0];
+    for (std::uint32_t level = 1; level < 3; ++level) {
+        pyramid = graph.add({.name = "down" + std::to_string(level),
+                             .reads = {{pyramid, Use::SampledCompute, {level - 1, 1}}},
+                             .writes = {{pyramid, Use::StorageWrite, {level, 1}}}})[0];
+    }
+    graph.add({.name = "composite", .reads = {{pyramid, Use::SampledCompute}}, .has_side_effect = true});
+    EXPECT_EQ(trace_of(graph, {}, {}),
+              "barrier pyramid mip 0: compute:store -> compute:store, undefined -> general\n"
+              "pass bright\n"
+              "barrier pyramid mip 0: compute:store -> compute:sample, general -> read-only\n"
+              "barrier pyramid mip 1: compute:store -> compute:store, undefined -> general\n"
+              "pass down1\n"
+              "barrier pyramid mip 1: compute:store -> compute:sample, general -> read-only\n"
+              "barrier pyramid mip 2: compute:store -> compute:store, undefined -> general\n"
+              "pass down2\n"
+              "barrier pyramid mip 2: compute:store -> compute:sample, general -> read-only\n"
+              "pass composite\n");
+}
+
+TEST(GraphTrace, NeighbouringLevelsShareABarrier) {
+    Graph graph;
+    const Version pyramid = graph.create(image("pyramid", 4));
+    const Version lower = graph.add({.name = "lower", .writes = {{pyramid, Use::StorageWrite, {1, 3}}}})[0];
+    graph.add({.name = "read", .reads = {{lower, Use::SampledCompute, {1, 3}}}, .has_side_effect = true});
+    EXPECT_EQ(trace_of(graph, {}, {}),
+              "barrier pyramid mips 1-3: compute:store -> compute:store, undefined -> general\n"
+              "pass lower\n"
+              "barrier pyramid mips 1-3: compute:store -> compute:sample, general -> read-only\n"
+              "pass read\n");
+}
+
+TEST(GraphTrace, PassThatIsOffIsReplacedByItsInput) {
+    Graph graph;
+    const Version color = host_image(graph, "color");
+    const Version side = graph.create(image("side"));
+    const Version blurred = graph.create(image("blurred"));
+    // Only the toggled pass needs this one, so it goes with it.
+    const Version prepared = graph.add({.name = "prepare", .writes = {{side, Use::ColorWrite}}})[0];
+    const Version blur = graph.add({.name = "blur",
+                                    .reads = {{color, Use::SampledCompute}, {prepared, Use::SampledCompute}},
+                                    .writes = {{blurred, Use::StorageWrite}},
+                                    .toggle = 0})[0];
+    graph.fall_back(blur, color);
+    graph.add({.name = "show", .reads = {{blur, Use::SampledFragment}}, .has_side_effect = true});
+    const std::array imports{ImportState{.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                         .stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                         .access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT}};
+    EXPECT_EQ(trace_of(graph, std::array{false}, imports),
+              "barrier color: fragment -> fragment:sample\n"
+              "pass show\n");
+    EXPECT_EQ(trace_of(graph, std::array{true}, imports),
+              "barrier side: compute|color-output:color-write -> color-output:color-write, undefined -> color\n"
+              "pass prepare\n"
+              "barrier color: fragment -> compute:sample\n"
+              "barrier side: color-output:color-write -> compute:sample, color -> read-only\n"
+              "barrier blurred: compute|fragment:store -> compute:store, undefined -> general\n"
+              "pass blur\n"
+              "barrier blurred: compute:store -> fragment:sample, general -> read-only\n"
+              "pass show\n");
+}
+
+TEST(GraphTrace, BlendThatIsOffLeavesTheOlderContent) {
+    Graph graph;
+    const Version target = host_image(graph, "target");
+    const Version filled = graph.add({.name = "fill", .writes = {{target, Use::ColorWrite}}})[0];
+    graph.keep(graph.add({.name = "overlay", .writes = {{filled, Use::ColorBlend}}, .toggle = 0})[0]);
+    const std::array imports{host_state(VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)};
+    EXPECT_EQ(trace_of(graph, std::array{true}, imports),
+              "barrier target: color-output:color-write -> color-output:color-write\n"
+              "pass fill\n"
+              "barrier target: color-output:color-write -> color-output:color-read|color-write\n"
+              "pass overlay\n"
+              "final target: color-output:color-write -> fragment:sample, color -> read-only\n");
+    EXPECT_EQ(trace_of(graph, std::array{false}, imports),
+              "barrier target: color-output:color-write -> color-output:color-write\n"
+              "pass fill\n"
+              "final target: color-output:color-write -> fragment:sample, color -> read-only\n");
+}
+
+TEST(GraphTrace, HistoryChangesSlotsEveryFrame) {
+    Graph graph;
+    const Version color = host_image(graph, "color");
+    const Graph::History history = graph.history(image("history"));
+    const Version current = graph.add({.name = "accumulate",
+                                       .reads = {{color, Use::SampledCompute}, {history.previous, Use::SampledCompute}},
+                                       .writes = {{history.current, Use::StorageWrite}}})[0];
+    graph.add({.name = "show", .reads = {{current, Use::SampledCompute}}, .has_side_effect = true});
+    const std::array imports{ImportState{.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, .stages = 0, .access = 0}};
+    EXPECT_EQ(trace_of(graph, {}, imports, 0),
+              "barrier history#0: compute:store -> compute:store, undefined -> general\n"
+              "pass accumulate\n"
+              "barrier history#0: compute:store -> compute:sample, general -> read-only\n"
+              "pass show\n");
+    EXPECT_EQ(trace_of(graph, {}, imports, 1),
+              "barrier history#1: compute:store -> compute:store, undefined -> general\n"
+              "pass accumulate\n"
+              "barrier history#1: compute:store -> compute:sample, general -> read-only\n"
+              "pass show\n");
+}
+
+TEST(GraphTrace, HistoryWriterIsKeptByTheReaderOfThePreviousFrame) {
+    Graph graph;
+    const Graph::History history = graph.history(image("average"));
+    graph.add({.name = "show", .reads = {{history.previous, Use::SampledFragment}}, .has_side_effect = true});
+    graph.add({.name = "measure", .writes = {{history.current, Use::StorageWrite}}});
+    EXPECT_EQ(trace_of(graph, {}, {}, 0),
+              "pass show\n"
+              "barrier average#0: compute|fragment:store -> compute:store, undefined -> general\n"
+              "pass measure\n"
+              "final average#0: compute:store -> compute|fragment:sample, general -> read-only\n");
+}
+
+TEST(GraphTrace, UnusedImportStillGoesToItsFinalLayout) {
+    Graph graph;
+    host_image(graph, "moved");
+    host_image(graph, "stays");
+    const std::array imports{host_state(VK_IMAGE_LAYOUT_GENERAL), host_state(VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)};
+    EXPECT_EQ(trace_of(graph, {}, imports),
+              "final moved: color-output:color-write -> fragment:sample, general -> read-only\n");
+}
+
+TEST(GraphTrace, ConstantsNeedNoBarrier) {
+    Graph graph;
+    const Version black = constant(graph, "black");
+    graph.add({.name = "show", .reads = {{black, Use::SampledFragment}}, .has_side_effect = true});
+    EXPECT_EQ(trace_of(graph, {}, {}), "pass show\n");
+}
+
+}  // namespace darkroom::graph::test

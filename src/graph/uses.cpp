@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "graph/graph.hpp"
+
+namespace darkroom::graph {
+
+bool is_write(Use use) {
+    switch (use) {
+        case Use::StorageWrite:
+        case Use::StorageReadWrite:
+        case Use::ColorWrite:
+        case Use::ColorBlend:
+        case Use::DepthWrite:
+        case Use::TransferWrite:
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool keeps_content(Use use) { return use == Use::StorageReadWrite || use == Use::ColorBlend; }
+
+VkPipelineStageFlags2 stages_of(Use use) {
+    switch (use) {
+        case Use::SampledCompute:
+        case Use::StorageRead:
+        case Use::StorageWrite:
+        case Use::StorageReadWrite:
+            return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+        case Use::SampledFragment:
+        case Use::StorageReadFragment:
+            return VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+        case Use::ColorWrite:
+        case Use::ColorBlend:
+            return VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+        case Use::DepthWrite:
+        case Use::DepthRead:
+            return VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+        case Use::TransferRead:
+        case Use::TransferWrite:
+            return VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+        case Use::HostRead:
+            return VK_PIPELINE_STAGE_2_HOST_BIT;
+    }
+    return VK_PIPELINE_STAGE_2_NONE;
+}
+
+VkAccessFlags2 access_of(Use use) {
+    switch (use) {
+        case Use::SampledCompute:
+        case Use::SampledFragment:
+            return VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        case Use::StorageRead:
+        case Use::StorageReadFragment:
+            return VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
+        case Use::StorageWrite:
+            return VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+        case Use::StorageReadWrite:
+            return VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+        case Use::ColorWrite:
+            return VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+        case Use::ColorBlend:
+            return VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+        case Use::DepthWrite:
+            return VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+        case Use::DepthRead:
+            return VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
+        case Use::TransferRead:
+            return VK_ACCESS_2_TRANSFER_READ_BIT;
+        case Use::TransferWrite:
+            return VK_ACCESS_2_TRANSFER_WRITE_BIT;
+        case Use::HostRead:
+            return VK_ACCESS_2_HOST_READ_BIT;
+    }
+    return VK_ACCESS_2_NONE;
+}
+
+VkImageLayout layout_of(Use use) {
+    switch (use) {
+        case Use::SampledCompute:
+        case Use::SampledFragment:
+            return VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        case Use::ColorWrite:
+        case Use::ColorBlend:
+            return VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        case Use::DepthWrite:
+            return VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+        case Use::DepthRead:
+            return VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+        case Use::TransferRead:
+            return VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+        case Use::TransferWrite:
+            return VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        default:
+            return VK_IMAGE_LAYOUT_GENERAL;
+    }
+}
+
+VkImageUsageFlags usage_of(Use use) {
+    switch (use) {
+        case Use::SampledCompute:
+        case Use::SampledFragment:
+            return VK_IMAGE_USAGE_SAMPLED_BIT;
+        case Use::StorageRead:
+        case Use::StorageReadFragment:
+        case Use::StorageWrite:
+        case Use::StorageReadWrite:
+            return VK_IMAGE_USAGE_STORAGE_BIT;
+        case Use::ColorWrite:
+        case Use::ColorBlend:
+            return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        case Use::DepthWrite:
+        case Use::DepthRead:
+            return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+        case Use::TransferRead:
+            return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+        case Use::TransferWrite:
+            return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        case Use::HostRead:
+            return 0;
+    }
+    return 0;
+}
+
+VkExtent2D Size::of(VkExtent2D frame) const {
+    if (width != 0) return {width, std::max(height, 1u)};
+    const auto scale = [this](std::uint32_t value) {
+        const std::uint64_t scaled = std::uint64_t{value} * numerator / std::max(denominator, 1u);
+        return std::max(static_cast<std::uint32_t>(scaled), 1u);
+    };
+    return {scale(frame.width), scale(frame.height)};
+}
+
+VkExtent2D mip_extent(VkExtent2D extent, std::uint32_t mip_level) {
+    return {std::max(extent.width >> mip_level, 1u), std::max(extent.height >> mip_level, 1u)};
+}
+
+}  // namespace darkroom::graph
