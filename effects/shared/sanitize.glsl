@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#ifndef SHARED_SANITIZE_GLSL
+#define SHARED_SANITIZE_GLSL
+// What filters do with numbers that would spread over everything they touch: NaN becomes 0, and the rest stays within the
+// finite range of half precision. Bits are tested, since compilers may assume that isnan() is false.
+
+vec4 sanitize(vec4 value) {
+    uvec4 magnitude = floatBitsToUint(value) & 0x7fffffffu;
+    vec4 number = mix(value, vec4(0.0), greaterThan(magnitude, uvec4(0x7f800000u)));
+    return clamp(number, -65504.0, 65504.0);
+}
+
+#endif

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What an effect tells the Composer about itself, and how it declares its passes. An effect is a folder: a struct of
+// parameters with its rows, GLSL, passes, a CPU reference, tests and a page. This header is all it needs.
+//
+// effects/<name>/<name>.glsl, where the effect has a pointwise end, defines
+//     vec4 <name>(vec4 color, Pixel pixel, <Struct> parameters)
+// and may call sample_linear, load, ... (src/gpu/kernel.hpp) on the side images it declared in `build`. Every name at
+// file scope begins with the effect's name. Alpha passes unchanged unless the effect is about alpha.
+// A pass of its own lives in effects/<name>/<name>_<pass>.glsl and defines
+//     vec4 shade(Pixel pixel)
+// with `<Struct> <name>_parameters()` at hand, `frame_time` and its like, and custom[i] from the pass's constants.
+
+#include <array>
+#include <cstdint>
+#include <darkroom/frame.hpp>
+#include <darkroom/param.hpp>
+#include <darkroom/reference.hpp>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+#include <vulkan/vulkan.h>
+
+namespace darkroom {
+
+/// How an effect touches the picture, and so what it can share a kernel with.
+enum class Touch : std::uint8_t {
+    Pointwise,      ///< reads the colour at its own pixel, and any side image: fuses with its neighbours
+    Warp,           ///< reads the colour at moved coordinates: may only open a fused kernel
+    Neighbourhood,  ///< reads around its pixel: passes of its own
+    History,        ///< reads an earlier frame: passes of its own
+};
+
+/// What the numbers of the picture are. display_linear: tone-mapped, [0,1], linear light.
+enum class Domain : std::uint8_t { SceneLinear, DisplayLinear, Encoded };
+struct Domains {
+    std::uint8_t bits = 0;
+    [[nodiscard]] constexpr bool contains(Domain domain) const { return (bits >> static_cast<unsigned>(domain) & 1) != 0; }
+    [[nodiscard]] static constexpr Domains all() { return {7}; }
+    [[nodiscard]] static constexpr Domains only(Domain domain) { return {static_cast<std::uint8_t>(1u << static_cast<unsigned>(domain))}; }
+    friend constexpr Domains operator|(Domains a, Domains b) { return {static_cast<std::uint8_t>(a.bits | b.bits)}; }
+};
+
+/// Inputs beyond the colour without which an effect is left out of the plan.
+struct Needs {
+    bool depth = false;
+    bool normals = false;
+    bool velocity = false;
+    bool shadows = false;
+    bool ui = false;
+};
+
+/// An effect's place in the flat [post_process] table: ranks in the two shipped orders, lowest first; negative: not in
+/// the table.
+struct FlatPlace {
+    std::int32_t documented = -1;
+    std::int32_t scene_linear = -1;
+    bool starts_on = false;
+};
+
+/// Values that passes may depend on while recording.
+struct PassContext {
+    VkExtent2D frame_extent{};
+    VkExtent2D output_extent{};
+    double time = 0;
+    double delta_time = 0;
+    std::uint64_t frame_index = 0;
+    const Camera* camera = nullptr;
+};
+
+using PassVector = std::array<float, 4>;
+/// Fills the custom vectors of a pass; runs while recording, so it allocates nothing.
+using ConstantsFunction = void (*)(const void* parameters, const PassContext&, std::span<PassVector> out);
+/// False: the pass is not recorded in this frame. What holds for an argument must hold for all smaller ones (levels of a
+/// pyramid). Runs while recording.
+using ConditionFunction = bool (*)(const void* parameters, const PassContext&, std::uint32_t argument);
+
+/// Names an image that a pass builder made or was given. A picture that was written has a new name (src/graph).
+struct PassImage {
+    std::uint32_t index = ~0u;
+};
+
+struct PassImageDesc {
+    std::string name;
+    VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT;
+    /// Size of mip 0 is floor(extent / denominator), at least 1.
+    std::uint32_t denominator = 1;
+    std::uint32_t mip_levels = 1;
+};
+
+/// A pass of one kernel.
+struct KernelPassDesc {
+    std::string name;                        ///< label in plans and timings
+    std::string_view shader;                 ///< file in the effect's folder, without folder: "bloom_downsample.glsl"
+    struct Input {
+        std::string name;                    ///< what the shader calls it
+        PassImage image;
+        std::uint32_t mip_level = 0;
+    };
+    std::vector<Input> inputs;
+    PassImage output;
+    std::uint32_t output_mip_level = 0;
+    bool is_additive = false;                ///< adds to what `output` holds
+    std::uint32_t custom_vectors = 0;
+    ConstantsFunction constants = nullptr;
+    ConditionFunction condition = nullptr;   ///< beside the entry's own toggle
+    std::uint32_t argument = 0;              ///< handed to condition
+};
+
+/// A constant table: made at compile, uploaded by the first record, sampled by the effect.
+struct TableDesc {
+    std::string name;
+    VkFormat format = VK_FORMAT_R8_UNORM;
+    VkExtent3D extent{1, 1, 1};
+    std::vector<std::byte> data;
+};
+
+/// What `build` of an effect declares its passes with. Runs at compile, never while recording.
+class PassBuilder {
+  public:
+    virtual ~PassBuilder() = default;
+    /// The picture at the effect's place, as an image.
+    [[nodiscard]] virtual PassImage picture() = 0;
+    /// The image that the entry's `source` names, else picture().
+    [[nodiscard]] virtual PassImage source() = 0;
+    /// The largest extent a frame may have here.
+    [[nodiscard]] virtual VkExtent2D max_extent() const = 0;
+    /// Values at compile; the values of a frame may differ.
+    [[nodiscard]] virtual const void* parameters() const = 0;
+
+    [[nodiscard]] virtual PassImage create(const PassImageDesc& desc) = 0;
+    [[nodiscard]] virtual PassImage table(const TableDesc& desc) = 0;
+    /// Adds a pass; returns the written image's new name.
+    virtual PassImage add(const KernelPassDesc& desc) = 0;
+    /// The pointwise end samples `image` under `name`. While the effect, or all that writes `image`, is off, a 1x1 image
+    /// of `neutral` stands in.
+    virtual void side(std::string name, PassImage image, PassVector neutral) = 0;
+    /// The effect's output, for effects without a pointwise end. While it is off, its input stands in.
+    virtual void result(PassImage image) = 0;
+};
+
+/// A shader or page of an effect, compiled into the library.
+struct EffectFile {
+    std::string_view name;  ///< "bloom_downsample.glsl"
+    std::string_view text;
+};
+/// The files of effects/<effect>/, embedded at build time.
+[[nodiscard]] std::span<const EffectFile> embedded_files(std::string_view effect);
+/// The files of effects/shared/, named "shared/<file>": what `#include "shared/<file>"` in a shader reads.
+[[nodiscard]] std::span<const EffectFile> shared_files();
+
+struct EffectInfo {
+    std::string_view name;  ///< snake_case, the folder's name
+    std::string_view doc;   ///< one sentence
+    ParamTable parameters;
+    std::span<const EffectFile> files;
+    Touch touch = Touch::Pointwise;
+    Domains accepts = Domains::all();
+    /// The domain after the effect, given that before it and the parameters; null: unchanged.
+    Domain (*makes)(Domain before, const void* parameters) = nullptr;
+    Needs needs;
+    FlatPlace flat;
+    bool has_second = false;  ///< reads a second picture, as side image `second`
+    bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
+    void (*build)(PassBuilder&) = nullptr;
+    /// The published equation in double precision; see reference.hpp.
+    ReferenceFunction reference = nullptr;
+    /// For a frame's parameters: does the effect change nothing? Such an entry is treated as switched off.
+    bool (*is_identity)(const void* parameters) = nullptr;
+};
+
+}  // namespace darkroom

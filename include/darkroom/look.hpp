@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A look is what an artist ships: an ordered stack of effects with their values, as a TOML file. It is either the flat
+// table [post_process], whose order is fixed, or a list of [[stack]] entries in any order, with names to wire them. A
+// Look is data: it holds no device, and `apply` fills a Composer with it.
+//
+//     [post_process]                 [[stack]]
+//     bloom_intensity = 0.04         effect = "gaussian_blur"
+//     exposure = 1.2                 radius = 4.0
+//                                    output = "blurred"
+//
+// Part of the optional target Darkroom::looks; the core library reads no files.
+
+#include <cstdint>
+#include <darkroom/composer.hpp>
+#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace darkroom {
+
+/// What every stack entry has beside the effect's own parameters.
+struct EntryState {
+    Toggle enabled = true;
+    float opacity = 1.0f;
+    BlendMode blend = BlendMode::Mix;
+};
+inline constexpr auto entry_rows =
+    describe(field<&EntryState::enabled>("Is the effect applied."),
+             field<&EntryState::opacity>("How much of the result goes over the input.", {0, 1}),
+             field<&EntryState::blend>("How the result goes over the input."));
+
+/// One effect of a look. The wires are names: "scene" is the picture as it came, others are the `output` of an entry
+/// before this one; empty is the default of darkroom::Inputs.
+struct LookEntry {
+    const EffectInfo* effect = nullptr;
+    std::vector<std::uint32_t> words;  ///< of the effect's struct
+    EntryState state;
+    std::string name;  ///< empty: see entry_names
+    std::string input, source, second, mask, output;
+};
+
+/// The two shipped orders of the flat table.
+enum class LookOrder : std::uint32_t { Documented, SceneLinear };
+
+struct Look {
+    static constexpr std::int64_t format = 1;  ///< of the files that this build reads and writes
+    bool is_flat = true;                       ///< [post_process]; false: [[stack]]
+    bool is_enabled = true;                    ///< flat only; false: nothing but tone mapping and encoding, at defaults
+    LookOrder order = LookOrder::Documented;   ///< flat only
+    std::vector<LookEntry> entries;            ///< flat: every effect with a place in the table
+    std::string shown_name;                    ///< file name for messages
+};
+
+struct LookOptions {
+    bool is_strict = false;                     ///< unknown keys and values out of range are errors, not warnings
+    std::vector<std::string>* warnings = nullptr;  ///< "file:line:column: ..." of what was passed over
+};
+
+/// The flat table with nothing written in it.
+[[nodiscard]] Look default_look();
+/// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`.
+[[nodiscard]] Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options = {});
+[[nodiscard]] Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options = {});
+/// As a file that reads back as the same look.
+[[nodiscard]] std::string write_look(const Look& look);
+
+/// The name of each entry: its own, or the effect's, or effect#2 and so on for later ones.
+[[nodiscard]] std::vector<std::string> entry_names(const Look& look);
+/// By its own name, or by "effect" or "effect#2": the second entry of that effect.
+[[nodiscard]] LookEntry* find_entry(Look& look, std::string_view name);
+
+/// A value from the command line. It wins over the file.
+struct LookOverride {
+    std::string key;    ///< "bloom_intensity", "bloom_enabled", or "ENTRY.parameter": "bloom#2.intensity"
+    std::string text;   ///< the value, as typed
+    std::string shown;  ///< what the user typed, for errors: "--bloom-intensity"
+};
+/// Checks and applies all of them, in order. A value above 0 for an effect's main amount turns it on, 0 turns it off,
+/// unless `<effect>_enabled` is among them.
+[[nodiscard]] Result<> override_look(Look& look, std::span<const LookOverride> overrides);
+
+/// Appends the look's entries to the Composer. The flat table wires `source` to the scene, as its documented order has it.
+[[nodiscard]] Result<> apply(const Look& look, Composer& composer);
+
+}  // namespace darkroom

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The CPU reference: every effect in double precision, written from the published equation. Tests compare the GPU with
+// it, and `--reference` develops with it alone. It is for truth, not for speed.
+
+#include <cstdint>
+#include <darkroom/frame.hpp>
+#include <vector>
+
+namespace darkroom {
+
+struct Rgba {
+    double r = 0, g = 0, b = 0, a = 1;
+};
+
+/// Row-major, top row first.
+struct ReferenceImage {
+    std::uint32_t width = 0, height = 0;
+    std::vector<Rgba> pixels;
+
+    ReferenceImage() = default;
+    ReferenceImage(std::uint32_t w, std::uint32_t h, Rgba fill = {}) : width(w), height(h), pixels(std::size_t{w} * h, fill) {}
+    [[nodiscard]] Rgba& at(std::uint32_t x, std::uint32_t y) { return pixels[std::size_t{y} * width + x]; }
+    [[nodiscard]] const Rgba& at(std::uint32_t x, std::uint32_t y) const { return pixels[std::size_t{y} * width + x]; }
+    /// The nearest pixel inside.
+    [[nodiscard]] const Rgba& clamped(std::int64_t x, std::int64_t y) const {
+        const auto inside = [](std::int64_t v, std::uint32_t n) {
+            return static_cast<std::uint32_t>(v < 0 ? 0 : v >= n ? std::int64_t{n} - 1 : v);
+        };
+        return at(inside(x, width), inside(y, height));
+    }
+};
+
+/// What a reference reads beside its parameters. Images that are not there are null.
+struct ReferenceInput {
+    const ReferenceImage* picture = nullptr;
+    const ReferenceImage* source = nullptr;  ///< never null: the picture where the entry names none
+    const ReferenceImage* second = nullptr;
+    const ReferenceImage* depth = nullptr;   ///< red: planar distance
+    const ReferenceImage* normals = nullptr;
+    const ReferenceImage* velocity = nullptr;
+    Camera camera;
+    double time = 0;
+    double delta_time = 0;
+    std::uint64_t frame_index = 0;
+};
+
+using ReferenceFunction = ReferenceImage (*)(const void* parameters, const ReferenceInput&);
+
+/// Centre of a pixel as uv in (0,1), and its coordinates: what pointwise references are given.
+struct ReferencePixel {
+    std::uint32_t x = 0, y = 0;
+    double u = 0, v = 0;
+};
+
+/// Lifts `Rgba f(Rgba color, const ReferencePixel&, const Parameters&)` to a ReferenceFunction.
+template <class Parameters, Rgba (*function)(Rgba, const ReferencePixel&, const Parameters&)>
+ReferenceImage pointwise_reference(const void* parameters, const ReferenceInput& input) {
+    ReferenceImage out = *input.picture;
+    const Parameters& values = *static_cast<const Parameters*>(parameters);
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x)
+            out.at(x, y) = function(out.at(x, y), {x, y, (x + 0.5) / out.width, (y + 0.5) / out.height}, values);
+    return out;
+}
+
+}  // namespace darkroom

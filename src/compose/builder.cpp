@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "compose/planner_state.hpp"
+#include "core/assert.hpp"
+
+namespace darkroom::compose {
+
+PassImage Builder::remember(Image image) {
+    images_.push_back(image);
+    return {static_cast<std::uint32_t>(images_.size() - 1)};
+}
+
+PassImage Builder::image_of(std::size_t value) {
+    const auto version =
+        planner_.materialise(value, fmt::format("{} reads around its pixels", planner_.stack_[entry_].inputs.name));
+    if (!version) {
+        error = version.error().text;
+        return {};
+    }
+    return remember({.version = *version});
+}
+
+PassImage Builder::picture() { return image_of(input_); }
+
+PassImage Builder::source() {
+    const Handle handle = planner_.stack_[entry_].inputs.source;
+    return image_of(handle.is_given() ? planner_.value_of(handle, entry_) : input_);
+}
+
+PassImage Builder::create(const PassImageDesc& desc) {
+    const graph::Version version =
+        planner_.program_.graph.create({.name = fmt::format("{}.{}", planner_.stack_[entry_].inputs.name, desc.name),
+                                        .format = desc.format,
+                                        .size = graph::Size::fraction(desc.denominator),
+                                        .mip_levels = desc.mip_levels});
+    planner_.facts_[version.index] = {.root = version.index, .format = desc.format, .has_storage = true, .fall_backs = {}};
+    return remember({.version = version, .first_written = {}, .format = desc.format});
+}
+
+PassImage Builder::table(const TableDesc& desc) { return remember({.version = planner_.import_constant(desc), .format = desc.format}); }
+
+PassImage Builder::add(const KernelPassDesc& desc) {
+    const Entry& entry = planner_.stack_[entry_];
+    if (!error.empty() || desc.output.index >= images_.size()) return {};
+    ProgramPass pass{.name = fmt::format("{}.{}", entry.inputs.name, desc.name), .entry = entry_, .constants = desc.constants};
+    pass.boundary = fmt::format("{} has passes of its own", entry.inputs.name);
+
+    std::vector<std::string> names;
+    for (const KernelPassDesc::Input& input : desc.inputs) {
+        if (input.image.index >= images_.size()) return {};
+        names.push_back(input.name);
+        pass.spec.images.push_back({.name = input.name + entry_suffix(entry_)});
+        pass.inputs.push_back({.version = images_[input.image.index].version, .mip_level = input.mip_level});
+    }
+    Image written = images_[desc.output.index];
+    auto text = instance_text(*entry.info, desc.shader, entry_, names);
+    if (!text) {
+        error = text.error().text;
+        return {};
+    }
+    pass.spec.name = pass.name;
+    pass.spec.outputs = {written.format};
+    pass.spec.is_additive = desc.is_additive;
+    pass.spec.custom_vectors = desc.custom_vectors;
+    pass.spec.constants = frame_members() + entry_members(*entry.info, entry_, planner_.program_.block_words[entry_]);
+    pass.spec.body = curve_struct() + parameter_struct(entry.info->parameters) + parameter_loader(*entry.info, entry_) + *text;
+    pass.toggle = planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
+    const auto version = planner_.add_pass(std::move(pass), written.version, desc.output_mip_level);
+    if (!version) {
+        error = version.error().text;
+        return {};
+    }
+    written.version = *version;
+    if (!written.first_written.is_valid()) written.first_written = *version;
+    return remember(written);
+}
+
+void Builder::side(std::string name, PassImage image, PassVector neutral) {
+    const bool is_known = image.index < images_.size();
+    if (is_known && !images_[image.index].first_written.is_valid()) {  // a table, or a picture: always there
+        sides.push_back({std::move(name), {.version = images_[image.index].version}});
+        return;
+    }
+    TableDesc desc{.name = "neutral", .format = VK_FORMAT_R32G32B32A32_SFLOAT, .data = std::vector<std::byte>(sizeof neutral)};
+    std::memcpy(desc.data.data(), neutral.data(), sizeof neutral);
+    const graph::Version constant = planner_.import_constant(std::move(desc));
+    if (!is_known) {
+        sides.push_back({std::move(name), {.version = constant}});
+        return;
+    }
+    planner_.program_.graph.fall_back(images_[image.index].first_written, constant);
+    sides.push_back({std::move(name), {.version = images_[image.index].version}});
+}
+
+void Builder::result(PassImage image) {
+    DARKROOM_ASSERT(image.index < images_.size() || !error.empty());
+    if (image.index < images_.size()) output = images_[image.index].version;
+}
+
+}  // namespace darkroom::compose

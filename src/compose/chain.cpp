@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: MIT
+#include "compose/chain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include "core/assert.hpp"
+#include "gpu/formats.hpp"
+
+namespace darkroom::compose {
+
+namespace {
+
+constexpr std::uint32_t most_images = 16;
+constexpr std::uint32_t most_custom_vectors = 64;
+
+VkDeviceSize align(VkDeviceSize size, VkDeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
+
+const char* name_of(HostImage image) {
+    switch (image) {
+        case HostImage::Color: return "color";
+        case HostImage::Depth: return "depth";
+        case HostImage::Normals: return "normals";
+        case HostImage::Velocity: return "velocity";
+        case HostImage::Ui: return "ui";
+        case HostImage::Target: return "target";
+    }
+    return "";
+}
+
+const ImageRef& host_image(const Frame& frame, HostImage image) {
+    switch (image) {
+        case HostImage::Color: return frame.color;
+        case HostImage::Depth: return frame.depth;
+        case HostImage::Normals: return frame.normals;
+        case HostImage::Velocity: return frame.velocity;
+        case HostImage::Ui: return frame.ui;
+        case HostImage::Target: break;
+    }
+    return frame.target;
+}
+
+VkFormat expected_format(const CompileDesc& desc, HostImage image) {
+    switch (image) {
+        case HostImage::Color: return desc.color;
+        case HostImage::Depth: return desc.depth;
+        case HostImage::Normals: return desc.normals;
+        case HostImage::Velocity: return desc.velocity;
+        case HostImage::Ui: return desc.ui;
+        case HostImage::Target: break;
+    }
+    return desc.target;
+}
+
+/// Runs `work(i)` for i in [0, count) on a few threads; the first error wins.
+template <class Work>
+Result<> for_all(std::size_t count, const Work& work) {
+    std::atomic<std::size_t> next{0};
+    std::mutex lock;
+    Result<> first{};
+    const auto run = [&] {
+        for (std::size_t i = next++; i < count; i = next++) {
+            if (auto ok = work(i); !ok) {
+                const std::scoped_lock guard(lock);
+                if (first) first = failure(std::move(ok));
+            }
+        }
+    };
+    std::vector<std::thread> threads;
+    const std::size_t helpers = std::min<std::size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
+    for (std::size_t i = 1; i < helpers; ++i) threads.emplace_back(run);
+    run();
+    for (std::thread& thread : threads) thread.join();
+    return first;
+}
+
+bool is_effective(const Entry& entry, float opacity, const std::uint32_t* words) {
+    return entry.inputs.enabled && opacity > 0 && (entry.info->is_identity == nullptr || !entry.info->is_identity(words));
+}
+
+}  // namespace
+
+Chain::Chain(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots)
+    : context_(context), program_(std::move(program)), desc_(desc), slots_(slots) {}
+
+Chain::~Chain() { builders_.reset(); }
+
+Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots,
+                                             bool has_timers, std::span<const Entry> stack) {
+    std::unique_ptr<Chain> chain(new Chain(context, std::move(program), desc, slots));
+    auto compiled = chain->program_.graph.compile(desc.max_extent, graph::measure_on(context));
+    if (!compiled) return failure(std::move(compiled));
+    chain->compiled_.emplace(std::move(*compiled));
+    chain->schedule_.emplace(*chain->compiled_);
+    if (auto ok = chain->make_kernels(stack); !ok) return failure(std::move(ok));
+    if (auto ok = chain->make_resources(has_timers); !ok) return failure(std::move(ok));
+    if (auto ok = chain->make_constants(); !ok) return failure(std::move(ok));
+    chain->builders_ = std::make_unique<Builders>(context, chain->variants_);
+    return chain;
+}
+
+Result<> Chain::make_kernels(std::span<const Entry> stack) {
+    declared_pass_.assign(compiled_->passes().size(), 0);
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t i = 0; i < program_.passes.size(); ++i) {
+        variants_.push_back(nullptr);
+        const std::uint32_t pass = compiled_->kept_pass_of({i});
+        if (pass == ~0u) continue;
+        declared_pass_[pass] = i;
+        kept.push_back(i);
+        variants_[i] = std::make_unique<Variants>(program_.passes[i]);
+    }
+
+    words_at_.clear();
+    std::uint32_t words = 0;
+    for (const Entry& entry : stack) {
+        words_at_.push_back(words);
+        words += static_cast<std::uint32_t>(entry.info->parameters.words());
+    }
+    words_.resize(words + 1);
+    is_on_ = std::make_unique<bool[]>(stack.size() + 1);
+    toggles_ = std::make_unique<bool[]>(program_.toggles.size() + 1);
+    evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
+
+    // The complete kernel and the one of the present shape, for every pass.
+    return for_all(kept.size() * 2, [&](std::size_t i) -> Result<> {
+        Variants& variants = *variants_[kept[i / 2]];
+        if (i % 2 == 0) return variants.build_complete(context_);
+        return variants.build(context_, shape_of(program_.passes[kept[i / 2]], stack));
+    });
+}
+
+Result<> Chain::make_resources(bool has_timers) {
+    auto physical = graph::Physical::create(context_, *compiled_, desc_.views);
+    if (!physical) return failure(std::move(physical));
+    physical_.emplace(std::move(*physical));
+    import_states_.resize(program_.imports.size());
+
+    std::vector<VkDescriptorSetLayout> layouts;
+    set_at_.assign(program_.passes.size(), 0);
+    std::size_t pass_block_size = 16;
+    for (std::size_t i = 0; i < program_.passes.size(); ++i) {
+        if (!variants_[i]) continue;
+        const gpu::KernelSpec& spec = program_.passes[i].spec;
+        if (spec.images.size() > most_images || spec.custom_vectors > most_custom_vectors)
+            return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed", spec.name,
+                                          spec.images.size(), spec.custom_vectors, most_images, most_custom_vectors));
+        set_at_[i] = static_cast<std::uint32_t>(layouts.size());
+        layouts.insert(layouts.end(), slots_, variants_[i]->complete().set_layout());
+        pass_block_size = std::max(pass_block_size, gpu::pass_block_size(spec));
+    }
+    auto sets = gpu::DescriptorSets::create(context_, layouts);
+    if (!sets) return failure(std::move(sets));
+    sets_ = std::move(*sets);
+    custom_.resize(most_custom_vectors);
+
+    constants_stride_ = align(program_.constants_words * 4, context_.traits.uniform_alignment);
+    pass_block_stride_ = align(pass_block_size, context_.traits.uniform_alignment);
+    auto constants = gpu::Buffer::create(context_, constants_stride_ * slots_, gpu::constants_usage,
+                                         gpu::Memory::Kind::Upload, "constants");
+    if (!constants) return failure(std::move(constants));
+    constants_ = std::move(*constants);
+    auto blocks = gpu::Buffer::create(context_, pass_block_stride_ * slots_ * std::max<std::size_t>(1, program_.passes.size()),
+                                      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::Kind::Upload, "pass blocks");
+    if (!blocks) return failure(std::move(blocks));
+    pass_blocks_ = std::move(*blocks);
+
+    if (has_timers && context_.traits.timestamp_period_ns > 0) {
+        const auto marks = static_cast<std::uint32_t>(program_.passes.size() + 1);
+        auto timers = gpu::Timers::create(context_, slots_, marks);
+        if (!timers) return failure(std::move(timers));
+        timers_ = std::move(*timers);
+        timed_passes_.resize(slots_);
+        for (auto& passes : timed_passes_) passes.reserve(marks);
+        milliseconds_.resize(marks);
+        times_.reserve(marks);
+    }
+    return {};
+}
+
+Result<> Chain::make_constants() {
+    VkDeviceSize size = 0;
+    for (const Constant& constant : program_.constants) size += align(constant.desc.data.size(), 16);
+    if (size == 0) return {};
+    auto staging = gpu::Buffer::create(context_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
+    if (!staging) return failure(std::move(staging));
+    staging_ = std::move(*staging);
+    VkDeviceSize offset = 0;
+    for (const Constant& constant : program_.constants) {
+        const TableDesc& desc = constant.desc;
+        std::memcpy(staging_.memory.mapped + offset, desc.data.data(), desc.data.size());
+        offset += align(desc.data.size(), 16);
+        auto image = gpu::Image::create(context_, {.name = desc.name,
+                                                   .format = desc.format,
+                                                   .extent = desc.extent,
+                                                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                                   .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
+        if (!image) return failure(std::move(image));
+        tables_.push_back(std::move(*image));
+    }
+    return {};
+}
+
+void Chain::upload_constants(VkCommandBuffer commands) {
+    if (is_uploaded_) return;
+    is_uploaded_ = true;
+    VkDeviceSize offset = 0;
+    for (std::size_t i = 0; i < tables_.size(); ++i) {
+        VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                      .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                      .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                      .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                                      .newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                      .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                      .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                      .image = tables_[i].handle,
+                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+        const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                          .imageMemoryBarrierCount = 1,
+                                          .pImageMemoryBarriers = &barrier};
+        context_.vk.CmdPipelineBarrier2(commands, &dependency);
+        const VkBufferImageCopy copy{.bufferOffset = offset,
+                                     .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                     .imageExtent = program_.constants[i].desc.extent};
+        context_.vk.CmdCopyBufferToImage(commands, staging_.handle, tables_[i].handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                                           &copy);
+        offset += align(program_.constants[i].desc.data.size(), 16);
+        barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+        barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+        barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+        barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        context_.vk.CmdPipelineBarrier2(commands, &dependency);
+    }
+}
+
+Result<> Chain::check_frame(const Frame& frame) const {
+    for (const auto& which : program_.imports) {
+        if (!which) continue;
+        const ImageRef& image = host_image(frame, *which);
+        if (!image.is_given()) return user_error(fmt::format("record: frame.{} is not given, and the plan reads it", name_of(*which)));
+        if (const VkFormat expected = expected_format(desc_, *which); image.format != expected)
+            return user_error(fmt::format("record: frame.{} has format {}, the plan was compiled for {}", name_of(*which),
+                                          gpu::format_name(image.format), gpu::format_name(expected)));
+        const VkRect2D region = image.used_region();
+        const VkExtent2D frame_extent = frame.color.used_region().extent;
+        if (region.offset.x < 0 || region.offset.y < 0 || region.offset.x + region.extent.width > image.extent.width ||
+            region.offset.y + region.extent.height > image.extent.height)
+            return user_error(fmt::format("record: the region of frame.{} does not lie inside its {}x{} image", name_of(*which),
+                                          image.extent.width, image.extent.height));
+        if (region.extent.width != frame_extent.width || region.extent.height != frame_extent.height)
+            return user_error(fmt::format("record: frame.{} is {}x{}, but frame.color is {}x{}", name_of(*which),
+                                          region.extent.width, region.extent.height, frame_extent.width, frame_extent.height));
+        if (image.layer_count != 1)
+            return user_error(fmt::format("record: frame.{} has {} layers; 1 is allowed", name_of(*which), image.layer_count));
+    }
+    const VkExtent2D extent = frame.color.used_region().extent;
+    if (extent.width == 0 || extent.height == 0 || extent.width > desc_.max_extent.width || extent.height > desc_.max_extent.height)
+        return user_error(fmt::format("record: the frame is {}x{}; allowed is 1x1 to {}x{}, as compiled", extent.width,
+                                      extent.height, desc_.max_extent.width, desc_.max_extent.height));
+    if (frame.view >= desc_.views)
+        return user_error(fmt::format("record: view {} does not exist; allowed is [0, {}]", frame.view, desc_.views - 1));
+    return {};
+}
+
+void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
+    for (std::size_t i = 0; i < stack.size(); ++i) {
+        std::uint32_t* const words = words_.data() + words_at_[i];
+        stack[i].evaluate({words, stack[i].info->parameters.words()});
+        is_on_[i] = !program_.is_left_out[i] && is_effective(stack[i], stack[i].inputs.opacity, words);
+    }
+    for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
+        const Toggle& toggle = program_.toggles[i];
+        bool is_on = false;
+        for (const std::uint32_t entry : toggle.entries) is_on = is_on || is_on_[entry];
+        if (is_on && toggle.condition != nullptr)
+            is_on = toggle.condition(words_of(toggle.entries.front()), context, toggle.argument);
+        toggles_[i] = is_on;
+    }
+}
+
+Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack) const {
+    if (pass.steps.empty() || pass.steps.size() > max_lean_steps) return no_shape;
+    Shape shape = 0;
+    for (std::size_t i = 0; i < pass.steps.size(); ++i) {
+        const Entry& entry = stack[pass.steps[i].entry];
+        if (!is_on_[pass.steps[i].entry]) continue;
+        shape |= (entry.is_plain() ? Shape{1} : Shape{3}) << (2 * i);
+    }
+    return shape;
+}
+
+Result<> Chain::build_lean(std::span<const Entry> stack) {
+    for (std::size_t i = 0; i < program_.passes.size(); ++i) {
+        if (!variants_[i]) continue;
+        if (auto ok = variants_[i]->build(context_, shape_of(program_.passes[i], stack)); !ok) return ok;
+    }
+    return {};
+}
+
+Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<const Entry> stack) {
+    if (auto ok = check_frame(frame); !ok) return ok;
+    const VkExtent2D extent = frame.color.used_region().extent;
+    const PassContext context{.frame_extent = extent,
+                              .output_extent = extent,
+                              .time = frame.time,
+                              .delta_time = frame.delta_time,
+                              .frame_index = frame.frame_index,
+                              .camera = &frame.camera};
+    slot_ = static_cast<std::uint32_t>(recordings_ % slots_);
+    upload_constants(commands);
+    evaluate(stack, context);
+
+    auto* const block = reinterpret_cast<std::uint32_t*>(constants_.memory.mapped + constants_stride_ * slot_);
+    // Shaders get time in a float, so it wraps after an hour of the 1/60 s steps that effects think in.
+    const float time = static_cast<float>(std::fmod(frame.time, 3600.0));
+    const float delta = static_cast<float>(frame.delta_time);
+    const std::array<std::uint32_t, frame_words> frame_block{std::bit_cast<std::uint32_t>(time), std::bit_cast<std::uint32_t>(delta),
+                                                             static_cast<std::uint32_t>(frame.frame_index), frame.view};
+    std::copy(frame_block.begin(), frame_block.end(), block);
+    for (std::size_t i = 0; i < stack.size(); ++i) {
+        const ParamTable& table = stack[i].info->parameters;
+        const std::span<std::uint32_t> words(block + program_.block_words[i], block_words(table));
+        words[0] = is_on_[i] ? 1 : 0;
+        words[1] = std::bit_cast<std::uint32_t>(stack[i].inputs.opacity);
+        words[2] = static_cast<std::uint32_t>(stack[i].inputs.blend);
+        write_block(table, {words_of(static_cast<std::uint32_t>(i)), table.words()}, words);
+    }
+
+    for (std::size_t i = 0; i < program_.imports.size(); ++i) {
+        if (!program_.imports[i]) continue;
+        const ImageRef& image = host_image(frame, *program_.imports[i]);
+        import_states_[i] = {.layout = image.layout,
+                             .stages = image.last_stages,
+                             .access = image.last_access,
+                             .final_layout = image.final_layout,
+                             .final_stages = image.final_stages,
+                             .final_access = image.final_access};
+        physical_->bind(static_cast<std::uint32_t>(i), {.handle = image.image,
+                                                        .view = image.view,
+                                                        .base_mip_level = image.mip_level,
+                                                        .base_array_layer = image.array_layer});
+    }
+    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, recordings_);
+
+    const bool is_timed = timers_.pool != VK_NULL_HANDLE;
+    if (is_timed) {
+        timed_passes_[slot_].clear();
+        timers_.begin(commands, slot_);
+        timers_.mark(commands, slot_, 0);
+    }
+    const std::span<const graph::Barrier> barriers = schedule_->barriers();
+    for (const graph::Schedule::Step& step : schedule_->steps()) {
+        physical_->record_barriers(commands, context_.vk, barriers.subspan(step.first_barrier, step.barrier_count), frame.view);
+        record_pass(commands, declared_pass_[step.pass], frame, context, stack);
+        if (is_timed) {
+            timed_passes_[slot_].push_back(declared_pass_[step.pass]);
+            timers_.mark(commands, slot_, static_cast<std::uint32_t>(timed_passes_[slot_].size()));
+        }
+    }
+    physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
+    ++recordings_;
+    return {};
+}
+
+gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame, VkExtent2D extent) const {
+    const graph::Slot& image = compiled_->slots()[slot];
+    if (image.kind == graph::Slot::Kind::Import) {
+        const ImageRef& host = host_image(frame, *program_.imports[image.import_index]);
+        const VkRect2D region = host.used_region();
+        const bool is_depth = host.format == VK_FORMAT_D32_SFLOAT || host.format == VK_FORMAT_D16_UNORM;
+        return {.view = host.view, .region = {region.offset, region.extent, host.extent}, .is_nearest = is_depth};
+    }
+    if (image.kind == graph::Slot::Kind::Constant) {
+        const auto constant = std::find_if(program_.constants.begin(), program_.constants.end(),
+                                           [&](const Constant& c) { return c.import_index == image.import_index; });
+        const gpu::Image& table = tables_[static_cast<std::size_t>(constant - program_.constants.begin())];
+        const VkExtent2D size{table.info.extent.width, table.info.extent.height};
+        return {.view = table.view, .region = {{}, size, size}};
+    }
+    const std::uint32_t mip = std::min(mip_level, image.desc.mip_levels - 1);
+    return {.view = physical_->mip_view(slot, mip, frame.view),
+            .region = {{},
+                       graph::mip_extent(image.desc.size.of(extent), mip),
+                       graph::mip_extent(image.desc.size.of(desc_.max_extent), mip)}};
+}
+
+gpu::Binding Chain::bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const {
+    return bind_slot(schedule_->slot_of(input.version), input.mip_level, frame, extent);
+}
+
+void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Frame& frame, const PassContext& context,
+                        std::span<const Entry> stack) {
+    const ProgramPass& pass = program_.passes[index];
+    std::array<gpu::Binding, most_images> images;
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) images[i] = bind(pass.inputs[i], frame, context.frame_extent);
+    const gpu::Binding output = bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
+
+    const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
+    if (pass.constants != nullptr) {
+        PassContext own = context;
+        own.output_extent = output.region.extent;
+        pass.constants(words_of(pass.entry), own, custom);
+    }
+    const VkDeviceSize block_offset = pass_block_stride_ * (slot_ * program_.passes.size() + index);
+    const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
+    gpu::write_pass_block(pass.spec, output.region, inputs, custom,
+                          {pass_blocks_.memory.mapped + block_offset, gpu::pass_block_size(pass.spec)});
+
+    const Shape shape = shape_of(pass, stack);
+    const gpu::Kernel& kernel = shape == no_shape ? variants_[index]->complete() : variants_[index]->find(shape);
+    if (shape != no_shape && &kernel == &variants_[index]->complete()) builders_->wake();
+    gpu::begin_label(context_, commands, pass.name.c_str());
+    kernel.record(commands, {.set = sets_.sets[set_at_[index] + slot_],
+                             .constants = constants_.handle,
+                             .constants_offset = constants_stride_ * slot_,
+                             .constants_size = program_.constants_words * 4,
+                             .pass_block = pass_blocks_.handle,
+                             .pass_block_offset = block_offset,
+                             .images = inputs,
+                             .outputs = {&output, 1}});
+    gpu::end_label(context_, commands);
+}
+
+std::span<const PassTime> Chain::times() {
+    if (timers_.pool == VK_NULL_HANDLE || recordings_ == 0) return {};
+    for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(slots_, recordings_); ++back) {
+        const auto slot = static_cast<std::uint32_t>((recordings_ - back) % slots_);
+        const auto& passes = timed_passes_[slot];
+        if (timers_.read(slot, static_cast<std::uint32_t>(passes.size() + 1), milliseconds_) < passes.size()) continue;
+        times_.clear();
+        for (std::size_t i = 0; i < passes.size(); ++i)
+            times_.push_back({program_.passes[passes[i]].name, milliseconds_[i]});
+        return times_;
+    }
+    return {};
+}
+
+Plan Chain::describe() const { return describe_program(program_, *compiled_, desc_); }
+
+}  // namespace darkroom::compose

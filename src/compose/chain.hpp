@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A compiled stack on a device: kernels, images, descriptor sets and the constants ring of one Program. Made by
+// Composer::compile; record() only writes into what is there.
+
+#include <darkroom/composer.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compose/program.hpp"
+#include "compose/variants.hpp"
+#include "gpu/resources.hpp"
+#include "graph/physical.hpp"
+
+namespace darkroom::compose {
+
+class Chain {
+  public:
+    [[nodiscard]] static Result<std::unique_ptr<Chain>> create(gpu::Context& context, Program program, const CompileDesc& desc,
+                                                               std::uint32_t slots, bool has_timers,
+                                                               std::span<const Entry> stack);
+    ~Chain();
+
+    /// Allocates nothing and waits for nothing. On error nothing is recorded.
+    [[nodiscard]] Result<> record(VkCommandBuffer commands, const Frame& frame, std::span<const Entry> stack);
+    /// Builds the lean kernels of the present toggles on the calling thread.
+    [[nodiscard]] Result<> build_lean(std::span<const Entry> stack);
+    [[nodiscard]] Plan describe() const;
+    [[nodiscard]] const Program& program() const { return program_; }
+    /// Times of the last finished recording.
+    [[nodiscard]] std::span<const PassTime> times();
+
+  private:
+    Chain(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots);
+    [[nodiscard]] Result<> make_kernels(std::span<const Entry> stack);
+    [[nodiscard]] Result<> make_resources(bool has_timers);
+    [[nodiscard]] Result<> make_constants();
+    [[nodiscard]] Result<> check_frame(const Frame& frame) const;
+    void upload_constants(VkCommandBuffer commands);
+    void evaluate(std::span<const Entry> stack, const PassContext& context);
+    [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack) const;
+    [[nodiscard]] gpu::Binding bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const;
+    [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame, VkExtent2D extent) const;
+    void record_pass(VkCommandBuffer commands, std::uint32_t pass, const Frame& frame, const PassContext& context,
+                     std::span<const Entry> stack);
+    [[nodiscard]] const std::uint32_t* words_of(std::uint32_t entry) const { return words_.data() + words_at_[entry]; }
+
+    gpu::Context& context_;
+    Program program_;
+    CompileDesc desc_;
+    std::uint32_t slots_ = 1;
+    std::uint64_t recordings_ = 0;
+    bool is_uploaded_ = false;
+
+    std::optional<graph::Compiled> compiled_;
+    std::optional<graph::Schedule> schedule_;
+    std::optional<graph::Physical> physical_;
+    std::vector<std::uint32_t> declared_pass_;  ///< kept pass -> pass of the program
+
+    std::vector<std::unique_ptr<Variants>> variants_;  ///< per pass of the program; null where the graph culled it
+    std::unique_ptr<Builders> builders_;
+    gpu::DescriptorSets sets_;
+    std::vector<std::uint32_t> set_at_;  ///< per pass: index of its first set, then one a slot
+    gpu::Buffer constants_, pass_blocks_;
+    VkDeviceSize constants_stride_ = 0, pass_block_stride_ = 0;
+    std::vector<gpu::Image> tables_;
+    gpu::Buffer staging_;
+    gpu::Timers timers_;
+
+    // Scratch of a recording, sized at compile.
+    std::vector<std::uint32_t> words_, words_at_;
+    std::unique_ptr<bool[]> is_on_, toggles_;
+    std::vector<graph::ImportState> import_states_;
+    std::vector<PassVector> custom_;
+    std::uint32_t slot_ = 0;
+
+    // Timers: what was recorded in each slot.
+    std::vector<std::vector<std::uint32_t>> timed_passes_;
+    std::vector<double> milliseconds_;
+    std::vector<PassTime> times_;
+};
+
+}  // namespace darkroom::compose

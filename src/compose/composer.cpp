@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/composer.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "compose/chain.hpp"
+#include "core/assert.hpp"
+#include "core/param_text.hpp"
+#include "gpu/context.hpp"
+
+namespace darkroom {
+
+namespace {
+
+/// The stage the user asked for where it can run the kernel, else the other one.
+Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& spec, KernelStage wanted) {
+    if (wanted == KernelStage::Auto) return gpu::preferred_stage(context, spec);
+    const gpu::Stage first = wanted == KernelStage::Compute ? gpu::Stage::Compute : gpu::Stage::Raster;
+    const gpu::Stage second = wanted == KernelStage::Compute ? gpu::Stage::Raster : gpu::Stage::Compute;
+    auto ok = gpu::usable(context, spec, first);
+    if (ok) return first;
+    if (gpu::usable(context, spec, second)) return second;
+    return failure(std::move(ok));
+}
+
+std::string shown(const compose::Entry& entry, const ParamInfo& row) { return fmt::format("{}.{}", entry.inputs.name, row.name); }
+
+}  // namespace
+
+namespace compose {
+
+void Entry::evaluate(std::span<std::uint32_t> out) const {
+    std::copy(base.begin(), base.end(), out.begin());
+    for (const Override& o : overrides) std::copy_n(o.value.begin(), o.words, out.begin() + o.word);
+}
+
+}  // namespace compose
+
+struct Composer::State {
+    Device* device = nullptr;
+    ComposerDesc desc;
+    std::vector<compose::Entry> stack;
+    std::optional<CompileDesc> compiled_for;
+    std::unique_ptr<compose::Chain> chain;
+    /// Chains that unfinished recordings may still use, and how many recordings each has to outlive.
+    struct Retired {
+        std::unique_ptr<compose::Chain> chain;
+        std::uint32_t recordings_left = 0;
+    };
+    std::vector<Retired> retired;
+    double record_microseconds = 0;
+
+    [[nodiscard]] std::uint32_t slots() const { return desc.frames_in_flight * (compiled_for ? compiled_for->views : 1); }
+    compose::Entry& at(Handle handle) {
+        DARKROOM_ASSERT(handle.id >= 1 && handle.id <= stack.size());
+        return stack[handle.id - 1];
+    }
+    [[nodiscard]] Result<compose::Program> program(const CompileDesc& compile_desc) const {
+        const gpu::Context& context = device->context();
+        return compose::plan_program(stack, compile_desc, {.stage_of = [&](const gpu::KernelSpec& spec) {
+                                         return stage_of(context, spec, compile_desc.kernels);
+                                     }});
+    }
+    Result<const ParamInfo*> row(Handle handle, std::string_view parameter) {
+        const compose::Entry& entry = at(handle);
+        if (const ParamInfo* const found = entry.info->parameters.find(parameter)) return found;
+        std::vector<std::string> names;
+        for (const ParamInfo& info : entry.info->parameters.rows) names.emplace_back(info.name);
+        return user_error(fmt::format("{} has no parameter '{}'{}", entry.inputs.name, parameter, suggestion(parameter, names)));
+    }
+};
+
+Composer::Composer(Device& device, const ComposerDesc& desc) : state_(std::make_unique<State>()) {
+    state_->device = &device;
+    state_->desc = desc;
+    state_->desc.frames_in_flight = std::max(1u, desc.frames_in_flight);
+}
+Composer::Composer(Composer&&) noexcept = default;
+Composer& Composer::operator=(Composer&&) noexcept = default;
+Composer::~Composer() = default;
+
+Handle Composer::add(const EffectInfo& info, const void* parameters, const Inputs& inputs) {
+    compose::Entry entry{.info = &info, .inputs = inputs};
+    entry.base.assign(info.parameters.defaults.begin(), info.parameters.defaults.end());
+    if (parameters != nullptr) std::memcpy(entry.base.data(), parameters, entry.base.size() * 4);
+    if (entry.inputs.name.empty()) {
+        const auto same = std::count_if(state_->stack.begin(), state_->stack.end(),
+                                        [&](const compose::Entry& other) { return other.info->name == info.name; });
+        entry.inputs.name = same == 0 ? std::string(info.name) : fmt::format("{}#{}", info.name, same + 1);
+    }
+    state_->stack.push_back(std::move(entry));
+    return {static_cast<std::uint32_t>(state_->stack.size())};
+}
+
+void Composer::clear() { state_->stack.clear(); }
+
+std::optional<Handle> Composer::find(std::string_view entry_name) const {
+    for (std::uint32_t i = 0; i < state_->stack.size(); ++i)
+        if (state_->stack[i].inputs.name == entry_name) return Handle{i + 1};
+    return std::nullopt;
+}
+std::size_t Composer::size() const { return state_->stack.size(); }
+Handle Composer::entry(std::size_t index) const { return {static_cast<std::uint32_t>(index + 1)}; }
+const EffectInfo& Composer::info(Handle handle) const { return *state_->at(handle).info; }
+const Inputs& Composer::inputs(Handle handle) const { return state_->at(handle).inputs; }
+std::span<const std::uint32_t> Composer::words(Handle handle) const { return state_->at(handle).base; }
+
+Result<> Composer::set_enabled(Handle handle, bool enabled) {
+    state_->at(handle).inputs.enabled = enabled;
+    return {};
+}
+
+Result<> Composer::set_opacity(Handle handle, float opacity) {
+    compose::Entry& entry = state_->at(handle);
+    if (!(opacity >= 0 && opacity <= 1))
+        return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.inputs.name, opacity));
+    // An entry with passes of its own is laid over its input by the next kernel, if that was planned so.
+    const bool is_mixable = !state_->chain || state_->chain->program().is_mixable.size() < handle.id ||
+                            state_->chain->program().is_mixable[handle.id - 1];
+    if (!is_mixable && opacity > 0 && opacity < 1)
+        return user_error(fmt::format("{}: opacity = {}: it has passes of its own and was compiled with opacity 1; allowed are 0 and 1, "
+                                      "or add it with an opacity below 1 and compile",
+                                      entry.inputs.name, opacity));
+    entry.inputs.opacity = opacity;
+    return {};
+}
+
+Result<> Composer::set(Handle handle, std::string_view parameter, std::span<const std::uint32_t> words) {
+    const auto row = state_->row(handle, parameter);
+    if (!row) return tl::unexpected(row.error());
+    compose::Entry& entry = state_->at(handle);
+    if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
+    std::copy(words.begin(), words.end(), entry.base.begin() + (*row)->word);
+    return {};
+}
+
+Result<> Composer::set(Handle handle, std::string_view parameter, double value) {
+    const auto row = state_->row(handle, parameter);
+    if (!row) return tl::unexpected(row.error());
+    compose::Entry& entry = state_->at(handle);
+    return assign(**row, entry.base, value, shown(entry, **row));
+}
+
+void Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) {
+    compose::Entry& entry = state_->at(handle);
+    DARKROOM_ASSERT(entry.info == &info);
+    std::memcpy(entry.base.data(), parameters, entry.base.size() * 4);
+}
+
+Result<> Composer::set_override(Handle handle, std::string_view parameter, std::string_view owner,
+                                std::span<const std::uint32_t> words) {
+    const auto row = state_->row(handle, parameter);
+    if (!row) return tl::unexpected(row.error());
+    compose::Entry& entry = state_->at(handle);
+    if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
+    const auto found = std::find_if(entry.overrides.begin(), entry.overrides.end(), [&](const auto& o) {
+        return o.owner == owner && o.word == (*row)->word;
+    });
+    if (found == entry.overrides.end()) {
+        entry.overrides.push_back({.owner = std::string(owner), .word = (*row)->word, .words = (*row)->words});
+    } else {
+        std::rotate(found, found + 1, entry.overrides.end());  // the last to set wins
+    }
+    std::copy(words.begin(), words.end(), entry.overrides.back().value.begin());
+    return {};
+}
+
+void Composer::drop_overrides(std::string_view owner) {
+    for (compose::Entry& entry : state_->stack) std::erase_if(entry.overrides, [&](const auto& o) { return o.owner == owner; });
+}
+
+std::vector<std::uint32_t> Composer::current(Handle handle) const {
+    const compose::Entry& entry = state_->at(handle);
+    std::vector<std::uint32_t> out(entry.base.size());
+    entry.evaluate(out);
+    return out;
+}
+
+Result<Plan> Composer::plan(const CompileDesc& desc) const {
+    auto program = state_->program(desc);
+    if (!program) return failure(std::move(program));
+    auto compiled = program->graph.compile(desc.max_extent, graph::measure_on(state_->device->context()));
+    if (!compiled) return failure(std::move(compiled));
+    return compose::describe_program(*program, *compiled, desc);
+}
+
+Result<Plan> Composer::compile(const CompileDesc& desc) {
+    const std::uint32_t limit = state_->device->context().traits.max_image_dimension;
+    if (desc.max_extent.width == 0 || desc.max_extent.height == 0 || desc.max_extent.width > limit || desc.max_extent.height > limit)
+        return user_error(fmt::format("size {}x{}: this device allows 1x1 to {}x{}", desc.max_extent.width, desc.max_extent.height,
+                                      limit, limit));
+    if (desc.views == 0) return user_error("views = 0: allowed is 1 and more");
+    auto program = state_->program(desc);
+    if (!program) return failure(std::move(program));
+    auto chain = compose::Chain::create(state_->device->context(), std::move(*program), desc, state_->desc.frames_in_flight * desc.views,
+                                        state_->desc.has_timers, state_->stack);
+    if (!chain) return failure(std::move(chain));
+    if (state_->chain) state_->retired.push_back({std::move(state_->chain), state_->slots()});
+    state_->chain = std::move(*chain);
+    state_->compiled_for = desc;
+    return state_->chain->describe();
+}
+
+Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {
+    const auto start = std::chrono::steady_clock::now();
+    if (!state_->chain) return user_error("record: the composer has no plan; compile it first");
+    if (state_->chain->program().is_left_out.size() != state_->stack.size())
+        return user_error("record: the stack changed since it was compiled; compile it again");
+    // By the contract the recordings that used a retired chain have finished once as many newer ones are made.
+    if (!state_->retired.empty())
+        std::erase_if(state_->retired, [](State::Retired& retired) { return retired.recordings_left-- == 0; });
+    auto ok = state_->chain->record(commands, frame, state_->stack);
+    state_->record_microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    return ok;
+}
+
+void Composer::wait_for_kernels() {
+    if (!state_->chain) return;
+    if (const auto ok = state_->chain->build_lean(state_->stack); !ok)
+        state_->device->context().say(Severity::Warning, ok.error().text);
+}
+
+std::span<const PassTime> Composer::times() { return state_->chain ? state_->chain->times() : std::span<const PassTime>{}; }
+double Composer::record_microseconds() const { return state_->record_microseconds; }
+
+Result<Plan> Composer::rebind(Device& device) {
+    state_->retired.clear();
+    state_->chain.reset();
+    state_->device = &device;
+    if (!state_->compiled_for) return user_error("rebind: the composer was never compiled");
+    return compile(*state_->compiled_for);
+}
+
+}  // namespace darkroom

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Headless developing: pictures in main memory go through a Composer on a device of our own and come back. It uploads,
+// records, submits, waits and reads back; it reads no files. What hosts do with their own command buffers is in
+// darkroom/composer.hpp, and this does the same with buffers of its own.
+
+#include <cstdint>
+#include <darkroom/composer.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace darkroom {
+
+/// Row-major, top row first. Empty spans: not given.
+struct DevelopInput {
+    VkExtent2D extent{};
+    std::span<const float> color;     ///< red, green, blue, alpha; scene-linear Rec. 709
+    std::span<const float> depth;     ///< planar distance
+    std::span<const float> normals;   ///< x, y, z
+    std::span<const float> velocity;  ///< x, y
+    Camera camera;
+    double time = 0;
+    std::uint64_t frame_index = 0;
+};
+
+/// Encoded8: bytes for the screen, in DevelopedPicture::bytes. EncodedFloat: the same before it is rounded, for 16-bit
+/// files. SceneLinear: floats, encode and dither skipped.
+enum class DevelopTarget : std::uint32_t { Encoded8, EncodedFloat, SceneLinear };
+
+struct DevelopDesc {
+    DevelopTarget target = DevelopTarget::Encoded8;
+    KernelStage kernels = KernelStage::Auto;
+    bool fuse = true;
+};
+
+struct DevelopedPicture {
+    VkExtent2D extent{};
+    std::vector<std::uint8_t> bytes;  ///< Encoded8: four a pixel
+    std::vector<float> pixels;        ///< else: four a pixel
+};
+
+/// What the Composer is compiled for, given an input and a target: also what `darkroom plan` plans.
+[[nodiscard]] CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const DevelopDesc& desc);
+
+/// Can this device hold images of this size?
+[[nodiscard]] Result<> check_extent(Device& device, VkExtent2D extent);
+
+class Developer {
+  public:
+    /// The device must be one that the library created: developing needs its queue.
+    Developer(Device& device, const DevelopDesc& desc);
+    Developer(Developer&&) noexcept;
+    Developer& operator=(Developer&&) noexcept;
+    ~Developer();
+
+    /// Develops one picture. Compiles the composer first where size or layers differ from the last one's, and waits for
+    /// its leaner kernels.
+    [[nodiscard]] Result<DevelopedPicture> develop(Composer& composer, const DevelopInput& input);
+    /// The plan of the last develop().
+    [[nodiscard]] const Plan& plan() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace darkroom

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: MIT
+// The planner: walks the stack in the user's order, keeps a kernel open as long as the next entry may join it, and says
+// why a new one starts. See architecture.md, ideas 3 and 4.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "compose/planner_state.hpp"
+#include "gpu/formats.hpp"
+
+namespace darkroom::compose {
+
+namespace {
+
+const char* name_of(Domain domain) {
+    switch (domain) {
+        case Domain::SceneLinear: return "scene_linear";
+        case Domain::DisplayLinear: return "display_linear";
+        case Domain::Encoded: return "encoded";
+    }
+    return "";
+}
+
+bool is_float(VkFormat format) {
+    return format == VK_FORMAT_R16G16B16A16_SFLOAT || format == VK_FORMAT_R32G32B32A32_SFLOAT ||
+           format == VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+}
+bool is_srgb(VkFormat format) {
+    return format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB || format == VK_FORMAT_A8B8G8R8_SRGB_PACK32;
+}
+
+std::string missing_needs(const Needs& needs, const CompileDesc& desc) {
+    std::string out;
+    const auto say = [&](bool is_needed, bool is_there, std::string_view name) {
+        if (is_needed && !is_there) out += fmt::format("{}{}", out.empty() ? "" : " and ", name);
+    };
+    say(needs.depth, desc.depth != VK_FORMAT_UNDEFINED, "depth");
+    say(needs.normals, desc.normals != VK_FORMAT_UNDEFINED, "normals");
+    say(needs.velocity, desc.velocity != VK_FORMAT_UNDEFINED, "velocity");
+    say(needs.shadows, desc.has_shadows, "shadows");
+    say(needs.ui, desc.ui != VK_FORMAT_UNDEFINED, "a UI image");
+    return out;
+}
+
+}  // namespace
+
+Planner::Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits)
+    : stack_(stack), desc_(desc), traits_(traits) {
+    target_domain_ = desc.target_domain.value_or(is_float(desc.target) ? Domain::SceneLinear : Domain::Encoded);
+}
+
+Result<Program> Planner::run() {
+    if (auto ok = check_handles(); !ok) return failure(std::move(ok));
+    lay_out_constants();
+
+    const graph::Version color = import_host(HostImage::Color, "color", desc_.color, desc_.color_usage);
+    values_.push_back({.image = color, .domain = Domain::SceneLinear, .why = "the scene colour starts here"});
+    entry_values_.assign(stack_.size(), 0);
+    count_readers();
+
+    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
+        const std::size_t input = input_of(i);
+        if (is_left_out(i)) {
+            entry_values_[i] = input;
+            continue;
+        }
+        remark_domain(i, values_[input].domain);
+        auto value = add_entry(i, input);
+        if (!value) return failure(std::move(value));
+        entry_values_[i] = *value;
+    }
+    if (auto ok = finish(); !ok) return failure(std::move(ok));
+    return std::move(program_);
+}
+
+Result<> Planner::check_handles() const {
+    const auto check = [&](std::uint32_t entry, Handle handle, std::string_view which) -> Result<> {
+        if (!handle.is_given() || handle == scene_color || handle.id - 1 < entry) return {};
+        return user_error(fmt::format("stack entry '{}': its {} is not the output of an earlier entry", stack_[entry].inputs.name,
+                                      which));
+    };
+    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
+        const Inputs& inputs = stack_[i].inputs;
+        if (auto ok = check(i, inputs.input, "input"); !ok) return ok;
+        if (auto ok = check(i, inputs.source, "source"); !ok) return ok;
+        if (auto ok = check(i, inputs.second, "second"); !ok) return ok;
+        if (auto ok = check(i, inputs.mask, "mask"); !ok) return ok;
+        if (stack_[i].info->has_second && !inputs.second.is_given())
+            return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`", inputs.name,
+                                          stack_[i].info->name));
+    }
+    return {};
+}
+
+void Planner::lay_out_constants() {
+    std::uint32_t word = frame_words;
+    for (const Entry& entry : stack_) {
+        program_.block_words.push_back(word);
+        word += block_words(entry.info->parameters);
+    }
+    program_.constants_words = word;
+    program_.is_left_out.assign(stack_.size(), false);
+    program_.is_mixable.assign(stack_.size(), true);
+}
+
+bool Planner::is_left_out(std::uint32_t entry) {
+    const EffectInfo& info = *stack_[entry].info;
+    std::string why;
+    if (const std::string missing = missing_needs(info.needs, desc_); !missing.empty())
+        why = fmt::format("needs {}, which the frame does not have", missing);
+    else if (info.is_last_step && target_domain_ == Domain::SceneLinear)
+        why = "the target takes scene-linear floats";
+    if (why.empty()) return false;
+    program_.left_out.push_back(fmt::format("{}: {}", stack_[entry].inputs.name, why));
+    program_.is_left_out[entry] = true;
+    return true;
+}
+
+void Planner::remark_domain(std::uint32_t entry, Domain domain) {
+    const EffectInfo& info = *stack_[entry].info;
+    if (!stack_[entry].inputs.enabled || info.accepts.contains(domain)) return;
+    std::string accepted;
+    for (const Domain d : {Domain::SceneLinear, Domain::DisplayLinear, Domain::Encoded})
+        if (info.accepts.contains(d)) accepted += fmt::format("{}{}", accepted.empty() ? "" : " or ", name_of(d));
+    program_.remarks.push_back(
+        fmt::format("{} expects a {} picture and gets a {} one.", stack_[entry].inputs.name, accepted, name_of(domain)));
+}
+
+std::size_t Planner::value_of(Handle handle, std::uint32_t entry) const {
+    if (handle == scene_color) return 0;
+    if (handle.is_given()) return entry_values_[handle.id - 1];
+    return entry == 0 ? 0 : entry_values_[entry - 1];
+}
+std::size_t Planner::input_of(std::uint32_t entry) const { return value_of(stack_[entry].inputs.input, entry); }
+
+/// Who reads the output of each entry as a picture of its own: such an output must become an image.
+void Planner::count_readers() {
+    image_reader_.assign(stack_.size(), {});
+    std::vector<std::uint32_t> inputs(stack_.size(), 0);
+    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
+        const Inputs& wiring = stack_[i].inputs;
+        const auto note = [&](Handle handle) {
+            if (handle.is_given() && handle != scene_color) image_reader_[handle.id - 1] = wiring.name;
+        };
+        note(wiring.source);
+        note(wiring.second);
+        note(wiring.mask);
+        if (wiring.input == scene_color || (i == 0 && !wiring.input.is_given())) continue;
+        const std::uint32_t from = wiring.input.is_given() ? wiring.input.id - 1 : i - 1;
+        if (inputs[from]++ > 0) image_reader_[from] = wiring.name;
+    }
+}
+
+Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
+    const EffectInfo& info = *stack_[entry].info;
+    const Domain domain =
+        info.makes != nullptr ? info.makes(values_[input].domain, stack_[entry].base.data()) : values_[input].domain;
+
+    Builder builder(*this, entry, input);
+    if (info.build != nullptr) {
+        info.build(builder);
+        if (!builder.error.empty()) return user_error(builder.error);
+    }
+    if (info.touch == Touch::Neighbourhood || info.touch == Touch::History) return add_result(entry, input, builder, domain);
+
+    FusedStep step{.info = &info, .entry = entry, .name = stack_[entry].inputs.name};
+    std::vector<PassInput> side_inputs;
+    for (Builder::Side& side : builder.sides) {
+        step.sides.push_back(side.name);
+        side_inputs.push_back(side.input);
+    }
+    if (info.has_second) {
+        auto second = materialise(value_of(stack_[entry].inputs.second, entry), fmt::format("{} reads it as its second picture", stack_[entry].inputs.name));
+        if (!second) return failure(std::move(second));
+        step.sides.emplace_back("second");
+        side_inputs.push_back({.version = *second});
+    }
+    return append(entry, input, std::move(step), std::move(side_inputs), domain);
+}
+
+Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, Builder& builder, Domain domain) {
+    if (!builder.output.is_valid())
+        return user_error(fmt::format("effect '{}': its build() names no result", stack_[entry].info->name));
+    auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].inputs.name));
+    if (!picture) return failure(std::move(picture));
+    const std::string why = fmt::format("{} has passes of its own", stack_[entry].inputs.name);
+    program_.graph.fall_back(builder.output, *picture);
+    facts_[builder.output.index].fall_backs.push_back(*picture);
+
+    if (stack_[entry].is_plain()) {
+        program_.is_mixable[entry] = false;
+        values_.push_back({.image = builder.output, .domain = domain, .why = why});
+        return values_.size() - 1;
+    }
+    values_.push_back({.image = *picture, .domain = domain, .why = why});
+    FusedStep step{.info = stack_[entry].info, .entry = entry, .name = stack_[entry].inputs.name, .is_merge = true};
+    return append(entry, values_.size() - 1, std::move(step), {{.version = builder.output}}, domain);
+}
+
+Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, FusedStep step, std::vector<PassInput> sides,
+                                    Domain domain) {
+    const std::string& name = stack_[entry].inputs.name;
+    const Value from = values_[input];
+    std::size_t kernel = from.kernel;
+    if (kernel == no_kernel) {
+        kernel = open_kernel(input, from.why);
+    } else {
+        std::string why;
+        if (!desc_.fuse)
+            why = "fusion is off";
+        else if (step.info->touch == Touch::Warp && !step.is_merge)
+            why = fmt::format("{} reads the picture at moved coordinates", name);
+        else if (!from.reader.empty())
+            why = fmt::format("{} reads the picture before it, too", from.reader);
+        if (!why.empty()) {
+            if (auto image = materialise(input, why); !image) return failure(std::move(image));
+            kernel = open_kernel(input, std::move(why));
+        }
+    }
+    if (stack_[entry].inputs.mask.is_given()) {
+        auto mask = materialise(value_of(stack_[entry].inputs.mask, entry), fmt::format("{} reads it as its mask", name));
+        if (!mask) return failure(std::move(mask));
+        step.has_mask = true;
+        kernels_[kernel].images.push_back({"mask" + entry_suffix(entry), {.version = *mask}});
+    }
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const std::string shown = step.is_merge ? "layer" : step.sides[i];
+        kernels_[kernel].images.push_back({shown + entry_suffix(entry), sides[i]});
+    }
+    kernels_[kernel].steps.push_back(std::move(step));
+    values_.push_back({.kernel = kernel, .domain = domain, .reader = image_reader_[entry]});
+    return values_.size() - 1;
+}
+
+std::size_t Planner::open_kernel(std::size_t input, std::string why) {
+    kernels_.push_back({.picture = values_[input].image, .boundary = std::move(why)});
+    return kernels_.size() - 1;
+}
+
+Result<graph::Version> Planner::materialise(std::size_t index, const std::string& why) {
+    if (values_[index].image.is_valid()) return values_[index].image;
+    const graph::Version image = program_.graph.create(
+        {.name = fmt::format("picture {}", kernels_.size()), .format = desc_.intermediate});
+    facts_[image.index] = {.root = image.index, .format = desc_.intermediate, .has_storage = true};
+    auto version = close_kernel(values_[index].kernel, image, desc_.intermediate, Finish::None, false);
+    if (!version) return version;
+    // Nobody joined the kernel behind this value (its reader was known), so whoever comes next starts a new one.
+    values_[index].image = *version;
+    values_[index].why = why;
+    values_[index].kernel = no_kernel;
+    return *version;
+}
+
+Result<> Planner::finish() {
+    std::size_t last = stack_.empty() ? 0 : entry_values_.back();
+    const Domain domain = values_[last].domain;
+    Finish finish = Finish::None;
+    if (target_domain_ == Domain::Encoded) {
+        if (domain == Domain::Encoded) {
+            if (is_srgb(desc_.target)) finish = Finish::DecodeSrgb;
+        } else if (!is_srgb(desc_.target) && !is_float(desc_.target)) {
+            finish = Finish::EncodeSrgb;
+            program_.remarks.push_back(fmt::format(
+                "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.", name_of(domain)));
+        }
+    }
+    std::size_t kernel = values_[last].kernel;
+    if (kernel == no_kernel || !values_[last].reader.empty()) {
+        const std::string why = fmt::format("{} reads the picture before the target, too", values_[last].reader);
+        if (auto image = materialise(last, why); !image) return failure(std::move(image));
+        kernel = open_kernel(last, values_[last].why);
+    }
+    const graph::Version target = import_host(HostImage::Target, "target", desc_.target, desc_.target_usage);
+    auto version = close_kernel(kernel, target, desc_.target, finish, true);
+    if (!version) return failure(std::move(version));
+    program_.graph.keep(*version);
+    return {};
+}
+
+Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version target, VkFormat format, Finish finish,
+                                             bool is_last) {
+    OpenKernel& kernel = kernels_[index];
+    ProgramPass pass{.boundary = kernel.boundary, .steps = kernel.steps, .finish = finish};
+    const bool is_warp = !kernel.steps.empty() && kernel.steps.front().info->touch == Touch::Warp && !kernel.steps.front().is_merge;
+
+    Toggle toggle;
+    for (const FusedStep& step : kernel.steps) {
+        const std::string& name = stack_[step.entry].inputs.name;
+        pass.name += (pass.name.empty() ? "" : "+") + name;
+        toggle.entries.push_back(step.entry);
+        pass.spec.constants += entry_members(*stack_[step.entry].info, step.entry, program_.block_words[step.entry]);
+    }
+    if (pass.name.empty()) pass.name = "copy";
+    pass.spec.name = pass.name;
+    pass.spec.constants = frame_members() + pass.spec.constants;
+    pass.spec.outputs = {format};
+    // imageLoad needs GENERAL, sampling the other layout: one image can be in one of them.
+    const bool is_shared = std::ranges::any_of(
+        kernel.images, [&](const auto& image) { return may_share(kernel.picture, image.second.version); });
+    pass.spec.images.push_back(
+        {.name = "picture", .storage_format = is_warp || is_shared ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
+    pass.inputs.push_back({.version = kernel.picture});
+    for (const auto& [name, input] : kernel.images) {
+        pass.spec.images.push_back({.name = name});
+        pass.inputs.push_back(input);
+    }
+    auto body = fused_body(pass.steps, finish);
+    if (!body) return failure(std::move(body));
+    pass.spec.body = std::move(*body);
+    if (!is_last) pass.toggle = toggle_index(std::move(toggle));
+    auto version = add_pass(std::move(pass), target, 0);
+    if (!version) return version;
+    if (!is_last) {
+        program_.graph.fall_back(*version, kernel.picture);
+        facts_[version->index].fall_backs.push_back(kernel.picture);
+    }
+    return version;
+}
+
+Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level) {
+    const auto stage = traits_.stage_of(pass.spec);
+    if (!stage) return tl::unexpected(stage.error());
+    pass.stage = *stage;
+    const bool is_raster = pass.stage == gpu::Stage::Raster;
+    graph::PassDesc desc{.name = pass.name, .toggle = pass.toggle};
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        if (!pass.inputs[i].version.is_valid()) continue;
+        const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
+        const graph::Use use = is_storage ? (is_raster ? graph::Use::StorageReadFragment : graph::Use::StorageRead)
+                                          : (is_raster ? graph::Use::SampledFragment : graph::Use::SampledCompute);
+        desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}});
+    }
+    const graph::Use use = pass.spec.is_additive ? (is_raster ? graph::Use::ColorBlend : graph::Use::StorageReadWrite)
+                                                 : (is_raster ? graph::Use::ColorWrite : graph::Use::StorageWrite);
+    desc.writes.push_back({target, use, {mip_level, 1}});
+    pass.output_mip_level = mip_level;
+    pass.output = program_.graph.add(std::move(desc)).front();
+    facts_[pass.output.index] = facts_[target.index];
+    facts_[pass.output.index].fall_backs.clear();
+    program_.passes.push_back(std::move(pass));
+    return program_.passes.back().output;
+}
+
+std::int32_t Planner::toggle_index(Toggle toggle) {
+    for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
+        const Toggle& other = program_.toggles[i];
+        if (other.entries == toggle.entries && other.condition == toggle.condition && other.argument == toggle.argument)
+            return static_cast<std::int32_t>(i);
+    }
+    const auto index = static_cast<std::int32_t>(program_.toggles.size());
+    for (std::int32_t i = 0; i < index; ++i) {
+        const Toggle& other = program_.toggles[static_cast<std::size_t>(i)];
+        if (other.entries != toggle.entries || other.condition != toggle.condition) continue;
+        // A condition that holds for an argument holds for all smaller ones.
+        if (other.argument < toggle.argument)
+            program_.graph.imply(index, i);
+        else
+            program_.graph.imply(i, index);
+    }
+    program_.toggles.push_back(std::move(toggle));
+    return index;
+}
+
+graph::Version Planner::import_host(HostImage image, const char* name, VkFormat format, VkImageUsageFlags usage) {
+    program_.imports.emplace_back(image);
+    const graph::Version version = program_.graph.import({.image = {.name = name, .format = format}, .usage = usage});
+    facts_[version.index] = {.root = version.index, .format = format, .has_storage = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0};
+    return version;
+}
+
+graph::Version Planner::import_constant(TableDesc table) {
+    program_.constants.push_back({.desc = std::move(table), .import_index = static_cast<std::uint32_t>(program_.imports.size())});
+    program_.imports.emplace_back(std::nullopt);
+    const TableDesc& desc = program_.constants.back().desc;
+    const graph::Version version = program_.graph.import(
+        {.image = {.name = desc.name, .format = desc.format, .size = {.width = desc.extent.width, .height = desc.extent.height}},
+         .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+         .is_constant = true});
+    facts_[version.index] = {.root = version.index, .format = desc.format, .has_storage = false};
+    return version;
+}
+
+/// The images that may stand behind a version, by the version they began as.
+void Planner::collect_roots(graph::Version version, std::vector<std::uint32_t>& roots) const {
+    const Facts& facts = facts_.at(version.index);
+    roots.push_back(facts.root);
+    for (const graph::Version instead : facts.fall_backs) collect_roots(instead, roots);
+}
+
+bool Planner::may_share(graph::Version a, graph::Version b) const {
+    std::vector<std::uint32_t> of_a, of_b;
+    collect_roots(a, of_a);
+    collect_roots(b, of_b);
+    return std::ranges::find_first_of(of_a, of_b) != of_a.end();
+}
+
+/// The format for imageLoad where every image that may stand behind `version` has it, else UNDEFINED: sampled.
+VkFormat Planner::storage_format(graph::Version version) const {
+    const Facts& facts = facts_.at(version.index);
+    if (!facts.has_storage || gpu::format_traits(facts.format).glsl_qualifier.empty()) return VK_FORMAT_UNDEFINED;
+    for (const graph::Version instead : facts.fall_backs)
+        if (storage_format(instead) != facts.format) return VK_FORMAT_UNDEFINED;
+    return facts.format;
+}
+
+Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits) {
+    return Planner(stack, desc, traits).run();
+}
+
+Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps) {
+    gpu::KernelSpec spec = pass.spec;
+    auto body = fused_body(steps, pass.finish);
+    if (!body) return failure(std::move(body));
+    spec.body = std::move(*body);
+    return spec;
+}
+
+}  // namespace darkroom::compose

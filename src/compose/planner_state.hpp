@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The planner's working state, for planner.cpp and builder.cpp only.
+
+#include <darkroom/effect.hpp>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compose/program.hpp"
+
+namespace darkroom::compose {
+
+class Builder;
+
+class Planner {
+  public:
+    Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits);
+    [[nodiscard]] Result<Program> run();
+
+  private:
+    friend class Builder;
+    static constexpr std::size_t no_kernel = ~std::size_t{0};
+
+    /// A picture on its way through the stack: an image, or the end of a kernel that is still open.
+    struct Value {
+        graph::Version image;
+        std::size_t kernel = no_kernel;
+        Domain domain = Domain::SceneLinear;
+        std::string why;     ///< of an image: why a new kernel starts from it
+        std::string reader;  ///< of an open kernel: who else reads this picture, so that it must become an image
+    };
+    struct OpenKernel {
+        graph::Version picture;
+        std::string boundary;
+        std::vector<FusedStep> steps;
+        std::vector<std::pair<std::string, PassInput>> images;
+    };
+    struct Facts {
+        std::uint32_t root = 0;  ///< the version that the image began as
+        VkFormat format = VK_FORMAT_UNDEFINED;
+        bool has_storage = false;
+        std::vector<graph::Version> fall_backs;
+    };
+
+    [[nodiscard]] Result<> check_handles() const;
+    void lay_out_constants();
+    [[nodiscard]] bool is_left_out(std::uint32_t entry);
+    void remark_domain(std::uint32_t entry, Domain domain);
+    [[nodiscard]] std::size_t value_of(Handle handle, std::uint32_t entry) const;
+    [[nodiscard]] std::size_t input_of(std::uint32_t entry) const;
+    void count_readers();
+    [[nodiscard]] Result<std::size_t> add_entry(std::uint32_t entry, std::size_t input);
+    [[nodiscard]] Result<std::size_t> add_result(std::uint32_t entry, std::size_t input, Builder& builder, Domain domain);
+    [[nodiscard]] Result<std::size_t> append(std::uint32_t entry, std::size_t input, FusedStep step, std::vector<PassInput> sides,
+                                             Domain domain);
+    [[nodiscard]] std::size_t open_kernel(std::size_t input, std::string why);
+    /// Makes the picture an image, if it is not one yet, by closing its kernel.
+    [[nodiscard]] Result<graph::Version> materialise(std::size_t value, const std::string& why);
+    [[nodiscard]] Result<graph::Version> close_kernel(std::size_t kernel, graph::Version target, VkFormat format, Finish finish,
+                                                      bool is_last);
+    [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
+    [[nodiscard]] std::int32_t toggle_index(Toggle toggle);
+    [[nodiscard]] graph::Version import_host(HostImage image, const char* name, VkFormat format, VkImageUsageFlags usage);
+    [[nodiscard]] graph::Version import_constant(TableDesc table);
+    void collect_roots(graph::Version version, std::vector<std::uint32_t>& roots) const;
+    [[nodiscard]] bool may_share(graph::Version a, graph::Version b) const;
+    [[nodiscard]] VkFormat storage_format(graph::Version version) const;
+    [[nodiscard]] Result<> finish();
+
+    std::span<const Entry> stack_;
+    const CompileDesc& desc_;
+    const PlannerTraits& traits_;
+    Domain target_domain_ = Domain::Encoded;
+    Program program_;
+    std::vector<Value> values_;              ///< 0: the scene colour
+    std::vector<std::size_t> entry_values_;  ///< per entry: the value it makes
+    std::vector<std::string> image_reader_;  ///< per entry: who reads its output as an image
+    std::vector<OpenKernel> kernels_;
+    std::map<std::uint32_t, Facts> facts_;   ///< by version
+};
+
+/// What an effect's build() sees.
+class Builder final : public PassBuilder {
+  public:
+    struct Side {
+        std::string name;
+        PassInput input;
+    };
+
+    Builder(Planner& planner, std::uint32_t entry, std::size_t input) : planner_(planner), entry_(entry), input_(input) {}
+
+    [[nodiscard]] PassImage picture() override;
+    [[nodiscard]] PassImage source() override;
+    [[nodiscard]] VkExtent2D max_extent() const override { return planner_.desc_.max_extent; }
+    [[nodiscard]] const void* parameters() const override { return planner_.stack_[entry_].base.data(); }
+    [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
+    [[nodiscard]] PassImage table(const TableDesc& desc) override;
+    PassImage add(const KernelPassDesc& desc) override;
+    void side(std::string name, PassImage image, PassVector neutral) override;
+    void result(PassImage image) override;
+
+    std::vector<Side> sides;
+    graph::Version output;
+    std::string error;
+
+  private:
+    struct Image {
+        graph::Version version;
+        graph::Version first_written;  ///< falls back to the neutral image, if it has one
+        VkFormat format = VK_FORMAT_UNDEFINED;
+    };
+    [[nodiscard]] PassImage remember(Image image);
+    [[nodiscard]] PassImage image_of(std::size_t value);
+
+    Planner& planner_;
+    std::uint32_t entry_ = 0;
+    std::size_t input_ = 0;
+    std::vector<Image> images_;
+};
+
+}  // namespace darkroom::compose

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the planner makes of a stack: passes with their kernels, images and toggles, and the graph that orders them. Pure
+// data: no device objects, no pointers into the stack but to the effects' static descriptions.
+
+#include <darkroom/composer.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compose/glsl.hpp"
+#include "gpu/kernel.hpp"
+#include "graph/graph.hpp"
+
+namespace darkroom::compose {
+
+/// A stack entry as the Composer keeps it.
+struct Entry {
+    const EffectInfo* info = nullptr;
+    Inputs inputs;
+    std::vector<std::uint32_t> base;  ///< parameter words
+    struct Override {
+        std::string owner;
+        std::uint32_t word = 0, words = 0;
+        std::array<std::uint32_t, 1 + 2 * Curve::capacity> value{};
+    };
+    std::vector<Override> overrides;
+
+    /// Base values under the overrides, in the order they were set. `out` holds info->parameters.words() words.
+    void evaluate(std::span<std::uint32_t> out) const;
+    [[nodiscard]] bool is_plain() const {
+        return inputs.opacity == 1.0f && inputs.blend == BlendMode{} && !inputs.mask.is_given();
+    }
+};
+
+/// Whether passes run in a frame: an entry is on, and its condition holds; or, for a fused kernel between others, any of
+/// its entries is on.
+struct Toggle {
+    std::vector<std::uint32_t> entries;
+    ConditionFunction condition = nullptr;
+    std::uint32_t argument = 0;
+};
+
+struct PassInput {
+    graph::Version version;  ///< invalid: the neutral image
+    std::uint32_t mip_level = 0;
+    std::uint32_t neutral = ~0u;  ///< index of Program::neutrals, where version is invalid
+};
+
+struct ProgramPass {
+    std::string name;
+    gpu::KernelSpec spec;
+    gpu::Stage stage = gpu::Stage::Compute;
+    std::vector<PassInput> inputs;  ///< one per spec.images
+    graph::Version output;          ///< the version that this pass makes
+    std::uint32_t output_mip_level = 0;
+    std::int32_t toggle = -1;
+    std::string boundary;
+
+    // A pass of an effect:
+    std::uint32_t entry = ~0u;
+    ConstantsFunction constants = nullptr;
+    // A fused kernel:
+    std::vector<FusedStep> steps;
+    Finish finish = Finish::None;
+};
+
+/// A table or neutral image: uploaded once, constant after.
+struct Constant {
+    TableDesc desc;
+    std::uint32_t import_index = ~0u;
+};
+
+/// Which import of the graph is which image of the host.
+enum class HostImage : std::uint8_t { Color, Depth, Normals, Velocity, Ui, Target };
+
+struct Program {
+    graph::Graph graph;
+    std::vector<ProgramPass> passes;       ///< in the order they were added to the graph
+    std::vector<Toggle> toggles;
+    std::vector<Constant> constants;
+    std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a constant
+    std::vector<std::uint32_t> block_words;         ///< per entry: first word of its block in the constants
+    std::uint32_t constants_words = 0;
+    std::vector<bool> is_left_out;                  ///< per entry
+    std::vector<bool> is_mixable;                   ///< per entry: opacity and blending may change while recording
+    std::vector<std::string> left_out, remarks;
+};
+
+struct PlannerTraits {
+    /// Which stage runs a kernel: gpu::preferred_stage, or the one the user asked for where it can.
+    std::function<Result<gpu::Stage>(const gpu::KernelSpec&)> stage_of;
+};
+
+/// Turns a stack into a program. Errors: a handle that names no earlier entry, a shader that is missing.
+[[nodiscard]] Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits);
+
+/// The kernel of a fused pass that holds only the steps that are on: same images and bindings, no branches.
+[[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps);
+
+/// The program as users read it.
+[[nodiscard]] Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc);
+
+}  // namespace darkroom::compose

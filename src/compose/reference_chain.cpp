@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "compose/reference_chain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../effects/shared/blend_modes_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+double srgb_curve(double linear) {
+    // IEC 61966-2-1.
+    const double v = std::clamp(linear, 0.0, 1.0);
+    return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+}
+
+std::string missing_needs(const Needs& needs, const ReferenceChainInput& input) {
+    std::string out;
+    const auto say = [&](bool is_needed, bool is_there, std::string_view name) {
+        if (is_needed && !is_there) out += fmt::format("{}{}", out.empty() ? "" : " and ", name);
+    };
+    say(needs.depth, input.depth != nullptr, "depth");
+    say(needs.normals, input.normals != nullptr, "normals");
+    say(needs.velocity, input.velocity != nullptr, "velocity");
+    say(needs.shadows, false, "shadows");
+    say(needs.ui, false, "a UI image");
+    return out;
+}
+
+// As shared/merge.glsl has it.
+Rgba merged(const Rgba& base, const Rgba& layer, double opacity, BlendMode mode) {
+    Rgba blended = mode == BlendMode::Mix ? layer : blend_reference(base, layer, mode);
+    blended.a = layer.a;
+    if (opacity == 1) return blended;
+    const auto mix = [&](double a, double b) { return a * (1 - opacity) + b * opacity; };
+    return {mix(base.r, blended.r), mix(base.g, blended.g), mix(base.b, blended.b), mix(base.a, blended.a)};
+}
+
+double mask_weight(const Rgba& mask) { return std::clamp(0.2126 * mask.r + 0.7152 * mask.g + 0.0722 * mask.b, 0.0, 1.0); }
+
+class Chain {
+  public:
+    Chain(const Composer& composer, const ReferenceChainInput& input) : composer_(composer), input_(input) {}
+
+    Result<ReferenceChainOutput> run() {
+        pictures_.push_back(*input_.color);
+        domains_.push_back(Domain::SceneLinear);
+        for (std::size_t i = 0; i < composer_.size(); ++i)
+            if (Result<> done = add(i); !done) return failure(std::move(done));
+        ReferenceChainOutput out{.picture = pictures_[values_.empty() ? 0 : values_.back()], .left_out = std::move(left_out_)};
+        const Domain domain = domains_[values_.empty() ? 0 : values_.back()];
+        if (input_.target_domain == Domain::Encoded && domain != Domain::Encoded)
+            for (Rgba& pixel : out.picture.pixels) pixel = {srgb_curve(pixel.r), srgb_curve(pixel.g), srgb_curve(pixel.b), pixel.a};
+        return out;
+    }
+
+  private:
+    std::size_t value_of(Handle handle, std::size_t entry) const {
+        if (handle == scene_color) return 0;
+        if (handle.is_given()) return values_[handle.id - 1];
+        return entry == 0 ? 0 : values_[entry - 1];
+    }
+
+    Result<> add(std::size_t index) {
+        const Handle handle = composer_.entry(index);
+        const EffectInfo& info = composer_.info(handle);
+        const Inputs& inputs = composer_.inputs(handle);
+        for (const Handle wire : {inputs.input, inputs.source, inputs.second, inputs.mask})
+            if (wire.is_given() && wire != scene_color && wire.id > index)
+                return user_error(fmt::format("stack entry '{}': it reads the output of a later entry", inputs.name));
+        const std::size_t from = value_of(inputs.input, index);
+        values_.push_back(from);
+        std::string why = missing_needs(info.needs, input_);
+        if (!why.empty()) why = fmt::format("needs {}, which the frame does not have", why);
+        if (why.empty() && info.is_last_step && input_.target_domain == Domain::SceneLinear)
+            why = "the target takes scene-linear floats";
+        if (!why.empty()) {
+            left_out_.push_back(fmt::format("{}: {}", inputs.name, why));
+            return {};
+        }
+        if (info.has_second && !inputs.second.is_given())
+            return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`", inputs.name, info.name));
+        const std::vector<std::uint32_t> words = composer_.current(handle);
+        const Domain before = domains_[from];
+        const Domain domain = info.makes == nullptr ? before : info.makes(before, words.data());
+        const bool is_off = !inputs.enabled || inputs.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
+        if (!is_off && info.reference == nullptr)
+            return user_error(fmt::format("stack entry '{}': {} has no reference", inputs.name, info.name));
+        pictures_.push_back(is_off ? pictures_[from] : result(info, inputs, words, index, from));
+        domains_.push_back(domain);
+        values_.back() = pictures_.size() - 1;
+        return {};
+    }
+
+    ReferenceImage result(const EffectInfo& info, const Inputs& inputs, const std::vector<std::uint32_t>& words, std::size_t index,
+                          std::size_t from) const {
+        const ReferenceImage& base = pictures_[from];
+        ReferenceImage layer = info.reference(
+            words.data(), {.picture = &base,
+                           .source = inputs.source.is_given() ? &pictures_[value_of(inputs.source, index)] : &base,
+                           .second = inputs.second.is_given() ? &pictures_[value_of(inputs.second, index)] : nullptr,
+                           .depth = input_.depth,
+                           .normals = input_.normals,
+                           .velocity = input_.velocity,
+                           .camera = input_.camera,
+                           .time = input_.time,
+                           .frame_index = input_.frame_index});
+        const bool is_plain = inputs.opacity == 1 && inputs.blend == BlendMode::Mix && !inputs.mask.is_given();
+        const bool is_same_size = layer.width == base.width && layer.height == base.height;
+        if (is_plain || !is_same_size) return layer;
+        const ReferenceImage* const mask = inputs.mask.is_given() ? &pictures_[value_of(inputs.mask, index)] : nullptr;
+        for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
+            const double opacity = inputs.opacity * (mask == nullptr ? 1.0 : mask_weight(mask->pixels[i]));
+            layer.pixels[i] = merged(base.pixels[i], layer.pixels[i], opacity, inputs.blend);
+        }
+        return layer;
+    }
+
+    const Composer& composer_;
+    const ReferenceChainInput& input_;
+    std::vector<ReferenceImage> pictures_;
+    std::vector<Domain> domains_;        // of each picture
+    std::vector<std::size_t> values_;    // of each entry: its picture
+    std::vector<std::string> left_out_;
+};
+
+}  // namespace
+
+Result<ReferenceChainOutput> run_reference(const Composer& composer, const ReferenceChainInput& input) {
+    return Chain(composer, input).run();
+}
+
+std::vector<std::uint8_t> round_to_bytes(const ReferenceImage& image) {
+    const auto byte = [](double v) {
+        return static_cast<std::uint8_t>(std::isnan(v) ? 0.0 : std::floor(std::clamp(v, 0.0, 1.0) * 255 + 0.5));
+    };
+    std::vector<std::uint8_t> out;
+    out.reserve(image.pixels.size() * 4);
+    for (const Rgba& pixel : image.pixels)
+        for (const double channel : {pixel.r, pixel.g, pixel.b, pixel.a}) out.push_back(byte(channel));
+    return out;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A whole stack by its CPU references alone, in double precision: the truth that the chain on the GPU is compared with,
+// and what `develop --reference` runs. It needs no device beyond the Composer that holds the stack, and it is slow.
+
+#include <darkroom/composer.hpp>
+#include <darkroom/reference.hpp>
+#include <string>
+#include <vector>
+
+namespace darkroom {
+
+struct ReferenceChainInput {
+    const ReferenceImage* color = nullptr;
+    const ReferenceImage* depth = nullptr;
+    const ReferenceImage* normals = nullptr;
+    const ReferenceImage* velocity = nullptr;
+    Camera camera;
+    double time = 0;
+    std::uint64_t frame_index = 0;
+    Domain target_domain = Domain::Encoded;  ///< SceneLinear: encode and dither are skipped
+};
+
+struct ReferenceChainOutput {
+    ReferenceImage picture;             ///< not rounded
+    std::vector<std::string> left_out;  ///< as in Plan
+};
+
+/// Errors name the entry: an effect without a reference, a second picture that is missing.
+[[nodiscard]] Result<ReferenceChainOutput> run_reference(const Composer& composer, const ReferenceChainInput& input);
+
+/// To 8 bits: clamped to [0, 1], rounded half up, NaN is 0.
+[[nodiscard]] std::vector<std::uint8_t> round_to_bytes(const ReferenceImage& image);
+
+}  // namespace darkroom

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What tests of effects and chains share: pictures to try, a whole develop on the test device, and the measure by which
+// GPU and reference are compared. Not part of the library.
+
+#include <darkroom/composer.hpp>
+#include <darkroom/reference.hpp>
+#include <functional>
+
+namespace darkroom::test {
+
+/// Random HDR: mid-tones, negative, huge (to 60000), and values that are denormal in half precision. Same bits on every
+/// machine for the same number.
+[[nodiscard]] ReferenceImage random_hdr(std::uint32_t width, std::uint32_t height, std::uint32_t number);
+/// Random colours in [0,1].
+[[nodiscard]] ReferenceImage random_display(std::uint32_t width, std::uint32_t height, std::uint32_t number);
+[[nodiscard]] ReferenceImage uniform(std::uint32_t width, std::uint32_t height, Rgba color);
+
+struct RunOptions {
+    KernelStage kernels = KernelStage::Auto;
+    bool fuse = true;
+    VkFormat color = VK_FORMAT_R32G32B32A32_SFLOAT;
+    VkFormat target = VK_FORMAT_R32G32B32A32_SFLOAT;
+    std::optional<Domain> target_domain = Domain::Encoded;  ///< Encoded: nothing is skipped
+    VkFormat intermediate = VK_FORMAT_R32G32B32A32_SFLOAT;
+    double time = 0;
+    std::uint64_t frame_index = 0;
+    bool wait_for_lean_kernels = true;
+};
+/// Builds a stack with `fill`, develops `picture` with it on the test device, under validation, and reads the target back.
+/// A failure, or a message of the validation layer, fails the test and returns an empty image. The input is rounded to
+/// options.color first; round it yourself (round_to_half) before computing a reference.
+[[nodiscard]] ReferenceImage develop(const std::function<void(Composer&)>& fill, const ReferenceImage& picture,
+                                     const RunOptions& options = {});
+/// The reference alone: one effect.
+template <class Effect>
+[[nodiscard]] ReferenceImage reference_of(const Effect& parameters, const ReferenceImage& picture,
+                                          const ReferenceImage* second = nullptr) {
+    return effect_info(parameters).reference(&parameters, {.picture = &picture, .source = &picture, .second = second});
+}
+
+[[nodiscard]] ReferenceImage round_to_half(const ReferenceImage& image);
+[[nodiscard]] ReferenceImage round_to_float(const ReferenceImage& image);
+
+/// Largest difference in units in the last place of half precision, taken at max(|reference|, 2^-10), the reference
+/// clamped to +-65504; NaN or infinity in `gpu` counts as 1e9. One test for every pointwise effect: <= 2.
+[[nodiscard]] double worst_half_ulps(const ReferenceImage& gpu, const ReferenceImage& reference);
+/// Largest absolute difference of any channel.
+[[nodiscard]] double worst_difference(const ReferenceImage& a, const ReferenceImage& b);
+
+/// GPU against reference on random HDR input, both stages, and both stages against each other bit for bit (software
+/// driver; one 8-bit code elsewhere). What every pointwise effect's test calls, for several parameter sets.
+template <class Effect>
+void expect_gpu_matches_reference(const Effect& parameters, const ReferenceImage& picture, double ulps = 2.0);
+void expect_gpu_matches_reference(const EffectInfo& info, const void* parameters, const ReferenceImage& picture, double ulps);
+
+template <class Effect>
+void expect_gpu_matches_reference(const Effect& parameters, const ReferenceImage& picture, double ulps) {
+    expect_gpu_matches_reference(effect_info(parameters), &parameters, picture, ulps);
+}
+
+}  // namespace darkroom::test
