@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/exposure.hpp>
+
+#include "exposure/exposure_reference.hpp"
+
+namespace darkroom {
+
+const EffectInfo& effect_info(const Exposure&) {
+    static const EffectInfo info{
+        .name = "exposure",
+        .doc = "Scales the scene's light before tone mapping.",
+        .parameters = exposure_rows.table(),
+        .files = embedded_files("exposure"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::SceneLinear),
+        .flat = {.documented = 60, .scene_linear = 60, .starts_on = true},
+        .reference = pointwise_reference<Exposure, exposure_reference>,
+        .is_identity =
+            [](const void* parameters) { return static_cast<const Exposure*>(parameters)->exposure == 1.0f; },
+    };
+    return info;
+}
+
+}  // namespace darkroom
