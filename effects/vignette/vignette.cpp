@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/vignette.hpp>
+
+#include "vignette/vignette_reference.hpp"
+
+namespace darkroom {
+
+const EffectInfo& effect_info(const Vignette&) {
+    static const EffectInfo info{
+        .name = "vignette",
+        .doc = "Darkens the corners of the picture.",
+        .parameters = vignette_rows.table(),
+        .files = embedded_files("vignette"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::all(),
+        .flat = {.documented = 110, .scene_linear = 80, .starts_on = false},
+        .reference = pointwise_reference<Vignette, vignette_reference>,
+        .is_identity =
+            [](const void* parameters) { return static_cast<const Vignette*>(parameters)->intensity == 0.0f; },
+    };
+    return info;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// Any domain. The falloff is elliptical: distance is measured in uv, 1 at the corner.
+
+vec4 vignette(vec4 color, Pixel pixel, Vignette parameters) {
+    vec2 offset = pixel.uv - 0.5;
+    float squared = 2.0 * dot(offset, offset);
+    // d^s = (d^2)^(s/2): saves the square root.
+    float falloff = pow(squared, 0.5 * parameters.smoothness);
+    return vec4(color.rgb * max(0.0, 1.0 - falloff * parameters.intensity), color.a);
+}
