@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// scene_linear -> display_linear in [0, 1]. Negative light and NaN count as 0, infinity as tonemap_ceiling.
+
+// Beyond every operator's white, and its square is still far from the largest float.
+const float tonemap_ceiling = 1e6;
+
+// Krzysztof Narkowicz, "ACES Filmic Tone Mapping Curve", 2016.
+vec3 tonemap_narkowicz(vec3 light) {
+    return light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14);
+}
+
+// Stephen Hill's fit of the ACES reference rendering transform and sRGB output transform, in ACES.hlsl of Matt
+// Pettineo's "BakingLab", 2016. The matrices go from Rec. 709 to the transform's space and back.
+vec3 tonemap_hill(vec3 light) {
+    const mat3 to_aces = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
+    const mat3 from_aces = mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
+    vec3 v = to_aces * light;
+    v = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
+    return from_aces * v;
+}
+
+// Erik Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, equation 4, on luminance.
+vec3 tonemap_reinhard(vec3 light, float white) {
+    float luminance = dot(light, vec3(0.2126, 0.7152, 0.0722));
+    return light * ((1.0 + luminance / (white * white)) / (1.0 + luminance));
+}
+
+// John Hable, "Filmic Tonemapping Operators", 2010, without its constant terms: they cancel, and black stays black.
+vec3 tonemap_hable_curve(vec3 x) {
+    return x * (0.14 * x + 0.05 / 3.0) / (x * (0.15 * x + 0.5) + 0.06);
+}
+
+// Troy Sobotka, "AgX", 2022, in the polynomial form of Benjamin Wrensch, "Minimal AgX Implementation", 2023. Its result is
+// made for a display of gamma 2.2, so that exponent brings it to display-linear light.
+vec3 tonemap_agx_base(vec3 light) {
+    const mat3 inset = mat3(0.842479062253094, 0.0423282422610123, 0.0423756549057051,
+                            0.0784335999999992, 0.878468636469772, 0.0784336,
+                            0.0792237451477643, 0.0791661274605434, 0.879142973793104);
+    const mat3 outset = mat3(1.19687900512017, -0.0528968517574562, -0.0529716355144438,
+                             -0.0980208811401368, 1.15190312990417, -0.0980434501171241,
+                             -0.0990297440797205, -0.0989611768448433, 1.15107367264116);
+    const float lowest_ev = -12.47393;
+    const float highest_ev = 4.026069;
+    vec3 ev = log2(max(inset * light, vec3(1e-10)));
+    vec3 x = (clamp(ev, lowest_ev, highest_ev) - lowest_ev) / (highest_ev - lowest_ev);
+    x = ((((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x) - 0.00232;
+    return pow(max(outset * x, vec3(0.0)), vec3(2.2));
+}
+
+// Khronos Group, "PBR Neutral Tone Mapper", 2024. The clamps stand for the branches of the specification: at their ends
+// both sides agree.
+vec3 tonemap_pbr_neutral(vec3 light) {
+    const float compression_start = 0.8 - 0.04;
+    const float desaturation = 0.15;
+    float lowest = min(min(min(light.r, light.g), light.b), 0.08);
+    light -= lowest - 6.25 * lowest * lowest;
+    float peak = max(max(max(light.r, light.g), light.b), compression_start);
+    const float room = 1.0 - compression_start;
+    float new_peak = 1.0 - room * room / (peak + room - compression_start);
+    float saturation = 1.0 / (desaturation * (peak - new_peak) + 1.0);
+    return mix(vec3(new_peak), light * (new_peak / peak), saturation);
+}
+
+vec4 tonemap(vec4 color, Pixel pixel, Tonemap parameters) {
+    // A comparison with NaN is false; what min and max make of it is not defined.
+    vec3 light = mix(vec3(0.0), min(color.rgb, vec3(tonemap_ceiling)), greaterThan(color.rgb, vec3(0.0)));
+    uint curve = parameters.curve;
+    if (curve == Tonemap_curve_aces_narkowicz) {
+        light = tonemap_narkowicz(light);
+    } else if (curve == Tonemap_curve_aces_hill) {
+        light = tonemap_hill(light);
+    } else if (curve == Tonemap_curve_reinhard_extended) {
+        light = tonemap_reinhard(light, parameters.white);
+    } else if (curve == Tonemap_curve_hable) {
+        // Exposure bias 2; white at 11.2.
+        light = tonemap_hable_curve(2.0 * light) / tonemap_hable_curve(vec3(11.2));
+    } else if (curve == Tonemap_curve_agx) {
+        light = tonemap_agx_base(light);
+    } else if (curve == Tonemap_curve_khronos_pbr_neutral) {
+        light = tonemap_pbr_neutral(light);
+    }
+    return vec4(clamp(light, 0.0, 1.0), color.a);
+}
