@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Encode: turns linear light into the code values that a display or a file expects. It is done once, last but for
+// dither; it compresses nothing: tone map before it.
+
+#include <darkroom/effect.hpp>
+
+namespace darkroom {
+
+enum class TransferFunction : std::uint32_t {
+    Srgb,     ///< IEC 61966-2-1, piecewise
+    Gamma22,  ///< a plain power
+    Pq,       ///< SMPTE ST 2084 in Rec. 2020 primaries; 1.0 is 10000 cd/m2
+    Scrgb,    ///< linear Rec. 709; 1.0 is 80 cd/m2
+    None,
+};
+
+struct Encode {
+    TransferFunction transfer = TransferFunction::Srgb;
+    float white_nits = 203.0f;
+    float peak_nits = 1000.0f;
+};
+inline constexpr auto encode_rows = describe(
+    field<&Encode::transfer>("The curve of the display or file that the picture is for."),
+    field<&Encode::white_nits>("Luminance of linear 1.0; for pq and scrgb.", {1, 10000, Scale::Log}, unit::nits),
+    field<&Encode::peak_nits>("What is brighter is clipped, channel by channel; for pq and scrgb.",
+                              {1, 10000, Scale::Log}, unit::nits));
+
+[[nodiscard]] const EffectInfo& effect_info(const Encode&);
+
+}  // namespace darkroom
