@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/dither.hpp>
+
+#include <cstddef>
+#include <cstring>
+
+#include "dither/dither_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr std::size_t texel_count = std::size_t{dither_tile_size} * dither_tile_size;
+
+constexpr std::array<std::uint16_t, texel_count> ranks{
+#include "dither/dither_tile.inc"
+};
+
+/// Far apart on the tile, which is nearly uncorrelated over such distances: three points of the R2 sequence.
+constexpr std::array<DitherOffset, 3> channel_offsets{{{0, 0}, {48, 36}, {32, 8}}};
+
+float triangular(std::uint16_t rank) {
+    const double t = 2.0 * (rank + 0.5) / texel_count - 1.0;
+    return static_cast<float>(std::copysign(1.0 - std::sqrt(1.0 - std::abs(t)), t));
+}
+
+void build(PassBuilder& builder) {
+    const auto& tile = dither_tile();
+    // Single precision, because half would lose ranks, and three channels in one texel, because a load costs more than
+    // all else here.
+    TableDesc desc{.name = "dither_tile",
+                   .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                   .extent = {dither_tile_size, dither_tile_size, 1},
+                   .data = std::vector<std::byte>(sizeof tile)};
+    std::memcpy(desc.data.data(), tile.data(), sizeof tile);
+    builder.side("dither_tile", builder.table(desc), {});
+}
+
+}  // namespace
+
+const std::array<DitherTexel, texel_count>& dither_tile() {
+    static const std::array<DitherTexel, texel_count> tile = [] {
+        std::array<DitherTexel, texel_count> texels{};
+        for (std::uint32_t y = 0; y < dither_tile_size; ++y) {
+            for (std::uint32_t x = 0; x < dither_tile_size; ++x) {
+                DitherTexel& texel = texels[y * dither_tile_size + x];
+                for (std::size_t channel = 0; channel < channel_offsets.size(); ++channel) {
+                    const auto [dx, dy] = channel_offsets[channel];
+                    const std::size_t row = (y + dy) % dither_tile_size;
+                    texel[channel] = triangular(ranks[row * dither_tile_size + (x + dx) % dither_tile_size]);
+                }
+            }
+        }
+        return texels;
+    }();
+    return tile;
+}
+
+const EffectInfo& effect_info(const Dither&) {
+    static const EffectInfo info{
+        .name = "dither",
+        .doc = "Hides the steps of an integer target with blue noise.",
+        .parameters = dither_rows.table(),
+        .files = embedded_files("dither"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::Encoded),
+        .flat = {.documented = 100, .scene_linear = 100, .starts_on = false},
+        .is_last_step = true,
+        .build = build,
+        .reference = dither_image_reference,
+        .is_identity = [](const void* parameters) { return static_cast<const Dither*>(parameters)->intensity == 0.0f; },
+    };
+    return info;
+}
+
+}  // namespace darkroom
