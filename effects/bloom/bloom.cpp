@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <bit>
+#include <darkroom/effects/bloom.hpp>
+#include <string>
+
+#include "bloom/bloom_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr std::uint32_t max_levels = 5;
+constexpr float half_max = 65504.0f;
+
+const Bloom& bloom_of(const void* parameters) { return *static_cast<const Bloom*>(parameters); }
+
+std::uint32_t used_levels(const Bloom& bloom, VkExtent2D extent) {
+    return std::min(bloom_level_count(extent), static_cast<std::uint32_t>(bloom.levels));
+}
+
+/// What a level is multiplied by when it is added onto the next finer one.
+float gain(const Bloom& bloom) { return bloom.mode == BloomMode::Additive ? 1.0f : bloom.scatter; }
+
+void prefilter_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const Bloom& bloom = bloom_of(parameters);
+    const std::uint32_t levels = used_levels(bloom, context.frame_extent);
+    if (bloom.mode == BloomMode::Additive) {
+        // A sum of all levels must stay finite in half precision.
+        const float limit = half_max / static_cast<float>(std::max(levels, 1u));
+        out[0] = {bloom.threshold, bloom.threshold * bloom.soft_threshold, limit, 1.0f};
+    } else {
+        // Everything after this pass is linear, so the sum of the weights 1, s, s^2 ... is divided out here, once.
+        float sum = 0.0f, weight = 1.0f;
+        for (std::uint32_t level = 0; level < std::max(levels, 1u); ++level, weight *= bloom.scatter) sum += weight;
+        out[0] = {0.0f, 0.0f, half_max, 1.0f / sum};
+    }
+    out[1] = {bloom.firefly_filter ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
+}
+
+void upsample_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
+    out[0] = {gain(bloom_of(parameters)), 0.0f, 0.0f, 0.0f};
+}
+
+/// Frames may be smaller than the largest one that the pyramid was made for.
+bool is_level_used(const void* parameters, const PassContext& context, std::uint32_t level) {
+    return level < used_levels(bloom_of(parameters), context.frame_extent);
+}
+
+void build(PassBuilder& builder) {
+    const PassVector neutral{0.0f, 0.0f, 0.0f, 0.0f};
+    const std::uint32_t levels = bloom_level_count(builder.max_extent());
+    if (levels == 0) {
+        builder.side("bloom_pyramid", PassImage{}, neutral);
+        return;
+    }
+    PassImage pyramid = builder.create({.name = "pyramid", .denominator = 2, .mip_levels = levels});
+    pyramid = builder.add({.name = "prefilter",
+                           .shader = "bloom_prefilter.glsl",
+                           .inputs = {{.name = "bloom_source", .image = builder.source()}},
+                           .output = pyramid,
+                           .custom_vectors = 2,
+                           .constants = prefilter_constants,
+                           .condition = is_level_used,
+                           .argument = 0});
+    for (std::uint32_t level = 1; level < levels; ++level)
+        pyramid = builder.add({.name = "downsample " + std::to_string(level),
+                               .shader = "bloom_downsample.glsl",
+                               .inputs = {{.name = "bloom_above", .image = pyramid, .mip_level = level - 1}},
+                               .output = pyramid,
+                               .output_mip_level = level,
+                               .condition = is_level_used,
+                               .argument = level});
+    for (std::uint32_t level = levels - 1; level-- > 0;)
+        pyramid = builder.add({.name = "upsample " + std::to_string(level),
+                               .shader = "bloom_upsample.glsl",
+                               .inputs = {{.name = "bloom_below", .image = pyramid, .mip_level = level + 1}},
+                               .output = pyramid,
+                               .output_mip_level = level,
+                               .is_additive = true,
+                               .custom_vectors = 1,
+                               .constants = upsample_constants,
+                               .condition = is_level_used,
+                               .argument = level + 1});
+    builder.side("bloom_pyramid", pyramid, neutral);
+}
+
+bool is_identity(const void* parameters) { return bloom_of(parameters).intensity == 0.0f; }
+
+}  // namespace
+
+std::uint32_t bloom_level_count(VkExtent2D extent) {
+    const auto bits = static_cast<std::uint32_t>(std::bit_width(std::min(extent.width, extent.height)));
+    return std::clamp(bits, 4u, 4u + max_levels) - 4u;
+}
+
+const EffectInfo& effect_info(const Bloom&) {
+    static const EffectInfo info{
+        .name = "bloom",
+        .doc = "Light above a threshold glows around its source.",
+        .parameters = bloom_rows.table(),
+        .files = embedded_files("bloom"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::SceneLinear),
+        .flat = {.documented = 50, .scene_linear = 50, .starts_on = true},
+        .build = build,
+        .reference = bloom_reference,
+        .is_identity = is_identity,
+    };
+    return info;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Bloom in double precision: the pyramid of Jorge Jimenez, "Next Generation Post Processing in Call of Duty: Advanced
+// Warfare" (2014), tap by tap, and the sum with the picture. Nothing is rounded to half precision between levels.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <darkroom/effects/bloom.hpp>
+#include <darkroom/reference.hpp>
+#include <vector>
+
+namespace darkroom {
+
+inline Rgba bloom_reference_sum(const Rgba& a, const Rgba& b, double weight) {
+    return {a.r + b.r * weight, a.g + b.g * weight, a.b + b.b * weight, a.a};
+}
+
+/// Bilinear, the edge repeated.
+inline Rgba bloom_reference_tap(const ReferenceImage& image, double u, double v) {
+    const double x = u * image.width - 0.5, y = v * image.height - 0.5;
+    const auto left = static_cast<std::int64_t>(std::floor(x)), top = static_cast<std::int64_t>(std::floor(y));
+    const double fx = x - std::floor(x), fy = y - std::floor(y);
+    Rgba out{0, 0, 0, 1};
+    out = bloom_reference_sum(out, image.clamped(left, top), (1 - fx) * (1 - fy));
+    out = bloom_reference_sum(out, image.clamped(left + 1, top), fx * (1 - fy));
+    out = bloom_reference_sum(out, image.clamped(left, top + 1), (1 - fx) * fy);
+    return bloom_reference_sum(out, image.clamped(left + 1, top + 1), fx * fy);
+}
+
+/// NaN is black, light is not negative, and half precision ends at 65504.
+inline Rgba bloom_reference_clean(const Rgba& color) {
+    const auto clean = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, 0.0, 65504.0); };
+    return {clean(color.r), clean(color.g), clean(color.b), 1};
+}
+
+/// The factor that the soft threshold gives to a colour whose largest channel is `brightness`.
+inline double bloom_reference_threshold(double brightness, double threshold, double soft_threshold) {
+    const double knee = threshold * soft_threshold;
+    const double s = std::clamp(brightness - threshold + knee, 0.0, 2.0 * knee);
+    const double soft = s * s / (4.0 * knee + 1e-5);
+    return std::max(soft, brightness - threshold) / std::max(brightness, 1e-5);
+}
+
+/// The half-size image: five overlapping boxes of four bilinear taps each. With `firefly_filter` every box is weighted
+/// by 1 / (1 + luminance) (Brian Karis, "Tone mapping", 2013), and the sum divided by the sum of the weights. Where
+/// both sides of the source are odd, the rows of taps lie elsewhere: see bloom_downsample.glsl.
+inline ReferenceImage bloom_reference_down(const ReferenceImage& image, bool firefly_filter) {
+    ReferenceImage out(std::max(image.width / 2, 1u), std::max(image.height / 2, 1u));
+    struct Box {
+        double left, right, top, bottom, weight;
+    };
+    const bool is_odd = (image.width & image.height & 1u) != 0;
+    const double outer = is_odd ? 1 : 2, inner = is_odd ? 1.5 : 1;
+    const std::array boxes{Box{-1, 1, -inner, inner, 0.5}, Box{-2, 0, -outer, 0, 0.125}, Box{0, 2, -outer, 0, 0.125},
+                           Box{-2, 0, 0, outer, 0.125}, Box{0, 2, 0, outer, 0.125}};
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            Rgba sum{0, 0, 0, 1};
+            double weights = 0;
+            for (const Box& box : boxes) {
+                Rgba mean{0, 0, 0, 1};
+                for (const double dy : {box.top, box.bottom})
+                    for (const double dx : {box.left, box.right}) {
+                        const double u = (x + 0.5 + 0.5 * dx) / out.width, v = (y + 0.5 + 0.5 * dy) / out.height;
+                        mean = bloom_reference_sum(mean, bloom_reference_clean(bloom_reference_tap(image, u, v)), 0.25);
+                    }
+                const double luminance = 0.2126 * mean.r + 0.7152 * mean.g + 0.0722 * mean.b;
+                const double weight = box.weight / (firefly_filter ? 1.0 + luminance : 1.0);
+                sum = bloom_reference_sum(sum, mean, weight);
+                weights += weight;
+            }
+            out.at(x, y) = bloom_reference_sum({0, 0, 0, 1}, sum, 1.0 / weights);
+        }
+    return out;
+}
+
+/// `fine` plus `gain` times the coarser level, filtered by the 3x3 tent of bilinear taps one of its texels apart.
+inline void bloom_reference_add_up(ReferenceImage& fine, const ReferenceImage& coarse, double gain) {
+    constexpr std::array tent{0.25, 0.5, 0.25};
+    for (std::uint32_t y = 0; y < fine.height; ++y)
+        for (std::uint32_t x = 0; x < fine.width; ++x)
+            for (int j = -1; j <= 1; ++j)
+                for (int i = -1; i <= 1; ++i) {
+                    const double u = (x + 0.5) / fine.width + static_cast<double>(i) / coarse.width;
+                    const double v = (y + 0.5) / fine.height + static_cast<double>(j) / coarse.height;
+                    const double weight = tent[static_cast<std::size_t>(i + 1)] * tent[static_cast<std::size_t>(j + 1)];
+                    fine.at(x, y) =
+                        bloom_reference_sum(fine.at(x, y), bloom_reference_tap(coarse, u, v), weight * gain);
+                }
+}
+
+/// Level 0 when all is added up: what the picture is given. `levels` is at least 1.
+inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, const Bloom& bloom, std::uint32_t levels) {
+    const bool is_additive = bloom.mode == BloomMode::Additive;
+    std::vector<ReferenceImage> pyramid{bloom_reference_down(source, static_cast<bool>(bloom.firefly_filter))};
+    if (is_additive)
+        for (Rgba& color : pyramid[0].pixels) {
+            const double factor =
+                bloom_reference_threshold(std::max({color.r, color.g, color.b}), bloom.threshold, bloom.soft_threshold);
+            const auto limited = [&](double value) { return std::min(value * factor, 65504.0 / levels); };
+            color = {limited(color.r), limited(color.g), limited(color.b), 1};
+        }
+    while (pyramid.size() < levels) pyramid.push_back(bloom_reference_down(pyramid.back(), false));
+    if (is_additive) {
+        for (std::size_t level = levels - 1; level-- > 0;)
+            bloom_reference_add_up(pyramid[level], pyramid[level + 1], 1);
+        return pyramid[0];
+    }
+    // A chain of lerps from the coarsest level: level i weighs scatter^i in the end, the sum of all weights being 1.
+    double coarser = 1;
+    for (std::size_t level = levels - 1; level-- > 0;) {
+        const double sum = 1 + bloom.scatter * coarser;
+        for (Rgba& color : pyramid[level].pixels) color = bloom_reference_sum({0, 0, 0, 1}, color, 1 / sum);
+        bloom_reference_add_up(pyramid[level], pyramid[level + 1], bloom.scatter * coarser / sum);
+        coarser = sum;
+    }
+    return pyramid[0];
+}
+
+inline ReferenceImage bloom_reference(const void* parameters, const ReferenceInput& input) {
+    const Bloom& bloom = *static_cast<const Bloom*>(parameters);
+    ReferenceImage out = *input.picture;
+    const std::uint32_t levels = std::min(bloom_level_count({input.source->width, input.source->height}),
+                                          static_cast<std::uint32_t>(bloom.levels));
+    if (levels == 0) return out;
+    const ReferenceImage glow = bloom_reference_pyramid(*input.source, bloom, levels);
+    const bool is_additive = bloom.mode == BloomMode::Additive;
+    const double intensity = is_additive ? bloom.intensity : std::min(bloom.intensity, 1.0f);
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            Rgba& color = out.at(x, y);
+            const double keep = is_additive ? 1.0 : 1.0 - intensity;
+            const Rgba base{color.r * keep, color.g * keep, color.b * keep, color.a};
+            color = bloom_reference_sum(base, bloom_reference_tap(glow, (x + 0.5) / out.width, (y + 0.5) / out.height),
+                                        intensity);
+        }
+    return out;
+}
+
+}  // namespace darkroom

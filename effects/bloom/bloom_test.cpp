@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <darkroom/effects/bloom.hpp>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "bloom/bloom_reference.hpp"
+#include "compose/test_support.hpp"
+
+namespace darkroom {
+namespace {
+
+/// Writes down what build() declares.
+class RecordingBuilder final : public PassBuilder {
+  public:
+    explicit RecordingBuilder(VkExtent2D extent) : extent_(extent) {}
+    PassImage picture() override { return {0}; }
+    PassImage source() override { return {1}; }
+    [[nodiscard]] VkExtent2D max_extent() const override { return extent_; }
+    [[nodiscard]] const void* parameters() const override { return &values_; }
+    PassImage create(const PassImageDesc& desc) override {
+        images.push_back(desc);
+        return {next_++};
+    }
+    PassImage table(const TableDesc&) override { return {next_++}; }
+    PassImage add(const KernelPassDesc& desc) override {
+        passes.push_back(desc);
+        return {next_++};
+    }
+    void side(std::string name, PassImage image, PassVector) override {
+        side_name = std::move(name);
+        side_image = image;
+    }
+    void result(PassImage) override {}
+
+    std::vector<PassImageDesc> images;
+    std::vector<KernelPassDesc> passes;
+    std::string side_name;
+    PassImage side_image;
+
+  private:
+    VkExtent2D extent_;
+    Bloom values_;
+    std::uint32_t next_ = 2;
+};
+
+RecordingBuilder passes_of(VkExtent2D extent) {
+    RecordingBuilder builder(extent);
+    effect_info(Bloom{}).build(builder);
+    return builder;
+}
+
+ReferenceImage impulse(std::uint32_t width, std::uint32_t height, std::uint32_t x, std::uint32_t y, double value) {
+    ReferenceImage image(width, height);
+    image.at(x, y) = {value, value, value, 1};
+    return image;
+}
+
+double red_sum(const ReferenceImage& image) {
+    return std::accumulate(image.pixels.begin(), image.pixels.end(), 0.0,
+                           [](double sum, const Rgba& color) { return sum + color.r; });
+}
+
+/// The glow alone, in the additive mode: everything glows, no firefly filter.
+Bloom everything_glows(std::int32_t levels) {
+    return {.intensity = 1, .threshold = 0, .soft_threshold = 0, .firefly_filter = false, .levels = levels};
+}
+
+TEST(Bloom, LevelCountFollowsTheShorterSide) {
+    struct Row {
+        std::uint32_t width, height, levels;
+    };
+    for (const Row& row :
+         {Row{1920, 1080, 5}, Row{1280, 720, 5}, Row{640, 360, 5}, Row{256, 256, 5}, Row{255, 255, 4}, Row{64, 64, 3},
+          Row{32, 4000, 2}, Row{16, 16, 1}, Row{15, 4000, 0}, Row{1, 1, 0}, Row{0, 0, 0}, Row{16384, 16384, 5}}) {
+        EXPECT_EQ(bloom_level_count({row.width, row.height}), row.levels) << row.width << "x" << row.height;
+        if (row.levels > 0 && row.levels < 5) {
+            const std::uint32_t last = std::min(row.width, row.height) >> row.levels;
+            EXPECT_GE(last, 8u) << row.width << "x" << row.height;
+        }
+    }
+}
+
+TEST(Bloom, SoftThresholdFollowsTheTable) {
+    constexpr std::array<std::array<double, 2>, 8> table{
+        {{.5, 0}, {.75, .03125}, {1, .125}, {1.25, .28125}, {1.5, .5}, {2, 1}, {4, 3}, {10, 9}}};
+    for (const auto& [brightness, expected] : table)
+        EXPECT_NEAR(brightness * bloom_reference_threshold(brightness, 1, .5), expected, 2e-6) << brightness;
+    EXPECT_EQ(bloom_reference_threshold(0.999, 1, 0), 0.0);
+    EXPECT_NEAR(bloom_reference_threshold(3, 1, 0), 2.0 / 3, 1e-12);
+    EXPECT_EQ(bloom_reference_threshold(0.25, 0, 0), 1.0);
+}
+
+TEST(Bloom, DeclaresThePyramid) {
+    const RecordingBuilder full = passes_of({1920, 1080});
+    ASSERT_EQ(full.images.size(), 1u);
+    EXPECT_EQ(full.images[0].denominator, 2u);
+    EXPECT_EQ(full.images[0].mip_levels, 5u);
+    ASSERT_EQ(full.passes.size(), 9u);
+    EXPECT_EQ(full.passes[0].inputs[0].image.index, 1u) << "reads the source, not the picture";
+    constexpr std::array<std::uint32_t, 9> written{0, 1, 2, 3, 4, 3, 2, 1, 0};
+    for (std::size_t i = 0; i < 9; ++i) {
+        EXPECT_EQ(full.passes[i].output_mip_level, written[i]);
+        EXPECT_EQ(full.passes[i].is_additive, i > 4);
+        if (i > 0) {
+            EXPECT_EQ(full.passes[i].inputs[0].mip_level, written[i - 1]);
+        }
+    }
+    EXPECT_EQ(full.side_name, "bloom_pyramid");
+
+    const RecordingBuilder tiny = passes_of({15, 400});
+    EXPECT_TRUE(tiny.images.empty());
+    EXPECT_TRUE(tiny.passes.empty());
+    EXPECT_EQ(tiny.side_name, "bloom_pyramid");
+    EXPECT_EQ(tiny.side_image.index, PassImage{}.index);
+}
+
+TEST(Bloom, SmallerFramesAndFewerLevelsSkipPasses) {
+    const RecordingBuilder builder = passes_of({1920, 1080});
+    const auto recorded = [&](VkExtent2D extent, const Bloom& bloom) {
+        const PassContext context{.frame_extent = extent, .output_extent = extent};
+        return std::count_if(builder.passes.begin(), builder.passes.end(), [&](const KernelPassDesc& pass) {
+            return pass.condition(&bloom, context, pass.argument);
+        });
+    };
+    EXPECT_EQ(recorded({1920, 1080}, {}), 9);
+    EXPECT_EQ(recorded({400, 255}, {}), 7);
+    EXPECT_EQ(recorded({16, 16}, {}), 1);
+    EXPECT_EQ(recorded({15, 15}, {}), 0);
+    EXPECT_EQ(recorded({1920, 1080}, {.levels = 2}), 3);
+    EXPECT_EQ(recorded({1920, 1080}, {.levels = 1}), 1);
+}
+
+TEST(Bloom, AddedLevelsStayFiniteInHalfPrecision) {
+    const RecordingBuilder builder = passes_of({1920, 1080});
+    for (const std::int32_t levels : {1, 3, 5}) {
+        const Bloom bloom{.levels = levels};
+        std::array<PassVector, 2> vectors{};
+        builder.passes[0].constants(&bloom, {.frame_extent = {1920, 1080}}, vectors);
+        EXPECT_LE(vectors[0][2] * static_cast<float>(levels), 65504.0f);
+        EXPECT_GE(vectors[0][2] * static_cast<float>(levels), 65500.0f);
+    }
+}
+
+TEST(Bloom, DownsampleHasTheCanonicalImpulseResponse) {
+    // The 13 taps as the 36 texels they read: half a 4x4 box, half the product of (1 1 2 2 1 1) / 8 with itself.
+    constexpr std::array<double, 6> box{0, .25, .25, .25, .25, 0}, wide{.125, .125, .25, .25, .125, .125};
+    double sum = 0;
+    for (std::uint32_t y = 0; y < 6; ++y)
+        for (std::uint32_t x = 0; x < 6; ++x) {
+            const double expected = .5 * box[x] * box[y] + .5 * wide[x] * wide[y];
+            // Texel (16, 16) of the output covers 32 and 33 of the source.
+            const ReferenceImage out = bloom_reference_down(impulse(64, 64, 30 + x, 30 + y, 1), false);
+            EXPECT_NEAR(out.at(16, 16).r, expected, 1e-15) << x << "," << y;
+            EXPECT_NEAR(red_sum(out), .25, 1e-14) << "every source texel counts alike";
+            sum += out.at(16, 16).r;
+        }
+    EXPECT_NEAR(sum, 1.0, 1e-14);
+    EXPECT_EQ(bloom_reference_down(impulse(64, 64, 29, 32, 1), false).at(16, 16).r, 0.0);
+}
+
+TEST(Bloom, UpsampleHasTheTentsImpulseResponse) {
+    // At a quarter of a texel from the centre, three taps of weight 1 2 1 read four texels with 3 7 5 1 sixteenths.
+    constexpr std::array<double, 8> expected{1, 3, 5, 7, 7, 5, 3, 1};
+    ReferenceImage fine(32, 32);
+    bloom_reference_add_up(fine, impulse(16, 16, 8, 8, 1), 1);
+    for (std::uint32_t y = 0; y < 8; ++y)
+        for (std::uint32_t x = 0; x < 8; ++x)
+            EXPECT_NEAR(fine.at(13 + x, 13 + y).r, expected[x] * expected[y] / 256, 1e-15) << x << "," << y;
+    EXPECT_NEAR(red_sum(fine), 4.0, 1e-14);
+
+    ReferenceImage flat(31, 17, {2, 2, 2, 1});
+    bloom_reference_add_up(flat, ReferenceImage(15, 8, {3, 3, 3, 1}), 0.5);
+    for (const Rgba& color : flat.pixels) EXPECT_NEAR(color.r, 3.5, 1e-14);
+}
+
+TEST(Bloom, FireflyFilterKeepsFlatFieldsAndTamesLonePixels) {
+    for (const double level : {.18, 1.0, 5.0, 10.0, 50.0, 60000.0})
+        for (const Rgba& color : bloom_reference_down(ReferenceImage(32, 32, {level, level, level, 1}), true).pixels)
+            EXPECT_NEAR(color.r, level, level * 1e-14);
+    const ReferenceImage lone = impulse(64, 64, 32, 32, 1000);
+    EXPECT_LT(red_sum(bloom_reference_down(lone, true)), 0.3 * red_sum(bloom_reference_down(lone, false)));
+}
+
+TEST(Bloom, OddSizesKeepTheEnergy) {
+    // The taps of all outputs form an even grid. Its step is a texel, or n / (n - 1) texels along an odd side: what a
+    // texel counts for varies by 1 / (n - 1) with its place.
+    constexpr std::array<std::array<std::uint32_t, 2>, 8> sizes{
+        {{255, 255}, {255, 254}, {64, 255}, {63, 31}, {31, 31}, {17, 17}, {17, 30}, {16, 19}}};
+    for (const auto& [width, height] : sizes) {
+        const double scale = static_cast<double>(width) * height / ((width / 2) * static_cast<double>(height / 2));
+        const double a = (width & 1) / (width - 1.0), b = (height & 1) / (height - 1.0);
+        for (std::uint32_t y = height / 2 - 1; y < height / 2 + 2; ++y)
+            for (std::uint32_t x = width / 2 - 2; x < width / 2 + 3; ++x) {
+                const ReferenceImage out = bloom_reference_down(impulse(width, height, x, y, 1), false);
+                EXPECT_NEAR(red_sum(out) * scale, 1.0, a + b + a * b + 1e-12)
+                    << width << "x" << height << " " << x << "," << y;
+            }
+    }
+}
+
+TEST(Bloom, AdditiveGrowsByALevelEachAndTheOtherModeKeepsFlatFields) {
+    const ReferenceImage flat = test::uniform(256, 256, {2, 1, .5, 1});
+    for (const std::int32_t levels : {1, 3, 5}) {
+        const ReferenceImage added = test::reference_of(everything_glows(levels), flat);
+        EXPECT_NEAR(added.at(100, 7).r, 2.0 * (1 + levels), 1e-9);
+        for (const float scatter : {0.0f, 0.7f, 1.0f}) {
+            const Bloom bloom{
+                .intensity = 0.5f, .mode = BloomMode::EnergyConserving, .scatter = scatter, .levels = levels};
+            EXPECT_LT(test::worst_difference(test::reference_of(bloom, flat), flat), 1e-9) << levels << " " << scatter;
+        }
+    }
+}
+
+TEST(Bloom, GlowDoesNotDependOnTheAspectRatio) {
+    ReferenceImage square = impulse(256, 256, 128, 128, 500), wide = impulse(512, 256, 128, 128, 500);
+    const ReferenceImage a = test::reference_of(Bloom{}, square), b = test::reference_of(Bloom{}, wide);
+    for (std::uint32_t y = 0; y < 256; ++y)
+        for (std::uint32_t x = 0; x < 192; ++x) EXPECT_NEAR(a.at(x, y).r, b.at(x, y).r, 1e-9);
+}
+
+/// The largest excess over what rounding can explain. Levels are stored as half floats, cut off toward zero on the
+/// software driver: up to 2^-10 of the value a write. The longest way through the pyramid has 2 * levels - 1 writes;
+/// halves below 2^-14 lose up to 2^-24 a write instead. The final sum is float: 1e-6 of the value, and of the picture
+/// under it.
+double worst_excess(const Bloom& bloom, const ReferenceImage& picture, const ReferenceImage& gpu) {
+    const ReferenceImage expected = test::reference_of(bloom, picture);
+    if (gpu.pixels.size() != expected.pixels.size()) return 1e9;
+    const double writes = 2.0 * bloom.levels - 1;
+    double worst = 0;
+    for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
+        const Rgba &want = expected.pixels[i], &got = gpu.pixels[i], &base = picture.pixels[i];
+        const auto check = [&](double w, double g, double b) {
+            const double kept = bloom.mode == BloomMode::Additive ? b : b * (1.0 - bloom.intensity);
+            const double allowed = std::abs(w - kept) * writes * 0x1p-10 + bloom.intensity * writes * 0x1p-22 +
+                                   (std::abs(w) + std::abs(b)) * 2e-6;
+            worst = std::max(worst, std::isfinite(g) ? std::abs(w - g) / allowed : 1e9);
+        };
+        check(want.r, got.r, base.r);
+        check(want.g, got.g, base.g);
+        check(want.b, got.b, base.b);
+        if (got.a != static_cast<double>(static_cast<float>(base.a))) return 1e9;
+    }
+    return worst;
+}
+
+ReferenceImage developed(const Bloom& bloom, const ReferenceImage& picture, KernelStage kernels = KernelStage::Auto) {
+    return test::develop([&](Composer& composer) { composer.add(bloom); }, picture, {.kernels = kernels});
+}
+
+TEST(BloomGpu, MatchesTheReference) {
+    struct Case {
+        std::uint32_t width, height;
+        Bloom bloom;
+    };
+    const Bloom conserving{.intensity = 0.6f, .mode = BloomMode::EnergyConserving};
+    for (const Case& c : {Case{256, 256, {.intensity = 0.5f}}, Case{255, 67, {.intensity = 0.5f}},
+                          Case{301, 257, {.intensity = 2, .firefly_filter = false}},
+                          Case{256, 300, everything_glows(2)}, Case{64, 64, everything_glows(1)},
+                          Case{131, 97, conserving}, Case{16, 16, {}}, Case{15, 40, {}}, Case{15, 40, conserving}}) {
+        const ReferenceImage picture = test::round_to_float(test::random_hdr(c.width, c.height, 11));
+        EXPECT_LE(worst_excess(c.bloom, picture, developed(c.bloom, picture)), 1.0) << c.width << "x" << c.height;
+    }
+}
+
+TEST(BloomGpu, BothStagesMatchTheReference) {
+    const ReferenceImage picture = test::round_to_float(test::random_hdr(96, 70, 3));
+    const Bloom bloom{.intensity = 1};
+    for (const KernelStage kernels : {KernelStage::Compute, KernelStage::Raster})
+        EXPECT_LE(worst_excess(bloom, picture, developed(bloom, picture, kernels)), 1.0);
+}
+
+TEST(BloomGpu, IntensityZeroChangesNothing) {
+    const ReferenceImage picture = test::round_to_float(test::random_hdr(64, 48, 5));
+    EXPECT_EQ(test::worst_difference(developed({.intensity = 0}, picture), picture), 0.0);
+}
+
+TEST(BloomGpu, SymmetricPicturesStaySymmetric) {
+    ReferenceImage picture(128, 128);
+    for (const std::uint32_t x : {40u, 87u})
+        for (const std::uint32_t y : {40u, 87u}) picture.at(x, y) = {300, 30, 3, 1};
+    const ReferenceImage out = developed({.intensity = 1}, picture);
+    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+    // Sums in another order differ in the last bit before a store cuts off: one half step a write.
+    for (std::uint32_t y = 0; y < 128; ++y)
+        for (std::uint32_t x = 0; x < 128; ++x) {
+            EXPECT_NEAR(out.at(x, y).r, out.at(127 - x, y).r, out.at(x, y).r * 7 * 0x1p-10);
+            EXPECT_NEAR(out.at(x, y).r, out.at(x, 127 - y).r, out.at(x, y).r * 7 * 0x1p-10);
+        }
+}
+
+TEST(BloomGpu, NanAndInfinityStayContained) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    const ReferenceImage black = test::uniform(256, 256, {0, 0, 0, 1});
+    ReferenceImage picture = test::round_to_float(test::random_display(256, 256, 9)), broken = picture;
+    picture.at(100, 100) = {0, 0, 0, 1};
+    broken.at(100, 100) = {nan, nan, nan, 1};
+    const Bloom bloom = everything_glows(1);
+    const ReferenceImage clean = developed(bloom, picture), out = developed(bloom, broken);
+    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+    for (std::uint32_t y = 0; y < 256; ++y)
+        for (std::uint32_t x = 0; x < 256; ++x) {
+            if (x == 100 && y == 100) continue;
+            EXPECT_TRUE(std::isfinite(out.at(x, y).r)) << x << "," << y;
+            // Three source texels of the filter, and two of the bilinear read of level 0.
+            if (std::max(std::abs(int(x) - 100), std::abs(int(y) - 100)) > 6) {
+                EXPECT_EQ(out.at(x, y).r, clean.at(x, y).r);
+            }
+        }
+
+    ReferenceImage bright = black;
+    bright.at(100, 100) = {infinity, -infinity, 0, 1};
+    for (const Bloom& values : {Bloom{}, everything_glows(5)}) {
+        const ReferenceImage glow = developed(values, bright);
+        ASSERT_EQ(glow.pixels.size(), black.pixels.size());
+        for (std::uint32_t y = 0; y < 256; ++y)
+            for (std::uint32_t x = 0; x < 256; ++x)
+                if (x != 100 || y != 100) {
+                    EXPECT_TRUE(std::isfinite(glow.at(x, y).r) && glow.at(x, y).g == 0.0) << x << "," << y;
+                }
+    }
+}
+
+TEST(BloomGpu, HugeFieldsStayFinite) {
+    const ReferenceImage flat = test::uniform(256, 256, {65504, 65504, 65504, 1});
+    const ReferenceImage out = developed(everything_glows(5), flat);
+    ASSERT_EQ(out.pixels.size(), flat.pixels.size());
+    for (const Rgba& color : out.pixels) EXPECT_NEAR(color.r, 2 * 65504.0, 65504.0 * 9 * 0x1p-10);
+}
+
+}  // namespace
+}  // namespace darkroom
