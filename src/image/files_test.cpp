@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "core/files.hpp"
+
+#include <algorithm>
+
+#include "image/sequence.hpp"
+#include "image/test_files.hpp"
+
+namespace darkroom {
+namespace {
+
+std::span<const std::byte> bytes(const std::string& text) { return std::as_bytes(std::span(text)); }
+
+class ImageFiles : public WithFolder {};
+
+TEST_F(ImageFiles, WhatIsWrittenIsRead) {
+    const std::string text(100000, 'x');
+    ASSERT_TRUE(write_file(file("a.bin"), bytes(text)));
+    const auto back = read_file(file("a.bin"));
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(std::ranges::equal(*back, bytes(text)));
+    EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(ImageFiles, MissingFileNamesThePathAndIsTheUsersFault) {
+    const auto missing = read_file(file("none.bin"));
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().fault, Fault::User);
+    EXPECT_EQ(missing.error().text, file("none.bin").string() + ": cannot open: No such file or directory");
+    EXPECT_FALSE(read_file(folder_));
+}
+
+TEST_F(ImageFiles, MissingFolderIsAnErrorAndLeavesNothing) {
+    const auto written = write_file(file("no/such.bin"), bytes("x"));
+    ASSERT_FALSE(written);
+    EXPECT_NE(written.error().text.find("no/such.bin"), std::string::npos);
+    EXPECT_EQ(file_count(), 0u);
+}
+
+TEST_F(ImageFiles, WithoutCommitTheOldFileStays) {
+    put(file("a.png"), "old");
+    {
+        auto temporary = AtomicPath::beside(file("a.png"));
+        ASSERT_TRUE(temporary);
+        EXPECT_EQ(temporary->path().extension(), ".png");
+        EXPECT_EQ(temporary->path().parent_path(), folder_);
+        put(temporary->path(), "half of the new");
+        EXPECT_EQ(file_count(), 2u);
+    }
+    EXPECT_EQ(content(file("a.png")), "old");
+    EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(ImageFiles, CommitReplacesKeepsPermissionsAndFollowsLinks) {
+    put(file("a.txt"), "old");
+    std::filesystem::permissions(file("a.txt"), std::filesystem::perms(0640));
+    std::filesystem::create_symlink(file("a.txt"), file("link.txt"));
+    ASSERT_TRUE(write_file(file("link.txt"), bytes("new")));
+    EXPECT_EQ(content(file("a.txt")), "new");
+    EXPECT_TRUE(std::filesystem::is_symlink(file("link.txt")));
+    EXPECT_EQ(std::filesystem::status(file("a.txt")).permissions(), std::filesystem::perms(0640));
+}
+
+TEST_F(ImageFiles, FullDeviceIsAMachineErrorAndTheDeviceStays) {
+    if (!std::filesystem::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    const auto written = write_file("/dev/full", bytes("x"));
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().fault, Fault::Machine);
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+    EXPECT_FALSE(AtomicPath::beside("/dev/full"));
+}
+
+class ImageSequence : public WithFolder {};
+
+TEST_F(ImageSequence, PatternFindsFilesByNumber) {
+    for (const char* name : {"shot.0010.exr", "shot.0002.exr", "shot.0001.exr", "shot.12.exr", "shot.12345.exr",
+                             "shot.00x1.exr", "other.0003.exr"})
+        put(file(name), "");
+    const std::vector<std::string> inputs{file("shot.%04d.exr").string(), "plain.png"};
+    const auto files = expand_inputs(inputs);
+    ASSERT_TRUE(files);
+    const std::vector<std::filesystem::path> expected{file("shot.0001.exr"), file("shot.0002.exr"),
+                                                      file("shot.0010.exr"), file("shot.12345.exr"), "plain.png"};
+    EXPECT_EQ(*files, expected);
+}
+
+TEST_F(ImageSequence, RangeLimitsAndNothingIsAnError) {
+    for (int i = 1; i < 9; ++i) put(numbered(file("s%02d.exr"), i), "");
+    const auto within = expand_inputs(std::vector<std::string>{file("s%02d.exr[3-5]").string()});
+    ASSERT_TRUE(within);
+    EXPECT_EQ(within->size(), 3u);
+    EXPECT_EQ(frame_number(within->front()), 3);
+    const auto none = expand_inputs(std::vector<std::string>{file("s%02d.exr[30-50]").string()});
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().text, file("s%02d.exr[30-50]").string() + ": no file matches");
+    EXPECT_FALSE(expand_inputs(std::vector<std::string>{file("s%02d.exr[5-3]").string()}));
+    EXPECT_FALSE(expand_inputs(std::vector<std::string>{file("no/s%02d.exr").string()}));
+}
+
+TEST(ImageSequenceNames, NumbersGoIntoPatterns) {
+    EXPECT_EQ(numbered("a/b.%04d.png", 7), "a/b.0007.png");
+    EXPECT_EQ(numbered("a/b.%d.png", 12345), "a/b.12345.png");
+    EXPECT_EQ(numbered("a/b.png", 7), "a/b.png");
+    EXPECT_EQ(frame_number("v2.shot_0042.exr"), 42);
+    EXPECT_EQ(frame_number("shot.exr"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/assert.hpp"
+#include "image/encoder.hpp"
+#include "image/frame_file.hpp"
+#include "image/write.hpp"
+
+namespace darkroom {
+namespace {
+
+// One plane among the interleaved samples of the file.
+struct Source {
+    const float* values;
+    std::size_t stride;
+    std::size_t count;
+    float largest;
+};
+
+}  // namespace
+
+Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame) {
+    const auto kind = file_kind(path);
+    if (!kind) return tl::unexpected(kind.error());
+    if (*kind != FileKind::OpenExr)
+        return user_error(
+            fmt::format("{}: {} holds no depth and no camera; a frame needs .exr", path.string(), name_of(*kind)));
+    const std::size_t pixel_count = std::size_t{frame.color.width} * frame.color.height;
+    if (pixel_count == 0) return user_error(fmt::format("{}: the frame is empty", path.string()));
+    DARKROOM_ASSERT(frame.color.pixels.size() == pixel_count * 4);
+
+    constexpr float largest_float = std::numeric_limits<float>::max();
+    constexpr float largest_half = 65504.0f;
+    const bool is_float = frame.samples == SampleKind::Float;
+    const OIIO::TypeDesc color_type = is_float ? OIIO::TypeFloat : OIIO::TypeHalf;
+    OIIO::ImageSpec spec(static_cast<int>(frame.color.width), static_cast<int>(frame.color.height), 0, OIIO::TypeFloat);
+    spec.channelnames.clear();
+    std::vector<Source> sources;
+    const auto add = [&](std::initializer_list<const char*> names, OIIO::TypeDesc type,
+                         const std::vector<float>& values, std::size_t stride) {
+        DARKROOM_ASSERT(values.size() == pixel_count * stride);
+        for (const char* name : names) {
+            spec.channelnames.emplace_back(name);
+            spec.channelformats.push_back(type);
+        }
+        sources.push_back({values.data(), stride, names.size(), type == OIIO::TypeHalf ? largest_half : largest_float});
+    };
+    if (frame.has_alpha)
+        add({"R", "G", "B", "A"}, color_type, frame.color.pixels, 4);
+    else
+        add({"R", "G", "B"}, color_type, frame.color.pixels, 4);
+    if (frame.depth) add({"Z"}, OIIO::TypeFloat, frame.depth->values, 1);
+    if (frame.normals) add({"N.X", "N.Y", "N.Z"}, OIIO::TypeHalf, frame.normals->values, 3);
+    if (frame.velocity) add({"velocity.X", "velocity.Y"}, OIIO::TypeFloat, frame.velocity->values, 2);
+    spec.nchannels = static_cast<int>(spec.channelnames.size());
+    spec.alpha_channel = frame.has_alpha ? 3 : -1;
+
+    std::vector<float> samples;
+    samples.reserve(pixel_count * spec.channelnames.size());
+    for (std::size_t pixel = 0; pixel < pixel_count; ++pixel)
+        for (const Source& source : sources)
+            for (std::size_t c = 0; c < source.count; ++c) {
+                const float value = source.values[pixel * source.stride + c];
+                samples.push_back(std::isnan(value) ? 0.0f : std::clamp(value, -source.largest, source.largest));
+            }
+
+    spec.attribute("compression", "zip");
+    constexpr std::array rec709{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), rec709.data());
+    // OpenImageIO's name for the standard attribute worldToCamera.
+    if (frame.camera.world_to_camera)
+        spec.attribute("worldtocamera", OIIO::TypeMatrix44, frame.camera.world_to_camera->data());
+    if (frame.camera.projection)
+        spec.attribute("darkroom:projection", OIIO::TypeMatrix44, frame.camera.projection->data());
+    return encode_to_file(path, FileKind::OpenExr, spec, OIIO::TypeFloat, samples.data());
+}
+
+}  // namespace darkroom

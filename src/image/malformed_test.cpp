@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "image/frame_file.hpp"
+#include "image/test_files.hpp"
+#include "image/write.hpp"
+
+namespace darkroom {
+namespace {
+
+long peak_memory_mib() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss / 1024;
+}
+
+bool is_finite(const FrameFile& frame) {
+    for (const float value : frame.color.pixels)
+        if (!std::isfinite(value)) return false;
+    return true;
+}
+
+// Sanitizers keep freed memory and shadow it, so that a limit says nothing there.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool is_memory_known = false;
+#else
+constexpr bool is_memory_known = true;
+#endif
+
+class ImageMalformed : public WithData {};
+
+TEST_F(ImageMalformed, EveryFileIsDecodedOrRefused) {
+    std::size_t count = 0;
+    for (const char* folder : {"openexr_damaged", "openexr_test", "tinyexr_regression", "hdr", "exr_oiio"})
+        for (const auto& entry : std::filesystem::directory_iterator(data_ / "malformed" / folder)) {
+            ++count;
+            const auto start = std::chrono::steady_clock::now();
+            const auto frame = read_frame(entry.path());
+            const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+            EXPECT_LT(seconds.count(), 5.0) << entry.path();
+            if (is_memory_known) {
+                EXPECT_LT(peak_memory_mib(), 512) << entry.path();
+            }
+            if (frame) {
+                EXPECT_TRUE(is_finite(*frame)) << entry.path();
+                continue;
+            }
+            EXPECT_TRUE(frame.error().text.starts_with(entry.path().string() + ": ")) << frame.error().text;
+            EXPECT_EQ(frame.error().text.find('\n'), std::string::npos) << frame.error().text;
+        }
+    EXPECT_GE(count, 130u);
+}
+
+TEST_F(ImageMalformed, FilesOfTheTestSuitesThatAreBrokenAreRefused) {
+    for (const auto& entry : std::filesystem::directory_iterator(data_ / "malformed" / "openexr_test"))
+        EXPECT_FALSE(read_frame(entry.path())) << entry.path();
+    EXPECT_TRUE(read_frame(data_ / "malformed/tinyexr_regression/2by2.exr"));
+    EXPECT_TRUE(read_frame(data_ / "malformed/exr_oiio/bad_nan.exr"));
+    EXPECT_FALSE(read_frame(data_ / "malformed/exr_oiio/partial_missingtiles.exr"));
+}
+
+TEST_F(ImageMalformed, ReasonsAreNamed) {
+    const auto reason = [&](const char* name) {
+        const auto frame = read_frame(data_ / "hostile" / name);
+        return frame ? std::string("accepted") : frame.error().text;
+    };
+    EXPECT_NE(reason("01_exr_truncated_pixels.exr").find("unexpected end of file"), std::string::npos);
+    EXPECT_NE(reason("02_exr_absurd_dims.exr").find("2147483647x2147483647"), std::string::npos);
+    EXPECT_NE(reason("04_exr_zero_size.exr").find("empty (0x0)"), std::string::npos);
+    EXPECT_NE(reason("05_exr_depth_only_no_rgb.exr").find("channels found: Z; needed: R, G, B"), std::string::npos);
+    EXPECT_NE(reason("07_hdr_rle_overrun_truncated.hdr").find("bad scanline 4 data"), std::string::npos);
+    EXPECT_EQ(reason("06_png_renamed_to.exr"), "accepted");
+}
+
+TEST_F(ImageMalformed, PixelsThatAreNotFiniteAreCountedAndMended) {
+    const auto frame = read_frame(data_ / "hostile/03_exr_nan_inf_pixels.exr");
+    ASSERT_TRUE(frame) << frame.error().text;
+    EXPECT_TRUE(is_finite(*frame));
+    EXPECT_EQ(frame->counts, (PixelCounts{.nan_color = 1, .infinite_color = 2, .nan_alpha = 1}));
+    EXPECT_EQ(frame->warnings.size(), 1u);
+    EXPECT_EQ(frame->color.at(10, 10)[0], 0);
+    EXPECT_EQ(frame->color.at(20, 20)[1], 65504);
+    EXPECT_EQ(frame->color.at(30, 30)[2], -65504);
+    EXPECT_EQ(frame->color.at(40, 40)[0], 65504);
+    EXPECT_EQ(frame->color.at(50, 50)[0], -5);
+    EXPECT_EQ(frame->color.at(12, 40)[3], 1);
+    EXPECT_NEAR(frame->color.at(1, 1)[0], 0.18f, 1e-4f);
+}
+
+class ImageTruncated : public WithFolder {};
+
+// Cut anywhere, a file is refused: half a picture is not a picture.
+TEST_F(ImageTruncated, EveryFormatRefusesAPartOfAFile) {
+    Picture picture(61, 47);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = static_cast<float>((i * 2654435761u >> 7) % 1000) / 1000;
+    for (const char* name : {"a.exr", "a.png", "a.jpg", "a.tif", "a.hdr"}) {
+        ASSERT_TRUE(write_picture(file(name), picture));
+        ASSERT_TRUE(read_frame(file(name)));
+        const std::string whole = content(file(name));
+        for (std::size_t tenth = 0; tenth < 10; ++tenth) {
+            put(file("cut"), whole.substr(0, whole.size() * tenth / 10));
+            const auto cut = read_frame(file("cut"));
+            EXPECT_FALSE(cut) << name << " cut at " << tenth << " tenths";
+        }
+    }
+}
+
+TEST_F(ImageTruncated, WhatIsNoImageIsRefused) {
+    put(file("a.exr"), "[bloom]\nintensity = 1\n");
+    const auto text = read_frame(file("a.exr"));
+    ASSERT_FALSE(text);
+    EXPECT_EQ(text.error().text, file("a.exr").string() +
+                                     ": is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)");
+    EXPECT_FALSE(read_frame(folder_));
+    EXPECT_FALSE(read_frame(file("missing.exr")));
+}
+
+}  // namespace
+}  // namespace darkroom

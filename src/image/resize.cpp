@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "image/resize.hpp"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+namespace darkroom {
+
+namespace {
+
+OIIO::ImageSpec spec_of(std::uint32_t width, std::uint32_t height) {
+    return {static_cast<int>(width), static_cast<int>(height), 4, OIIO::TypeDesc::FLOAT};
+}
+
+Result<Picture> filtered(Picture& picture, std::uint32_t width, std::uint32_t height) {
+    Picture out(width, height);
+    try {
+        const OIIO::ImageBuf from(spec_of(picture.width, picture.height), picture.pixels.data());
+        OIIO::ImageBuf to(spec_of(width, height), out.pixels.data());
+        if (!OIIO::ImageBufAlgo::resize(to, from, "triangle", 0.0f, to.roi()))
+            return machine_error(fmt::format("resizing to {}x{} failed: {}", width, height, to.geterror()));
+    } catch (const std::exception& error) {
+        return machine_error(fmt::format("resizing to {}x{} failed: {}", width, height, error.what()));
+    }
+    return out;
+}
+
+template <std::uint32_t Channels>
+Plane<Channels> nearest_pixels(const Plane<Channels>& plane, std::uint32_t width, std::uint32_t height) {
+    Plane<Channels> out(width, height);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        const auto from_y = static_cast<std::uint32_t>((2 * std::uint64_t{y} + 1) * plane.height / (2 * std::uint64_t{height}));
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const auto from_x = static_cast<std::uint32_t>((2 * std::uint64_t{x} + 1) * plane.width / (2 * std::uint64_t{width}));
+            std::copy_n(plane.at(from_x, from_y), Channels, out.at(x, y));
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+Result<FrameFile> resize(FrameFile frame, std::uint32_t width, std::uint32_t height) {
+    if (width == 0 || height == 0) return user_error(fmt::format("size {}x{}: a picture has at least 1x1", width, height));
+    const std::uint32_t old_width = frame.color.width, old_height = frame.color.height;
+    if (width == old_width && height == old_height) return frame;
+    Result<Picture> color = filtered(frame.color, width, height);
+    if (!color) return failure(std::move(color));
+    frame.color = std::move(*color);
+    if (frame.depth) frame.depth = nearest_pixels(*frame.depth, width, height);
+    if (frame.normals) frame.normals = nearest_pixels(*frame.normals, width, height);
+    if (frame.velocity) {
+        frame.velocity = nearest_pixels(*frame.velocity, width, height);
+        const float scale_x = static_cast<float>(width) / static_cast<float>(old_width);
+        const float scale_y = static_cast<float>(height) / static_cast<float>(old_height);
+        for (std::size_t i = 0; i + 1 < frame.velocity->values.size(); i += 2) {
+            frame.velocity->values[i] *= scale_x;
+            frame.velocity->values[i + 1] *= scale_y;
+        }
+    }
+    return frame;
+}
+
+}  // namespace darkroom

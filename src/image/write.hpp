@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Pictures into image files. The extension decides the kind of file; the numbers are written as they are given: encoded
+// values for integer files, linear ones for float files. Nothing is tone-mapped or encoded here. A file appears whole
+// or not at all.
+
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <optional>
+#include <span>
+
+#include "image/decoder.hpp"
+#include "image/picture.hpp"
+
+namespace darkroom {
+
+struct WriteOptions {
+    /// Not given: 8-bit for PNG, JPEG and TIFF, half for OpenEXR, float for Radiance HDR.
+    std::optional<SampleKind> samples;
+    bool alpha = false;     ///< false: the file has no alpha channel, which is opaque everywhere
+    int jpeg_quality = 95;  ///< 1 to 100
+};
+
+/// The kind that a path's extension asks for. Known: .png .jpg .jpeg .tif .tiff .exr .hdr, in any case.
+[[nodiscard]] Result<FileKind> file_kind(const std::filesystem::path& path);
+
+/// The kind of samples that would be written; an error if the format cannot hold what the options ask for. Lets a
+/// program refuse before it has computed the picture.
+[[nodiscard]] Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOptions& options);
+
+/// Integer files clamp to 0..1 and round to nearest; half and Radiance clamp to what they can hold; NaN is written as
+/// 0.
+[[nodiscard]] Result<> write_picture(const std::filesystem::path& path, const Picture& picture,
+                                     const WriteOptions& options = {});
+
+/// The same for four bytes a pixel, already encoded, into PNG, JPEG or TIFF. `rgba.size()` must be width * height * 4.
+[[nodiscard]] Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                                   std::span<const std::uint8_t> rgba, const WriteOptions& options = {});
+
+}  // namespace darkroom
