@@ -31,6 +31,7 @@ void build(PassBuilder& builder) {
     TableDesc desc{.name = "dither_tile",
                    .format = VK_FORMAT_R32G32B32A32_SFLOAT,
                    .extent = {dither_tile_size, dither_tile_size, 1},
+                   .is_load_only = true,
                    .data = std::vector<std::byte>(sizeof tile)};
     std::memcpy(desc.data.data(), tile.data(), sizeof tile);
     builder.side("dither_tile", builder.table(desc), {});

@@ -11,11 +11,11 @@
 //     composer.record(command_buffer, {.color = hdr, .time = seconds, .target = target});   // every frame
 //
 // The contract. `add`, `compile`, `set` and the like may allocate and take time. `record` allocates nothing, throws
-// nothing, waits for nothing, submits nothing, and owns nothing the host made; each host image is left in the layout its
-// reference asks for. A toggle or a parameter is seen by the next record and compiles nothing on the calling thread. A
-// Composer is used by one thread at a time; its recordings go to one queue, in order. Up to frames_in_flight * views
-// recordings may be unfinished; a further record may be made only when the oldest of them has finished. compile() keeps
-// what unfinished recordings use; a Composer is destroyed only when all its recordings have finished.
+// nothing, waits for nothing, submits nothing, and owns nothing the host made; each host image is left in the layout
+// its reference asks for. A toggle or a parameter is seen by the next record and compiles nothing on the calling
+// thread. A Composer is used by one thread at a time; its recordings go to one queue, in order. Up to frames_in_flight
+// * views recordings may be unfinished; a further record may be made only when the oldest of them has finished.
+// compile() keeps what unfinished recordings use; a Composer is destroyed only when all its recordings have finished.
 
 #include <cstdint>
 #include <darkroom/blend_mode.hpp>
@@ -44,15 +44,16 @@ inline constexpr Handle scene_color{~0u};
 
 /// What belongs to the stack entry, not to the effect.
 struct Inputs {
-    Handle input;   ///< the picture; default: the entry before
-    Handle source;  ///< what effects with passes read instead of the picture (bloom: the scene)
-    Handle second;  ///< the second picture of effects that take two
-    Handle mask;    ///< luminance of this picture scales opacity, pixel by pixel
-    std::string name;     ///< of the entry; default: the effect's name, then name#2 ...
-    std::string output;   ///< a name for its output, for looks
+    Handle input;        ///< the picture; default: the entry before
+    Handle source;       ///< what effects with passes read instead of the picture (bloom: the scene)
+    Handle second;       ///< the second picture of effects that take two
+    Handle mask;         ///< luminance of this picture scales opacity, pixel by pixel
+    std::string name;    ///< of the entry; default: the effect's name, then name#2 ...
+    std::string output;  ///< a name for its output, for looks
     bool enabled = true;
     float opacity = 1.0f;  ///< [0, 1]
-    BlendMode blend = BlendMode::Mix;  ///< how the result goes over the input: the input is the base, the result the layer
+    BlendMode blend =
+        BlendMode::Mix;  ///< how the result goes over the input: the input is the base, the result the layer
 };
 
 struct ComposerDesc {
@@ -64,7 +65,7 @@ struct ComposerDesc {
 struct CompileDesc {
     VkExtent2D max_extent{};
     VkFormat color = VK_FORMAT_R16G16B16A16_SFLOAT;
-    VkFormat depth = VK_FORMAT_UNDEFINED;     ///< UNDEFINED: not given
+    VkFormat depth = VK_FORMAT_UNDEFINED;  ///< UNDEFINED: not given
     VkFormat normals = VK_FORMAT_UNDEFINED;
     VkFormat velocity = VK_FORMAT_UNDEFINED;
     VkFormat ui = VK_FORMAT_UNDEFINED;
@@ -119,9 +120,10 @@ class Composer {
     void set(Handle handle, const Effect& parameters) {
         set_all(handle, effect_info(parameters), &parameters);
     }
-    /// A per-frame override by `owner` (a pulse, a script slot, a layer): replaces the base value until dropped; the last
-    /// owner to set wins. The base value is never touched.
-    Result<> set_override(Handle, std::string_view parameter, std::string_view owner, std::span<const std::uint32_t> words);
+    /// A per-frame override by `owner` (a pulse, a script slot, a layer): replaces the base value until dropped; the
+    /// last owner to set wins. The base value is never touched.
+    Result<> set_override(Handle, std::string_view parameter, std::string_view owner,
+                          std::span<const std::uint32_t> words);
     void drop_overrides(std::string_view owner);
     /// The values that the next record uses.
     [[nodiscard]] std::vector<std::uint32_t> current(Handle) const;
@@ -136,7 +138,8 @@ class Composer {
     /// record nothing.
     Result<> record(VkCommandBuffer commands, const Frame& frame);
 
-    /// Waits for kernels that are being built for the present toggles. For headless work and tests, not for frame loops.
+    /// Waits for kernels that are being built for the present toggles. For headless work and tests, not for frame
+    /// loops.
     void wait_for_kernels();
     /// Times of the last recording that has finished, in order; empty without timers. Never waits.
     [[nodiscard]] std::span<const PassTime> times();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A user's own effect in one GLSL file, loaded at run time: it takes its place in a stack, and fuses with its neighbours,
-// like those in the library. It is the pointwise (or warp) kind only: passes of its own, histories and a CPU reference
-// need an effect's folder.
+// A user's own effect in one GLSL file, loaded at run time: it takes its place in a stack, and fuses with its
+// neighbours, like those in the library. It is the pointwise (or warp) kind only: passes of its own, histories and a
+// CPU reference need an effect's folder.
 //
 //     // @effect duotone: Maps shadows and highlights to two colours.
 //     // @param float amount = 1 in [0, 1] amount: How much of the toned picture is seen.
@@ -14,8 +14,8 @@
 //
 // The lines above the first line of code describe it. A line of @param is KIND NAME = DEFAULT, the interval `in [a, b]`
 // where the kind has one (float, int, vec2, vec3, vec4, rgb), then any of a unit (px, cd/m2, m, 1/m, deg, s), `log` (a
-// slider in equal ratios) and `amount` (0 switches the effect off), then a colon and a sentence. The first name of a choice
-// is the default; in GLSL the names are Duotone_mode_luma and so on. Other lines:
+// slider in equal ratios) and `amount` (0 switches the effect off), then a colon and a sentence. The first name of a
+// choice is the default; in GLSL the names are Duotone_mode_luma and so on. Other lines:
 //     // @touch warp              the function is vec4 duotone(Pixel pixel, Duotone parameters) and reads `picture`
 //     // @accepts scene_linear display_linear     the domains it is meant for; without it all, encoded too
 //     // @needs depth             left out of the plan where the frame has none: depth, normals, velocity, shadows, ui
@@ -29,7 +29,8 @@
 
 namespace darkroom {
 
-/// Owns all that info() refers to, so it outlives the Composers whose stacks hold it. Moving it keeps info() where it is.
+/// Owns all that info() refers to, so it outlives the Composers whose stacks hold it. Moving it keeps info() where it
+/// is.
 class CustomEffect {
   public:
     [[nodiscard]] static Result<CustomEffect> load(const std::filesystem::path& file);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// All that an engine includes: the device, the composer, and every effect of this build. Looks are apart (look.hpp), since
-// they need another library.
+// All that an engine includes: the device, the composer, and every effect of this build. Looks are apart (look.hpp),
+// since they need another library.
 
 #include <darkroom/composer.hpp>
 #include <darkroom/custom_effect.hpp>

@@ -5,6 +5,7 @@
 // from any thread; a Device outlives the Composers made on it.
 // Needs Vulkan 1.3 with synchronization2 and dynamicRendering.
 
+#include <vulkan/vulkan.h>
 #include <cstdint>
 #include <darkroom/log.hpp>
 #include <darkroom/result.hpp>
@@ -13,7 +14,6 @@
 #include <span>
 #include <string>
 #include <vector>
-#include <vulkan/vulkan.h>
 
 namespace darkroom {
 
@@ -36,7 +36,7 @@ struct DeviceInfo {
 };
 
 struct DeviceDesc {
-    std::string select;  ///< name (or a part of it, any case) or index; empty: a real GPU if there is one
+    std::string select;     ///< name (or a part of it, any case) or index; empty: a real GPU if there is one
     bool validate = false;  ///< Khronos validation layer with synchronization validation; DARKROOM_VALIDATE=1 also
     LogSink log;
     std::filesystem::path cache_folder;  ///< SPIR-V and pipeline caches; empty: the user's cache folder

@@ -11,6 +11,7 @@
 //     vec4 shade(Pixel pixel)
 // with `<Struct> <name>_parameters()` at hand, `frame_time` and its like, and custom[i] from the pass's constants.
 
+#include <vulkan/vulkan.h>
 #include <array>
 #include <cstdint>
 #include <darkroom/frame.hpp>
@@ -21,7 +22,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#include <vulkan/vulkan.h>
 
 namespace darkroom {
 
@@ -37,9 +37,13 @@ enum class Touch : std::uint8_t {
 enum class Domain : std::uint8_t { SceneLinear, DisplayLinear, Encoded };
 struct Domains {
     std::uint8_t bits = 0;
-    [[nodiscard]] constexpr bool contains(Domain domain) const { return (bits >> static_cast<unsigned>(domain) & 1) != 0; }
+    [[nodiscard]] constexpr bool contains(Domain domain) const {
+        return (bits >> static_cast<unsigned>(domain) & 1) != 0;
+    }
     [[nodiscard]] static constexpr Domains all() { return {7}; }
-    [[nodiscard]] static constexpr Domains only(Domain domain) { return {static_cast<std::uint8_t>(1u << static_cast<unsigned>(domain))}; }
+    [[nodiscard]] static constexpr Domains only(Domain domain) {
+        return {static_cast<std::uint8_t>(1u << static_cast<unsigned>(domain))};
+    }
     friend constexpr Domains operator|(Domains a, Domains b) { return {static_cast<std::uint8_t>(a.bits | b.bits)}; }
 };
 
@@ -73,8 +77,8 @@ struct PassContext {
 using PassVector = std::array<float, 4>;
 /// Fills the custom vectors of a pass; runs while recording, so it allocates nothing.
 using ConstantsFunction = void (*)(const void* parameters, const PassContext&, std::span<PassVector> out);
-/// False: the pass is not recorded in this frame. What holds for an argument must hold for all smaller ones (levels of a
-/// pyramid). Runs while recording.
+/// False: the pass is not recorded in this frame. What holds for an argument must hold for all smaller ones (levels of
+/// a pyramid). Runs while recording.
 using ConditionFunction = bool (*)(const void* parameters, const PassContext&, std::uint32_t argument);
 
 /// Names an image that a pass builder made or was given. A picture that was written has a new name (src/graph).
@@ -92,21 +96,21 @@ struct PassImageDesc {
 
 /// A pass of one kernel.
 struct KernelPassDesc {
-    std::string name;                        ///< label in plans and timings
-    std::string_view shader;                 ///< file in the effect's folder, without folder: "bloom_downsample.glsl"
+    std::string name;         ///< label in plans and timings
+    std::string_view shader;  ///< file in the effect's folder, without folder: "bloom_downsample.glsl"
     struct Input {
-        std::string name;                    ///< what the shader calls it
+        std::string name;  ///< what the shader calls it
         PassImage image;
         std::uint32_t mip_level = 0;
     };
     std::vector<Input> inputs;
     PassImage output;
     std::uint32_t output_mip_level = 0;
-    bool is_additive = false;                ///< adds to what `output` holds
+    bool is_additive = false;  ///< adds to what `output` holds
     std::uint32_t custom_vectors = 0;
     ConstantsFunction constants = nullptr;
-    ConditionFunction condition = nullptr;   ///< beside the entry's own toggle
-    std::uint32_t argument = 0;              ///< handed to condition
+    ConditionFunction condition = nullptr;  ///< beside the entry's own toggle
+    std::uint32_t argument = 0;             ///< handed to condition
 };
 
 /// A constant table: made at compile, uploaded by the first record, sampled by the effect.
@@ -114,6 +118,7 @@ struct TableDesc {
     std::string name;
     VkFormat format = VK_FORMAT_R8_UNORM;
     VkExtent3D extent{1, 1, 1};
+    bool is_load_only = false;  ///< read by load() alone, which is then cheaper; the format must allow storage
     std::vector<std::byte> data;
 };
 
@@ -134,8 +139,8 @@ class PassBuilder {
     [[nodiscard]] virtual PassImage table(const TableDesc& desc) = 0;
     /// Adds a pass; returns the written image's new name.
     virtual PassImage add(const KernelPassDesc& desc) = 0;
-    /// The pointwise end samples `image` under `name`. While the effect, or all that writes `image`, is off, a 1x1 image
-    /// of `neutral` stands in.
+    /// The pointwise end samples `image` under `name`. While the effect, or all that writes `image`, is off, a 1x1
+    /// image of `neutral` stands in.
     virtual void side(std::string name, PassImage image, PassVector neutral) = 0;
     /// The effect's output, for effects without a pointwise end. While it is off, its input stands in.
     virtual void result(PassImage image) = 0;
@@ -162,7 +167,7 @@ struct EffectInfo {
     Domain (*makes)(Domain before, const void* parameters) = nullptr;
     Needs needs;
     FlatPlace flat;
-    bool has_second = false;  ///< reads a second picture, as side image `second`
+    bool has_second = false;    ///< reads a second picture, as side image `second`
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
     void (*build)(PassBuilder&) = nullptr;
     /// The published equation in double precision; see reference.hpp.

@@ -3,10 +3,10 @@
 // What a host hands over every frame: images it owns, the camera, lights, time. Everything is a reference: the library
 // keeps none of it after `record`, and leaves each image in the layout that its reference asks for.
 
+#include <vulkan/vulkan.h>
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vulkan/vulkan.h>
 
 namespace darkroom {
 
@@ -19,11 +19,11 @@ struct ImageRef {
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;  ///< one mip level, one layer, colour or depth aspect
     VkFormat format = VK_FORMAT_UNDEFINED;
-    VkExtent2D extent{};                ///< of the whole image
-    VkRect2D region{};                  ///< the part that holds the picture; extent (0,0): all of it
-    std::uint32_t mip_level = 0;        ///< that the view shows
-    std::uint32_t array_layer = 0;      ///< first layer that the view shows
-    std::uint32_t layer_count = 1;      ///< more than 1: multi-view, one picture a layer (reserved: must be 1 today)
+    VkExtent2D extent{};            ///< of the whole image
+    VkRect2D region{};              ///< the part that holds the picture; extent (0,0): all of it
+    std::uint32_t mip_level = 0;    ///< that the view shows
+    std::uint32_t array_layer = 0;  ///< first layer that the view shows
+    std::uint32_t layer_count = 1;  ///< more than 1: multi-view, one picture a layer (reserved: must be 1 today)
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
     VkPipelineStageFlags2 last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< of the host's last use
     VkAccessFlags2 last_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -33,9 +33,7 @@ struct ImageRef {
     VkAccessFlags2 final_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
     [[nodiscard]] bool is_given() const { return view != VK_NULL_HANDLE; }
-    [[nodiscard]] VkRect2D used_region() const {
-        return region.extent.width == 0 ? VkRect2D{{0, 0}, extent} : region;
-    }
+    [[nodiscard]] VkRect2D used_region() const { return region.extent.width == 0 ? VkRect2D{{0, 0}, extent} : region; }
 };
 
 /// What the numbers of a depth image mean.
@@ -54,8 +52,8 @@ struct Camera {
     float near_distance = 0.1f;
     float far_distance = 1000.0f;  ///< infinite: std::numeric_limits<float>::infinity()
     DepthKind depth = DepthKind::Standard;
-    bool is_y_down = true;         ///< clip space as Vulkan has it; false: y up (a flipped viewport)
-    std::array<float, 2> jitter{};           ///< of this frame, in pixels
+    bool is_y_down = true;          ///< clip space as Vulkan has it; false: y up (a flipped viewport)
+    std::array<float, 2> jitter{};  ///< of this frame, in pixels
     std::array<float, 2> previous_jitter{};
     bool is_cut = false;  ///< nothing of the last frame is related to this one: histories are reset
 };
@@ -69,23 +67,24 @@ struct Light {
     std::array<float, 3> volumetric_color{1, 1, 1};
     ImageRef cascades;  ///< depth array; not given: casts no shadow
     std::uint32_t cascade_count = 0;
-    std::array<Matrix, max_cascades> world_to_cascade{identity_matrix, identity_matrix, identity_matrix, identity_matrix};
+    std::array<Matrix, max_cascades> world_to_cascade{identity_matrix, identity_matrix, identity_matrix,
+                                                      identity_matrix};
     std::array<float, max_cascades> splits{};  ///< far distance of each cascade
 };
 
 /// One frame of one view.
 struct Frame {
-    ImageRef color;     ///< scene-linear Rec. 709
+    ImageRef color;  ///< scene-linear Rec. 709
     ImageRef depth;
     ImageRef normals;   ///< world space, -1..1
     ImageRef velocity;  ///< previous minus current position, pixels, y down
     ImageRef ui;        ///< sRGB-encoded, premultiplied after encoding
     Camera camera;
     std::span<const Light> lights;
-    double time = 0;            ///< seconds
+    double time = 0;               ///< seconds
     double delta_time = 1.0 / 60;  ///< seconds; <= 0 resets histories
     std::uint64_t frame_index = 0;
-    std::uint32_t view = 0;     ///< whose histories: 0 .. CompileDesc::views - 1
+    std::uint32_t view = 0;  ///< whose histories: 0 .. CompileDesc::views - 1
     ImageRef target;
 };
 

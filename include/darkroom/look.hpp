@@ -59,7 +59,7 @@ struct Look {
 };
 
 struct LookOptions {
-    bool is_strict = false;                     ///< unknown keys and values out of range are errors, not warnings
+    bool is_strict = false;                        ///< unknown keys and values out of range are errors, not warnings
     std::vector<std::string>* warnings = nullptr;  ///< "file:line:column: ..." of what was passed over
 };
 
@@ -86,7 +86,8 @@ struct LookOverride {
 /// unless `<effect>_enabled` is among them.
 [[nodiscard]] Result<> override_look(Look& look, std::span<const LookOverride> overrides);
 
-/// Appends the look's entries to the Composer. The flat table wires `source` to the scene, as its documented order has it.
+/// Appends the look's entries to the Composer. The flat table wires `source` to the scene, as its documented order has
+/// it.
 [[nodiscard]] Result<> apply(const Look& look, Composer& composer);
 
 }  // namespace darkroom

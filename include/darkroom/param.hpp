@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A parameter is described once, beside the struct that holds it. The GLSL block, the TOML keys, the command-line flags,
-// the console variables, the sliders, the documentation and the error messages all read that one row.
+// A parameter is described once, beside the struct that holds it. The GLSL block, the TOML keys, the command-line
+// flags, the console variables, the sliders, the documentation and the error messages all read that one row.
 //
 //     struct Vignette {
 //         float intensity = 0.3f;
@@ -29,7 +29,8 @@ struct Unit {
     std::string_view symbol;
 };
 namespace unit {
-inline constexpr Unit none{""}, pixels{"px"}, nits{"cd/m2"}, metres{"m"}, per_metre{"1/m"}, degrees{"deg"}, seconds{"s"};
+inline constexpr Unit none{""}, pixels{"px"}, nits{"cd/m2"}, metres{"m"}, per_metre{"1/m"}, degrees{"deg"},
+    seconds{"s"};
 }
 
 enum class Scale : std::uint8_t { Linear, Log };
@@ -82,11 +83,11 @@ struct ParamInfo {
     Unit unit;
     Range range;
     Kind kind = Kind::Float;
-    bool is_amount = false;                    ///< 0 switches the effect off: see field().as_amount()
-    std::uint32_t word = 0;                    ///< offset in the struct, in 4-byte words
-    std::uint32_t words = 1;                   ///< size, in 4-byte words
+    bool is_amount = false;                       ///< 0 switches the effect off: see field().as_amount()
+    std::uint32_t word = 0;                       ///< offset in the struct, in 4-byte words
+    std::uint32_t words = 1;                      ///< size, in 4-byte words
     std::span<const std::string_view> choices{};  ///< names in snake_case, for Kind::Choice
-    std::string_view formerly{};               ///< a former name of the key, still read
+    std::string_view formerly{};                  ///< a former name of the key, still read
 };
 
 /// All rows of one struct, in the order of its members, and the words of its defaults.
@@ -154,14 +155,14 @@ struct Enumerators {
         [&]<std::size_t... I>(std::index_sequence<I...>) {
             // A value without an enumerator prints as "(E)3".
             ((n += name_of<static_cast<E>(I)>().find(')') == std::string_view::npos ? 1u : 0u), ...);
-        }(std::make_index_sequence<limit>{});
+        }
+        (std::make_index_sequence<limit>{});
         return n;
     }();
     static constexpr std::array<SnakeName, count> storage = [] {
         std::array<SnakeName, count> out{};
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
-            ((out[I] = snake_name(name_of<static_cast<E>(I)>())), ...);
-        }(std::make_index_sequence<count>{});
+        [&]<std::size_t... I>(std::index_sequence<I...>) { ((out[I] = snake_name(name_of<static_cast<E>(I)>())), ...); }
+        (std::make_index_sequence<count>{});
         return out;
     }();
     static constexpr std::array<std::string_view, count> names = [] {

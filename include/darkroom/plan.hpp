@@ -2,10 +2,10 @@
 #pragma once
 // What the planner made of a stack: readable by people (`darkroom plan`), by programs (JSON) and by tests.
 
+#include <vulkan/vulkan.h>
 #include <cstdint>
 #include <string>
 #include <vector>
-#include <vulkan/vulkan.h>
 
 namespace darkroom {
 
@@ -16,7 +16,7 @@ struct PlanPass {
     std::vector<std::string> entries;  ///< that it holds, in order
     std::string boundary;              ///< why a new pass starts here: one sentence
     VkExtent2D extent{};
-    std::uint64_t bytes_read = 0;      ///< each input texel counted once
+    std::uint64_t bytes_read = 0;  ///< each input texel counted once
     std::uint64_t bytes_written = 0;
 };
 

@@ -19,7 +19,8 @@ struct ReferenceImage {
     std::vector<Rgba> pixels;
 
     ReferenceImage() = default;
-    ReferenceImage(std::uint32_t w, std::uint32_t h, Rgba fill = {}) : width(w), height(h), pixels(std::size_t{w} * h, fill) {}
+    ReferenceImage(std::uint32_t w, std::uint32_t h, Rgba fill = {})
+        : width(w), height(h), pixels(std::size_t{w} * h, fill) {}
     [[nodiscard]] Rgba& at(std::uint32_t x, std::uint32_t y) { return pixels[std::size_t{y} * width + x]; }
     [[nodiscard]] const Rgba& at(std::uint32_t x, std::uint32_t y) const { return pixels[std::size_t{y} * width + x]; }
     /// The nearest pixel inside.
@@ -36,7 +37,7 @@ struct ReferenceInput {
     const ReferenceImage* picture = nullptr;
     const ReferenceImage* source = nullptr;  ///< never null: the picture where the entry names none
     const ReferenceImage* second = nullptr;
-    const ReferenceImage* depth = nullptr;   ///< red: planar distance
+    const ReferenceImage* depth = nullptr;  ///< red: planar distance
     const ReferenceImage* normals = nullptr;
     const ReferenceImage* velocity = nullptr;
     Camera camera;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// How Darkroom reports what went wrong. Everything that can fail returns a Result; the library throws nothing of its own.
-// This is the one header that names tl::expected, which stands in for std::expected until the compilers we build with
-// have it.
+// How Darkroom reports what went wrong. Everything that can fail returns a Result; the library throws nothing of its
+// own. This is the one header that names tl::expected, which stands in for std::expected until the compilers we build
+// with have it.
 
 #include <string>
 #include <tl/expected.hpp>

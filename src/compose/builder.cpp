@@ -36,24 +36,34 @@ PassImage Builder::create(const PassImageDesc& desc) {
                                         .format = desc.format,
                                         .size = graph::Size::fraction(desc.denominator),
                                         .mip_levels = desc.mip_levels});
-    planner_.facts_[version.index] = {.root = version.index, .format = desc.format, .has_storage = true, .fall_backs = {}};
+    planner_.facts_[version.index] = {
+        .root = version.index, .format = desc.format, .has_storage = true, .fall_backs = {}};
     return remember({.version = version, .first_written = {}, .format = desc.format});
 }
 
-PassImage Builder::table(const TableDesc& desc) { return remember({.version = planner_.import_constant(desc), .format = desc.format}); }
+PassImage Builder::table(const TableDesc& desc) {
+    planner_.program_.constants.push_back({.desc = desc});
+    return remember(
+        {.format = desc.format, .table = static_cast<std::uint32_t>(planner_.program_.constants.size() - 1)});
+}
+
+PassInput Builder::input_of(const Image& image, std::uint32_t mip_level) const {
+    return {.version = image.version, .mip_level = mip_level, .table = image.table};
+}
 
 PassImage Builder::add(const KernelPassDesc& desc) {
     const Entry& entry = planner_.stack_[entry_];
     if (!error.empty() || desc.output.index >= images_.size()) return {};
-    ProgramPass pass{.name = fmt::format("{}.{}", entry.inputs.name, desc.name), .entry = entry_, .constants = desc.constants};
+    ProgramPass pass{
+        .name = fmt::format("{}.{}", entry.inputs.name, desc.name), .entry = entry_, .constants = desc.constants};
     pass.boundary = fmt::format("{} has passes of its own", entry.inputs.name);
 
     std::vector<std::string> names;
     for (const KernelPassDesc::Input& input : desc.inputs) {
         if (input.image.index >= images_.size()) return {};
         names.push_back(input.name);
-        pass.spec.images.push_back({.name = input.name + entry_suffix(entry_)});
-        pass.inputs.push_back({.version = images_[input.image.index].version, .mip_level = input.mip_level});
+        pass.inputs.push_back(input_of(images_[input.image.index], input.mip_level));
+        pass.spec.images.push_back(planner_.kernel_image(input.name + entry_suffix(entry_), pass.inputs.back()));
     }
     Image written = images_[desc.output.index];
     auto text = instance_text(*entry.info, desc.shader, entry_, names);
@@ -66,7 +76,8 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     pass.spec.is_additive = desc.is_additive;
     pass.spec.custom_vectors = desc.custom_vectors;
     pass.spec.constants = frame_members() + entry_members(*entry.info, entry_, planner_.program_.block_words[entry_]);
-    pass.spec.body = curve_struct() + parameter_struct(entry.info->parameters) + parameter_loader(*entry.info, entry_) + *text;
+    pass.spec.body =
+        curve_struct() + parameter_struct(entry.info->parameters) + parameter_loader(*entry.info, entry_) + *text;
     pass.toggle = planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
     const auto version = planner_.add_pass(std::move(pass), written.version, desc.output_mip_level);
     if (!version) {
@@ -81,10 +92,11 @@ PassImage Builder::add(const KernelPassDesc& desc) {
 void Builder::side(std::string name, PassImage image, PassVector neutral) {
     const bool is_known = image.index < images_.size();
     if (is_known && !images_[image.index].first_written.is_valid()) {  // a table, or a picture: always there
-        sides.push_back({std::move(name), {.version = images_[image.index].version}});
+        sides.push_back({std::move(name), input_of(images_[image.index], 0)});
         return;
     }
-    TableDesc desc{.name = "neutral", .format = VK_FORMAT_R32G32B32A32_SFLOAT, .data = std::vector<std::byte>(sizeof neutral)};
+    TableDesc desc{
+        .name = "neutral", .format = VK_FORMAT_R32G32B32A32_SFLOAT, .data = std::vector<std::byte>(sizeof neutral)};
     std::memcpy(desc.data.data(), neutral.data(), sizeof neutral);
     const graph::Version constant = planner_.import_constant(std::move(desc));
     if (!is_known) {

@@ -23,36 +23,54 @@ VkDeviceSize align(VkDeviceSize size, VkDeviceSize alignment) { return (size + a
 
 const char* name_of(HostImage image) {
     switch (image) {
-        case HostImage::Color: return "color";
-        case HostImage::Depth: return "depth";
-        case HostImage::Normals: return "normals";
-        case HostImage::Velocity: return "velocity";
-        case HostImage::Ui: return "ui";
-        case HostImage::Target: return "target";
+        case HostImage::Color:
+            return "color";
+        case HostImage::Depth:
+            return "depth";
+        case HostImage::Normals:
+            return "normals";
+        case HostImage::Velocity:
+            return "velocity";
+        case HostImage::Ui:
+            return "ui";
+        case HostImage::Target:
+            return "target";
     }
     return "";
 }
 
 const ImageRef& host_image(const Frame& frame, HostImage image) {
     switch (image) {
-        case HostImage::Color: return frame.color;
-        case HostImage::Depth: return frame.depth;
-        case HostImage::Normals: return frame.normals;
-        case HostImage::Velocity: return frame.velocity;
-        case HostImage::Ui: return frame.ui;
-        case HostImage::Target: break;
+        case HostImage::Color:
+            return frame.color;
+        case HostImage::Depth:
+            return frame.depth;
+        case HostImage::Normals:
+            return frame.normals;
+        case HostImage::Velocity:
+            return frame.velocity;
+        case HostImage::Ui:
+            return frame.ui;
+        case HostImage::Target:
+            break;
     }
     return frame.target;
 }
 
 VkFormat expected_format(const CompileDesc& desc, HostImage image) {
     switch (image) {
-        case HostImage::Color: return desc.color;
-        case HostImage::Depth: return desc.depth;
-        case HostImage::Normals: return desc.normals;
-        case HostImage::Velocity: return desc.velocity;
-        case HostImage::Ui: return desc.ui;
-        case HostImage::Target: break;
+        case HostImage::Color:
+            return desc.color;
+        case HostImage::Depth:
+            return desc.depth;
+        case HostImage::Normals:
+            return desc.normals;
+        case HostImage::Velocity:
+            return desc.velocity;
+        case HostImage::Ui:
+            return desc.ui;
+        case HostImage::Target:
+            break;
     }
     return desc.target;
 }
@@ -80,7 +98,8 @@ Result<> for_all(std::size_t count, const Work& work) {
 }
 
 bool is_effective(const Entry& entry, float opacity, const std::uint32_t* words) {
-    return entry.inputs.enabled && opacity > 0 && (entry.info->is_identity == nullptr || !entry.info->is_identity(words));
+    return entry.inputs.enabled && opacity > 0 &&
+           (entry.info->is_identity == nullptr || !entry.info->is_identity(words));
 }
 
 }  // namespace
@@ -90,8 +109,8 @@ Chain::Chain(gpu::Context& context, Program program, const CompileDesc& desc, st
 
 Chain::~Chain() { builders_.reset(); }
 
-Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots,
-                                             bool has_timers, std::span<const Entry> stack) {
+Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program program, const CompileDesc& desc,
+                                             std::uint32_t slots, bool has_timers, std::span<const Entry> stack) {
     std::unique_ptr<Chain> chain(new Chain(context, std::move(program), desc, slots));
     auto compiled = chain->program_.graph.compile(desc.max_extent, graph::measure_on(context));
     if (!compiled) return failure(std::move(compiled));
@@ -148,8 +167,9 @@ Result<> Chain::make_resources(bool has_timers) {
         if (!variants_[i]) continue;
         const gpu::KernelSpec& spec = program_.passes[i].spec;
         if (spec.images.size() > most_images || spec.custom_vectors > most_custom_vectors)
-            return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed", spec.name,
-                                          spec.images.size(), spec.custom_vectors, most_images, most_custom_vectors));
+            return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
+                                          spec.name, spec.images.size(), spec.custom_vectors, most_images,
+                                          most_custom_vectors));
         set_at_[i] = static_cast<std::uint32_t>(layouts.size());
         layouts.insert(layouts.end(), slots_, variants_[i]->complete().set_layout());
         pass_block_size = std::max(pass_block_size, gpu::pass_block_size(spec));
@@ -165,8 +185,9 @@ Result<> Chain::make_resources(bool has_timers) {
                                          gpu::Memory::Kind::Upload, "constants");
     if (!constants) return failure(std::move(constants));
     constants_ = std::move(*constants);
-    auto blocks = gpu::Buffer::create(context_, pass_block_stride_ * slots_ * std::max<std::size_t>(1, program_.passes.size()),
-                                      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::Kind::Upload, "pass blocks");
+    auto blocks =
+        gpu::Buffer::create(context_, pass_block_stride_ * slots_ * std::max<std::size_t>(1, program_.passes.size()),
+                            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::Kind::Upload, "pass blocks");
     if (!blocks) return failure(std::move(blocks));
     pass_blocks_ = std::move(*blocks);
 
@@ -187,7 +208,8 @@ Result<> Chain::make_constants() {
     VkDeviceSize size = 0;
     for (const Constant& constant : program_.constants) size += align(constant.desc.data.size(), 16);
     if (size == 0) return {};
-    auto staging = gpu::Buffer::create(context_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
+    auto staging =
+        gpu::Buffer::create(context_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
     if (!staging) return failure(std::move(staging));
     staging_ = std::move(*staging);
     VkDeviceSize offset = 0;
@@ -195,11 +217,13 @@ Result<> Chain::make_constants() {
         const TableDesc& desc = constant.desc;
         std::memcpy(staging_.memory.mapped + offset, desc.data.data(), desc.data.size());
         offset += align(desc.data.size(), 16);
-        auto image = gpu::Image::create(context_, {.name = desc.name,
-                                                   .format = desc.format,
-                                                   .extent = desc.extent,
-                                                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                                   .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
+        const VkImageUsageFlags read = desc.is_load_only ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
+        auto image =
+            gpu::Image::create(context_, {.name = desc.name,
+                                          .format = desc.format,
+                                          .extent = desc.extent,
+                                          .usage = read | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                          .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
         if (!image) return failure(std::move(image));
         tables_.push_back(std::move(*image));
     }
@@ -220,22 +244,23 @@ void Chain::upload_constants(VkCommandBuffer commands) {
                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                       .image = tables_[i].handle,
                                       .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-        const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                          .imageMemoryBarrierCount = 1,
-                                          .pImageMemoryBarriers = &barrier};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
         context_.vk.CmdPipelineBarrier2(commands, &dependency);
         const VkBufferImageCopy copy{.bufferOffset = offset,
                                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                      .imageExtent = program_.constants[i].desc.extent};
-        context_.vk.CmdCopyBufferToImage(commands, staging_.handle, tables_[i].handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                                           &copy);
+        context_.vk.CmdCopyBufferToImage(commands, staging_.handle, tables_[i].handle,
+                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
         offset += align(program_.constants[i].desc.data.size(), 16);
         barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
         barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
         barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-        barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        const bool is_load_only = program_.constants[i].desc.is_load_only;
+        barrier.dstAccessMask =
+            is_load_only ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
         barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-        barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        barrier.newLayout = is_load_only ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         context_.vk.CmdPipelineBarrier2(commands, &dependency);
     }
 }
@@ -244,28 +269,33 @@ Result<> Chain::check_frame(const Frame& frame) const {
     for (const auto& which : program_.imports) {
         if (!which) continue;
         const ImageRef& image = host_image(frame, *which);
-        if (!image.is_given()) return user_error(fmt::format("record: frame.{} is not given, and the plan reads it", name_of(*which)));
+        if (!image.is_given())
+            return user_error(fmt::format("record: frame.{} is not given, and the plan reads it", name_of(*which)));
         if (const VkFormat expected = expected_format(desc_, *which); image.format != expected)
-            return user_error(fmt::format("record: frame.{} has format {}, the plan was compiled for {}", name_of(*which),
-                                          gpu::format_name(image.format), gpu::format_name(expected)));
+            return user_error(fmt::format("record: frame.{} has format {}, the plan was compiled for {}",
+                                          name_of(*which), gpu::format_name(image.format), gpu::format_name(expected)));
         const VkRect2D region = image.used_region();
         const VkExtent2D frame_extent = frame.color.used_region().extent;
         if (region.offset.x < 0 || region.offset.y < 0 || region.offset.x + region.extent.width > image.extent.width ||
             region.offset.y + region.extent.height > image.extent.height)
-            return user_error(fmt::format("record: the region of frame.{} does not lie inside its {}x{} image", name_of(*which),
-                                          image.extent.width, image.extent.height));
+            return user_error(fmt::format("record: the region of frame.{} does not lie inside its {}x{} image",
+                                          name_of(*which), image.extent.width, image.extent.height));
         if (region.extent.width != frame_extent.width || region.extent.height != frame_extent.height)
             return user_error(fmt::format("record: frame.{} is {}x{}, but frame.color is {}x{}", name_of(*which),
-                                          region.extent.width, region.extent.height, frame_extent.width, frame_extent.height));
+                                          region.extent.width, region.extent.height, frame_extent.width,
+                                          frame_extent.height));
         if (image.layer_count != 1)
-            return user_error(fmt::format("record: frame.{} has {} layers; 1 is allowed", name_of(*which), image.layer_count));
+            return user_error(
+                fmt::format("record: frame.{} has {} layers; 1 is allowed", name_of(*which), image.layer_count));
     }
     const VkExtent2D extent = frame.color.used_region().extent;
-    if (extent.width == 0 || extent.height == 0 || extent.width > desc_.max_extent.width || extent.height > desc_.max_extent.height)
+    if (extent.width == 0 || extent.height == 0 || extent.width > desc_.max_extent.width ||
+        extent.height > desc_.max_extent.height)
         return user_error(fmt::format("record: the frame is {}x{}; allowed is 1x1 to {}x{}, as compiled", extent.width,
                                       extent.height, desc_.max_extent.width, desc_.max_extent.height));
     if (frame.view >= desc_.views)
-        return user_error(fmt::format("record: view {} does not exist; allowed is [0, {}]", frame.view, desc_.views - 1));
+        return user_error(
+            fmt::format("record: view {} does not exist; allowed is [0, {}]", frame.view, desc_.views - 1));
     return {};
 }
 
@@ -286,13 +316,16 @@ void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
 }
 
 Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack) const {
-    if (pass.steps.empty() || pass.steps.size() > max_lean_steps) return no_shape;
-    Shape shape = 0;
+    Shape shape;
+    if (pass.steps.size() > max_lean_steps) return shape;
     for (std::size_t i = 0; i < pass.steps.size(); ++i) {
-        const Entry& entry = stack[pass.steps[i].entry];
-        if (!is_on_[pass.steps[i].entry]) continue;
-        shape |= (entry.is_plain() ? Shape{1} : Shape{3}) << (2 * i);
+        const std::uint32_t entry = pass.steps[i].entry;
+        if (is_on_[entry]) shape.steps |= (stack[entry].is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);
     }
+    for_each_choice(pass, [&](std::size_t step, const ParamInfo& row, std::uint32_t bit, std::uint32_t bits) {
+        const std::uint32_t entry = pass.steps[step].entry;
+        if (is_on_[entry]) shape.choices |= std::uint64_t{words_of(entry)[row.word] & ((1u << bits) - 1)} << bit;
+    });
     return shape;
 }
 
@@ -321,7 +354,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
     // Shaders get time in a float, so it wraps after an hour of the 1/60 s steps that effects think in.
     const float time = static_cast<float>(std::fmod(frame.time, 3600.0));
     const float delta = static_cast<float>(frame.delta_time);
-    const std::array<std::uint32_t, frame_words> frame_block{std::bit_cast<std::uint32_t>(time), std::bit_cast<std::uint32_t>(delta),
+    const std::array<std::uint32_t, frame_words> frame_block{std::bit_cast<std::uint32_t>(time),
+                                                             std::bit_cast<std::uint32_t>(delta),
                                                              static_cast<std::uint32_t>(frame.frame_index), frame.view};
     std::copy(frame_block.begin(), frame_block.end(), block);
     for (std::size_t i = 0; i < stack.size(); ++i) {
@@ -357,7 +391,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
     }
     const std::span<const graph::Barrier> barriers = schedule_->barriers();
     for (const graph::Schedule::Step& step : schedule_->steps()) {
-        physical_->record_barriers(commands, context_.vk, barriers.subspan(step.first_barrier, step.barrier_count), frame.view);
+        physical_->record_barriers(commands, context_.vk, barriers.subspan(step.first_barrier, step.barrier_count),
+                                   frame.view);
         record_pass(commands, declared_pass_[step.pass], frame, context, stack);
         if (is_timed) {
             timed_passes_[slot_].push_back(declared_pass_[step.pass]);
@@ -369,7 +404,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
     return {};
 }
 
-gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame, VkExtent2D extent) const {
+gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
+                              VkExtent2D extent) const {
     const graph::Slot& image = compiled_->slots()[slot];
     if (image.kind == graph::Slot::Kind::Import) {
         const ImageRef& host = host_image(frame, *program_.imports[image.import_index]);
@@ -380,9 +416,7 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
     if (image.kind == graph::Slot::Kind::Constant) {
         const auto constant = std::find_if(program_.constants.begin(), program_.constants.end(),
                                            [&](const Constant& c) { return c.import_index == image.import_index; });
-        const gpu::Image& table = tables_[static_cast<std::size_t>(constant - program_.constants.begin())];
-        const VkExtent2D size{table.info.extent.width, table.info.extent.height};
-        return {.view = table.view, .region = {{}, size, size}};
+        return bind_table(static_cast<std::size_t>(constant - program_.constants.begin()));
     }
     const std::uint32_t mip = std::min(mip_level, image.desc.mip_levels - 1);
     return {.view = physical_->mip_view(slot, mip, frame.view),
@@ -391,7 +425,14 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
                        graph::mip_extent(image.desc.size.of(desc_.max_extent), mip)}};
 }
 
+gpu::Binding Chain::bind_table(std::size_t index) const {
+    const gpu::Image& table = tables_[index];
+    const VkExtent2D size{table.info.extent.width, table.info.extent.height};
+    return {.view = table.view, .region = {{}, size, size}};
+}
+
 gpu::Binding Chain::bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const {
+    if (input.table != no_table) return bind_table(input.table);
     return bind_slot(schedule_->slot_of(input.version), input.mip_level, frame, extent);
 }
 
@@ -400,7 +441,8 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     const ProgramPass& pass = program_.passes[index];
     std::array<gpu::Binding, most_images> images;
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) images[i] = bind(pass.inputs[i], frame, context.frame_extent);
-    const gpu::Binding output = bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
+    const gpu::Binding output =
+        bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
 
     const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
     if (pass.constants != nullptr) {
@@ -413,9 +455,8 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     gpu::write_pass_block(pass.spec, output.region, inputs, custom,
                           {pass_blocks_.memory.mapped + block_offset, gpu::pass_block_size(pass.spec)});
 
-    const Shape shape = shape_of(pass, stack);
-    const gpu::Kernel& kernel = shape == no_shape ? variants_[index]->complete() : variants_[index]->find(shape);
-    if (shape != no_shape && &kernel == &variants_[index]->complete()) builders_->wake();
+    const gpu::Kernel& kernel = variants_[index]->find(shape_of(pass, stack));
+    if (variants_[index]->has_lean() && &kernel == &variants_[index]->complete()) builders_->wake();
     gpu::begin_label(context_, commands, pass.name.c_str());
     kernel.record(commands, {.set = sets_.sets[set_at_[index] + slot_],
                              .constants = constants_.handle,

@@ -18,9 +18,9 @@ namespace darkroom::compose {
 
 class Chain {
   public:
-    [[nodiscard]] static Result<std::unique_ptr<Chain>> create(gpu::Context& context, Program program, const CompileDesc& desc,
-                                                               std::uint32_t slots, bool has_timers,
-                                                               std::span<const Entry> stack);
+    [[nodiscard]] static Result<std::unique_ptr<Chain>> create(gpu::Context& context, Program program,
+                                                               const CompileDesc& desc, std::uint32_t slots,
+                                                               bool has_timers, std::span<const Entry> stack);
     ~Chain();
 
     /// Allocates nothing and waits for nothing. On error nothing is recorded.
@@ -41,8 +41,10 @@ class Chain {
     void upload_constants(VkCommandBuffer commands);
     void evaluate(std::span<const Entry> stack, const PassContext& context);
     [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack) const;
+    [[nodiscard]] gpu::Binding bind_table(std::size_t index) const;
     [[nodiscard]] gpu::Binding bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const;
-    [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame, VkExtent2D extent) const;
+    [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
+                                         VkExtent2D extent) const;
     void record_pass(VkCommandBuffer commands, std::uint32_t pass, const Frame& frame, const PassContext& context,
                      std::span<const Entry> stack);
     [[nodiscard]] const std::uint32_t* words_of(std::uint32_t entry) const { return words_.data() + words_at_[entry]; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <darkroom/composer.hpp>
 #include <fmt/format.h>
+#include <darkroom/composer.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -28,7 +28,9 @@ Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& 
     return failure(std::move(ok));
 }
 
-std::string shown(const compose::Entry& entry, const ParamInfo& row) { return fmt::format("{}.{}", entry.inputs.name, row.name); }
+std::string shown(const compose::Entry& entry, const ParamInfo& row) {
+    return fmt::format("{}.{}", entry.inputs.name, row.name);
+}
 
 }  // namespace
 
@@ -55,7 +57,9 @@ struct Composer::State {
     std::vector<Retired> retired;
     double record_microseconds = 0;
 
-    [[nodiscard]] std::uint32_t slots() const { return desc.frames_in_flight * (compiled_for ? compiled_for->views : 1); }
+    [[nodiscard]] std::uint32_t slots() const {
+        return desc.frames_in_flight * (compiled_for ? compiled_for->views : 1);
+    }
     compose::Entry& at(Handle handle) {
         DARKROOM_ASSERT(handle.id >= 1 && handle.id <= stack.size());
         return stack[handle.id - 1];
@@ -71,7 +75,8 @@ struct Composer::State {
         if (const ParamInfo* const found = entry.info->parameters.find(parameter)) return found;
         std::vector<std::string> names;
         for (const ParamInfo& info : entry.info->parameters.rows) names.emplace_back(info.name);
-        return user_error(fmt::format("{} has no parameter '{}'{}", entry.inputs.name, parameter, suggestion(parameter, names)));
+        return user_error(
+            fmt::format("{} has no parameter '{}'{}", entry.inputs.name, parameter, suggestion(parameter, names)));
     }
 };
 
@@ -123,9 +128,10 @@ Result<> Composer::set_opacity(Handle handle, float opacity) {
     const bool is_mixable = !state_->chain || state_->chain->program().is_mixable.size() < handle.id ||
                             state_->chain->program().is_mixable[handle.id - 1];
     if (!is_mixable && opacity > 0 && opacity < 1)
-        return user_error(fmt::format("{}: opacity = {}: it has passes of its own and was compiled with opacity 1; allowed are 0 and 1, "
-                                      "or add it with an opacity below 1 and compile",
-                                      entry.inputs.name, opacity));
+        return user_error(fmt::format(
+            "{}: opacity = {}: it has passes of its own and was compiled with opacity 1; allowed are 0 and 1, "
+            "or add it with an opacity below 1 and compile",
+            entry.inputs.name, opacity));
     entry.inputs.opacity = opacity;
     return {};
 }
@@ -158,9 +164,8 @@ Result<> Composer::set_override(Handle handle, std::string_view parameter, std::
     if (!row) return tl::unexpected(row.error());
     compose::Entry& entry = state_->at(handle);
     if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
-    const auto found = std::find_if(entry.overrides.begin(), entry.overrides.end(), [&](const auto& o) {
-        return o.owner == owner && o.word == (*row)->word;
-    });
+    const auto found = std::find_if(entry.overrides.begin(), entry.overrides.end(),
+                                    [&](const auto& o) { return o.owner == owner && o.word == (*row)->word; });
     if (found == entry.overrides.end()) {
         entry.overrides.push_back({.owner = std::string(owner), .word = (*row)->word, .words = (*row)->words});
     } else {
@@ -171,7 +176,8 @@ Result<> Composer::set_override(Handle handle, std::string_view parameter, std::
 }
 
 void Composer::drop_overrides(std::string_view owner) {
-    for (compose::Entry& entry : state_->stack) std::erase_if(entry.overrides, [&](const auto& o) { return o.owner == owner; });
+    for (compose::Entry& entry : state_->stack)
+        std::erase_if(entry.overrides, [&](const auto& o) { return o.owner == owner; });
 }
 
 std::vector<std::uint32_t> Composer::current(Handle handle) const {
@@ -191,14 +197,16 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const {
 
 Result<Plan> Composer::compile(const CompileDesc& desc) {
     const std::uint32_t limit = state_->device->context().traits.max_image_dimension;
-    if (desc.max_extent.width == 0 || desc.max_extent.height == 0 || desc.max_extent.width > limit || desc.max_extent.height > limit)
-        return user_error(fmt::format("size {}x{}: this device allows 1x1 to {}x{}", desc.max_extent.width, desc.max_extent.height,
-                                      limit, limit));
+    if (desc.max_extent.width == 0 || desc.max_extent.height == 0 || desc.max_extent.width > limit ||
+        desc.max_extent.height > limit)
+        return user_error(fmt::format("size {}x{}: this device allows 1x1 to {}x{}", desc.max_extent.width,
+                                      desc.max_extent.height, limit, limit));
     if (desc.views == 0) return user_error("views = 0: allowed is 1 and more");
     auto program = state_->program(desc);
     if (!program) return failure(std::move(program));
-    auto chain = compose::Chain::create(state_->device->context(), std::move(*program), desc, state_->desc.frames_in_flight * desc.views,
-                                        state_->desc.has_timers, state_->stack);
+    auto chain =
+        compose::Chain::create(state_->device->context(), std::move(*program), desc,
+                               state_->desc.frames_in_flight * desc.views, state_->desc.has_timers, state_->stack);
     if (!chain) return failure(std::move(chain));
     if (state_->chain) state_->retired.push_back({std::move(state_->chain), state_->slots()});
     state_->chain = std::move(*chain);
@@ -215,7 +223,8 @@ Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {
     if (!state_->retired.empty())
         std::erase_if(state_->retired, [](State::Retired& retired) { return retired.recordings_left-- == 0; });
     auto ok = state_->chain->record(commands, frame, state_->stack);
-    state_->record_microseconds = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    state_->record_microseconds =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     return ok;
 }
 
@@ -225,7 +234,9 @@ void Composer::wait_for_kernels() {
         state_->device->context().say(Severity::Warning, ok.error().text);
 }
 
-std::span<const PassTime> Composer::times() { return state_->chain ? state_->chain->times() : std::span<const PassTime>{}; }
+std::span<const PassTime> Composer::times() {
+    return state_->chain ? state_->chain->times() : std::span<const PassTime>{};
+}
 double Composer::record_microseconds() const { return state_->record_microseconds; }
 
 Result<Plan> Composer::rebind(Device& device) {

@@ -7,7 +7,8 @@ namespace darkroom::compose {
 namespace {
 
 std::uint64_t bytes_of(const graph::Slot& slot, VkExtent2D frame, std::uint32_t mip_level) {
-    const VkExtent2D extent = graph::mip_extent(slot.desc.size.of(frame), mip_level < slot.desc.mip_levels ? mip_level : 0);
+    const VkExtent2D extent =
+        graph::mip_extent(slot.desc.size.of(frame), mip_level < slot.desc.mip_levels ? mip_level : 0);
     return std::uint64_t{extent.width} * extent.height * gpu::format_traits(slot.desc.format).bits / 8;
 }
 
@@ -23,7 +24,8 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
     graph::Schedule schedule(compiled);
     const auto toggles = std::make_unique<bool[]>(program.toggles.size() + 1);
     std::fill_n(toggles.get(), program.toggles.size(), true);
-    schedule.derive({toggles.get(), program.toggles.size()}, std::vector<graph::ImportState>(program.imports.size()), 0);
+    schedule.derive({toggles.get(), program.toggles.size()}, std::vector<graph::ImportState>(program.imports.size()),
+                    0);
 
     for (std::uint32_t i = 0; i < program.passes.size(); ++i) {
         const std::uint32_t kept = compiled.kept_pass_of({i});
@@ -37,7 +39,9 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
                      .extent = graph::mip_extent(output.desc.size.of(desc.max_extent), pass.output_mip_level),
                      .bytes_written = bytes_of(output, desc.max_extent, pass.output_mip_level)};
         for (const PassInput& input : pass.inputs)
-            out.bytes_read += bytes_of(compiled.slots()[schedule.slot_of(input.version)], desc.max_extent, input.mip_level);
+            if (input.table == no_table)
+                out.bytes_read +=
+                    bytes_of(compiled.slots()[schedule.slot_of(input.version)], desc.max_extent, input.mip_level);
         if (pass.spec.is_additive) out.bytes_read += out.bytes_written;
         for (const FusedStep& step : pass.steps) out.entries.push_back(step.name);
         plan.passes.push_back(std::move(out));

@@ -45,7 +45,8 @@ VkImageUsageFlags target_usage(const gpu::Context& context, VkFormat format) {
     return usage;
 }
 
-void barrier(gpu::Context& context, VkCommandBuffer commands, const gpu::Image& image, VkImageLayout before, VkImageLayout after) {
+void barrier(gpu::Context& context, VkCommandBuffer commands, const gpu::Image& image, VkImageLayout before,
+             VkImageLayout after) {
     const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
                                        .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                        .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
@@ -92,7 +93,9 @@ CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const De
     const bool is_bytes = desc.target == DevelopTarget::Encoded8;
     const VkFormat target = is_bytes ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
     const std::array<Layer, 4> layers = layers_of(input);
-    const auto format = [&](std::size_t i) { return layers[i].values.empty() ? VK_FORMAT_UNDEFINED : layers[i].format; };
+    const auto format = [&](std::size_t i) {
+        return layers[i].values.empty() ? VK_FORMAT_UNDEFINED : layers[i].format;
+    };
     return {.max_extent = input.extent,
             .color = color_format,
             .depth = format(1),
@@ -110,7 +113,8 @@ Result<> check_extent(Device& device, VkExtent2D extent) {
     const std::uint32_t limit = device.context().traits.max_image_dimension;
     const auto [width, height] = extent;
     if (width > 0 && height > 0 && width <= limit && height <= limit) return {};
-    return user_error(fmt::format("size {}x{}: {} allows 1x1 to {}x{}", width, height, device.info().name, limit, limit));
+    return user_error(
+        fmt::format("size {}x{}: {} allows 1x1 to {}x{}", width, height, device.info().name, limit, limit));
 }
 
 struct Developer::State {
@@ -130,17 +134,18 @@ struct Developer::State {
             const std::size_t wanted = std::size_t{width} * height * layer.given;
             const bool is_required = layer.given == 4;
             if (layer.values.size() != wanted && (is_required || !layer.values.empty()))
-                return user_error(fmt::format("{}: {} numbers, {}x{} pixels need {}", layer.name, layer.values.size(), width, height,
-                                              wanted));
+                return user_error(fmt::format("{}: {} numbers, {}x{} pixels need {}", layer.name, layer.values.size(),
+                                              width, height, wanted));
         }
         return {};
     }
 
     Result<> compile(Composer& composer, const DevelopInput& input) {
         const CompileDesc wanted = compile_desc_for(*device, input, desc);
-        const bool is_same = compiled && compiled_composer == &composer && compiled->max_extent.width == wanted.max_extent.width &&
-                             compiled->max_extent.height == wanted.max_extent.height && compiled->depth == wanted.depth &&
-                             compiled->normals == wanted.normals && compiled->velocity == wanted.velocity;
+        const bool is_same =
+            compiled && compiled_composer == &composer && compiled->max_extent.width == wanted.max_extent.width &&
+            compiled->max_extent.height == wanted.max_extent.height && compiled->depth == wanted.depth &&
+            compiled->normals == wanted.normals && compiled->velocity == wanted.velocity;
         if (is_same) return {};
         compiled.reset();
         images.reset();
@@ -162,13 +167,14 @@ struct Developer::State {
         for (std::size_t i = 0; i < layers.size(); ++i) {
             const Layer& layer = layers[i];
             if (layer.values.empty()) continue;
-            auto image = gpu::Image::create(context(), {.name = layer.name,
-                                                        .format = layer.format,
-                                                        .extent = extent,
-                                                        .usage = shader_usage(context(), layer.format) | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+            auto image = gpu::Image::create(
+                context(), {.name = layer.name,
+                            .format = layer.format,
+                            .extent = extent,
+                            .usage = shader_usage(context(), layer.format) | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
             if (!image) return failure(std::move(image));
-            auto buffer = gpu::Buffer::create(context(), pixels * layer.kept * sizeof(float), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                              gpu::Memory::Kind::Upload, layer.name);
+            auto buffer = gpu::Buffer::create(context(), pixels * layer.kept * sizeof(float),
+                                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, layer.name);
             if (!buffer) return failure(std::move(buffer));
             made.layers[i] = std::move(*image);
             made.uploads[i] = std::move(*buffer);
@@ -179,8 +185,8 @@ struct Developer::State {
                                                      .usage = wanted.target_usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
         if (!target) return failure(std::move(target));
         const VkDeviceSize texel = desc.target == DevelopTarget::Encoded8 ? 4 : 16;
-        auto readback = gpu::Buffer::create(context(), pixels * texel, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::Kind::Readback,
-                                            "developed picture");
+        auto readback = gpu::Buffer::create(context(), pixels * texel, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                            gpu::Memory::Kind::Readback, "developed picture");
         if (!readback) return failure(std::move(readback));
         made.target = std::move(*target);
         made.readback = std::move(*readback);
@@ -208,9 +214,9 @@ struct Developer::State {
 
     Result<> run(Composer& composer, const DevelopInput& input) {
         Result<> recorded{};
-        const Result<> submitted = gpu::submit_and_wait(context(), "developing a picture", [&](VkCommandBuffer commands) {
-            recorded = record(composer, input, commands);
-        });
+        const Result<> submitted =
+            gpu::submit_and_wait(context(), "developing a picture",
+                                 [&](VkCommandBuffer commands) { recorded = record(composer, input, commands); });
         if (!recorded) return recorded;
         return submitted;
     }

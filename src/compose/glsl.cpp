@@ -53,32 +53,48 @@ std::span<const Scalar> scalars_of(Kind kind) {
     static constexpr Scalar vector[] = {{"float", "_x"}, {"float", "_y"}, {"float", "_z"}, {"float", "_w"}};
     static constexpr Scalar rgb[] = {{"float", "_r"}, {"float", "_g"}, {"float", "_b"}};
     switch (kind) {
-        case Kind::Float: return real;
-        case Kind::Int: return integer;
+        case Kind::Float:
+            return real;
+        case Kind::Int:
+            return integer;
         case Kind::Toggle:
-        case Kind::Choice: return natural;
-        case Kind::Vec2: return std::span(vector).first(2);
-        case Kind::Vec3: return std::span(vector).first(3);
-        case Kind::Vec4: return vector;
-        case Kind::Rgb: return rgb;
+        case Kind::Choice:
+            return natural;
+        case Kind::Vec2:
+            return std::span(vector).first(2);
+        case Kind::Vec3:
+            return std::span(vector).first(3);
+        case Kind::Vec4:
+            return vector;
+        case Kind::Rgb:
+            return rgb;
         case Kind::Curve:
-        case Kind::Resource: break;
+        case Kind::Resource:
+            break;
     }
     return {};
 }
 
 const char* glsl_type(Kind kind) {
     switch (kind) {
-        case Kind::Float: return "float";
-        case Kind::Int: return "int";
+        case Kind::Float:
+            return "float";
+        case Kind::Int:
+            return "int";
         case Kind::Toggle:
-        case Kind::Choice: return "uint";
-        case Kind::Vec2: return "vec2";
+        case Kind::Choice:
+            return "uint";
+        case Kind::Vec2:
+            return "vec2";
         case Kind::Vec3:
-        case Kind::Rgb: return "vec3";
-        case Kind::Vec4: return "vec4";
-        case Kind::Curve: return "Curve";
-        case Kind::Resource: break;
+        case Kind::Rgb:
+            return "vec3";
+        case Kind::Vec4:
+            return "vec4";
+        case Kind::Curve:
+            return "Curve";
+        case Kind::Resource:
+            break;
     }
     return "";
 }
@@ -102,8 +118,8 @@ Result<void> append_with_includes(std::string& out, std::string_view text, const
         const std::string_view name = content.substr(directive.size(), content.rfind('"') - directive.size());
         const std::string_view included = file_text(shared_files(), name);
         if (included.empty() || depth > 8)
-            return user_error(fmt::format("effects/{}:{}: #include \"{}\": there is no such file in effects/shared", shown_name,
-                                          line, name));
+            return user_error(fmt::format("effects/{}:{}: #include \"{}\": there is no such file in effects/shared",
+                                          shown_name, line, name));
         if (const auto ok = append_with_includes(out, included, std::string(name), depth + 1); !ok) return ok;
         out += fmt::format("#line {} \"effects/{}\"\n", line + 1, shown_name);
     }
@@ -131,17 +147,19 @@ void write_block(const ParamTable& table, std::span<const std::uint32_t> words, 
 std::string entry_suffix(std::uint32_t entry) { return fmt::format("_e{}", entry); }
 
 std::string frame_members() {
-    return "    layout(offset = 0) float frame_time;\n    float frame_delta_time;\n    uint frame_index;\n    uint frame_view;\n";
+    return "    layout(offset = 0) float frame_time;\n    float frame_delta_time;\n    uint frame_index;\n    uint "
+           "frame_view;\n";
 }
 
 std::string entry_members(const EffectInfo& info, std::uint32_t entry, std::uint32_t first_word) {
     const std::string prefix = block_prefix(info, entry);
-    std::string out = fmt::format("    layout(offset = {}) uint {}enabled_;\n    float {}opacity_;\n    uint {}blend_;\n",
-                                  first_word * 4, prefix, prefix, prefix);
+    std::string out =
+        fmt::format("    layout(offset = {}) uint {}enabled_;\n    float {}opacity_;\n    uint {}blend_;\n",
+                    first_word * 4, prefix, prefix, prefix);
     for (const ParamInfo& row : info.parameters.rows) {
         if (row.kind == Kind::Curve)
-            out += fmt::format("    uint {0}{1}_count;\n    float {0}{1}_x[{2}];\n    float {0}{1}_y[{2}];\n", prefix, row.name,
-                               Curve::capacity);
+            out += fmt::format("    uint {0}{1}_count;\n    float {0}{1}_x[{2}];\n    float {0}{1}_y[{2}];\n", prefix,
+                               row.name, Curve::capacity);
         for (const Scalar& scalar : scalars_of(row.kind))
             out += fmt::format("    {} {}{}{};\n", scalar.type, prefix, row.name, scalar.suffix);
     }
@@ -149,7 +167,8 @@ std::string entry_members(const EffectInfo& info, std::uint32_t entry, std::uint
 }
 
 std::string curve_struct() {
-    return fmt::format("struct Curve {{\n    uint count;\n    float x[{0}];\n    float y[{0}];\n}};\n", Curve::capacity);
+    return fmt::format("struct Curve {{\n    uint count;\n    float x[{0}];\n    float y[{0}];\n}};\n",
+                       Curve::capacity);
 }
 
 std::string parameter_struct(const ParamTable& table) {
@@ -164,12 +183,16 @@ std::string parameter_struct(const ParamTable& table) {
     return fmt::format("struct {} {{\n{}}};\n{}", table.struct_name, members, constants);
 }
 
-std::string parameter_loader(const EffectInfo& info, std::uint32_t entry) {
+std::string parameter_loader(const EffectInfo& info, std::uint32_t entry, std::span<const Baked> baked) {
     const std::string prefix = block_prefix(info, entry);
     std::string arguments;
     for (const ParamInfo& row : info.parameters.rows) {
         if (row.kind == Kind::Resource) continue;
         if (!arguments.empty()) arguments += ", ";
+        if (const auto found = std::ranges::find(baked, &row, &Baked::row); found != baked.end()) {
+            arguments += fmt::format("{}u", found->value);
+            continue;
+        }
         if (row.kind == Kind::Curve) {
             std::string x, y;
             for (std::size_t i = 0; i < Curve::capacity; ++i) {
@@ -198,7 +221,8 @@ Result<std::string> instance_text(const EffectInfo& info, std::string_view file,
     // Names that the shared files define keep them, even where they begin with the effect's name.
     std::set<std::string_view> shared;
     for (const EffectFile& other : shared_files())
-        scan(other.text, [&](std::string_view word, std::size_t) { shared.insert(word); }, [](std::string_view) {});
+        scan(
+            other.text, [&](std::string_view word, std::size_t) { shared.insert(word); }, [](std::string_view) {});
 
     const std::string prefix = std::string(info.name) + "_";
     std::string renamed;
@@ -225,7 +249,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish) 
         if (!step.is_merge) {
             if (structs.insert(step.info->parameters.struct_name).second)
                 declarations += parameter_struct(step.info->parameters);
-            declarations += parameter_loader(*step.info, step.entry);
+            declarations += parameter_loader(*step.info, step.entry, step.baked);
             auto text = instance_text(*step.info, fmt::format("{}.glsl", step.info->name), step.entry, step.sides);
             if (!text) return failure(std::move(text));
             declarations += *text;
@@ -247,13 +271,18 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish) 
 
     std::string helpers;
     if (has_merge) {
-        if (auto ok = append_with_includes(helpers, file_text(shared_files(), "shared/merge.glsl"), "shared/merge.glsl", 0); !ok)
+        if (auto ok =
+                append_with_includes(helpers, file_text(shared_files(), "shared/merge.glsl"), "shared/merge.glsl", 0);
+            !ok)
             return failure(std::move(ok));
     }
     if (finish != Finish::None) {
-        if (auto ok = append_with_includes(helpers, file_text(shared_files(), "shared/srgb.glsl"), "shared/srgb.glsl", 0); !ok)
+        if (auto ok =
+                append_with_includes(helpers, file_text(shared_files(), "shared/srgb.glsl"), "shared/srgb.glsl", 0);
+            !ok)
             return failure(std::move(ok));
-        code += finish == Finish::EncodeSrgb ? "    color.rgb = srgb_encode(color.rgb);\n" : "    color.rgb = srgb_decode(color.rgb);\n";
+        code += finish == Finish::EncodeSrgb ? "    color.rgb = srgb_encode(color.rgb);\n"
+                                             : "    color.rgb = srgb_decode(color.rgb);\n";
     }
     const bool is_warp = !steps.empty() && steps.front().info->touch == Touch::Warp && !steps.front().is_merge;
     return fmt::format(

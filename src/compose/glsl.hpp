@@ -31,8 +31,15 @@ inline constexpr std::uint32_t frame_words = 4;
 [[nodiscard]] std::string curve_struct();
 /// `struct Bloom { float intensity; ... };` and a constant for every choice: Bloom_mode_additive.
 [[nodiscard]] std::string parameter_struct(const ParamTable& table);
+/// A choice or toggle that a lean kernel holds as a literal: the compiler then drops the branches not taken, which some
+/// drivers would run on both sides.
+struct Baked {
+    const ParamInfo* row = nullptr;
+    std::uint32_t value = 0;
+};
 /// `Bloom bloom_parameters_e3() { return Bloom(bloom_e3_intensity, ...); }`
-[[nodiscard]] std::string parameter_loader(const EffectInfo& info, std::uint32_t entry);
+[[nodiscard]] std::string parameter_loader(const EffectInfo& info, std::uint32_t entry,
+                                           std::span<const Baked> baked = {});
 
 /// An effect's file with its includes expanded, #line directives set, and its own names (and `also`) given the entry's
 /// suffix, so that two entries of one effect fit one kernel.
@@ -43,13 +50,14 @@ inline constexpr std::uint32_t frame_words = 4;
 struct FusedStep {
     const EffectInfo* info = nullptr;
     std::uint32_t entry = 0;
-    std::string name;                 ///< of the entry
-    std::vector<std::string> sides;   ///< names that the effect's text calls its side images
-    bool is_merge = false;            ///< only lays image layer_e<entry> over the picture
-    bool has_mask = false;            ///< image mask_e<entry>
+    std::string name;                ///< of the entry
+    std::vector<std::string> sides;  ///< names that the effect's text calls its side images
+    bool is_merge = false;           ///< only lays image layer_e<entry> over the picture
+    bool has_mask = false;           ///< image mask_e<entry>
     // Of a lean kernel:
-    bool is_certain = false;          ///< on: no branch
-    bool is_plain = false;            ///< opacity 1, no blending, no mask
+    bool is_certain = false;  ///< on: no branch
+    bool is_plain = false;    ///< opacity 1, no blending, no mask
+    std::vector<Baked> baked;
 };
 enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb };
 /// The body of a fused kernel: reads image `picture`, applies the steps in order, finishes for the target.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <darkroom/plan.hpp>
 #include <fmt/format.h>
+#include <darkroom/plan.hpp>
 
 namespace darkroom {
 
@@ -44,8 +44,9 @@ std::string Plan::text() const {
     std::string out = fmt::format("{} x {}, {} passes\n", extent.width, extent.height, passes.size());
     for (std::size_t i = 0; i < passes.size(); ++i) {
         const PlanPass& pass = passes[i];
-        out += fmt::format("{:3}  {}  ({}, {} x {}, reads {:.2f} MiB, writes {:.2f} MiB)\n", i + 1, pass.name, pass.stage,
-                           pass.extent.width, pass.extent.height, mebibytes(pass.bytes_read), mebibytes(pass.bytes_written));
+        out += fmt::format("{:3}  {}  ({}, {} x {}, reads {:.2f} MiB, writes {:.2f} MiB)\n", i + 1, pass.name,
+                           pass.stage, pass.extent.width, pass.extent.height, mebibytes(pass.bytes_read),
+                           mebibytes(pass.bytes_written));
         if (pass.entries.size() > 1) {
             out += "     fused:";
             for (const std::string& entry : pass.entries) out += " " + entry;
@@ -53,7 +54,8 @@ std::string Plan::text() const {
         }
         out += fmt::format("     new pass because {}\n", pass.boundary);
     }
-    out += fmt::format("moved per frame: {:.2f} MiB read, {:.2f} MiB written\n", mebibytes(bytes_read()), mebibytes(bytes_written()));
+    out += fmt::format("moved per frame: {:.2f} MiB read, {:.2f} MiB written\n", mebibytes(bytes_read()),
+                       mebibytes(bytes_written()));
     out += fmt::format("transient memory: {:.2f} MiB ({:.2f} MiB before aliasing)\n", mebibytes(transient_bytes),
                        mebibytes(transient_bytes_unaliased));
     for (const std::string& text : left_out) out += fmt::format("left out: {}\n", text);
@@ -68,12 +70,14 @@ std::string Plan::json() const {
         items += fmt::format(
             "\n    {{\"name\": {}, \"stage\": {}, \"entries\": {}, \"boundary\": {}, \"width\": {}, \"height\": {}, "
             "\"bytes_read\": {}, \"bytes_written\": {}}}",
-            quoted(pass.name), quoted(pass.stage), list(pass.entries), quoted(pass.boundary), pass.extent.width, pass.extent.height,
-            pass.bytes_read, pass.bytes_written);
+            quoted(pass.name), quoted(pass.stage), list(pass.entries), quoted(pass.boundary), pass.extent.width,
+            pass.extent.height, pass.bytes_read, pass.bytes_written);
     }
     return fmt::format(
-        "{{\n  \"width\": {}, \"height\": {}, \"dispatches\": {},\n  \"passes\": [{}\n  ],\n  \"bytes_read\": {}, \"bytes_written\": "
-        "{},\n  \"transient_bytes\": {}, \"transient_bytes_unaliased\": {},\n  \"left_out\": {},\n  \"remarks\": {}\n}}\n",
+        "{{\n  \"width\": {}, \"height\": {}, \"dispatches\": {},\n  \"passes\": [{}\n  ],\n  \"bytes_read\": {}, "
+        "\"bytes_written\": "
+        "{},\n  \"transient_bytes\": {}, \"transient_bytes_unaliased\": {},\n  \"left_out\": {},\n  \"remarks\": "
+        "{}\n}}\n",
         extent.width, extent.height, passes.size(), items, bytes_read(), bytes_written(), transient_bytes,
         transient_bytes_unaliased, list(left_out), list(remarks));
 }

@@ -16,9 +16,12 @@ namespace {
 
 const char* name_of(Domain domain) {
     switch (domain) {
-        case Domain::SceneLinear: return "scene_linear";
-        case Domain::DisplayLinear: return "display_linear";
-        case Domain::Encoded: return "encoded";
+        case Domain::SceneLinear:
+            return "scene_linear";
+        case Domain::DisplayLinear:
+            return "display_linear";
+        case Domain::Encoded:
+            return "encoded";
     }
     return "";
 }
@@ -28,7 +31,8 @@ bool is_float(VkFormat format) {
            format == VK_FORMAT_B10G11R11_UFLOAT_PACK32;
 }
 bool is_srgb(VkFormat format) {
-    return format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB || format == VK_FORMAT_A8B8G8R8_SRGB_PACK32;
+    return format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB ||
+           format == VK_FORMAT_A8B8G8R8_SRGB_PACK32;
 }
 
 std::string missing_needs(const Needs& needs, const CompileDesc& desc) {
@@ -78,8 +82,8 @@ Result<Program> Planner::run() {
 Result<> Planner::check_handles() const {
     const auto check = [&](std::uint32_t entry, Handle handle, std::string_view which) -> Result<> {
         if (!handle.is_given() || handle == scene_color || handle.id - 1 < entry) return {};
-        return user_error(fmt::format("stack entry '{}': its {} is not the output of an earlier entry", stack_[entry].inputs.name,
-                                      which));
+        return user_error(fmt::format("stack entry '{}': its {} is not the output of an earlier entry",
+                                      stack_[entry].inputs.name, which));
     };
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const Inputs& inputs = stack_[i].inputs;
@@ -88,8 +92,8 @@ Result<> Planner::check_handles() const {
         if (auto ok = check(i, inputs.second, "second"); !ok) return ok;
         if (auto ok = check(i, inputs.mask, "mask"); !ok) return ok;
         if (stack_[i].info->has_second && !inputs.second.is_given())
-            return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`", inputs.name,
-                                          stack_[i].info->name));
+            return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
+                                          inputs.name, stack_[i].info->name));
     }
     return {};
 }
@@ -124,8 +128,8 @@ void Planner::remark_domain(std::uint32_t entry, Domain domain) {
     std::string accepted;
     for (const Domain d : {Domain::SceneLinear, Domain::DisplayLinear, Domain::Encoded})
         if (info.accepts.contains(d)) accepted += fmt::format("{}{}", accepted.empty() ? "" : " or ", name_of(d));
-    program_.remarks.push_back(
-        fmt::format("{} expects a {} picture and gets a {} one.", stack_[entry].inputs.name, accepted, name_of(domain)));
+    program_.remarks.push_back(fmt::format("{} expects a {} picture and gets a {} one.", stack_[entry].inputs.name,
+                                           accepted, name_of(domain)));
 }
 
 std::size_t Planner::value_of(Handle handle, std::uint32_t entry) const {
@@ -163,7 +167,8 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
         info.build(builder);
         if (!builder.error.empty()) return user_error(builder.error);
     }
-    if (info.touch == Touch::Neighbourhood || info.touch == Touch::History) return add_result(entry, input, builder, domain);
+    if (info.touch == Touch::Neighbourhood || info.touch == Touch::History)
+        return add_result(entry, input, builder, domain);
 
     FusedStep step{.info = &info, .entry = entry, .name = stack_[entry].inputs.name};
     std::vector<PassInput> side_inputs;
@@ -172,7 +177,8 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
         side_inputs.push_back(side.input);
     }
     if (info.has_second) {
-        auto second = materialise(value_of(stack_[entry].inputs.second, entry), fmt::format("{} reads it as its second picture", stack_[entry].inputs.name));
+        auto second = materialise(value_of(stack_[entry].inputs.second, entry),
+                                  fmt::format("{} reads it as its second picture", stack_[entry].inputs.name));
         if (!second) return failure(std::move(second));
         step.sides.emplace_back("second");
         side_inputs.push_back({.version = *second});
@@ -199,8 +205,8 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
     return append(entry, values_.size() - 1, std::move(step), {{.version = builder.output}}, domain);
 }
 
-Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, FusedStep step, std::vector<PassInput> sides,
-                                    Domain domain) {
+Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, FusedStep step,
+                                    std::vector<PassInput> sides, Domain domain) {
     const std::string& name = stack_[entry].inputs.name;
     const Value from = values_[input];
     std::size_t kernel = from.kernel;
@@ -220,7 +226,8 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         }
     }
     if (stack_[entry].inputs.mask.is_given()) {
-        auto mask = materialise(value_of(stack_[entry].inputs.mask, entry), fmt::format("{} reads it as its mask", name));
+        auto mask =
+            materialise(value_of(stack_[entry].inputs.mask, entry), fmt::format("{} reads it as its mask", name));
         if (!mask) return failure(std::move(mask));
         step.has_mask = true;
         kernels_[kernel].images.push_back({"mask" + entry_suffix(entry), {.version = *mask}});
@@ -241,8 +248,8 @@ std::size_t Planner::open_kernel(std::size_t input, std::string why) {
 
 Result<graph::Version> Planner::materialise(std::size_t index, const std::string& why) {
     if (values_[index].image.is_valid()) return values_[index].image;
-    const graph::Version image = program_.graph.create(
-        {.name = fmt::format("picture {}", kernels_.size()), .format = desc_.intermediate});
+    const graph::Version image =
+        program_.graph.create({.name = fmt::format("picture {}", kernels_.size()), .format = desc_.intermediate});
     facts_[image.index] = {.root = image.index, .format = desc_.intermediate, .has_storage = true};
     auto version = close_kernel(values_[index].kernel, image, desc_.intermediate, Finish::None, false);
     if (!version) return version;
@@ -263,7 +270,8 @@ Result<> Planner::finish() {
         } else if (!is_srgb(desc_.target) && !is_float(desc_.target)) {
             finish = Finish::EncodeSrgb;
             program_.remarks.push_back(fmt::format(
-                "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.", name_of(domain)));
+                "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
+                name_of(domain)));
         }
     }
     std::size_t kernel = values_[last].kernel;
@@ -283,7 +291,8 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
                                              bool is_last) {
     OpenKernel& kernel = kernels_[index];
     ProgramPass pass{.boundary = kernel.boundary, .steps = kernel.steps, .finish = finish};
-    const bool is_warp = !kernel.steps.empty() && kernel.steps.front().info->touch == Touch::Warp && !kernel.steps.front().is_merge;
+    const bool is_warp =
+        !kernel.steps.empty() && kernel.steps.front().info->touch == Touch::Warp && !kernel.steps.front().is_merge;
 
     Toggle toggle;
     for (const FusedStep& step : kernel.steps) {
@@ -297,13 +306,15 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     pass.spec.constants = frame_members() + pass.spec.constants;
     pass.spec.outputs = {format};
     // imageLoad needs GENERAL, sampling the other layout: one image can be in one of them.
-    const bool is_shared = std::ranges::any_of(
-        kernel.images, [&](const auto& image) { return may_share(kernel.picture, image.second.version); });
+    const bool is_shared = std::ranges::any_of(kernel.images, [&](const auto& image) {
+        return image.second.table == no_table && may_share(kernel.picture, image.second.version);
+    });
     pass.spec.images.push_back(
-        {.name = "picture", .storage_format = is_warp || is_shared ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
+        {.name = "picture",
+         .storage_format = is_warp || is_shared ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});
     for (const auto& [name, input] : kernel.images) {
-        pass.spec.images.push_back({.name = name});
+        pass.spec.images.push_back(kernel_image(name, input));
         pass.inputs.push_back(input);
     }
     auto body = fused_body(pass.steps, finish);
@@ -326,7 +337,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     const bool is_raster = pass.stage == gpu::Stage::Raster;
     graph::PassDesc desc{.name = pass.name, .toggle = pass.toggle};
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
-        if (!pass.inputs[i].version.is_valid()) continue;
+        if (pass.inputs[i].table != no_table) continue;
         const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
         const graph::Use use = is_storage ? (is_raster ? graph::Use::StorageReadFragment : graph::Use::StorageRead)
                                           : (is_raster ? graph::Use::SampledFragment : graph::Use::SampledCompute);
@@ -366,20 +377,32 @@ std::int32_t Planner::toggle_index(Toggle toggle) {
 graph::Version Planner::import_host(HostImage image, const char* name, VkFormat format, VkImageUsageFlags usage) {
     program_.imports.emplace_back(image);
     const graph::Version version = program_.graph.import({.image = {.name = name, .format = format}, .usage = usage});
-    facts_[version.index] = {.root = version.index, .format = format, .has_storage = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0};
+    facts_[version.index] = {
+        .root = version.index, .format = format, .has_storage = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0};
     return version;
 }
 
 graph::Version Planner::import_constant(TableDesc table) {
-    program_.constants.push_back({.desc = std::move(table), .import_index = static_cast<std::uint32_t>(program_.imports.size())});
+    program_.constants.push_back(
+        {.desc = std::move(table), .import_index = static_cast<std::uint32_t>(program_.imports.size())});
     program_.imports.emplace_back(std::nullopt);
     const TableDesc& desc = program_.constants.back().desc;
-    const graph::Version version = program_.graph.import(
-        {.image = {.name = desc.name, .format = desc.format, .size = {.width = desc.extent.width, .height = desc.extent.height}},
-         .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
-         .is_constant = true});
+    const graph::Version version =
+        program_.graph.import({.image = {.name = desc.name,
+                                         .format = desc.format,
+                                         .size = {.width = desc.extent.width, .height = desc.extent.height}},
+                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
+                               .is_constant = true});
     facts_[version.index] = {.root = version.index, .format = desc.format, .has_storage = false};
     return version;
+}
+
+gpu::KernelImage Planner::kernel_image(std::string name, const PassInput& input) const {
+    if (input.table == no_table) return {.name = std::move(name)};
+    const TableDesc& desc = program_.constants[input.table].desc;
+    return {.name = std::move(name),
+            .storage_format = desc.is_load_only ? desc.format : VK_FORMAT_UNDEFINED,
+            .sampler_type = desc.extent.depth > 1 ? "sampler3D" : "sampler2D"};
 }
 
 /// The images that may stand behind a version, by the version they began as.

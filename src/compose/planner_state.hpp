@@ -52,18 +52,22 @@ class Planner {
     [[nodiscard]] std::size_t input_of(std::uint32_t entry) const;
     void count_readers();
     [[nodiscard]] Result<std::size_t> add_entry(std::uint32_t entry, std::size_t input);
-    [[nodiscard]] Result<std::size_t> add_result(std::uint32_t entry, std::size_t input, Builder& builder, Domain domain);
-    [[nodiscard]] Result<std::size_t> append(std::uint32_t entry, std::size_t input, FusedStep step, std::vector<PassInput> sides,
-                                             Domain domain);
+    [[nodiscard]] Result<std::size_t> add_result(std::uint32_t entry, std::size_t input, Builder& builder,
+                                                 Domain domain);
+    [[nodiscard]] Result<std::size_t> append(std::uint32_t entry, std::size_t input, FusedStep step,
+                                             std::vector<PassInput> sides, Domain domain);
     [[nodiscard]] std::size_t open_kernel(std::size_t input, std::string why);
     /// Makes the picture an image, if it is not one yet, by closing its kernel.
     [[nodiscard]] Result<graph::Version> materialise(std::size_t value, const std::string& why);
-    [[nodiscard]] Result<graph::Version> close_kernel(std::size_t kernel, graph::Version target, VkFormat format, Finish finish,
-                                                      bool is_last);
+    [[nodiscard]] Result<graph::Version> close_kernel(std::size_t kernel, graph::Version target, VkFormat format,
+                                                      Finish finish, bool is_last);
     [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
     [[nodiscard]] std::int32_t toggle_index(Toggle toggle);
-    [[nodiscard]] graph::Version import_host(HostImage image, const char* name, VkFormat format, VkImageUsageFlags usage);
+    [[nodiscard]] graph::Version import_host(HostImage image, const char* name, VkFormat format,
+                                             VkImageUsageFlags usage);
     [[nodiscard]] graph::Version import_constant(TableDesc table);
+    /// An input that is not the picture: sampled, but for tables that are only loaded.
+    [[nodiscard]] gpu::KernelImage kernel_image(std::string name, const PassInput& input) const;
     void collect_roots(graph::Version version, std::vector<std::uint32_t>& roots) const;
     [[nodiscard]] bool may_share(graph::Version a, graph::Version b) const;
     [[nodiscard]] VkFormat storage_format(graph::Version version) const;
@@ -78,7 +82,7 @@ class Planner {
     std::vector<std::size_t> entry_values_;  ///< per entry: the value it makes
     std::vector<std::string> image_reader_;  ///< per entry: who reads its output as an image
     std::vector<OpenKernel> kernels_;
-    std::map<std::uint32_t, Facts> facts_;   ///< by version
+    std::map<std::uint32_t, Facts> facts_;  ///< by version
 };
 
 /// What an effect's build() sees.
@@ -89,7 +93,8 @@ class Builder final : public PassBuilder {
         PassInput input;
     };
 
-    Builder(Planner& planner, std::uint32_t entry, std::size_t input) : planner_(planner), entry_(entry), input_(input) {}
+    Builder(Planner& planner, std::uint32_t entry, std::size_t input)
+        : planner_(planner), entry_(entry), input_(input) {}
 
     [[nodiscard]] PassImage picture() override;
     [[nodiscard]] PassImage source() override;
@@ -110,7 +115,9 @@ class Builder final : public PassBuilder {
         graph::Version version;
         graph::Version first_written;  ///< falls back to the neutral image, if it has one
         VkFormat format = VK_FORMAT_UNDEFINED;
+        std::uint32_t table = no_table;
     };
+    [[nodiscard]] PassInput input_of(const Image& image, std::uint32_t mip_level) const;
     [[nodiscard]] PassImage remember(Image image);
     [[nodiscard]] PassImage image_of(std::size_t value);
 

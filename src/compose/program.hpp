@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the planner makes of a stack: passes with their kernels, images and toggles, and the graph that orders them. Pure
-// data: no device objects, no pointers into the stack but to the effects' static descriptions.
+// What the planner makes of a stack: passes with their kernels, images and toggles, and the graph that orders them.
+// Pure data: no device objects, no pointers into the stack but to the effects' static descriptions.
 
 #include <darkroom/composer.hpp>
 #include <optional>
@@ -33,18 +33,20 @@ struct Entry {
     }
 };
 
-/// Whether passes run in a frame: an entry is on, and its condition holds; or, for a fused kernel between others, any of
-/// its entries is on.
+/// Whether passes run in a frame: an entry is on, and its condition holds; or, for a fused kernel between others, any
+/// of its entries is on.
 struct Toggle {
     std::vector<std::uint32_t> entries;
     ConditionFunction condition = nullptr;
     std::uint32_t argument = 0;
 };
 
+inline constexpr std::uint32_t no_table = ~0u;
+/// An image that a pass reads: a version of the graph, or a table, which never changes and needs no graph.
 struct PassInput {
-    graph::Version version;  ///< invalid: the neutral image
+    graph::Version version;
     std::uint32_t mip_level = 0;
-    std::uint32_t neutral = ~0u;  ///< index of Program::neutrals, where version is invalid
+    std::uint32_t table = no_table;  ///< index of Program::constants
 };
 
 struct ProgramPass {
@@ -65,10 +67,10 @@ struct ProgramPass {
     Finish finish = Finish::None;
 };
 
-/// A table or neutral image: uploaded once, constant after.
+/// A table, or a neutral image that stands in for a version: uploaded once, constant after.
 struct Constant {
     TableDesc desc;
-    std::uint32_t import_index = ~0u;
+    std::uint32_t import_index = ~0u;  ///< in the graph; tables have none
 };
 
 /// Which import of the graph is which image of the host.
@@ -76,14 +78,14 @@ enum class HostImage : std::uint8_t { Color, Depth, Normals, Velocity, Ui, Targe
 
 struct Program {
     graph::Graph graph;
-    std::vector<ProgramPass> passes;       ///< in the order they were added to the graph
+    std::vector<ProgramPass> passes;  ///< in the order they were added to the graph
     std::vector<Toggle> toggles;
     std::vector<Constant> constants;
     std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a constant
     std::vector<std::uint32_t> block_words;         ///< per entry: first word of its block in the constants
     std::uint32_t constants_words = 0;
-    std::vector<bool> is_left_out;                  ///< per entry
-    std::vector<bool> is_mixable;                   ///< per entry: opacity and blending may change while recording
+    std::vector<bool> is_left_out;  ///< per entry
+    std::vector<bool> is_mixable;   ///< per entry: opacity and blending may change while recording
     std::vector<std::string> left_out, remarks;
 };
 
@@ -93,7 +95,8 @@ struct PlannerTraits {
 };
 
 /// Turns a stack into a program. Errors: a handle that names no earlier entry, a shader that is missing.
-[[nodiscard]] Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits);
+[[nodiscard]] Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc,
+                                           const PlannerTraits& traits);
 
 /// The kernel of a fused pass that holds only the steps that are on: same images and bindings, no branches.
 [[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps);

@@ -40,7 +40,9 @@ Rgba merged(const Rgba& base, const Rgba& layer, double opacity, BlendMode mode)
     return {mix(base.r, blended.r), mix(base.g, blended.g), mix(base.b, blended.b), mix(base.a, blended.a)};
 }
 
-double mask_weight(const Rgba& mask) { return std::clamp(0.2126 * mask.r + 0.7152 * mask.g + 0.0722 * mask.b, 0.0, 1.0); }
+double mask_weight(const Rgba& mask) {
+    return std::clamp(0.2126 * mask.r + 0.7152 * mask.g + 0.0722 * mask.b, 0.0, 1.0);
+}
 
 class Chain {
   public:
@@ -51,10 +53,12 @@ class Chain {
         domains_.push_back(Domain::SceneLinear);
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
-        ReferenceChainOutput out{.picture = pictures_[values_.empty() ? 0 : values_.back()], .left_out = std::move(left_out_)};
+        ReferenceChainOutput out{.picture = pictures_[values_.empty() ? 0 : values_.back()],
+                                 .left_out = std::move(left_out_)};
         const Domain domain = domains_[values_.empty() ? 0 : values_.back()];
         if (input_.target_domain == Domain::Encoded && domain != Domain::Encoded)
-            for (Rgba& pixel : out.picture.pixels) pixel = {srgb_curve(pixel.r), srgb_curve(pixel.g), srgb_curve(pixel.b), pixel.a};
+            for (Rgba& pixel : out.picture.pixels)
+                pixel = {srgb_curve(pixel.r), srgb_curve(pixel.g), srgb_curve(pixel.b), pixel.a};
         return out;
     }
 
@@ -83,11 +87,13 @@ class Chain {
             return {};
         }
         if (info.has_second && !inputs.second.is_given())
-            return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`", inputs.name, info.name));
+            return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
+                                          inputs.name, info.name));
         const std::vector<std::uint32_t> words = composer_.current(handle);
         const Domain before = domains_[from];
         const Domain domain = info.makes == nullptr ? before : info.makes(before, words.data());
-        const bool is_off = !inputs.enabled || inputs.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
+        const bool is_off =
+            !inputs.enabled || inputs.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
         if (!is_off && info.reference == nullptr)
             return user_error(fmt::format("stack entry '{}': {} has no reference", inputs.name, info.name));
         pictures_.push_back(is_off ? pictures_[from] : result(info, inputs, words, index, from));
@@ -96,8 +102,8 @@ class Chain {
         return {};
     }
 
-    ReferenceImage result(const EffectInfo& info, const Inputs& inputs, const std::vector<std::uint32_t>& words, std::size_t index,
-                          std::size_t from) const {
+    ReferenceImage result(const EffectInfo& info, const Inputs& inputs, const std::vector<std::uint32_t>& words,
+                          std::size_t index, std::size_t from) const {
         const ReferenceImage& base = pictures_[from];
         ReferenceImage layer = info.reference(
             words.data(), {.picture = &base,
@@ -123,8 +129,8 @@ class Chain {
     const Composer& composer_;
     const ReferenceChainInput& input_;
     std::vector<ReferenceImage> pictures_;
-    std::vector<Domain> domains_;        // of each picture
-    std::vector<std::size_t> values_;    // of each entry: its picture
+    std::vector<Domain> domains_;      // of each picture
+    std::vector<std::size_t> values_;  // of each entry: its picture
     std::vector<std::string> left_out_;
 };
 

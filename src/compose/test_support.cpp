@@ -51,7 +51,8 @@ ReferenceImage mapped(const ReferenceImage& image, const Function& function) {
 gpu::test::Pixels to_pixels(const ReferenceImage& image) {
     return gpu::test::make_pixels(image.width, image.height, [&](std::uint32_t x, std::uint32_t y) {
         const Rgba& p = image.at(x, y);
-        return std::array{static_cast<float>(p.r), static_cast<float>(p.g), static_cast<float>(p.b), static_cast<float>(p.a)};
+        return std::array{static_cast<float>(p.r), static_cast<float>(p.g), static_cast<float>(p.b),
+                          static_cast<float>(p.a)};
     });
 }
 
@@ -71,11 +72,16 @@ ReferenceImage random_hdr(std::uint32_t width, std::uint32_t height, std::uint32
         const std::uint32_t at = i * 2 + number * 7919;
         const double value = unit(at);
         switch (hash(at + 1) % 8) {
-            case 0: return -4 * value;
-            case 1: return 60000 * value;
-            case 2: return value * 6.0e-5;  // denormal in half precision
-            case 3: return 16 * value;
-            default: return value;
+            case 0:
+                return -4 * value;
+            case 1:
+                return 60000 * value;
+            case 2:
+                return value * 6.0e-5;  // denormal in half precision
+            case 3:
+                return 16 * value;
+            default:
+                return value;
         }
     });
 }
@@ -91,7 +97,8 @@ ReferenceImage round_to_float(const ReferenceImage& image) {
     return mapped(image, [](double v) { return double{static_cast<float>(v)}; });
 }
 
-ReferenceImage develop(const std::function<void(Composer&)>& fill, const ReferenceImage& picture, const RunOptions& options) {
+ReferenceImage develop(const std::function<void(Composer&)>& fill, const ReferenceImage& picture,
+                       const RunOptions& options) {
     Device& device = gpu::test::device();
     gpu::Context& context = device.context();
     const std::uint64_t messages = device.validation_messages();
@@ -120,7 +127,10 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
 
     Result<> recorded{};
     const auto submitted = gpu::submit_and_wait(context, "develop", [&](VkCommandBuffer commands) {
-        Frame frame{.color = image_ref(color), .time = options.time, .frame_index = options.frame_index, .target = image_ref(target)};
+        Frame frame{.color = image_ref(color),
+                    .time = options.time,
+                    .frame_index = options.frame_index,
+                    .target = image_ref(target)};
         recorded = composer.record(commands, frame);
     });
     if (!recorded) return fail("record", recorded.error().text);
@@ -157,12 +167,14 @@ double worst_difference(const ReferenceImage& a, const ReferenceImage& b) {
     double worst = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
         const Rgba &p = a.pixels[i], &q = b.pixels[i];
-        for (const double d : {p.r - q.r, p.g - q.g, p.b - q.b, p.a - q.a}) worst = std::isnan(d) ? 1e9 : std::max(worst, std::abs(d));
+        for (const double d : {p.r - q.r, p.g - q.g, p.b - q.b, p.a - q.a})
+            worst = std::isnan(d) ? 1e9 : std::max(worst, std::abs(d));
     }
     return worst;
 }
 
-void expect_gpu_matches_reference(const EffectInfo& info, const void* parameters, const ReferenceImage& picture, double ulps) {
+void expect_gpu_matches_reference(const EffectInfo& info, const void* parameters, const ReferenceImage& picture,
+                                  double ulps) {
     ASSERT_NE(info.reference, nullptr) << info.name;
     const ReferenceImage expected =
         info.reference(parameters, {.picture = &picture, .source = &picture, .second = &picture});

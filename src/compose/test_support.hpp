@@ -27,9 +27,9 @@ struct RunOptions {
     std::uint64_t frame_index = 0;
     bool wait_for_lean_kernels = true;
 };
-/// Builds a stack with `fill`, develops `picture` with it on the test device, under validation, and reads the target back.
-/// A failure, or a message of the validation layer, fails the test and returns an empty image. The input is rounded to
-/// options.color first; round it yourself (round_to_half) before computing a reference.
+/// Builds a stack with `fill`, develops `picture` with it on the test device, under validation, and reads the target
+/// back. A failure, or a message of the validation layer, fails the test and returns an empty image. The input is
+/// rounded to options.color first; round it yourself (round_to_half) before computing a reference.
 [[nodiscard]] ReferenceImage develop(const std::function<void(Composer&)>& fill, const ReferenceImage& picture,
                                      const RunOptions& options = {});
 /// The reference alone: one effect.
@@ -52,7 +52,8 @@ template <class Effect>
 /// driver; one 8-bit code elsewhere). What every pointwise effect's test calls, for several parameter sets.
 template <class Effect>
 void expect_gpu_matches_reference(const Effect& parameters, const ReferenceImage& picture, double ulps = 2.0);
-void expect_gpu_matches_reference(const EffectInfo& info, const void* parameters, const ReferenceImage& picture, double ulps);
+void expect_gpu_matches_reference(const EffectInfo& info, const void* parameters, const ReferenceImage& picture,
+                                  double ulps);
 
 template <class Effect>
 void expect_gpu_matches_reference(const Effect& parameters, const ReferenceImage& picture, double ulps) {

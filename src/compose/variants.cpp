@@ -11,21 +11,22 @@ Result<> Variants::build_complete(gpu::Context& context) {
 }
 
 Result<> Variants::build(gpu::Context& context, Shape shape) {
-    if (!has_lean() || shape == no_shape) return {};
+    if (!has_lean()) return {};
     const std::scoped_lock lock(building_);
     const std::size_t count = count_.load(std::memory_order_relaxed);
     for (std::size_t i = 0; i < count; ++i)
         if (lean_[i].shape == shape) return {};
     if (count == capacity) return {};
 
-    std::vector<FusedStep> steps;
-    for (std::size_t i = 0; i < pass_->steps.size(); ++i) {
-        const Shape bits = shape >> (2 * i) & 3;
-        if ((bits & 1) == 0) continue;
-        steps.push_back(pass_->steps[i]);
-        steps.back().is_certain = true;
-        steps.back().is_plain = (bits & 2) == 0;
+    std::vector<FusedStep> steps = pass_->steps;
+    for_each_choice(*pass_, [&](std::size_t step, const ParamInfo& row, std::uint32_t bit, std::uint32_t bits) {
+        steps[step].baked.push_back({&row, static_cast<std::uint32_t>(shape.choices >> bit) & ((1u << bits) - 1)});
+    });
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        steps[i].is_certain = (shape.steps >> (2 * i) & 1) != 0;
+        steps[i].is_plain = (shape.steps >> (2 * i) & 2) == 0;
     }
+    std::erase_if(steps, [](const FusedStep& step) { return !step.is_certain; });
     auto spec = lean_spec(*pass_, steps);
     if (!spec) return failure(std::move(spec));
     auto kernel = gpu::Kernel::create(context, *spec, pass_->stage);
@@ -39,8 +40,17 @@ const gpu::Kernel& Variants::find(Shape shape) {
     const std::size_t count = count_.load(std::memory_order_acquire);
     for (std::size_t i = 0; i < count; ++i)
         if (lean_[i].shape == shape) return *lean_[i].kernel;
-    if (has_lean() && count < capacity) wanted_.store(shape, std::memory_order_relaxed);
+    if (has_lean() && count < capacity) {
+        wanted_steps_.store(shape.steps, std::memory_order_relaxed);
+        wanted_choices_.store(shape.choices, std::memory_order_relaxed);
+        is_wanted_.store(true, std::memory_order_release);
+    }
     return *complete_;
+}
+
+std::optional<Shape> Variants::take_wanted() {
+    if (!is_wanted_.exchange(false, std::memory_order_acquire)) return std::nullopt;
+    return Shape{wanted_steps_.load(std::memory_order_relaxed), wanted_choices_.load(std::memory_order_relaxed)};
 }
 
 Builders::Builders(gpu::Context& context, std::vector<std::unique_ptr<Variants>>& variants)
@@ -65,9 +75,9 @@ void Builders::work() {
         for (const auto& variants : variants_) {
             if (is_ending_) return;
             if (!variants) continue;
-            const Shape shape = variants->take_wanted();
-            if (shape == no_shape) continue;
-            if (const auto ok = variants->build(context_, shape); !ok)
+            const std::optional<Shape> shape = variants->take_wanted();
+            if (!shape) continue;
+            if (const auto ok = variants->build(context_, *shape); !ok)
                 context_.say(Severity::Warning, "a lean kernel could not be built: " + ok.error().text);
         }
         if (is_ending_) return;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -17,10 +18,29 @@
 
 namespace darkroom::compose {
 
-/// Two bits a step: on, and with opacity, blend mode or mask. Passes of more steps have no lean kernels.
-using Shape = std::uint64_t;
-inline constexpr std::size_t max_lean_steps = 31;
-inline constexpr Shape no_shape = ~Shape{0};
+/// What a lean kernel is made for. `steps`: two bits a step, whether it is on and whether it has an opacity, a blend
+/// mode or a mask. `choices`: the values of its choices and toggles, as far as they fit.
+struct Shape {
+    std::uint64_t steps = 0;
+    std::uint64_t choices = 0;
+    friend bool operator==(const Shape&, const Shape&) = default;
+};
+inline constexpr std::size_t max_lean_steps = 32;
+
+/// Calls `visit(step, row, first_bit, bits)` for every choice and toggle that a shape of this pass holds.
+template <class Visit>
+void for_each_choice(const ProgramPass& pass, const Visit& visit) {
+    std::uint32_t bit = 0;
+    for (std::size_t i = 0; i < pass.steps.size(); ++i) {
+        if (pass.steps[i].is_merge) continue;
+        for (const ParamInfo& row : pass.steps[i].info->parameters.rows) {
+            const std::uint32_t bits = row.kind == Kind::Choice ? 5 : row.kind == Kind::Toggle ? 1 : 0;
+            if (bits == 0 || bit + bits > 64) continue;
+            visit(i, row, bit, bits);
+            bit += bits;
+        }
+    }
+}
 
 class Variants {
   public:
@@ -34,12 +54,13 @@ class Variants {
     /// What to record now. Never waits; a missing shape is remembered as wanted.
     [[nodiscard]] const gpu::Kernel& find(Shape shape);
     [[nodiscard]] const gpu::Kernel& complete() const { return *complete_; }
-    [[nodiscard]] Shape take_wanted() { return wanted_.exchange(no_shape); }
+    /// The shape that was last missing, once.
+    [[nodiscard]] std::optional<Shape> take_wanted();
     [[nodiscard]] bool has_lean() const { return !pass_->steps.empty() && pass_->steps.size() <= max_lean_steps; }
 
   private:
     struct Lean {
-        Shape shape = no_shape;
+        Shape shape;
         std::unique_ptr<gpu::Kernel> kernel;
     };
     /// More shapes than this stay with the complete kernel: toggles beyond are rarer than memory is dear.
@@ -50,7 +71,9 @@ class Variants {
     std::mutex building_;
     std::array<Lean, capacity> lean_{};
     std::atomic<std::size_t> count_{0};
-    std::atomic<Shape> wanted_{no_shape};
+    // Two words that may tear: the worst is a kernel that nobody asked for.
+    std::atomic<std::uint64_t> wanted_steps_{0}, wanted_choices_{0};
+    std::atomic<bool> is_wanted_{false};
 };
 
 /// Builds wanted kernels on a thread of its own until it is destroyed.

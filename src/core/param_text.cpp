@@ -35,8 +35,7 @@ std::string join(std::span<const std::string_view> names) {
 std::string show(const ParamValue& value) {
     return std::visit(
         Overloaded{[](bool v) -> std::string { return v ? "true" : "false"; },
-                   [](std::int64_t v) { return fmt::format("{}", v); },
-                   [](double v) { return fmt::format("{}", v); },
+                   [](std::int64_t v) { return fmt::format("{}", v); }, [](double v) { return fmt::format("{}", v); },
                    [](const std::string& v) { return fmt::format("\"{}\"", printable(v)); },
                    [](const std::vector<double>& v) {
                        if (v.size() > 8) return fmt::format("an array of {} numbers", v.size());
@@ -72,13 +71,20 @@ class Assignment {
 
     std::optional<ParamProblem> run(std::vector<std::uint32_t>& out) {
         switch (info_.kind) {
-            case Kind::Float: return put_float(out);
-            case Kind::Int: return put_whole(out, info_.range.min, info_.range.max);
-            case Kind::Resource: return put_whole(out, 0, std::numeric_limits<std::uint32_t>::max());
-            case Kind::Toggle: return put_toggle(out);
-            case Kind::Choice: return put_choice(out);
-            case Kind::Curve: return put_curve(out);
-            default: return put_vector(out);
+            case Kind::Float:
+                return put_float(out);
+            case Kind::Int:
+                return put_whole(out, info_.range.min, info_.range.max);
+            case Kind::Resource:
+                return put_whole(out, 0, std::numeric_limits<std::uint32_t>::max());
+            case Kind::Toggle:
+                return put_toggle(out);
+            case Kind::Choice:
+                return put_choice(out);
+            case Kind::Curve:
+                return put_curve(out);
+            default:
+                return put_vector(out);
         }
     }
 
@@ -182,10 +188,14 @@ Curve curve_of(std::span<const std::uint32_t> words) {
 // Words back to the value they hold; nothing for words that are no value (a choice or curve beyond its end).
 std::optional<ParamValue> value_of(const ParamInfo& info, std::span<const std::uint32_t> words) {
     switch (info.kind) {
-        case Kind::Float: return static_cast<double>(std::bit_cast<float>(words[0]));
-        case Kind::Int: return static_cast<std::int64_t>(static_cast<std::int32_t>(words[0]));
-        case Kind::Resource: return static_cast<std::int64_t>(words[0]);
-        case Kind::Toggle: return words[0] != 0;
+        case Kind::Float:
+            return static_cast<double>(std::bit_cast<float>(words[0]));
+        case Kind::Int:
+            return static_cast<std::int64_t>(static_cast<std::int32_t>(words[0]));
+        case Kind::Resource:
+            return static_cast<std::int64_t>(words[0]);
+        case Kind::Toggle:
+            return words[0] != 0;
         case Kind::Choice:
             if (words[0] >= info.choices.size()) return std::nullopt;
             return std::string(info.choices[words[0]]);
@@ -196,7 +206,8 @@ std::optional<ParamValue> value_of(const ParamInfo& info, std::span<const std::u
             for (std::uint32_t i = 0; i < curve.count; ++i) points.push_back({curve.x[i], curve.y[i]});
             return points;
         }
-        default: break;
+        default:
+            break;
     }
     std::vector<double> numbers;
     for (const std::uint32_t word : words) numbers.push_back(std::bit_cast<float>(word));
@@ -226,7 +237,8 @@ std::optional<ParamProblem> try_assign(const ParamInfo& info, std::span<std::uin
     return std::nullopt;
 }
 
-Result<> assign(const ParamInfo& info, std::span<std::uint32_t> words, const ParamValue& value, std::string_view shown) {
+Result<> assign(const ParamInfo& info, std::span<std::uint32_t> words, const ParamValue& value,
+                std::string_view shown) {
     if (std::optional<ParamProblem> problem = try_assign(info, words, value, shown)) return user_error(problem->text);
     return {};
 }
@@ -234,12 +246,13 @@ Result<> assign(const ParamInfo& info, std::span<std::uint32_t> words, const Par
 Result<> check_words(const ParamInfo& info, std::span<const std::uint32_t> words, std::string_view shown) {
     const std::string_view name = shown.empty() ? info.name : shown;
     if (words.size() != info.words)
-        return user_error(fmt::format("{}: given {} words, a {} has {}", name, words.size(),
-                                      expected_kind(info.kind), info.words));
+        return user_error(
+            fmt::format("{}: given {} words, a {} has {}", name, words.size(), expected_kind(info.kind), info.words));
     const std::optional<ParamValue> value = value_of(info, words);
     if (!value) return user_error(fmt::format("{} = {}: allowed is {}", name, words[0], interval(info)));
     std::vector<std::uint32_t> unused;
-    if (std::optional<ParamProblem> problem = Assignment(info, *value, name).run(unused)) return user_error(problem->text);
+    if (std::optional<ParamProblem> problem = Assignment(info, *value, name).run(unused))
+        return user_error(problem->text);
     return {};
 }
 
@@ -262,8 +275,8 @@ std::optional<double> parse_number(std::string_view text) {
 
 Result<ParamValue> parse_text(const ParamInfo& info, std::string_view text) {
     const auto refuse = [&] {
-        return user_error(fmt::format("'{}' is not {}, allowed is {}", printable(text), expected_kind(info.kind),
-                                      interval(info)));
+        return user_error(
+            fmt::format("'{}' is not {}, allowed is {}", printable(text), expected_kind(info.kind), interval(info)));
     };
     if (info.kind == Kind::Choice) return ParamValue(std::string(text));
     if (info.kind == Kind::Toggle) {
@@ -301,12 +314,18 @@ Result<ParamValue> parse_text(const ParamInfo& info, std::string_view text) {
 std::string format(const ParamInfo& info, std::span<const std::uint32_t> words) {
     const std::span<const std::uint32_t> own = words.subspan(info.word, info.words);
     switch (info.kind) {
-        case Kind::Float: return toml_float(std::bit_cast<float>(own[0]));
-        case Kind::Int: return fmt::format("{}", static_cast<std::int32_t>(own[0]));
-        case Kind::Resource: return fmt::format("{}", own[0]);
-        case Kind::Toggle: return own[0] != 0 ? "true" : "false";
-        case Kind::Choice: return fmt::format("\"{}\"", own[0] < info.choices.size() ? info.choices[own[0]] : "");
-        default: break;
+        case Kind::Float:
+            return toml_float(std::bit_cast<float>(own[0]));
+        case Kind::Int:
+            return fmt::format("{}", static_cast<std::int32_t>(own[0]));
+        case Kind::Resource:
+            return fmt::format("{}", own[0]);
+        case Kind::Toggle:
+            return own[0] != 0 ? "true" : "false";
+        case Kind::Choice:
+            return fmt::format("\"{}\"", own[0] < info.choices.size() ? info.choices[own[0]] : "");
+        default:
+            break;
     }
     std::vector<std::string> parts;
     if (info.kind == Kind::Curve) {
@@ -325,22 +344,33 @@ std::string interval(const ParamInfo& info) {
     if (info.kind == Kind::Resource) return "the number of a resource, 0 for none";
     std::string out = fmt::format("[{}, {}]", info.range.min, info.range.max);
     if (!info.unit.symbol.empty()) out += fmt::format(" {}", info.unit.symbol);
-    if (info.kind == Kind::Curve) return fmt::format("up to {} points [x, y], x ascending, y in {}", Curve::capacity, out);
+    if (info.kind == Kind::Curve)
+        return fmt::format("up to {} points [x, y], x ascending, y in {}", Curve::capacity, out);
     return out;
 }
 
 std::string_view expected_kind(Kind kind) {
     switch (kind) {
-        case Kind::Float: return "a number";
-        case Kind::Int: return "a whole number";
-        case Kind::Toggle: return "a boolean";
-        case Kind::Choice: return "a name";
-        case Kind::Vec2: return "2 numbers";
-        case Kind::Vec3: return "3 numbers";
-        case Kind::Vec4: return "4 numbers";
-        case Kind::Rgb: return "3 numbers (red, green, blue)";
-        case Kind::Curve: return "a curve";
-        case Kind::Resource: return "a resource";
+        case Kind::Float:
+            return "a number";
+        case Kind::Int:
+            return "a whole number";
+        case Kind::Toggle:
+            return "a boolean";
+        case Kind::Choice:
+            return "a name";
+        case Kind::Vec2:
+            return "2 numbers";
+        case Kind::Vec3:
+            return "3 numbers";
+        case Kind::Vec4:
+            return "4 numbers";
+        case Kind::Rgb:
+            return "3 numbers (red, green, blue)";
+        case Kind::Curve:
+            return "a curve";
+        case Kind::Resource:
+            return "a resource";
     }
     return "a value";
 }
@@ -349,7 +379,8 @@ std::string documentation(const ParamTable& table, std::string_view effect) {
     std::string out = "| Key | Default | Allowed | What it does |\n|---|---|---|---|\n";
     for (const ParamInfo& row : table.rows) {
         std::string what(row.doc);
-        if (row.is_amount) what += " In a flat table or as a flag, a value above 0 turns the effect on and 0 turns it off.";
+        if (row.is_amount)
+            what += " In a flat table or as a flag, a value above 0 turns the effect on and 0 turns it off.";
         if (!row.formerly.empty()) what += fmt::format(" Formerly `{}`.", flat_key(effect, row.formerly));
         out += fmt::format("| `{}` | `{}` | {} | {} |\n", flat_key(effect, row.name), format(row, table.defaults),
                            interval(row), what);

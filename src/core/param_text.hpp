@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The one place where values of parameters become text and text becomes values: TOML, flags, consoles and pages all come
-// here. It knows rows (darkroom/param.hpp) and words, no files and no effects. Error texts name thing, value and what is
-// allowed; the caller puts the place in front.
+// The one place where values of parameters become text and text becomes values: TOML, flags, consoles and pages all
+// come here. It knows rows (darkroom/param.hpp) and words, no files and no effects. Error texts name thing, value and
+// what is allowed; the caller puts the place in front.
 
 #include <array>
 #include <cstdint>
@@ -36,7 +36,8 @@ struct ParamProblem {
 [[nodiscard]] Result<> assign(const ParamInfo& info, std::span<std::uint32_t> words, const ParamValue& value,
                               std::string_view shown = {});
 /// Are `words` (those of this row only) a value that the row allows?
-[[nodiscard]] Result<> check_words(const ParamInfo& info, std::span<const std::uint32_t> words, std::string_view shown = {});
+[[nodiscard]] Result<> check_words(const ParamInfo& info, std::span<const std::uint32_t> words,
+                                   std::string_view shown = {});
 
 /// Reads a flag's or console's text: "1.5", "on" or "off", "1,0.5,0.2", a choice's name, "0:0,0.5:0.2,1:1" for a curve.
 /// Its errors name neither key nor place; ranges are assign's to check.

@@ -33,9 +33,11 @@ template <std::uint32_t Channels>
 Plane<Channels> nearest_pixels(const Plane<Channels>& plane, std::uint32_t width, std::uint32_t height) {
     Plane<Channels> out(width, height);
     for (std::uint32_t y = 0; y < height; ++y) {
-        const auto from_y = static_cast<std::uint32_t>((2 * std::uint64_t{y} + 1) * plane.height / (2 * std::uint64_t{height}));
+        const auto from_y =
+            static_cast<std::uint32_t>((2 * std::uint64_t{y} + 1) * plane.height / (2 * std::uint64_t{height}));
         for (std::uint32_t x = 0; x < width; ++x) {
-            const auto from_x = static_cast<std::uint32_t>((2 * std::uint64_t{x} + 1) * plane.width / (2 * std::uint64_t{width}));
+            const auto from_x =
+                static_cast<std::uint32_t>((2 * std::uint64_t{x} + 1) * plane.width / (2 * std::uint64_t{width}));
             std::copy_n(plane.at(from_x, from_y), Channels, out.at(x, y));
         }
     }
@@ -45,7 +47,8 @@ Plane<Channels> nearest_pixels(const Plane<Channels>& plane, std::uint32_t width
 }  // namespace
 
 Result<FrameFile> resize(FrameFile frame, std::uint32_t width, std::uint32_t height) {
-    if (width == 0 || height == 0) return user_error(fmt::format("size {}x{}: a picture has at least 1x1", width, height));
+    if (width == 0 || height == 0)
+        return user_error(fmt::format("size {}x{}: a picture has at least 1x1", width, height));
     const std::uint32_t old_width = frame.color.width, old_height = frame.color.height;
     if (width == old_width && height == old_height) return frame;
     Result<Picture> color = filtered(frame.color, width, height);

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+// What the planner makes of a stack: kernels in the user's order, a reason for each boundary, and what is left out.
+
+#include <string>
+
+#include "compose/test_host.hpp"
+
+namespace darkroom {
+namespace {
+
+using test::add;
+
+CompileDesc hd(VkFormat target = VK_FORMAT_R8G8B8A8_UNORM) {
+    return {.max_extent = {1920, 1080}, .target = target};
+}
+
+class ComposePlan : public test::StackTest {
+  protected:
+    Plan plan(const CompileDesc& desc = hd()) {
+        auto made = composer.plan(desc);
+        EXPECT_TRUE(made) << made.error().text;
+        return made ? std::move(*made) : Plan{};
+    }
+    std::string error(const CompileDesc& desc = hd()) {
+        const auto made = composer.plan(desc);
+        return made ? "planned" : made.error().text;
+    }
+    Composer composer{gpu::test::device()};
+};
+
+/// "bloom.prefilter | exposure+tonemap"
+std::string passes_of(const Plan& plan) {
+    std::string out;
+    for (const PlanPass& pass : plan.passes) out += (out.empty() ? "" : " | ") + pass.name;
+    return out;
+}
+std::vector<std::string> entries_of(const Plan& plan) {
+    std::vector<std::string> out;
+    for (const PlanPass& pass : plan.passes) out.insert(out.end(), pass.entries.begin(), pass.entries.end());
+    return out;
+}
+const PlanPass& pass_with(const Plan& plan, std::string_view entry) {
+    for (const PlanPass& pass : plan.passes)
+        if (std::ranges::find(pass.entries, entry) != pass.entries.end()) return pass;
+    ADD_FAILURE() << "no kernel holds " << entry;
+    return plan.passes.front();
+}
+std::size_t passes_without_entries(const Plan& plan) {
+    return static_cast<std::size_t>(std::ranges::count_if(plan.passes, [](const PlanPass& pass) { return pass.entries.empty(); }));
+}
+
+TEST_F(ComposePlan, PointwiseEffectsAreOneKernelInTheUsersOrder) {
+    const std::vector<std::string> order{"vignette", "encode", "exposure", "dither", "negative", "tonemap", "grayscale"};
+    for (const std::string& name : order) add(composer, name);
+    const Plan made = plan();
+    ASSERT_EQ(made.passes.size(), 1u) << passes_of(made);
+    EXPECT_EQ(made.passes[0].entries, order);
+    EXPECT_FALSE(made.passes[0].boundary.empty());
+    EXPECT_EQ(made.extent.width, 1920u);
+    EXPECT_EQ(made.passes[0].extent.height, 1080u);
+    EXPECT_EQ(made.passes[0].bytes_written, 1920u * 1080 * 4);
+    EXPECT_GE(made.passes[0].bytes_read, 1920u * 1080 * 8);
+    EXPECT_EQ(made.bytes_written(), made.passes[0].bytes_written);
+    EXPECT_EQ(made.transient_bytes, 0u);
+    EXPECT_NE(made.text().find("grayscale"), std::string::npos);
+    EXPECT_NE(made.json().find("grayscale"), std::string::npos);
+}
+
+TEST_F(ComposePlan, UnfusedEveryEffectIsAKernel) {
+    for (const char* const name : {"exposure", "tonemap", "encode", "vignette"}) add(composer, name);
+    CompileDesc desc = hd();
+    desc.fuse = false;
+    const Plan made = plan(desc);
+    EXPECT_EQ(passes_of(made), "exposure | tonemap | encode | vignette");
+    EXPECT_NE(made.passes[2].boundary.find("fusion is off"), std::string::npos) << made.passes[2].boundary;
+}
+
+TEST_F(ComposePlan, AnEmptyStackIsACopy) {
+    const Plan made = plan();
+    EXPECT_EQ(made.passes.size(), 1u);
+    EXPECT_TRUE(entries_of(made).empty());
+}
+
+TEST_F(ComposePlan, ANeighbourhoodEffectSplitsTheKernels) {
+    add(composer, "exposure");
+    add(composer, "gaussian_blur");
+    add(composer, "tonemap");
+    add(composer, "encode");
+    const Plan made = plan();
+    EXPECT_EQ(entries_of(made), (std::vector<std::string>{"exposure", "tonemap", "encode"}));
+    EXPECT_EQ(passes_without_entries(made), 2u) << passes_of(made);
+    EXPECT_EQ(made.passes.front().name, "exposure");
+    EXPECT_EQ(made.passes.back().name, "tonemap+encode");
+    EXPECT_NE(made.passes.back().boundary.find("gaussian_blur"), std::string::npos) << made.passes.back().boundary;
+    for (const PlanPass& pass : made.passes) EXPECT_FALSE(pass.boundary.empty()) << pass.name;
+}
+
+TEST_F(ComposePlan, AWarpOpensAKernel) {
+    static constexpr EffectFile file{.name = "shift.glsl",
+                                     .text = "vec4 shift(Pixel pixel, Shift parameters) {\n"
+                                             "    return load_clamped(picture, pixel.texel + ivec2(1, 0));\n}\n"};
+    static const EffectInfo shift{.name = "shift",
+                                  .doc = "Moves the picture.",
+                                  .parameters = {.struct_name = "Shift"},
+                                  .files = {&file, 1},
+                                  .touch = Touch::Warp};
+    add(composer, "exposure");
+    composer.add(shift, nullptr);
+    add(composer, "negative");
+    const Plan made = plan();
+    EXPECT_EQ(passes_of(made), "exposure | shift+negative");
+    EXPECT_NE(made.passes[1].boundary.find("shift reads the picture at moved coordinates"), std::string::npos);
+
+    ReferenceImage picture = test::round_to_float(test::random_display(9, 5, 1));
+    const test::Host host(picture);
+    const auto compiled = composer.compile(host.compile_desc());
+    ASSERT_TRUE(compiled) << compiled.error().text;
+    const ReferenceImage out = host.run(composer);
+    for (std::uint32_t y = 0; y < 5; ++y)
+        for (std::uint32_t x = 0; x < 9; ++x) EXPECT_NEAR(out.at(x, y).g, 1 - picture.clamped(x + 1, y).g, 1e-6);
+}
+
+TEST_F(ComposePlan, TheArticlesExampleReadsTheHandle) {
+    const Handle blurred = add(composer, "gaussian_blur", {{"radius", 4}});
+    add(composer, "negative");
+    add(composer, "blend", {{"amount", 0.5}}, {.second = blurred});
+    const Plan made = plan();
+    EXPECT_EQ(entries_of(made), (std::vector<std::string>{"negative", "blend"})) << passes_of(made);
+
+    const ReferenceImage picture = test::round_to_float(test::random_display(50, 31, 8));
+    const test::Host host(picture);
+    test::must(composer.compile(host.compile_desc()));
+    const auto reference = [](std::string_view name, const std::vector<std::uint32_t>& words, const ReferenceImage& of,
+                              const ReferenceImage* second = nullptr) {
+        return find_effect(name)->reference(words.data(), {.picture = &of, .source = &of, .second = second});
+    };
+    const ReferenceImage blur = reference("gaussian_blur", composer.current(composer.entry(0)), picture);
+    const ReferenceImage negative = reference("negative", composer.current(composer.entry(1)), blur);
+    const ReferenceImage expected = reference("blend", composer.current(composer.entry(2)), negative, &blur);
+    EXPECT_LE(test::worst_difference(host.run(composer), expected), 2e-3);
+}
+
+TEST_F(ComposePlan, APictureThatTwoReadIsStoredOnce) {
+    const Handle bright = add(composer, "exposure");
+    add(composer, "negative");
+    add(composer, "blend", {}, {.second = bright});
+    const Plan made = plan();
+    EXPECT_EQ(passes_of(made), "exposure | negative+blend");
+    EXPECT_NE(made.passes[1].boundary.find("blend"), std::string::npos) << made.passes[1].boundary;
+}
+
+TEST_F(ComposePlan, BloomOfTheSceneCostsNoExtraPass) {
+    add(composer, "exposure");
+    add(composer, "bloom", {}, {.source = scene_color});
+    add(composer, "tonemap");
+    const Plan of_scene = plan();
+    EXPECT_EQ(entries_of(of_scene), (std::vector<std::string>{"exposure", "bloom", "tonemap"}));
+    EXPECT_EQ(pass_with(of_scene, "exposure").entries.size(), 3u) << passes_of(of_scene);
+
+    composer.clear();
+    add(composer, "exposure");
+    add(composer, "bloom");
+    add(composer, "tonemap");
+    const Plan in_place = plan();
+    EXPECT_EQ(in_place.passes.size(), of_scene.passes.size() + 1) << passes_of(in_place);
+    EXPECT_EQ(passes_without_entries(in_place), passes_without_entries(of_scene));
+    const PlanPass& merge = pass_with(in_place, "bloom");
+    EXPECT_EQ(merge.entries, (std::vector<std::string>{"bloom", "tonemap"}));
+    EXPECT_NE(merge.boundary.find("bloom"), std::string::npos) << merge.boundary;
+}
+
+TEST_F(ComposePlan, TwoEntriesOfOneEffectAreTwo) {
+    add(composer, "bloom", {{"intensity", 0.5}}, {.source = scene_color});
+    add(composer, "bloom", {{"intensity", 0.25}, {"threshold", 0.2}}, {.source = scene_color});
+    const Plan made = plan();
+    EXPECT_EQ(pass_with(made, "bloom").entries, (std::vector<std::string>{"bloom", "bloom#2"})) << passes_of(made);
+    EXPECT_TRUE(composer.find("bloom#2"));
+
+    const ReferenceImage picture = test::round_to_float(test::random_display(70, 50, 5));
+    const test::Host host(picture);
+    test::must(composer.compile(host.compile_desc()));
+    const ReferenceImage both = host.run(composer);
+    test::must(composer.set_enabled(*composer.find("bloom#2"), false));
+    const ReferenceImage first = host.run(composer);
+    test::must(composer.set_enabled(*composer.find("bloom"), false));
+    test::must(composer.set_enabled(*composer.find("bloom#2"), true));
+    const ReferenceImage second = host.run(composer);
+    double glow = 0;
+    for (std::size_t i = 0; i < both.pixels.size(); ++i) {
+        const double sum = first.pixels[i].g + second.pixels[i].g - picture.pixels[i].g;
+        EXPECT_NEAR(both.pixels[i].g, sum, 1e-5);
+        glow = std::max(glow, second.pixels[i].g - picture.pixels[i].g);
+    }
+    EXPECT_GT(glow, 0.01);
+}
+
+TEST_F(ComposePlan, WhatNobodyReadsIsCulled) {
+    add(composer, "gaussian_blur");
+    add(composer, "exposure", {}, {.input = scene_color});
+    EXPECT_EQ(passes_of(plan()), "exposure");
+}
+
+TEST_F(ComposePlan, MissingInputsLeaveAnEffectOut) {
+    static constexpr EffectFile file{.name = "deep.glsl",
+                                     .text = "vec4 deep(vec4 color, Pixel pixel, Deep parameters) { return color; }\n"};
+    static const EffectInfo deep{.name = "deep",
+                                 .doc = "Reads depth.",
+                                 .parameters = {.struct_name = "Deep"},
+                                 .files = {&file, 1},
+                                 .needs = {.depth = true, .velocity = true}};
+    add(composer, "exposure");
+    composer.add(deep, nullptr);
+    CompileDesc desc = hd();
+    desc.velocity = VK_FORMAT_R16G16_SFLOAT;
+    const Plan made = plan(desc);
+    ASSERT_EQ(made.left_out.size(), 1u);
+    EXPECT_NE(made.left_out[0].find("deep: needs depth"), std::string::npos) << made.left_out[0];
+    EXPECT_EQ(made.left_out[0].find("velocity"), std::string::npos) << made.left_out[0];
+    EXPECT_EQ(entries_of(made), std::vector<std::string>{"exposure"});
+}
+
+TEST_F(ComposePlan, LinearFloatTargetsSkipTheLastSteps) {
+    for (const char* const name : {"exposure", "tonemap", "encode", "dither"}) add(composer, name);
+    const Plan made = plan(hd(VK_FORMAT_R16G16B16A16_SFLOAT));
+    EXPECT_EQ(made.left_out.size(), 2u);
+    EXPECT_EQ(entries_of(made), (std::vector<std::string>{"exposure", "tonemap"}));
+    CompileDesc encoded = hd(VK_FORMAT_R16G16B16A16_SFLOAT);
+    encoded.target_domain = Domain::Encoded;
+    EXPECT_EQ(entries_of(plan(encoded)).size(), 4u);
+}
+
+TEST_F(ComposePlan, AWrongDomainIsOneRemarkAndReordersNothing) {
+    for (const char* const name : {"tonemap", "bloom", "encode"}) add(composer, name);
+    const Plan made = plan();
+    ASSERT_EQ(made.remarks.size(), 1u);
+    EXPECT_NE(made.remarks[0].find("bloom expects a scene_linear picture and gets a display_linear one"), std::string::npos)
+        << made.remarks[0];
+    EXPECT_EQ(entries_of(made), (std::vector<std::string>{"tonemap", "bloom", "encode"}));
+}
+
+TEST_F(ComposePlan, BothShippedOrdersGiveNoRemark) {
+    for (const bool is_documented : {true, false}) {
+        std::vector<const EffectInfo*> flat;
+        const auto rank = [&](const EffectInfo* info) { return is_documented ? info->flat.documented : info->flat.scene_linear; };
+        for (const EffectInfo* const info : all_effects())
+            if (rank(info) >= 0) flat.push_back(info);
+        std::ranges::sort(flat, {}, rank);
+        composer.clear();
+        for (const EffectInfo* const info : flat) composer.add(*info, nullptr, {.source = scene_color});
+        const Plan made = plan();
+        EXPECT_TRUE(made.remarks.empty()) << (is_documented ? "documented: " : "scene_linear: ") << made.remarks.front();
+        EXPECT_EQ(entries_of(made).size(), flat.size());
+    }
+}
+
+TEST_F(ComposePlan, HandlesMustNameEarlierEntries) {
+    add(composer, "exposure", {}, {.input = Handle{2}});
+    add(composer, "negative");
+    EXPECT_NE(error().find("'exposure': its input"), std::string::npos) << error();
+    composer.clear();
+    add(composer, "exposure", {}, {.mask = Handle{1}});
+    EXPECT_NE(error().find("mask"), std::string::npos) << error();
+    composer.clear();
+    add(composer, "blend");
+    EXPECT_NE(error().find("second"), std::string::npos) << error();
+}
+
+TEST_F(ComposePlan, TheDefaultStackNeedsItsPyramidAndNothingElse) {
+    add(composer, "bloom", {}, {.source = scene_color});
+    for (const char* const name : {"exposure", "tonemap", "encode", "dither", "vignette"}) add(composer, name);
+    const Plan fused = plan();
+    std::uint64_t pyramid = 0;  // 8 bytes a pixel, five levels
+    for (std::uint32_t level = 1; level <= 5; ++level) pyramid += 8ull * (1920 >> level) * (1080 >> level);
+    EXPECT_GE(fused.transient_bytes, pyramid);
+    EXPECT_LE(fused.transient_bytes, pyramid + (pyramid / 2)) << "more than the pyramid and the driver's padding";
+    EXPECT_EQ(fused.transient_bytes, fused.transient_bytes_unaliased);
+
+    CompileDesc desc = hd();
+    desc.fuse = false;
+    const Plan unfused = plan(desc);
+    EXPECT_LE(static_cast<double>(unfused.transient_bytes), 0.45 * static_cast<double>(unfused.transient_bytes_unaliased));
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the reader, the writer and the overrides of looks share: the names of keys that belong to an entry.
+
+#include <array>
+#include <bit>
+#include <darkroom/look.hpp>
+#include <string_view>
+
+namespace darkroom {
+
+/// The wire to the picture as it came.
+inline constexpr std::string_view scene_name = "scene";
+inline constexpr const auto& order_names = detail::Enumerators<LookOrder>::names;
+
+struct WireInfo {
+    std::string_view key;
+    std::string LookEntry::*member;
+    bool is_reference;  ///< names another entry's output
+};
+inline constexpr std::array<WireInfo, 6> wires{{{"name", &LookEntry::name, false},
+                                                {"input", &LookEntry::input, true},
+                                                {"source", &LookEntry::source, true},
+                                                {"second", &LookEntry::second, true},
+                                                {"mask", &LookEntry::mask, true},
+                                                {"output", &LookEntry::output, false}}};
+
+using StateWords = std::array<std::uint32_t, sizeof(EntryState) / 4>;
+[[nodiscard]] inline StateWords state_words(const EntryState& state) { return std::bit_cast<StateWords>(state); }
+
+[[nodiscard]] std::int32_t flat_rank(const EffectInfo& effect, LookOrder order);
+/// The entries as they go into a Composer: the flat table in its order and without what that order lacks.
+[[nodiscard]] std::vector<const LookEntry*> ordered(const Look& look);
+/// An entry with the effect's defaults.
+[[nodiscard]] LookEntry entry_of(const EffectInfo& effect);
+
+}  // namespace darkroom

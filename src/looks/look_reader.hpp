@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the readers of the two forms of a look share: collecting problems with their places, and taking a value or
+// saying why not.
+
+#include <darkroom/look.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "looks/toml_text.hpp"
+
+namespace darkroom {
+
+/// Slips (unknown keys, values out of range) are warnings unless the reader is strict; notes are warnings always.
+enum class Weight : std::uint8_t { Note, Slip, Wrong };
+
+class LookReader {
+  public:
+    LookReader(std::string shown_name, const LookOptions& options)
+        : options_(options), shown_name_(std::move(shown_name)) {}
+
+    [[nodiscard]] Result<Look> read(const toml::table& file);
+
+    void report(const toml::source_position& place, Weight weight, std::string text) {
+        problems_.push_back({place, weight, std::move(text)});
+    }
+    void report(const toml::node& node, Weight weight, std::string text) {
+        report(node.source().begin, weight, std::move(text));
+    }
+    /// Sets the words of `row` to the node's value. Or reports why not, and leaves the default.
+    bool take(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node, std::string_view key);
+    /// The same for one of the entry's own values.
+    bool take(const ParamInfo& row, EntryState& state, const toml::node& node, std::string_view key);
+    /// `allowed` says what the nearest known key takes.
+    void report_unknown(const toml::key& key, const toml::node& node, std::span<const std::string> known,
+                        const std::function<std::string(const std::string&)>& allowed);
+
+  private:
+    struct Problem {
+        toml::source_position place;
+        Weight weight = Weight::Slip;
+        std::string text;
+    };
+
+    void read_top(const toml::table& file);
+    Result<Look> finish(Look look);
+
+    const LookOptions& options_;
+    std::string shown_name_;
+    std::vector<Problem> problems_;
+};
+
+[[nodiscard]] Look read_flat(LookReader& reader, const toml::node* node);
+[[nodiscard]] Look read_stack(LookReader& reader, const toml::node& node);
+
+}  // namespace darkroom

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <darkroom/effects.hpp>
+#include <darkroom/look.hpp>
+#include <fstream>
+#include <sstream>
+
+#include "core/param_text.hpp"
+
+namespace darkroom {
+namespace {
+
+// Warnings, or the error, of a text.
+std::vector<std::string> warnings_of(std::string_view text) {
+    std::vector<std::string> warnings;
+    const Result<Look> look = parse_look(text, "a.toml", {.warnings = &warnings});
+    EXPECT_TRUE(look) << look.error().text;
+    return warnings;
+}
+std::string error_of(std::string_view text, bool is_strict = false) {
+    const Result<Look> look = parse_look(text, "a.toml", {.is_strict = is_strict});
+    return look ? "accepted" : look.error().text;
+}
+Look look_of(std::string_view text) {
+    Result<Look> look = parse_look(text, "a.toml", {.is_strict = true});
+    EXPECT_TRUE(look) << look.error().text;
+    return look ? *look : Look{};
+}
+std::string value_of(Look& look, std::string_view entry, std::string_view name) {
+    const LookEntry* const found = find_entry(look, entry);
+    if (found == nullptr) return "no entry";
+    return format(*found->effect->parameters.find(name), found->words);
+}
+/// Tests that name effects are skipped in a tree without them.
+bool lacks(std::initializer_list<const char*> effects) {
+    return std::any_of(effects.begin(), effects.end(), [](const char* name) { return find_effect(name) == nullptr; });
+}
+bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+
+TEST(Look, EmptyTableIsTheDefaults) {
+    if (lacks({"bloom", "vignette", "dither", "exposure"}))
+        GTEST_SKIP() << "an effect that this test names is not in this build";
+    for (const char* const text : {"", "[post_process]\n", "format = 1\n"}) {
+        EXPECT_EQ(write_look(look_of(text)), write_look(default_look()));
+        EXPECT_TRUE(warnings_of(text).empty());
+    }
+    Look look = default_look();
+    EXPECT_TRUE(find_entry(look, "bloom")->state.enabled.on);
+    EXPECT_FALSE(find_entry(look, "vignette")->state.enabled.on);
+    EXPECT_FALSE(find_entry(look, "dither")->state.enabled.on);
+    EXPECT_EQ(value_of(look, "bloom", "intensity"), "0.04");
+    EXPECT_EQ(value_of(look, "exposure", "exposure"), "1.0");
+}
+
+TEST(Look, ReadsEveryFieldOfTheFlatTable) {
+    if (lacks({"bloom", "vignette", "exposure"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    Look look = look_of(
+        "[post_process]\nbloom_intensity = 2\nexposure = 1.25\nvignette_enabled = true\n"
+        "order = \"scene_linear\"\nbloom_threshold = 0.5\nbloom_enabled = false\n");
+    EXPECT_EQ(value_of(look, "bloom", "intensity"), "2.0");
+    EXPECT_EQ(value_of(look, "exposure", "exposure"), "1.25");
+    EXPECT_TRUE(find_entry(look, "vignette")->state.enabled.on);
+    EXPECT_FALSE(find_entry(look, "bloom")->state.enabled.on) << "a toggle counts, whatever the amount implies";
+    EXPECT_EQ(look.order, LookOrder::SceneLinear);
+}
+
+TEST(Look, FormerKeysAreStillRead) {
+    for (const EffectInfo* const effect : all_effects())
+        for (const ParamInfo& row : effect->parameters.rows) {
+            if (row.formerly.empty() || effect->flat.documented < 0) continue;
+            const std::string key = flat_key(effect->name, row.formerly);
+            EXPECT_EQ(
+                error_of("[post_process]\n" + key + " = " + format(row, effect->parameters.defaults) + "\n", true),
+                "accepted");
+        }
+}
+
+TEST(Look, AnAmountAboveZeroTurnsItsEffectOn) {
+    if (lacks({"bloom", "dither"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    Look on = look_of("[post_process]\ndither_intensity = 0.03\n");
+    EXPECT_TRUE(find_entry(on, "dither")->state.enabled.on);
+    Look off = look_of("[post_process]\nbloom_intensity = 0\n");
+    EXPECT_FALSE(find_entry(off, "bloom")->state.enabled.on);
+}
+
+TEST(Look, UnknownKeysAreWarnedOfAndStrictlyRefused) {
+    if (lacks({"bloom"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    const std::string text = "[post_process]\nbloom_treshold = 2\n[not_a_section]\nx = 1\n";
+    const std::vector<std::string> warnings = warnings_of(text);
+    ASSERT_EQ(warnings.size(), 2u);
+    EXPECT_TRUE(warnings[0].starts_with(
+        "a.toml:2:1: unknown key 'bloom_treshold' = 2, did you mean 'bloom_threshold', which takes ["))
+        << warnings[0];
+    EXPECT_TRUE(contains(warnings[1], "unknown key 'not_a_section'")) << warnings[1];
+    EXPECT_TRUE(contains(error_of(text, true), "bloom_threshold"));
+    EXPECT_TRUE(contains(error_of(text, true), "not_a_section"));
+}
+
+TEST(Look, ValuesOutOfRangeLeaveTheDefaultAndSaySo) {
+    if (lacks({"bloom", "exposure"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    const std::vector<std::string> warnings = warnings_of("[post_process]\nbloom_intensity = -1\n");
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_TRUE(warnings[0].starts_with("a.toml:2:19: bloom_intensity = -1: allowed is [0, ")) << warnings[0];
+    EXPECT_TRUE(warnings[0].ends_with("; 0.04 is used")) << warnings[0];
+    EXPECT_TRUE(contains(error_of("[post_process]\nbloom_intensity = -1\n", true), "a.toml:2:19: "));
+    EXPECT_TRUE(contains(error_of("[post_process]\nexposure = nan\n", true), "exposure = nan"));
+}
+
+TEST(Look, EveryWrongTypeIsListed) {
+    if (lacks({"bloom", "exposure", "tonemap", "vignette"}))
+        GTEST_SKIP() << "an effect that this test names is not in this build";
+    const std::string error = error_of(
+        "[post_process]\nenabled = \"yes\"\nexposure = \"1280\"\nbloom_threshold = [1.0, 2.0]\n"
+        "tonemap_curve = 42\nvignette_enabled = 1979-05-27\norder = {}\n");
+    for (const char* const part :
+         {"a.toml:2:11: enabled = \"yes\": expected a boolean", "a.toml:3:12: exposure = \"1280\"",
+          ":4:19: ", ":5:17: ", "vignette_enabled = a date or time", "order = a table"})
+        EXPECT_TRUE(contains(error, part)) << part << " is not in " << error;
+    EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 0);
+}
+
+TEST(Look, SyntaxErrorsNameTheLine) {
+    EXPECT_TRUE(error_of("[post_process]\nexposure = 1\nexposure = 2\n").starts_with("a.toml:3:"))
+        << error_of("a = 1\na = 2");
+    EXPECT_TRUE(error_of("[post_process]\n[post_process]\n").starts_with("a.toml:2:"));
+    const std::string error = error_of("[[stack]]\neffect = \"\xe9\xff\xfe\"\n");
+    EXPECT_TRUE(error.starts_with("a.toml:2:")) << error;
+    EXPECT_TRUE(contains(error, "UTF-8") || contains(error, "utf-8")) << error;
+    EXPECT_TRUE(std::all_of(error.begin(), error.end(), [](char c) { return c >= 0x20 && c < 0x7f; })) << error;
+}
+
+TEST(Look, ControlBytesAreNotEchoed) {
+    if (lacks({"bloom"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    for (const std::string& error :
+         {error_of("\"a\\u001b[31m\" = 1\n", true), error_of("[[stack]]\neffect = \"\\u001bx\"\n"),
+          error_of("\x1b[31m = 1"), error_of("[[stack]]\neffect='bloom'\nname = \"a\\nb\"\n")})
+        EXPECT_TRUE(std::all_of(error.begin(), error.end(), [](char c) { return c >= 0x20 && c < 0x7f; })) << error;
+}
+
+TEST(Look, LaterEffectsAreOneNoteEach) {
+    const std::string text =
+        "[post_process]\nssao_radius = 0.5\nssao_intensity = 1\nfog_color = [0.7, 0.75, 0.82]\nradial_blur = 0\n";
+    std::size_t later = 0;
+    for (const char* const name : {"ssao", "fog", "radial_blur"}) later += find_effect(name) == nullptr ? 1 : 0;
+    EXPECT_EQ(warnings_of(text).size(), later);
+    std::vector<std::string> warnings;
+    EXPECT_TRUE(parse_look(text, "a.toml", {.is_strict = true, .warnings = &warnings})) << "strict refuses slips only";
+    EXPECT_EQ(warnings.size(), later);
+}
+
+TEST(Look, ReadsAStack) {
+    if (lacks({"gaussian_blur", "negative", "blend"}))
+        GTEST_SKIP() << "an effect that this test names is not in this build";
+    Look look = look_of(
+        "[[stack]]\neffect = \"gaussian_blur\"\nradius = 4\noutput = \"blurred\"\n"
+        "[[stack]]\neffect = \"negative\"\nopacity = 0.5\nblend = \"screen\"\nenabled = false\n"
+        "[[stack]]\neffect = \"blend\"\nsecond = \"blurred\"\ninput = \"scene\"\nname = \"mix\"\n"
+        "[[stack]]\neffect = \"negative\"\n");
+    ASSERT_EQ(look.entries.size(), 4u);
+    EXPECT_FALSE(look.is_flat);
+    EXPECT_EQ(look.entries[0].output, "blurred");
+    EXPECT_EQ(look.entries[1].state.blend, BlendMode::Screen);
+    EXPECT_EQ(look.entries[1].state.opacity, 0.5f);
+    EXPECT_FALSE(look.entries[1].state.enabled.on);
+    EXPECT_EQ(look.entries[2].second, "blurred");
+    EXPECT_EQ(entry_names(look), (std::vector<std::string>{"gaussian_blur", "negative", "mix", "negative#2"}));
+    EXPECT_EQ(find_entry(look, "negative#2"), &look.entries[3]);
+    EXPECT_EQ(find_entry(look, "blend"), &look.entries[2]);
+}
+
+TEST(Look, StackErrorsNameBothEnds) {
+    if (lacks({"gaussian_blur", "negative", "blend", "bloom"}))
+        GTEST_SKIP() << "an effect that this test names is not in this build";
+    const std::string blur = "[[stack]]\neffect = \"gaussian_blur\"\noutput = \"blurred\"\n";
+    const std::string blend = "[[stack]]\neffect = \"blend\"\nsecond = \"blurred\"\n";
+    EXPECT_EQ(error_of(blend + blur),
+              "a.toml:3:10: second = \"blurred\" of stack entry 1 (blend): made only later, by stack entry 2 "
+              "(gaussian_blur)");
+    EXPECT_EQ(
+        error_of(blur + blur),
+        "a.toml:6:10: output 'blurred' is made by stack entry 1 (gaussian_blur) and by stack entry 2 (gaussian_blur)");
+    EXPECT_EQ(error_of(blur + "[[stack]]\neffect = \"blend\"\nsecond = \"blured\"\n"),
+              "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, known are scene, "
+              "blurred, did you "
+              "mean 'blurred'?");
+    EXPECT_TRUE(contains(error_of("[[stack]]\neffect = \"blom\"\n"), "did you mean 'bloom'?"));
+    EXPECT_TRUE(contains(error_of("[[stack]]\nradius = 1\n"), "stack entry 1 has no key 'effect'"));
+    EXPECT_TRUE(contains(error_of("stack = 1\n"), "expected [[stack]] entries"));
+    EXPECT_TRUE(contains(error_of("stack = [1]\n"), "expected a table"));
+    EXPECT_TRUE(contains(error_of("[post_process]\n[[stack]]\neffect = \"negative\"\n"), "one of them"));
+    EXPECT_TRUE(contains(error_of("format = 2\n"), "this build reads format 1"));
+    const std::string negative = "[[stack]]\neffect = \"negative\"\n";
+    EXPECT_TRUE(
+        contains(error_of(negative + "name = \"a\"\n" + negative + "name = \"a\"\n"), "is that of stack entry 1"));
+    EXPECT_TRUE(contains(error_of(negative + "name = \"bloom\"\n"), "another effect"));
+    EXPECT_TRUE(contains(error_of(negative + "output = \"scene\"\n"), "the scene's"));
+    EXPECT_TRUE(contains(error_of(negative + "name = \"a.b\"\n"), "expected a name"));
+}
+
+TEST(Look, SurvivesWriting) {
+    if (lacks({"gaussian_blur", "blend", "bloom", "dither"}))
+        GTEST_SKIP() << "an effect that this test names is not in this build";
+    for (const char* const text :
+         {"[post_process]\nbloom_intensity = 0.1\ndither_enabled = true\norder = \"scene_linear\"\nenabled = false\n",
+          "[[stack]]\neffect = \"gaussian_blur\"\nradius = 3\noutput = \"b\"\nenabled = false\n[[stack]]\neffect = "
+          "\"blend\"\n"
+          "second = \"b\"\nmask = \"scene\"\nmode = \"screen\"\nopacity = 0.3\nblend = \"add\"\nname = \"n\"\n",
+          "stack = []\n"}) {
+        const Look look = look_of(text);
+        const std::string written = write_look(look);
+        const Look again = look_of(written);
+        EXPECT_EQ(write_look(again), written);
+        ASSERT_EQ(again.entries.size(), look.entries.size());
+        EXPECT_EQ(again.is_flat, look.is_flat);
+        EXPECT_EQ(again.is_enabled, look.is_enabled);
+        EXPECT_EQ(again.order, look.order);
+        for (const LookEntry& entry : look.entries) {
+            const auto same = [&](const LookEntry& other) {
+                return other.effect == entry.effect && other.words == entry.words &&
+                       other.state.opacity == entry.state.opacity && other.state.enabled.on == entry.state.enabled.on &&
+                       other.state.blend == entry.state.blend && other.name == entry.name &&
+                       other.second == entry.second && other.mask == entry.mask && other.output == entry.output;
+            };
+            EXPECT_TRUE(std::any_of(again.entries.begin(), again.entries.end(), same)) << entry.effect->name;
+        }
+    }
+}
+
+TEST(Look, OverridesWinOverTheFileWhichWinsOverDefaults) {
+    if (lacks({"bloom"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    Look look = look_of("[post_process]\nbloom_intensity = 0.2\nbloom_threshold = 0.5\n");
+    ASSERT_TRUE(override_look(look, std::array{LookOverride{"bloom_intensity", "0.3", "--bloom-intensity"}}));
+    EXPECT_EQ(value_of(look, "bloom", "intensity"), "0.3");
+    EXPECT_EQ(value_of(look, "bloom", "threshold"), "0.5");
+    EXPECT_EQ(value_of(look, "bloom", "soft_threshold"), "0.5");
+}
+
+TEST(Look, AmountFlagsSwitchTheirEffect) {
+    if (lacks({"bloom", "dither", "vignette"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    Look look = default_look();
+    ASSERT_TRUE(override_look(
+        look, std::array{LookOverride{"dither_intensity", "0.05", ""}, LookOverride{"bloom_intensity", "0", ""}}));
+    EXPECT_TRUE(find_entry(look, "dither")->state.enabled.on);
+    EXPECT_FALSE(find_entry(look, "bloom")->state.enabled.on);
+    ASSERT_TRUE(override_look(
+        look, std::array{LookOverride{"dither_enabled", "off", ""}, LookOverride{"dither_intensity", "0.1", ""}}));
+    EXPECT_FALSE(find_entry(look, "dither")->state.enabled.on) << "a typed toggle counts";
+    ASSERT_TRUE(override_look(look, std::array{LookOverride{"vignette_smoothness", "3", ""}}));
+    EXPECT_FALSE(find_entry(look, "vignette")->state.enabled.on) << "other values only set";
+}
+
+TEST(Look, OverridesThatDoNotFitAreErrors) {
+    if (lacks({"bloom", "negative"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    Look look = look_of("[[stack]]\neffect = \"negative\"\n[[stack]]\neffect = \"negative\"\n");
+    const auto error = [&](std::string key, std::string text) {
+        const Result<> done = override_look(look, std::array{LookOverride{key, std::move(text), "--" + key}});
+        return done ? "accepted" : done.error().text;
+    };
+    EXPECT_EQ(error("bloom_intensity", "1"),
+              "--bloom_intensity: a.toml has no entry 'bloom', it has negative, negative#2");
+    EXPECT_EQ(error("negative#2.opacity", "0.5"), "accepted");
+    EXPECT_EQ(look.entries[1].state.opacity, 0.5f);
+    EXPECT_EQ(error("negative#2.opacity", "1.5"), "--negative#2.opacity = 1.5: allowed is [0, 1]");
+    EXPECT_TRUE(contains(error("negative#3.opacity", "1"), "did you mean"));
+    EXPECT_TRUE(contains(error("negative.opcity", "1"), "did you mean 'opacity'?"));
+    EXPECT_TRUE(contains(error("negative.enabled", "maybe"), "is not a boolean"));
+    Look flat = default_look();
+    const Result<> done = override_look(flat, std::array{LookOverride{"bloom_intensity", "x", "--bloom-intensity"}});
+    ASSERT_FALSE(done);
+    EXPECT_TRUE(done.error().text.starts_with("--bloom-intensity: 'x' is not a number, allowed is [0, "))
+        << done.error().text;
+}
+
+TEST(Look, DeepNestingIsRefusedNotFollowed) {
+    std::string arrays = "a = ", dots = "a", headers = "[a", mixed = "x = ";
+    for (int i = 0; i < 100000; ++i) arrays += '[';
+    for (int i = 0; i < 200000; ++i) dots += ".a";
+    for (int i = 0; i < 200000; ++i) headers += ".1";
+    for (int i = 0; i < 8; ++i) {
+        mixed += "[\n{";
+        for (int j = 0; j < 60; ++j) mixed += "a.";
+        mixed += "a = ";
+    }
+    for (const std::string& text : {arrays, dots + " = 1", headers + "]", mixed, dots + "\n"})
+        EXPECT_TRUE(error_of(text).starts_with("a.toml:")) << text.size();
+    EXPECT_EQ(error_of("# ............................................................................\n"), "accepted");
+}
+
+TEST(Look, DevicesAndFoldersAreNotRead) {
+    for (const char* const path : {"/dev/zero", "/", "/no/such/look.toml"}) {
+        const Result<Look> look = read_look(path);
+        ASSERT_FALSE(look);
+        EXPECT_TRUE(contains(look.error().text, path)) << look.error().text;
+    }
+}
+
+TEST(Look, ShippedLooksAreStrict) {
+    if (lacks({"bloom", "vignette", "dither", "exposure", "tonemap", "encode", "gaussian_blur", "negative", "blend"}))
+        GTEST_SKIP() << "an effect that this test names is not in this build";
+    std::size_t count = 0;
+    for (const auto& file : std::filesystem::directory_iterator(DARKROOM_SOURCE_FOLDER "/looks")) {
+        if (file.path().extension() != ".toml") continue;
+        std::vector<std::string> warnings;
+        const Result<Look> look = read_look(file.path(), {.is_strict = true, .warnings = &warnings});
+        EXPECT_TRUE(look) << look.error().text;
+        EXPECT_TRUE(warnings.empty()) << warnings.front();
+        ++count;
+    }
+    EXPECT_GE(count, 3u);
+}
+
+// The hostile files, with their placeholder keys renamed to ours.
+TEST(Look, HostileFilesAreRefused) {
+    if (lacks({"bloom"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    const char* const folder = std::getenv("DARKROOM_TEST_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "DARKROOM_TEST_DATA is not set";
+    const auto renamed = [&](const char* name) {
+        std::ifstream file(std::filesystem::path(folder) / "hostile" / name, std::ios::binary);
+        EXPECT_TRUE(file) << name;
+        std::stringstream out;
+        for (std::string line; std::getline(file, line);) {
+            const auto rename = [&](std::string_view from, std::string_view to) {
+                if (line.starts_with(from)) line.replace(0, from.size(), to);
+            };
+            rename("[bloom]", "[post_process]");
+            rename("threshold", "bloom_threshold");
+            rename("treshold", "bloom_treshold");
+            rename("intensity", "bloom_intensity");
+            rename("enabled", "bloom_enabled");
+            out << line << '\n';
+        }
+        return out.str();
+    };
+    const std::string types = error_of(renamed("17_toml_wrong_types.toml"));
+    EXPECT_TRUE(contains(types, "bloom_enabled = \"yes\"") && contains(types, "bloom_threshold")) << types;
+    const std::string unknown = error_of(renamed("18_toml_unknown_keys.toml"), true);
+    EXPECT_TRUE(contains(unknown, "'bloom_threshold'") && contains(unknown, "not_a_section")) << unknown;
+    const std::string twice = error_of(renamed("19_toml_duplicate_keys.toml"));
+    EXPECT_TRUE(twice.starts_with("a.toml:3:")) << twice;
+    EXPECT_TRUE(error_of(renamed("20_toml_non_utf8.toml")).starts_with("a.toml:2:"));
+}
+
+}  // namespace
+}  // namespace darkroom

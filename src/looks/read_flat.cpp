@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// The flat table [post_process]: one key for each parameter of each effect that has a place in it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/param_text.hpp"
+#include "looks/later_effects.hpp"
+#include "looks/look_parts.hpp"
+#include "looks/look_reader.hpp"
+
+namespace darkroom {
+
+namespace {
+
+const ParamInfo enabled_row{.name = "enabled", .kind = Kind::Toggle};
+const ParamInfo order_row{.name = "order", .kind = Kind::Choice, .choices = order_names};
+
+class FlatReader {
+  public:
+    explicit FlatReader(LookReader& reader) : reader_(reader) {
+        for (LookEntry& entry : look_.entries) add_keys(entry);
+        for (LookEntry& entry : look_.entries) add_former_keys(entry);
+    }
+
+    Look read(const toml::table& table) {
+        for (const auto& [key, node] : table) read_value(key, node);
+        // Toggles come last: what they say counts, whatever an amount implies.
+        for (const auto& [key, node] : table) {
+            const auto found = targets_.find(key.str());
+            if (found != targets_.end() && found->second.row == &enabled_row)
+                reader_.take(entry_rows.rows[0], found->second.entry->state, node, key.str());
+        }
+        return std::move(look_);
+    }
+
+  private:
+    struct Target {
+        LookEntry* entry = nullptr;
+        const ParamInfo* row = nullptr;
+    };
+
+    void add_keys(LookEntry& entry) {
+        const EffectInfo& effect = *entry.effect;
+        targets_[flat_key(effect.name, "enabled")] = {&entry, &enabled_row};
+        for (const ParamInfo& row : effect.parameters.rows) targets_[flat_key(effect.name, row.name)] = {&entry, &row};
+        for (const auto& [key, target] : targets_)
+            if (target.entry == &entry) names_.push_back(key);
+    }
+
+    // Former names are read, but nobody is pointed to them.
+    void add_former_keys(LookEntry& entry) {
+        const EffectInfo& effect = *entry.effect;
+        for (const ParamInfo& row : effect.parameters.rows)
+            if (!row.formerly.empty()) targets_.try_emplace(flat_key(effect.name, row.formerly), Target{&entry, &row});
+    }
+
+    std::string allowed(const std::string& key) const {
+        const auto found = targets_.find(key);
+        if (found != targets_.end()) return interval(*found->second.row);
+        return interval(key == "order" ? order_row : enabled_row);
+    }
+
+    void read_value(const toml::key& key, const toml::node& node) {
+        if (key.str() == "enabled") return read_enabled(node);
+        if (key.str() == "order") return read_order(node);
+        const auto found = targets_.find(key.str());
+        if (found == targets_.end()) return read_unknown(key, node);
+        const auto& [entry, row] = found->second;
+        if (row == &enabled_row) return;
+        if (reader_.take(*row, entry->words, node, key.str()) && row->is_amount)
+            entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) > 0;
+    }
+
+    void read_enabled(const toml::node& node) {
+        std::array<std::uint32_t, 1> words{1};
+        reader_.take(enabled_row, words, node, "enabled");
+        look_.is_enabled = words[0] != 0;
+    }
+
+    void read_order(const toml::node& node) {
+        std::array<std::uint32_t, 1> words{static_cast<std::uint32_t>(look_.order)};
+        reader_.take(order_row, words, node, "order");
+        look_.order = static_cast<LookOrder>(words[0]);
+    }
+
+    void read_unknown(const toml::key& key, const toml::node& node) {
+        const std::string_view later = documented_effect_of(key.str());
+        if (later.empty())
+            return reader_.report_unknown(key, node, names_, [&](const std::string& near) { return allowed(near); });
+        if (std::find(later_.begin(), later_.end(), later) != later_.end()) return;
+        later_.push_back(later);
+        reader_.report(
+            key.source().begin, Weight::Note,
+            fmt::format("{}: this build has no effect '{}', its keys are passed over", printable(key.str()), later));
+    }
+
+    LookReader& reader_;
+    Look look_ = default_look();
+    std::map<std::string, Target, std::less<>> targets_;
+    std::vector<std::string> names_{"enabled", "order"};  // of all keys, for suggestions
+    std::vector<std::string_view> later_;
+};
+
+}  // namespace
+
+Look read_flat(LookReader& reader, const toml::node* node) {
+    if (node == nullptr) return default_look();
+    const toml::table* const table = node->as_table();
+    if (table != nullptr) return FlatReader(reader).read(*table);
+    reader.report(*node, Weight::Wrong, fmt::format("post_process = {}: expected a table", show(*node)));
+    return default_look();
+}
+
+}  // namespace darkroom

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// The list [[stack]]: effects in any order, wired by the names of outputs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <darkroom/effects.hpp>
+#include <map>
+
+#include "core/param_text.hpp"
+#include "looks/look_parts.hpp"
+#include "looks/look_reader.hpp"
+
+namespace darkroom {
+
+namespace {
+
+// Names are typed at a command line ("blurred.radius"), so they hold no dot, no '#', no blank.
+bool is_name(std::string_view text) {
+    constexpr std::size_t longest = 64;
+    const auto is_part = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    };
+    return !text.empty() && text.size() <= longest && std::all_of(text.begin(), text.end(), is_part);
+}
+
+class StackReader {
+  public:
+    explicit StackReader(LookReader& reader) : reader_(reader) {}
+
+    Look read(const toml::array& array) {
+        for (const toml::node& node : array) {
+            if (const toml::table* const table = node.as_table())
+                read_entry(*table);
+            else
+                reader_.report(node, Weight::Wrong,
+                               fmt::format("an entry of stack is {}: expected a table", show(node)));
+        }
+        check_names();
+        check_wires();
+        return std::move(look_);
+    }
+
+  private:
+    // One entry of the file; `table` is where its keys stand.
+    struct Origin {
+        const toml::table* table = nullptr;
+        std::size_t number = 0;  ///< in the file, from 1
+    };
+
+    void read_entry(const toml::table& table) {
+        ++number_;
+        const EffectInfo* const effect = read_effect(table);
+        if (effect == nullptr) return;
+        LookEntry entry = entry_of(*effect);
+        for (const auto& [key, node] : table)
+            if (key.str() != "effect") read_key(entry, key, node);
+        look_.entries.push_back(std::move(entry));
+        origins_.push_back({&table, number_});
+    }
+
+    const EffectInfo* read_effect(const toml::table& table) {
+        const toml::node* const node = table.get("effect");
+        if (node == nullptr) {
+            reader_.report(table, Weight::Wrong, fmt::format("stack entry {} has no key 'effect'", number_));
+            return nullptr;
+        }
+        const auto* const name = node->as_string();
+        const EffectInfo* const effect = name == nullptr ? nullptr : find_effect(name->get());
+        if (effect != nullptr) return effect;
+        std::vector<std::string> names;
+        for (const EffectInfo* const known : all_effects()) names.emplace_back(known->name);
+        const std::string near = name == nullptr ? std::string() : suggestion(name->get(), names);
+        reader_.report(*node, Weight::Wrong,
+                       fmt::format("effect = {}: allowed is one of {}{}", show(*node), fmt::join(names, ", "), near));
+        return nullptr;
+    }
+
+    void read_key(LookEntry& entry, const toml::key& key, const toml::node& node) {
+        const std::string shown = printable(key.str());
+        for (const WireInfo& wire : wires) {
+            if (wire.key != key.str()) continue;
+            const auto* const text = node.as_string();
+            if (text != nullptr && is_name(text->get())) {
+                entry.*wire.member = text->get();
+                return;
+            }
+            return reader_.report(
+                node, Weight::Wrong,
+                fmt::format("{} = {}: expected a name of letters, digits, '_' and '-'", shown, show(node)));
+        }
+        for (const ParamInfo& row : entry_rows.rows) {
+            if (row.name != key.str()) continue;
+            reader_.take(row, entry.state, node, shown);
+            return;
+        }
+        if (const ParamInfo* const row = entry.effect->parameters.find(key.str())) {
+            reader_.take(*row, entry.words, node, shown);
+            return;
+        }
+        read_unknown(*entry.effect, key, node);
+    }
+
+    void read_unknown(const EffectInfo& effect, const toml::key& key, const toml::node& node) {
+        std::vector<std::string> known{"effect"};
+        for (const WireInfo& wire : wires) known.emplace_back(wire.key);
+        for (const ParamInfo& row : entry_rows.rows) known.emplace_back(row.name);
+        for (const ParamInfo& row : effect.parameters.rows) known.emplace_back(row.name);
+        reader_.report_unknown(key, node, known, [&](const std::string& near) {
+            const ParamInfo* row = effect.parameters.find(near);
+            for (const ParamInfo& own : entry_rows.rows)
+                if (own.name == near) row = &own;
+            return row == nullptr ? "a name" : interval(*row);
+        });
+    }
+
+    std::string shown(std::size_t index) const {
+        return fmt::format("stack entry {} ({})", origins_[index].number, look_.entries[index].effect->name);
+    }
+    const toml::node& node_of(std::size_t index, std::string_view key) const {
+        return *origins_[index].table->get(key);
+    }
+
+    void check_names() {
+        const std::vector<std::string> names = entry_names(look_);
+        std::map<std::string, std::size_t> first;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const LookEntry& entry = look_.entries[i];
+            const auto [found, is_new] = first.try_emplace(names[i], i);
+            if (entry.name.empty() && is_new) continue;
+            const std::size_t said = entry.name.empty() ? found->second : i;
+            const toml::node& place = look_.entries[said].name.empty() ? *origins_[i].table : node_of(said, "name");
+            if (!is_new)
+                reader_.report(
+                    place, Weight::Wrong,
+                    fmt::format("name '{}' is that of {} and of {}", names[i], shown(found->second), shown(i)));
+            else if (const EffectInfo* const effect = find_effect(entry.name);
+                     effect != nullptr && effect != entry.effect)
+                reader_.report(place, Weight::Wrong,
+                               fmt::format("name '{}' of {} is that of another effect", entry.name, shown(i)));
+        }
+    }
+
+    void check_wires() {
+        std::map<std::string, std::size_t> makers;
+        for (std::size_t i = 0; i < look_.entries.size(); ++i) {
+            const std::string& output = look_.entries[i].output;
+            if (output.empty()) continue;
+            if (output == scene_name) {
+                reader_.report(node_of(i, "output"), Weight::Wrong,
+                               fmt::format("output '{}' of {}: this name is the scene's", output, shown(i)));
+                continue;
+            }
+            const auto [found, is_new] = makers.try_emplace(output, i);
+            if (!is_new)
+                reader_.report(
+                    node_of(i, "output"), Weight::Wrong,
+                    fmt::format("output '{}' is made by {} and by {}", output, shown(found->second), shown(i)));
+        }
+        std::vector<std::string> known{std::string(scene_name)};
+        for (const auto& [name, maker] : makers) known.push_back(name);
+        for (std::size_t i = 0; i < look_.entries.size(); ++i)
+            for (const WireInfo& wire : wires)
+                if (wire.is_reference) check_wire(i, wire, makers, known);
+    }
+
+    void check_wire(std::size_t index, const WireInfo& wire, const std::map<std::string, std::size_t>& makers,
+                    std::span<const std::string> known) {
+        const std::string& name = look_.entries[index].*wire.member;
+        if (name.empty() || name == scene_name) return;
+        const auto found = makers.find(name);
+        if (found == makers.end())
+            return reader_.report(node_of(index, wire.key), Weight::Wrong,
+                                  fmt::format("{} = \"{}\" of {}: no entry has this output, known are {}{}", wire.key,
+                                              name, shown(index), fmt::join(known, ", "), suggestion(name, known)));
+        if (found->second < index) return;
+        reader_.report(node_of(index, wire.key), Weight::Wrong,
+                       fmt::format("{} = \"{}\" of {}: made only later, by {}", wire.key, name, shown(index),
+                                   found->second == index ? "itself" : shown(found->second)));
+    }
+
+    LookReader& reader_;
+    Look look_{.is_flat = false};
+    std::vector<Origin> origins_;
+    std::size_t number_ = 0;
+};
+
+}  // namespace
+
+Look read_stack(LookReader& reader, const toml::node& node) {
+    if (const toml::array* const array = node.as_array()) return StackReader(reader).read(*array);
+    reader.report(node, Weight::Wrong, fmt::format("stack = {}: expected [[stack]] entries", show(node)));
+    return Look{.is_flat = false};
+}
+
+}  // namespace darkroom

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "looks/toml_text.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+
+namespace darkroom {
+
+namespace {
+
+// Dots of one line beside those of numbers. A dotted key makes a table for each dot, however long it is, and tables are
+// destroyed by recursion, so their number is bounded before the text is parsed.
+constexpr std::size_t max_dots = 64;
+
+std::size_t dots_of_keys(std::string_view line) {
+    const auto is_digit = [&](std::size_t i) {
+        return i < line.size() && std::isdigit(static_cast<unsigned char>(line[i])) != 0;
+    };
+    const std::size_t first = line.find_first_not_of(" \t");
+    const bool is_comment = first != std::string_view::npos && line[first] == '#';
+    if (is_comment && line.find_first_of("\"'") == std::string_view::npos) return 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] != '.') continue;
+        std::size_t start = i;
+        while (start > 0 && is_digit(start - 1)) --start;
+        const bool has_digits = start < i && is_digit(i + 1);
+        const bool is_number =
+            has_digits && (start == 0 || std::string_view(" \t,[=+-").find(line[start - 1]) != std::string_view::npos);
+        if (!is_number) ++count;
+    }
+    return count;
+}
+
+std::optional<std::vector<double>> numbers_of(const toml::array& array) {
+    std::vector<double> out;
+    for (const toml::node& node : array) {
+        if (!node.is_number()) return std::nullopt;
+        out.push_back(*node.value<double>());
+    }
+    return out;
+}
+
+std::optional<ParamValue> value_of_array(const toml::array& array) {
+    if (std::optional<std::vector<double>> numbers = numbers_of(array)) return ParamValue(std::move(*numbers));
+    CurvePoints points;
+    for (const toml::node& node : array) {
+        const toml::array* const pair = node.as_array();
+        const std::optional<std::vector<double>> numbers = pair == nullptr ? std::nullopt : numbers_of(*pair);
+        if (!numbers || numbers->size() != 2) return std::nullopt;
+        points.push_back({(*numbers)[0], (*numbers)[1]});
+    }
+    return ParamValue(std::move(points));
+}
+
+std::optional<ParamValue> value_of_table(const toml::table& table) {
+    for (const std::string_view letters : {"xyzw", "xyz", "xy", "rgb"}) {
+        if (table.size() != letters.size()) continue;
+        std::vector<double> numbers;
+        for (const char letter : letters)
+            if (const std::optional<double> number = table[std::string_view(&letter, 1)].value<double>())
+                numbers.push_back(*number);
+        if (numbers.size() == letters.size()) return ParamValue(std::move(numbers));
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+Result<toml::table> parse_toml(std::string_view text, std::string_view shown_name) {
+    std::size_t line = 1;
+    for (std::size_t start = 0; start < text.size(); ++line) {
+        const std::size_t end = std::min(text.find('\n', start), text.size());
+        if (dots_of_keys(text.substr(start, end - start)) > max_dots)
+            return user_error(fmt::format("{}:{}:1: the line holds more than {} dots, keys may not nest so deep",
+                                          shown_name, line, max_dots));
+        start = end + 1;
+    }
+    toml::parse_result parsed = toml::parse(text);
+    if (!parsed) {
+        const toml::source_region& place = parsed.error().source();
+        return user_error(fmt::format("{}:{}:{}: {}", shown_name, place.begin.line, place.begin.column,
+                                      printable(parsed.error().description())));
+    }
+    return std::move(parsed).table();
+}
+
+std::optional<ParamValue> value_of(const toml::node& node) {
+    if (const auto* value = node.as_boolean()) return ParamValue(value->get());
+    if (const auto* value = node.as_integer()) return ParamValue(value->get());
+    if (const auto* value = node.as_floating_point()) return ParamValue(value->get());
+    if (const auto* value = node.as_string()) return ParamValue(value->get());
+    if (const auto* array = node.as_array()) return value_of_array(*array);
+    if (const auto* table = node.as_table()) return value_of_table(*table);
+    return std::nullopt;
+}
+
+std::string show(const toml::node& node) {
+    if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
+    if (const auto* value = node.as_integer()) return fmt::format("{}", value->get());
+    if (const auto* value = node.as_floating_point()) return fmt::format("{}", value->get());
+    if (const auto* value = node.as_string()) return fmt::format("\"{}\"", printable(value->get()));
+    if (node.is_array()) return "an array";
+    if (node.is_table()) return "a table";
+    return "a date or time";
+}
+
+}  // namespace darkroom

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The edge to toml++: text to a tree, nodes to the values of core/param_text.hpp. Nothing of toml++ passes look.hpp.
+
+#include <toml++/toml.h>
+#include <darkroom/result.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/param_text.hpp"
+
+namespace darkroom {
+
+/// Syntax errors name the place; text that nests so deep that a reader could run out of stack is refused first.
+[[nodiscard]] Result<toml::table> parse_toml(std::string_view text, std::string_view shown_name);
+/// Nothing for what no parameter can hold: dates, mixed arrays, other tables than {x, y, z, w} and {r, g, b}.
+[[nodiscard]] std::optional<ParamValue> value_of(const toml::node& node);
+/// A short text for messages: "1.5", "\"yes\"", "an array", "a table".
+[[nodiscard]] std::string show(const toml::node& node);
+
+}  // namespace darkroom
