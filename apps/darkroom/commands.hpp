@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The commands. Each adds itself to the program, and returns what runs it once the arguments are parsed.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace app {
+
+/// Returns the exit code.
+using Run = std::function<int()>;
+
+struct Command {
+    CLI::App* app = nullptr;
+    Run run;
+};
+
+[[nodiscard]] Command add_develop(CLI::App& program);
+[[nodiscard]] Command add_plan(CLI::App& program);
+[[nodiscard]] Command add_effects(CLI::App& program);
+[[nodiscard]] Command add_devices(CLI::App& program);
+[[nodiscard]] Command add_compare(CLI::App& program);
+
+}  // namespace app

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <darkroom/device.hpp>
+
+#include "commands.hpp"
+#include "report.hpp"
+
+namespace app {
+
+namespace {
+
+int list() {
+    const darkroom::Result<std::vector<darkroom::DeviceInfo>> devices = darkroom::Device::list();
+    if (!devices) return fail(devices.error());
+    for (const darkroom::DeviceInfo& device : *devices) {
+        fmt::print("{}: {} | {} | Vulkan {}.{}.{} | {}{}\n", device.index, device.name, device.driver,
+                   VK_API_VERSION_MAJOR(device.api_version), VK_API_VERSION_MINOR(device.api_version),
+                   VK_API_VERSION_PATCH(device.api_version), device.is_software ? "software" : "hardware",
+                   device.is_usable ? "" : fmt::format(" | not usable: {}", device.reason));
+    }
+    if (!devices->empty()) return exit_ok;
+    complain("devices: there is no Vulkan device; the software driver is in the package mesa-vulkan-drivers");
+    return exit_machine;
+}
+
+}  // namespace
+
+Command add_devices(CLI::App& program) {
+    return {program.add_subcommand("devices", "Lists the Vulkan devices, best first"), list};
+}
+
+}  // namespace app

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "look_flags.hpp"
+
+#include <fmt/format.h>
+
+#include <darkroom/effects.hpp>
+
+#include "core/param_text.hpp"
+#include "report.hpp"
+
+namespace app {
+
+using darkroom::Look;
+using darkroom::LookOverride;
+using darkroom::Result;
+using darkroom::user_error;
+
+void LookFlags::add_value(CLI::App& command, const std::string& key, const std::string& help,
+                          const std::string& group) {
+    values_.push_back(std::make_unique<Value>(Value{.key = key, .flag = darkroom::flag_name(key)}));
+    Value& value = *values_.back();
+    value.option = command.add_option(value.flag, value.text, help)->group(group)->type_name("")->expected(1);
+    value.option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+void LookFlags::add_to(CLI::App& command, bool has_look_flag) {
+    const std::string group = "The look";
+    if (has_look_flag)
+        command.add_option("--look", file, "A look file (TOML). Default: the flat table at its defaults")
+            ->type_name("FILE")
+            ->group(group);
+    command.add_option("--order", order_, "Order of the flat table: documented or scene_linear")
+        ->type_name("ORDER")
+        ->group(group);
+    command
+        .add_option("--set", sets_, "Any parameter of an entry, by its name: bloom#2.intensity=0.3, bloom.opacity=0.5")
+        ->type_name("ENTRY.PARAM=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group(group);
+    command.add_flag("--strict", is_strict_, "Unknown keys and values out of range in a look are errors")->group(group);
+    command
+        .add_flag("--no-postprocess", is_off_, "Tone mapping and encoding at their defaults, whatever the look says")
+        ->group(group);
+    for (const darkroom::EffectInfo* const effect : darkroom::all_effects()) {
+        const std::string title = fmt::format("{}: {}", effect->name, effect->doc);
+        add_value(command, darkroom::flat_key(effect->name, "enabled"), "on or off", title);
+        for (const darkroom::ParamInfo& row : effect->parameters.rows)
+            add_value(command, darkroom::flat_key(effect->name, row.name),
+                      fmt::format("{} {}, default {}", row.doc, darkroom::interval(row),
+                                  darkroom::format(row, effect->parameters.defaults)),
+                      title);
+    }
+}
+
+Result<std::vector<LookOverride>> LookFlags::overrides() const {
+    std::vector<LookOverride> out;
+    for (const std::unique_ptr<Value>& value : values_)
+        if (value->option->count() > 0) out.push_back({value->key, value->text, value->flag});
+    for (const std::string& set : sets_) {
+        const std::size_t equals = set.find('=');
+        if (equals == std::string::npos || equals == 0)
+            return user_error(fmt::format("--set {}: expected ENTRY.PARAM=VALUE", darkroom::text::printable(set)));
+        const std::string key = set.substr(0, equals);
+        out.push_back({key, set.substr(equals + 1), "--set " + key});
+    }
+    return out;
+}
+
+Result<Look> LookFlags::look() const {
+    std::vector<std::string> warnings;
+    Result<Look> look = file.empty() ? Result<Look>(darkroom::default_look())
+                                     : darkroom::read_look(file, {.is_strict = is_strict_, .warnings = &warnings});
+    for (const std::string& warning : warnings) warn(warning);
+    if (!look) return look;
+    if (!order_.empty()) {
+        if (!look->is_flat)
+            return user_error(fmt::format("--order {}: {} has an explicit stack", darkroom::text::printable(order_),
+                                          look->shown_name));
+        if (order_ == "documented")
+            look->order = darkroom::LookOrder::Documented;
+        else if (order_ == "scene_linear")
+            look->order = darkroom::LookOrder::SceneLinear;
+        else
+            return user_error(
+                fmt::format("--order {}: allowed is documented or scene_linear", darkroom::text::printable(order_)));
+    }
+    const Result<std::vector<LookOverride>> values = overrides();
+    if (!values) return tl::unexpected(values.error());
+    if (Result<> done = darkroom::override_look(*look, *values); !done) return failure(std::move(done));
+    if (is_off_) {
+        *look = darkroom::default_look();
+        look->is_enabled = false;
+    }
+    return look;
+}
+
+}  // namespace app

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The flags that say what is done to the picture: the look, its order, and one flag for every parameter of every
+// effect, made from the effects' descriptions.
+
+#include <CLI/CLI.hpp>
+#include <darkroom/look.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace app {
+
+class LookFlags {
+  public:
+    /// `has_look_flag`: false where the look is a positional argument.
+    void add_to(CLI::App& command, bool has_look_flag);
+    /// Reads the look and applies the flags. Prints warnings.
+    [[nodiscard]] darkroom::Result<darkroom::Look> look() const;
+
+    std::string file;
+
+  private:
+    struct Value {
+        std::string key;
+        std::string flag;
+        std::string text;
+        CLI::Option* option = nullptr;
+    };
+    void add_value(CLI::App& command, const std::string& key, const std::string& help, const std::string& group);
+    [[nodiscard]] darkroom::Result<std::vector<darkroom::LookOverride>> overrides() const;
+
+    std::string order_;
+    std::vector<std::string> sets_;
+    std::vector<std::unique_ptr<Value>> values_;  // CLI11 keeps references to the texts
+    bool is_strict_ = false;
+    bool is_off_ = false;
+};
+
+}  // namespace app

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+#include <system_error>
+
+#include "core/files.hpp"
+#include "core/param_text.hpp"
+#include "image/sequence.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+using darkroom::Result;
+using darkroom::user_error;
+using darkroom::text::printable;
+
+namespace {
+
+constexpr std::string_view name_pattern = "{name}";
+
+// The frames' own numbers where all have one and no two the same, else 1, 2, 3.
+std::vector<long long> numbers_of(std::span<const fs::path> inputs) {
+    std::vector<long long> numbers;
+    std::set<long long> seen;
+    for (const fs::path& input : inputs)
+        if (const std::optional<long long> number = darkroom::frame_number(input))
+            if (seen.insert(*number).second) numbers.push_back(*number);
+    if (numbers.size() == inputs.size()) return numbers;
+    numbers.clear();
+    for (std::size_t i = 0; i < inputs.size(); ++i) numbers.push_back(static_cast<long long>(i) + 1);
+    return numbers;
+}
+
+}  // namespace
+
+Result<> check_output(const fs::path& output, std::span<const fs::path> inputs) {
+    std::error_code error;
+    for (const fs::path& input : inputs)
+        if (fs::equivalent(input, output, error) && !error)
+            return user_error(fmt::format("{}: is an input, and would be overwritten", printable(output.string())));
+    if (const fs::path folder = output.parent_path(); !folder.empty() && !fs::is_directory(folder, error))
+        return user_error(fmt::format("{}: no such folder, the picture cannot be written", printable(folder.string())));
+    // Reserving the file tells now, before any work, whether it can be written.
+    const Result<darkroom::AtomicPath> reserved = darkroom::AtomicPath::beside(output);
+    if (!reserved) return tl::unexpected(reserved.error());
+    return {};
+}
+
+Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, const std::string& out) {
+    std::error_code error;
+    if (out.empty()) return user_error("-o: an output file is needed");
+    const bool is_folder = fs::is_directory(out, error) || out.ends_with('/');
+    const bool has_number = darkroom::has_number_pattern(out);
+    const std::size_t name_at = out.find(name_pattern);
+    if (is_folder && !fs::is_directory(out, error))
+        return user_error(fmt::format("{}: no such folder", printable(out)));
+    if (inputs.size() > 1 && !is_folder && !has_number && name_at == std::string::npos)
+        return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d or {{name}}", printable(out),
+                                      inputs.size()));
+    const std::vector<long long> numbers = numbers_of(inputs);
+    std::vector<fs::path> outputs;
+    std::map<fs::path, fs::path> makers;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        fs::path path = out;
+        if (is_folder) {
+            path = fs::path(out) / inputs[i].filename().replace_extension(".png");
+        } else {
+            std::string text = out;
+            if (name_at != std::string::npos) text.replace(name_at, name_pattern.size(), inputs[i].stem().string());
+            path = has_number ? darkroom::numbered(text, numbers[i]) : fs::path(text);
+        }
+        const auto [maker, is_new] = makers.try_emplace(path, inputs[i]);
+        if (!is_new)
+            return user_error(fmt::format("{}: would be made of {} and of {}", printable(path.string()),
+                                          printable(maker->second.string()), printable(inputs[i].string())));
+        if (Result<> done = check_output(path, inputs); !done) return failure(std::move(done));
+        outputs.push_back(std::move(path));
+    }
+    return outputs;
+}
+
+}  // namespace app

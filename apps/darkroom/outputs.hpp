@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which file each input becomes. OUT is a file for one input; for several it is a pattern with %04d (the frame's
+// number) or {name} (the input's name without extension), or a folder, where each becomes <name>.png.
+
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace app {
+
+/// Can this file be written, and is it none of the inputs? Told before any work is done.
+[[nodiscard]] darkroom::Result<> check_output(const std::filesystem::path& output,
+                                              std::span<const std::filesystem::path> inputs);
+
+/// One output for each input. Errors: one file for several inputs, two inputs for one output, an output that is one of
+/// the inputs, a folder that does not exist, a name that cannot be written.
+[[nodiscard]] darkroom::Result<std::vector<std::filesystem::path>> output_paths(
+    std::span<const std::filesystem::path> inputs, const std::string& out);
+
+}  // namespace app

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+
+#include "commands.hpp"
+#include "compose/developer.hpp"
+#include "device_flags.hpp"
+#include "frames.hpp"
+#include "look_flags.hpp"
+#include "report.hpp"
+
+namespace app {
+
+namespace {
+
+using darkroom::Result;
+
+struct Options {
+    LookFlags look;
+    DeviceFlags device;
+    std::string size, frame, bits = "8";
+    bool is_json = false;
+};
+
+Result<std::string> text_of(const Options& options) {
+    const Result<darkroom::Look> look = options.look.look();
+    if (!look) return tl::unexpected(look.error());
+    const Result<darkroom::SampleKind> samples = parse_bits(options.bits);
+    if (!samples) return tl::unexpected(samples.error());
+    const Result<darkroom::KernelStage> stage = options.device.stage();
+    if (!stage) return tl::unexpected(stage.error());
+    darkroom::FrameFile frame;
+    darkroom::DevelopInput input{.extent = {1920, 1080}};
+    if (!options.frame.empty()) {
+        Result<darkroom::FrameFile> read = darkroom::read_frame(options.frame);
+        if (!read) return failure(std::move(read));
+        frame = std::move(*read);
+        input = develop_input(frame);
+    }
+    if (!options.size.empty()) {
+        const Result<VkExtent2D> size = parse_size(options.size);
+        if (!size) return tl::unexpected(size.error());
+        input.extent = *size;
+    }
+    Result<darkroom::Device> device = options.device.create();
+    if (!device) return failure(std::move(device));
+    if (Result<> done = darkroom::check_extent(*device, input.extent); !done) return failure(std::move(done));
+    darkroom::Composer composer(*device);
+    if (Result<> done = darkroom::apply(*look, composer); !done) return failure(std::move(done));
+    const darkroom::DevelopDesc desc{
+        .target = target_for(*samples), .kernels = *stage, .fuse = options.device.is_fused()};
+    darkroom::CompileDesc compile = darkroom::compile_desc_for(*device, input, desc);
+    if (options.frame.empty()) compile.color = VK_FORMAT_R16G16B16A16_SFLOAT;  // what engines hand over
+    const Result<darkroom::Plan> plan = composer.plan(compile);
+    if (!plan) return tl::unexpected(plan.error());
+    return options.is_json ? plan->json() : plan->text();
+}
+
+int run(const Options& options) {
+    const Result<std::string> text = text_of(options);
+    if (!text) return fail(text.error());
+    fmt::print("{}{}", *text, text->ends_with('\n') ? "" : "\n");
+    return exit_ok;
+}
+
+}  // namespace
+
+Command add_plan(CLI::App& program) {
+    CLI::App* const command = program.add_subcommand(
+        "plan", "Shows what the planner makes of a look: kernels, what fused and why not, bytes, memory");
+    const auto options = std::make_shared<Options>();
+    command->add_option("LOOK", options->look.file, "A look file (TOML). Default: the flat table at its defaults");
+    command->add_flag("--json", options->is_json, "For programs");
+    command->add_option("--size", options->size, "Size of the picture, default 1920x1080 or that of --input")
+        ->type_name("WxH");
+    command->add_option("--input", options->frame, "A frame: its layers (depth, normals, motion) are there")
+        ->type_name("FRAME");
+    command->add_option("--bits", options->bits, "The target: 8, 16, half or float")->type_name("BITS");
+    options->device.add_to(*command);
+    options->look.add_to(*command, false);
+    return {command, [options] { return run(*options); }};
+}
+
+}  // namespace app

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "report.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace app {
+
+namespace {
+
+bool is_bar_shown = false;
+
+void say(std::string_view prefix, std::string_view text) {
+    std::string line(text);
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    if (is_bar_shown) std::fputs("\r\x1b[K", stderr);
+    is_bar_shown = false;
+    fmt::print(stderr, "darkroom: {}{}\n", prefix, line);
+}
+
+}  // namespace
+
+void complain(std::string_view text) { say("", text); }
+void warn(std::string_view text) { say("warning: ", text); }
+
+int fail(const darkroom::Error& error) {
+    complain(error.text);
+    return error.fault == darkroom::Fault::User ? exit_user : exit_machine;
+}
+
+int fail_user(std::string_view text) {
+    complain(text);
+    return exit_user;
+}
+
+darkroom::LogSink log_sink() {
+    return [](darkroom::Severity severity, std::string_view text) {
+        if (severity == darkroom::Severity::Warning) warn(text);
+        if (severity == darkroom::Severity::Error) complain(text);
+    };
+}
+
+Progress::Progress(std::size_t total) : total_(total), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+    if (is_bar_shown) std::fputc('\n', stderr);
+    is_bar_shown = false;
+}
+
+void Progress::step(std::string_view line) {
+    ++done_;
+    if (total_ < 2 || !is_terminal_) {
+        if (total_ < 2)
+            fmt::print("{}\n", line);
+        else
+            fmt::print("{}/{} {}\n", done_, total_, line);
+        std::fflush(stdout);
+        return;
+    }
+    constexpr std::size_t width = 30;
+    const std::size_t filled = width * done_ / total_;
+    fmt::print(stderr, "\r\x1b[K[{:=<{}}{: <{}}] {}/{} {}", "", filled, "", width - filled, done_, total_, line);
+    std::fflush(stderr);
+    is_bar_shown = true;
+}
+
+}  // namespace app

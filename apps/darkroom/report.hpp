@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the program says: one line an error or warning on standard error, exit codes, and how far it has come.
+
+#include <darkroom/log.hpp>
+#include <darkroom/result.hpp>
+#include <string>
+#include <string_view>
+
+namespace app {
+
+inline constexpr int exit_ok = 0, exit_user = 1, exit_machine = 2;
+
+/// "darkroom: <text>" on one line of standard error.
+void complain(std::string_view text);
+/// "darkroom: warning: <text>".
+void warn(std::string_view text);
+/// Complains, and returns the exit code for it.
+[[nodiscard]] int fail(const darkroom::Error& error);
+[[nodiscard]] int fail_user(std::string_view text);
+
+/// Prints the library's warnings and errors.
+[[nodiscard]] darkroom::LogSink log_sink();
+
+/// How far a list of files has come: a bar on a terminal, else a line for each file; nothing for a single one.
+class Progress {
+  public:
+    explicit Progress(std::size_t total);
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+    ~Progress();
+    /// `line`: what was done, "a.exr -> b.png".
+    void step(std::string_view line);
+
+  private:
+    std::size_t total_ = 0;
+    std::size_t done_ = 0;
+    bool is_terminal_ = false;
+};
+
+}  // namespace app
