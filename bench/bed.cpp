@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "measure.hpp"
+
+namespace darkroom::bench {
+
+namespace {
+
+constexpr VkFormat scene_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat target_format = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr VkImageUsageFlags every_use = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
+                                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                        VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+
+/// Of a number that is normal in half precision, rounded toward zero.
+std::uint16_t half_bits(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const std::uint32_t magnitude = bits & 0x7fffffffu;
+    if (magnitude < 0x38800000u) return 0;
+    return static_cast<std::uint16_t>((bits >> 16 & 0x8000u) | ((magnitude - 0x38000000u) >> 13));
+}
+
+/// Light as a room has it: smooth gradients, edges, and small lamps that bloom.
+std::vector<std::uint16_t> make_scene(VkExtent2D extent) {
+    std::vector<std::uint16_t> out(std::size_t{extent.width} * extent.height * 4);
+    std::size_t at = 0;
+    for (std::uint32_t y = 0; y < extent.height; ++y)
+        for (std::uint32_t x = 0; x < extent.width; ++x) {
+            const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(extent.width);
+            const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(extent.height);
+            const bool is_tile = ((x / 48 + y / 48) & 1) != 0;
+            const float wall = (is_tile ? 0.6f : 0.15f) * (0.2f + 1.8f * u) * (1.2f - v);
+            const float dx = std::fmod(u * 6, 1.0f) - 0.5f, dy = std::fmod(v * 4, 1.0f) - 0.5f;
+            const float lamp = 40.0f * std::max(0.0f, 1.0f - (dx * dx + dy * dy) * 150.0f);
+            for (const float tint : {1.0f, 0.8f - 0.3f * v, 0.5f + 0.4f * u})
+                out[at++] = half_bits((wall + lamp) * tint);
+            out[at++] = half_bits(1.0f);
+        }
+    return out;
+}
+
+VkBufferImageCopy whole(VkExtent2D extent) {
+    return {.imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+            .imageExtent = {extent.width, extent.height, 1}};
+}
+
+void to_general(const gpu::Context& context, VkCommandBuffer commands, const gpu::Image& image) {
+    const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                        .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                        .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                                        .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+                                        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                        .image = image.handle,
+                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
+    context.vk.CmdPipelineBarrier2(commands, &dependency);
+}
+
+ImageRef ref_of(const gpu::Image& image, VkExtent2D extent) {
+    return {.image = image.handle,
+            .view = image.mip_views[0],
+            .format = image.info.format,
+            .extent = extent,
+            .layout = VK_IMAGE_LAYOUT_GENERAL,
+            .final_layout = VK_IMAGE_LAYOUT_GENERAL};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Bed>> Bed::create(Device& device, VkExtent2D extent) {
+    gpu::Context& context = device.context();
+    const VkExtent3D size{extent.width, extent.height, 1};
+    auto scene =
+        gpu::Image::create(context, {.name = "scene", .format = scene_format, .extent = size, .usage = every_use});
+    if (!scene) return failure(std::move(scene));
+    auto target =
+        gpu::Image::create(context, {.name = "target", .format = target_format, .extent = size, .usage = every_use});
+    if (!target) return failure(std::move(target));
+    const std::vector<std::uint16_t> pixels = make_scene(extent);
+    const std::size_t bytes = pixels.size() * sizeof(pixels[0]);
+    auto staging =
+        gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "scene");
+    if (!staging) return failure(std::move(staging));
+    std::memcpy(staging->memory.mapped, pixels.data(), bytes);
+    auto done = gpu::submit_and_wait(context, "uploading the scene", [&](VkCommandBuffer commands) {
+        const VkBufferImageCopy copy = whole(extent);
+        to_general(context, commands, *scene);
+        to_general(context, commands, *target);
+        context.vk.CmdCopyBufferToImage(commands, staging->handle, scene->handle, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    });
+    if (!done) return failure(std::move(done));
+    return std::unique_ptr<Bed>(new Bed{device, context, extent, std::move(*scene), std::move(*target)});
+}
+
+Frame Bed::frame() const { return {.color = ref_of(scene, extent), .target = ref_of(target, extent)}; }
+
+CompileDesc Bed::compile_desc() const {
+    return {.max_extent = extent,
+            .color = scene_format,
+            .target = target_format,
+            .color_usage = every_use,
+            .target_usage = every_use,
+            .target_domain = Domain::Encoded};
+}
+
+Result<std::vector<std::byte>> Bed::read_target() const {
+    const std::size_t bytes = std::size_t{extent.width} * extent.height * 4;
+    auto staging =
+        gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::Kind::Readback, "target");
+    if (!staging) return failure(std::move(staging));
+    auto done = gpu::submit_and_wait(context, "reading the target", [&](VkCommandBuffer commands) {
+        const VkMemoryBarrier2 barrier{
+            .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+            .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+            .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+            .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
+            .dstAccessMask = VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_HOST_READ_BIT};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &barrier};
+        const VkBufferImageCopy copy = whole(extent);
+        context.vk.CmdPipelineBarrier2(commands, &dependency);
+        context.vk.CmdCopyImageToBuffer(commands, target.handle, VK_IMAGE_LAYOUT_GENERAL, staging->handle, 1, &copy);
+        context.vk.CmdPipelineBarrier2(commands, &dependency);
+    });
+    if (!done) return failure(std::move(done));
+    return std::vector<std::byte>(staging->memory.mapped, staging->memory.mapped + bytes);
+}
+
+}  // namespace darkroom::bench

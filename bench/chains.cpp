@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "chains.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/param_text.hpp"
+
+namespace darkroom::bench {
+
+namespace {
+
+struct Value {
+    std::string_view parameter;
+    ParamValue value;
+};
+struct NamedStep {
+    std::string_view effect;
+    std::vector<Value> values{};
+};
+
+constexpr std::string_view noise_effect = "dither";
+
+Step step_of(const EffectInfo& effect) {
+    return {.effect = &effect, .words = {effect.parameters.defaults.begin(), effect.parameters.defaults.end()}};
+}
+
+/// Empty where an effect or one of its parameters is not there.
+Stack stack_of(const std::vector<NamedStep>& steps) {
+    Stack stack;
+    for (const NamedStep& named : steps) {
+        const EffectInfo* const effect = find_effect(named.effect);
+        if (effect == nullptr) return {};
+        stack.push_back(step_of(*effect));
+        for (const Value& value : named.values) {
+            const ParamInfo* const row = effect->parameters.find(value.parameter);
+            if (row == nullptr || !assign(*row, stack.back().words, value.value)) return {};
+        }
+    }
+    return stack;
+}
+
+/// Sets the first number that makes the effect do something.
+void make_visible(Step& step) {
+    const EffectInfo& effect = *step.effect;
+    if (effect.is_identity == nullptr || !effect.is_identity(step.words.data())) return;
+    for (const ParamInfo& row : effect.parameters.rows) {
+        for (const double value : {0.5 * (row.range.min + row.range.max), row.range.max, row.range.min}) {
+            std::vector<std::uint32_t> words = step.words;
+            if (!assign(row, words, value) || effect.is_identity(words.data())) continue;
+            step.words = words;
+            return;
+        }
+    }
+}
+
+}  // namespace
+
+Stack tail_stack(const TailValues& values) {
+    return stack_of(
+        {{"exposure", {{"exposure", double{values.exposure}}}},
+         {"tonemap", {{"curve", std::string("aces_narkowicz")}}},
+         {"vignette",
+          {{"intensity", double{values.vignette_intensity}}, {"smoothness", double{values.vignette_smoothness}}}},
+         {"encode", {{"transfer", std::string("srgb")}}},
+         {noise_effect, {{"intensity", double{values.dither_intensity}}}}});
+}
+
+const EffectInfo* tail_noise_effect() { return find_effect(noise_effect); }
+
+Stack bloom_stack() { return stack_of({{"bloom", {{"levels", std::int64_t{5}}}}}); }
+
+Stack default_stack() {
+    Stack stack;
+    for (const EffectInfo* const effect : all_effects()) {
+        if (effect->flat.documented < 0) continue;
+        stack.push_back(step_of(*effect));
+        stack.back().is_on = effect->flat.starts_on;
+    }
+    std::ranges::stable_sort(stack, {}, [](const Step& step) { return step.effect->flat.documented; });
+    return stack;
+}
+
+Stack single_stack(const EffectInfo& effect) {
+    Stack stack{step_of(effect)};
+    make_visible(stack.front());
+    return stack;
+}
+
+void fill(Composer& composer, const Stack& stack) {
+    for (const Step& step : stack) {
+        Inputs inputs{.source = scene_color, .enabled = step.is_on};
+        if (step.effect->has_second) inputs.second = scene_color;
+        composer.add(*step.effect, step.words.data(), inputs);
+    }
+}
+
+Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc) {
+    Chain chain{.composer = std::make_shared<Composer>(
+                    bed.device, ComposerDesc{.frames_in_flight = 1, .has_timers = desc.has_timers})};
+    fill(*chain.composer, stack);
+    CompileDesc compile_desc = bed.compile_desc();
+    compile_desc.kernels = desc.kernels;
+    compile_desc.fuse = desc.fuse;
+    auto plan = chain.composer->compile(compile_desc);
+    if (!plan) return failure(std::move(plan));
+    chain.plan = std::move(*plan);
+    chain.composer->wait_for_kernels();
+    return chain;
+}
+
+Row chain_row(Bed& bed, std::string name, const Chain& chain) {
+    return {.name = std::move(name), .record = [&bed, composer = chain.composer](VkCommandBuffer commands) {
+                return composer->record(commands, bed.frame());
+            }};
+}
+
+}  // namespace darkroom::bench

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The stacks that are measured, as small looks: names of effects and values, found in the registry, so that a build
+// without one of them measures the rest.
+
+#include <darkroom/effects.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hand_written.hpp"
+#include "measure.hpp"
+
+namespace darkroom::bench {
+
+/// One entry of a stack; every entry's source and second picture is the scene.
+struct Step {
+    const EffectInfo* effect = nullptr;
+    std::vector<std::uint32_t> words;
+    bool is_on = true;
+};
+using Stack = std::vector<Step>;
+
+/// Exposure, ACES (Narkowicz), vignette, sRGB, dither. Empty where this build lacks one of them.
+[[nodiscard]] Stack tail_stack(const TailValues& values);
+/// The effect of the tail that brings the tile of noise.
+[[nodiscard]] const EffectInfo* tail_noise_effect();
+/// Bloom at five levels.
+[[nodiscard]] Stack bloom_stack();
+/// The flat table with nothing written in it, in its documented order.
+[[nodiscard]] Stack default_stack();
+/// One effect at its defaults; where these change nothing, at the next values that do.
+[[nodiscard]] Stack single_stack(const EffectInfo& effect);
+
+struct ChainDesc {
+    KernelStage kernels = KernelStage::Auto;
+    bool fuse = true;
+    bool has_timers = false;
+};
+/// A compiled stack, with its leaner kernels.
+struct Chain {
+    std::shared_ptr<Composer> composer;
+    Plan plan;
+};
+[[nodiscard]] Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc = {});
+[[nodiscard]] Row chain_row(Bed& bed, std::string name, const Chain& chain);
+void fill(Composer& composer, const Stack& stack);
+
+}  // namespace darkroom::bench

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdlib>
+
+#include "allocations.hpp"
+#include "chains.hpp"
+#include "rows.hpp"
+
+namespace darkroom::bench {
+
+namespace {
+
+const Row* find_row(const std::vector<Row>& rows, std::string_view name) {
+    const auto found = std::ranges::find(rows, name, &Row::name);
+    return found == rows.end() ? nullptr : &*found;
+}
+
+/// A ratio of two rows of the table and the most it should be.
+struct Target {
+    std::string_view name, row, unit;
+    std::optional<double> at_most{};
+};
+constexpr std::string_view hand_written = "tail/hand-written/";
+constexpr std::array targets{
+    Target{"tail fused / calibration", "tail/fused/auto", calibration_name, 3.0},
+    Target{"tail fused / tail unfused", "tail/fused/auto", "tail/unfused/auto", 0.35},
+    Target{"tail fused / tail unfused, compute", "tail/fused/compute", "tail/unfused/compute"},
+    Target{"tail fused / tail unfused, raster", "tail/fused/raster", "tail/unfused/raster"},
+    Target{"tail compute / hand-written compute", "tail/fused/compute", "tail/hand-written/compute"},
+    Target{"tail raster / hand-written raster", "tail/fused/raster", "tail/hand-written/raster"},
+    Target{"bloom / calibration", "bloom/auto", calibration_name, 5.5},
+    Target{"bloom / calibration, compute", "bloom/compute", calibration_name},
+    Target{"bloom / calibration, raster", "bloom/raster", calibration_name},
+    Target{"default stack / calibration", "default/fused/auto", calibration_name, 8.5},
+    Target{"default stack / calibration, compute", "default/fused/compute", calibration_name},
+    Target{"default stack / calibration, raster", "default/fused/raster", calibration_name},
+};
+
+double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+}  // namespace
+
+std::vector<Figure> ratio_figures(const Device& device, const std::vector<Row>& rows) {
+    double Sample::*const cost = cost_of(device);
+    std::vector<Figure> figures;
+    // Against the faster of the two stages in which one may write the kernel.
+    const Row* const tail = find_row(rows, "tail/fused/auto");
+    const Row* fastest = nullptr;
+    for (const Row& row : rows)
+        if (row.name.starts_with(hand_written) &&
+            (fastest == nullptr || median(column(row, cost)) < median(column(*fastest, cost))))
+            fastest = &row;
+    if (tail != nullptr && fastest != nullptr)
+        figures.push_back({"tail fused / hand-written", ratio(*tail, *fastest, cost), "", 1.25});
+    for (const Target& target : targets) {
+        const Row* const row = find_row(rows, target.row);
+        const Row* const unit = find_row(rows, target.unit);
+        if (row == nullptr || unit == nullptr) continue;
+        figures.push_back({std::string(target.name), ratio(*row, *unit, cost),
+                           target.unit == calibration_name ? "c" : "", target.at_most});
+    }
+    return figures;
+}
+
+Result<std::vector<Figure>> picture_figures(Bed& bed, const std::vector<Row>& rows) {
+    auto submitter = Submitter::create(bed.context);
+    if (!submitter) return failure(std::move(submitter));
+    const Row* const tail = find_row(rows, "tail/fused/auto");
+    std::vector<Figure> figures;
+    for (const Row& row : rows) {
+        if (tail == nullptr || !row.name.starts_with(hand_written)) continue;
+        std::array<std::vector<std::byte>, 2> pictures;
+        for (std::size_t i = 0; i < pictures.size(); ++i) {
+            if (const auto ran = (*submitter)->run((i == 0 ? *tail : row).record); !ran)
+                return tl::unexpected(ran.error());
+            auto picture = bed.read_target();
+            if (!picture) return failure(std::move(picture));
+            pictures[i] = std::move(*picture);
+        }
+        int worst = 0;
+        for (std::size_t i = 0; i < pictures[0].size(); ++i)
+            worst =
+                std::max(worst, std::abs(std::to_integer<int>(pictures[0][i]) - std::to_integer<int>(pictures[1][i])));
+        figures.push_back(
+            {"tail fused - " + row.name.substr(5) + ", worst pixel", static_cast<double>(worst), "codes", 1.0});
+    }
+    return figures;
+}
+
+Result<std::vector<Figure>> counted_figures(Bed& bed) {
+    const Stack stack = default_stack();
+    auto fused = compile_chain(bed, stack);
+    if (!fused) return failure(std::move(fused));
+    auto unfused = compile_chain(bed, stack, {.fuse = false});
+    if (!unfused) return failure(std::move(unfused));
+
+    auto submitter = Submitter::create(bed.context);
+    if (!submitter) return failure(std::move(submitter));
+    // The first recording uploads tables, so it is not one of a frame loop.
+    constexpr int recordings = 200;
+    std::vector<double> microseconds;
+    std::uint64_t allocations = 0;
+    for (int i = 0; i <= recordings; ++i) {
+        auto commands = (*submitter)->begin();
+        if (!commands) return failure(std::move(commands));
+        const Frame frame = bed.frame();
+        const std::uint64_t before = allocation_count();
+        const auto recorded = fused->composer->record(*commands, frame);
+        const std::uint64_t made = allocation_count() - before;
+        if (!recorded) return tl::unexpected(recorded.error());
+        auto ended = bed.context.check(bed.context.vk.EndCommandBuffer(*commands), "ending a command buffer");
+        if (ended) ended = (*submitter)->submit();
+        if (ended) ended = (*submitter)->wait();
+        if (!ended) return failure(std::move(ended));
+        if (i == 0) continue;
+        allocations += made;
+        microseconds.push_back(fused->composer->record_microseconds());
+        if (i == 3 && bed.extent.width * bed.extent.height > 1'000'000) break;
+    }
+    std::vector<Figure> figures{
+        {"record, default stack", median(microseconds), "us"},
+        {"record, default stack: allocations", static_cast<double>(allocations), "", 0.0},
+        {"transient memory, default stack fused", megabytes(fused->plan.transient_bytes), "MB"},
+        {"transient memory, default stack unfused", megabytes(unfused->plan.transient_bytes), "MB"},
+    };
+    if (unfused->plan.transient_bytes_unaliased > 0)
+        figures.push_back({"transient memory unfused / sum of its images",
+                           static_cast<double>(unfused->plan.transient_bytes) /
+                               static_cast<double>(unfused->plan.transient_bytes_unaliased),
+                           "", 0.45});
+    if (const Stack bloom = bloom_stack(); !bloom.empty()) {
+        auto alone = compile_chain(bed, bloom);
+        if (!alone) return failure(std::move(alone));
+        if (alone->plan.transient_bytes > 0)
+            figures.push_back(
+                {"transient memory fused / that of bloom alone",
+                 static_cast<double>(fused->plan.transient_bytes) / static_cast<double>(alone->plan.transient_bytes),
+                 "", 1.0});
+    }
+    return figures;
+}
+
+}  // namespace darkroom::bench

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "hand_written.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace darkroom::bench {
+
+namespace {
+
+constexpr VkFormat scene_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat target_format = VK_FORMAT_R8G8B8A8_UNORM;
+
+// Krzysztof Narkowicz, "ACES Filmic Tone Mapping Curve", 2016; IEC 61966-2-1, its power by the polynomial of
+// effects/shared/srgb.glsl. Every value that the effects read from their parameters is read from the block here.
+constexpr std::string_view tail_body = R"(
+vec4 shade(Pixel pixel) {
+    vec4 color = load(scene, pixel.texel);
+    vec3 light = color.rgb * exposure;
+    light = mix(vec3(0.0), min(light, vec3(1e6)), greaterThan(light, vec3(0.0)));
+    light = light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14);
+    light = clamp(light, 0.0, 1.0);
+
+    vec2 offset = pixel.uv - 0.5;
+    float falloff = pow(2.0 * dot(offset, offset), 0.5 * vignette_smoothness);
+    light *= max(0.0, 1.0 - falloff * vignette_intensity);
+
+    light = mix(vec3(0.0), min(light, vec3(1.0)), greaterThan(light, vec3(0.0)));
+    vec3 t = 1.0 - sqrt(sqrt(light));
+    vec3 power = 1.0 - t * (1.75715567 + t * (-0.571225668 + t * (-0.127878612 + t * (0.0903737166 - t * 0.0879412007))));
+    vec3 code = mix(power, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
+
+    ivec2 shift = ivec2((frame * uvec2(0xC13FA9A9u, 0x91E10DA6u)) >> 26u);
+    vec3 noise = load(tile, (pixel.texel + shift) & 63).rgb;
+    vec3 width = max(min(vec3(0.5 * dither_intensity), min(code, 1.0 - code)), vec3(0.0));
+    return vec4(code + noise * width, color.a);
+}
+)";
+
+/// Notes the tables of an effect, and lets it declare passes into the void.
+class TableCatcher : public PassBuilder {
+  public:
+    PassImage picture() override { return {}; }
+    PassImage source() override { return {}; }
+    VkExtent2D max_extent() const override { return {64, 64}; }
+    const void* parameters() const override { return parameters_; }
+    PassImage create(const PassImageDesc&) override { return {}; }
+    PassImage table(const TableDesc& desc) override {
+        tables.push_back(desc);
+        return {};
+    }
+    PassImage add(const KernelPassDesc&) override { return {}; }
+    void side(std::string, PassImage, PassVector) override {}
+    void result(PassImage) override {}
+
+    explicit TableCatcher(const void* parameters) : parameters_(parameters) {}
+    std::vector<TableDesc> tables;
+
+  private:
+    const void* parameters_;
+};
+
+/// Everything that one kernel needs to be recorded again and again.
+struct KernelRun {
+    std::unique_ptr<gpu::Kernel> kernel;
+    gpu::DescriptorSets sets;
+    gpu::Buffer constants, pass_block;
+    VkDeviceSize constants_size = 0;
+    gpu::Image table;
+    std::vector<gpu::Binding> images;
+    gpu::Binding output;
+};
+
+void barrier(const Bed& bed, VkCommandBuffer commands, VkImageLayout from, VkImageLayout to) {
+    const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                       .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                       .oldLayout = from,
+                                       .newLayout = to,
+                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .image = bed.target.handle,
+                                       .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
+    bed.context.vk.CmdPipelineBarrier2(commands, &dependency);
+}
+
+Result<gpu::Image> upload_table(gpu::Context& context, const TableDesc& table) {
+    auto image = gpu::Image::create(context, {.name = table.name,
+                                              .format = table.format,
+                                              .extent = table.extent,
+                                              .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+    if (!image) return image;
+    auto staging = gpu::Buffer::create(context, table.data.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                       gpu::Memory::Kind::Upload, table.name);
+    if (!staging) return failure(std::move(staging));
+    std::ranges::copy(table.data, staging->memory.mapped);
+    auto done = gpu::submit_and_wait(context, "uploading a table", [&](VkCommandBuffer commands) {
+        const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                           .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                           .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                           .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                                           .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+                                           .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                           .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                           .image = image->handle,
+                                           .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
+        const VkBufferImageCopy copy{.imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
+                                     .imageExtent = table.extent};
+        context.vk.CmdPipelineBarrier2(commands, &dependency);
+        context.vk.CmdCopyBufferToImage(commands, staging->handle, image->handle, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    });
+    if (!done) return failure(std::move(done));
+    return image;
+}
+
+Result<> fill(Bed& bed, KernelRun& run, const gpu::KernelSpec& spec, gpu::Stage stage,
+              std::span<const std::byte> constants) {
+    auto kernel = gpu::Kernel::create(bed.context, spec, stage);
+    if (!kernel) return failure(std::move(kernel));
+    run.kernel = std::move(*kernel);
+    const VkDescriptorSetLayout layout = run.kernel->set_layout();
+    auto sets = gpu::DescriptorSets::create(bed.context, {&layout, 1});
+    if (!sets) return failure(std::move(sets));
+    run.sets = std::move(*sets);
+    run.constants_size = std::max<VkDeviceSize>(constants.size(), 16);
+    auto block = gpu::Buffer::create(bed.context, run.constants_size, gpu::constants_usage, gpu::Memory::Kind::Upload,
+                                     "constants");
+    if (!block) return failure(std::move(block));
+    run.constants = std::move(*block);
+    std::ranges::copy(constants, run.constants.memory.mapped);
+    const std::size_t pass_size = gpu::pass_block_size(spec);
+    auto pass =
+        gpu::Buffer::create(bed.context, pass_size, gpu::constants_usage, gpu::Memory::Kind::Upload, "pass block");
+    if (!pass) return failure(std::move(pass));
+    run.pass_block = std::move(*pass);
+
+    const gpu::Region region{.extent = bed.extent, .image = bed.extent};
+    run.output = {.view = bed.target.mip_views[0], .region = region};
+    run.images.push_back({.view = bed.scene.mip_views[0], .region = region});
+    if (spec.images.size() > 1) {
+        const VkExtent2D size{run.table.info.extent.width, run.table.info.extent.height};
+        run.images.push_back({.view = run.table.mip_views[0], .region = {.extent = size, .image = size}});
+    }
+    gpu::write_pass_block(spec, region, run.images, {}, {run.pass_block.memory.mapped, pass_size});
+    return {};
+}
+
+}  // namespace
+
+gpu::KernelSpec calibration_spec() {
+    return {.name = "calibration",
+            .images = {{.name = "scene", .storage_format = scene_format}},
+            .outputs = {target_format},
+            .body = "vec4 shade(Pixel pixel) { return load(scene, pixel.texel); }"};
+}
+
+gpu::KernelSpec tail_spec() {
+    return {
+        .name = "hand-written tail",
+        .images = {{.name = "scene", .storage_format = scene_format},
+                   {.name = "tile", .storage_format = VK_FORMAT_R32G32B32A32_SFLOAT}},
+        .outputs = {target_format},
+        .constants =
+            "float exposure; float vignette_intensity; float vignette_smoothness; float dither_intensity; uint frame;",
+        .body = std::string(tail_body)};
+}
+
+std::optional<TableDesc> only_table_of(const EffectInfo& effect) {
+    if (effect.build == nullptr) return std::nullopt;
+    TableCatcher catcher(effect.parameters.defaults.data());
+    effect.build(catcher);
+    if (catcher.tables.size() != 1) return std::nullopt;
+    return std::move(catcher.tables.front());
+}
+
+Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, gpu::Stage stage,
+                       std::span<const std::byte> constants, const TableDesc* table) {
+    const auto run = std::make_shared<KernelRun>();
+    if (table != nullptr) {
+        auto image = upload_table(bed.context, *table);
+        if (!image) return failure(std::move(image));
+        run->table = std::move(*image);
+    }
+    if (auto ok = fill(bed, *run, spec, stage, constants); !ok) return failure(std::move(ok));
+    const VkImageLayout layout =
+        stage == gpu::Stage::Compute ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    return Row{.name = std::move(name), .record = [&bed, run, layout](VkCommandBuffer commands) -> Result<> {
+                   barrier(bed, commands, VK_IMAGE_LAYOUT_GENERAL, layout);
+                   run->kernel->record(commands, {.set = run->sets.sets[0],
+                                                  .constants = run->constants.handle,
+                                                  .constants_size = run->constants_size,
+                                                  .pass_block = run->pass_block.handle,
+                                                  .images = run->images,
+                                                  .outputs = {&run->output, 1}});
+                   barrier(bed, commands, layout, VK_IMAGE_LAYOUT_GENERAL);
+                   return {};
+               }};
+}
+
+}  // namespace darkroom::bench

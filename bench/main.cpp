@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// darkroom_bench: what the library costs on this device, in milliseconds and in multiples of a calibration pass that is
+// measured in the same rounds, beside the targets. A missed target is printed, not an error: machines differ.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "core/files.hpp"
+#include "core/param_text.hpp"
+#include "report.hpp"
+#include "start.hpp"
+
+namespace darkroom::bench {
+
+namespace {
+
+constexpr int exit_user = 1, exit_machine = 2;
+
+struct Options {
+    std::string size = "1920x1080";
+    std::uint32_t rounds = 7;
+    std::string filter, device;
+    std::filesystem::path json, csv;
+    bool lists = false, has_passes = false;
+};
+
+int fail(const Error& error) {
+    fmt::print(stderr, "darkroom_bench: {}\n", error.text);
+    return error.fault == Fault::User ? exit_user : exit_machine;
+}
+
+Result<VkExtent2D> parse_size(const std::string& text) {
+    constexpr double largest = 16384;
+    const std::size_t cross = text.find('x');
+    const auto width = parse_number(text.substr(0, cross));
+    const auto height = cross == std::string::npos ? std::nullopt : parse_number(text.substr(cross + 1));
+    const auto is_size = [](const std::optional<double>& side) {
+        return side && *side >= 1 && *side <= largest && *side == static_cast<std::uint32_t>(*side);
+    };
+    if (!is_size(width) || !is_size(height))
+        return user_error(fmt::format("--size {}: allowed is WIDTHxHEIGHT, each 1 to {}", text, largest));
+    return VkExtent2D{static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
+}
+
+/// Appends what `more` holds.
+Result<> append(std::vector<Figure>& figures, Result<std::vector<Figure>> more) {
+    if (!more) return failure(std::move(more));
+    figures.insert(figures.end(), more->begin(), more->end());
+    return {};
+}
+
+Result<> measure_all(const Options& options, Bed& bed, Report& report) {
+    auto rows = make_rows(bed, options.filter);
+    if (!rows) return failure(std::move(rows));
+    if (auto ok = measure(bed, *rows, options.rounds); !ok) return ok;
+    report.figures = ratio_figures(bed.device, *rows);
+    if (auto ok = append(report.figures, picture_figures(bed, *rows)); !ok) return ok;
+    report.rows = std::move(*rows);
+    if (options.has_passes) {
+        auto passes = measure_passes(bed, options.rounds);
+        if (!passes) return failure(std::move(passes));
+        report.passes = std::move(*passes);
+    }
+    if (!options.filter.empty()) return {};
+    if (auto ok = append(report.figures, counted_figures(bed)); !ok) return ok;
+    return append(report.figures, start_figures(options.device, bed.extent, options.rounds));
+}
+
+Result<> save(const std::filesystem::path& path, const std::string& content) {
+    if (path.empty()) return {};
+    return write_file(path, std::as_bytes(std::span(content)));
+}
+
+int run(const Options& options, std::vector<std::string> command_line) {
+    if (options.lists) {
+        for (const std::string& name : row_names()) fmt::print("{}\n", name);
+        return 0;
+    }
+    const auto extent = parse_size(options.size);
+    if (!extent) return fail(extent.error());
+    auto device = Device::create({.select = options.device, .log = [](Severity, std::string_view message) {
+                                      fmt::print(stderr, "{}\n", message);
+                                  }});
+    if (!device) return fail(device.error());
+    auto bed = Bed::create(*device, *extent);
+    if (!bed) return fail(bed.error());
+    Report report{.device = device->info(),
+                  .command_line = std::move(command_line),
+                  .extent = *extent,
+                  .rounds = options.rounds,
+                  .cost = cost_of(*device)};
+    if (const auto ok = measure_all(options, **bed, report); !ok) return fail(ok.error());
+    fmt::print("{}", text(report));
+    if (const auto ok = save(options.json, json(report)); !ok) return fail(ok.error());
+    if (const auto ok = save(options.csv, csv(report)); !ok) return fail(ok.error());
+    const std::uint64_t messages = device->validation_messages();
+    if (messages > 0) return fail({Fault::Machine, fmt::format("{} messages of the validation layer", messages)});
+    return 0;
+}
+
+int parse_and_run(int argc, char** argv) {
+    Options options;
+    CLI::App program("Measures what Darkroom costs on this device.", "darkroom_bench");
+    program.add_option("--size", options.size, "WIDTHxHEIGHT of the picture.")->capture_default_str();
+    program.add_option("--rounds", options.rounds, "Runs of every row.")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    program.add_option("--filter", options.filter, "Only rows whose name holds this text.");
+    program.add_option("--device", options.device, "Name, part of a name, or index of the device.");
+    program.add_option("--json", options.json, "Writes the results to this file.");
+    program.add_option("--csv", options.csv, "Writes the rows to this file.");
+    program.add_flag("--list", options.lists, "Lists the rows.");
+    program.add_flag("--passes", options.has_passes, "GPU time of every pass, too.");
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return error.get_exit_code() == 0 ? program.exit(error) : fail({Fault::User, error.what()});
+    }
+    return run(options, {argv, argv + argc});
+}
+
+}  // namespace
+
+}  // namespace darkroom::bench
+
+int main(int argc, char** argv) {
+    // Exceptions come from third parties and from the allocator alone.
+    try {
+        return darkroom::bench::parse_and_run(argc, argv);
+    } catch (const std::exception& error) {
+        return darkroom::bench::fail({darkroom::Fault::Machine, error.what()});
+    }
+}

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "measure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <ctime>
+#include <limits>
+
+namespace darkroom::bench {
+
+namespace {
+
+double process_cpu_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+double wall_ms() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Submitter>> Submitter::create(gpu::Context& context) {
+    std::unique_ptr<Submitter> made(new Submitter(context));
+    const gpu::Dispatch& vk = context.vk;
+    const VkCommandPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                            .queueFamilyIndex = context.queue_family};
+    const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    VkResult result = vk.CreateCommandPool(context.device, &pool_info, nullptr, &made->pool_);
+    if (result == VK_SUCCESS) result = vk.CreateFence(context.device, &fence_info, nullptr, &made->fence_);
+    const VkCommandBufferAllocateInfo allocate_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                                    .commandPool = made->pool_,
+                                                    .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                                    .commandBufferCount = 1};
+    if (result == VK_SUCCESS) result = vk.AllocateCommandBuffers(context.device, &allocate_info, &made->commands_);
+    if (auto ok = context.check(result, "creating a command buffer"); !ok) return failure(std::move(ok));
+    auto timers = gpu::Timers::create(context, 1, 2);
+    if (!timers) return failure(std::move(timers));
+    made->timers_ = std::move(*timers);
+    return made;
+}
+
+Submitter::~Submitter() {
+    context_.vk.DestroyFence(context_.device, fence_, nullptr);
+    context_.vk.DestroyCommandPool(context_.device, pool_, nullptr);
+}
+
+Result<VkCommandBuffer> Submitter::begin() {
+    const VkCommandBufferBeginInfo begin_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                              .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    VkResult result = context_.vk.ResetCommandPool(context_.device, pool_, 0);
+    if (result == VK_SUCCESS) result = context_.vk.BeginCommandBuffer(commands_, &begin_info);
+    if (auto ok = context_.check(result, "beginning a command buffer"); !ok) return failure(std::move(ok));
+    return commands_;
+}
+
+Result<> Submitter::submit() {
+    const VkCommandBufferSubmitInfo command_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                                 .commandBuffer = commands_};
+    const VkSubmitInfo2 submit_info{
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &command_info};
+    VkResult result = context_.vk.ResetFences(context_.device, 1, &fence_);
+    if (result == VK_SUCCESS) result = context_.vk.QueueSubmit2(context_.queue, 1, &submit_info, fence_);
+    return context_.check(result, "submitting");
+}
+
+Result<> Submitter::wait() {
+    constexpr auto forever = std::numeric_limits<std::uint64_t>::max();
+    return context_.check(context_.vk.WaitForFences(context_.device, 1, &fence_, VK_TRUE, forever), "waiting");
+}
+
+Result<Sample> Submitter::run(const std::function<Result<>(VkCommandBuffer)>& record) {
+    auto commands = begin();
+    if (!commands) return failure(std::move(commands));
+    timers_.begin(*commands, 0);
+    timers_.mark(*commands, 0, 0);
+    if (auto ok = record(*commands); !ok) return failure(std::move(ok));
+    timers_.mark(*commands, 0, 1);
+    auto done = context_.check(context_.vk.EndCommandBuffer(*commands), "ending a command buffer");
+    if (!done) return failure(std::move(done));
+
+    const double cpu = process_cpu_ms(), wall = wall_ms();
+    done = submit();
+    if (done) done = wait();
+    if (!done) return failure(std::move(done));
+    Sample sample{.cpu_ms = process_cpu_ms() - cpu, .wall_ms = wall_ms() - wall};
+    timers_.read(0, 2, {&sample.gpu_ms, 1});
+    return sample;
+}
+
+Result<> measure(Bed& bed, std::vector<Row>& rows, std::uint32_t rounds) {
+    auto submitter = Submitter::create(bed.context);
+    if (!submitter) return failure(std::move(submitter));
+    const auto run = [&](const Row& row) -> Result<Sample> {
+        if (row.record) return (*submitter)->run(row.record);
+        const double cpu = process_cpu_ms(), wall = wall_ms();
+        row.host();
+        return Sample{.cpu_ms = process_cpu_ms() - cpu, .wall_ms = wall_ms() - wall};
+    };
+    // The first run of a kernel is when a driver may compile it.
+    for (std::uint32_t round = 0; round <= rounds; ++round) {
+        for (Row& row : rows) {
+            const auto sample = run(row);
+            if (!sample)
+                return tl::unexpected(
+                    Error{sample.error().fault, fmt::format("{}: {}", row.name, sample.error().text)});
+            if (round > 0) row.samples.push_back(*sample);
+        }
+    }
+    return {};
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::ranges::sort(values);
+    const std::size_t middle = values.size() / 2;
+    return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+double minimum(const std::vector<double>& values) { return values.empty() ? 0 : *std::ranges::min_element(values); }
+
+std::vector<double> column(const Row& row, double Sample::*member) {
+    std::vector<double> values;
+    for (const Sample& sample : row.samples) values.push_back(sample.*member);
+    return values;
+}
+
+double ratio(const Row& row, const Row& unit, double Sample::*member) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min(row.samples.size(), unit.samples.size()); ++i)
+        if (unit.samples[i].*member > 0) ratios.push_back(row.samples[i].*member / unit.samples[i].*member);
+    return median(ratios);
+}
+
+double Sample::*cost_of(const Device& device) { return device.info().is_software ? &Sample::cpu_ms : &Sample::gpu_ms; }
+
+}  // namespace darkroom::bench

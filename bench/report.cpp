@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "report.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <iterator>
+
+namespace darkroom::bench {
+
+namespace {
+
+struct Clock {
+    std::string_view name;
+    double Sample::*member;
+};
+constexpr std::array clocks{Clock{"cpu_ms", &Sample::cpu_ms}, Clock{"wall_ms", &Sample::wall_ms},
+                            Clock{"gpu_ms", &Sample::gpu_ms}};
+
+double in_c(const Report& report, const Row& row) { return ratio(row, report.rows.front(), report.cost); }
+
+std::string_view unit_of(const Report& report) {
+    return report.cost == &Sample::cpu_ms ? "process CPU time" : "GPU time";
+}
+
+std::string quoted(std::string_view text) {
+    std::string out = "\"";
+    for (const char letter : text) {
+        if (letter == '"' || letter == '\\') {
+            out += '\\';
+            out += letter;
+        } else if (static_cast<unsigned char>(letter) < 0x20) {
+            out += fmt::format("\\u{:04x}", static_cast<unsigned>(letter));
+        } else {
+            out += letter;
+        }
+    }
+    return out + '"';
+}
+
+}  // namespace
+
+std::string text(const Report& report) {
+    std::string out =
+        fmt::format("{} ({}), {}x{}, {} rounds; c and ratios compare {}\n\n", report.device.name, report.device.driver,
+                    report.extent.width, report.extent.height, report.rounds, unit_of(report));
+    const auto to = std::back_inserter(out);
+    fmt::format_to(to, "{:<30} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "", "CPU ms", "min", "wall ms", "min",
+                   "GPU ms", "min", "c");
+    for (const Row& row : report.rows) {
+        fmt::format_to(to, "{:<30}", row.name);
+        for (const Clock& clock : clocks) {
+            const std::vector<double> values = column(row, clock.member);
+            fmt::format_to(to, " {:>9.3f} {:>9.3f}", median(values), minimum(values));
+        }
+        fmt::format_to(to, " {:>7.2f}\n", in_c(report, row));
+    }
+    if (!report.passes.empty()) fmt::format_to(to, "\n{:<48} {:>9}\n", "pass", "GPU ms");
+    for (const PassRow& pass : report.passes)
+        fmt::format_to(to, "{:<48} {:>9.3f}\n", fmt::format("{}: {}", pass.stack, pass.pass), pass.milliseconds);
+    if (!report.figures.empty()) out += '\n';
+    for (const Figure& figure : report.figures) {
+        fmt::format_to(to, "{:<48} {:>9.3f} {:<5}", figure.name, figure.value, figure.unit);
+        if (figure.at_most)
+            fmt::format_to(to, " at most {:<6g} {}", *figure.at_most, figure.holds() ? "holds" : "MISSED");
+        out += '\n';
+    }
+    return out;
+}
+
+std::string json(const Report& report) {
+    std::string out;
+    const auto to = std::back_inserter(out);
+    fmt::format_to(
+        to, "{{\n  \"device\": {},\n  \"driver\": {},\n  \"api_version\": \"{}.{}.{}\",\n  \"is_software\": {},\n",
+        quoted(report.device.name), quoted(report.device.driver), VK_API_VERSION_MAJOR(report.device.api_version),
+        VK_API_VERSION_MINOR(report.device.api_version), VK_API_VERSION_PATCH(report.device.api_version),
+        report.device.is_software);
+    out += "  \"command_line\": [";
+    for (std::size_t i = 0; i < report.command_line.size(); ++i)
+        out += (i == 0 ? "" : ", ") + quoted(report.command_line[i]);
+    fmt::format_to(to, "],\n  \"size\": [{}, {}],\n  \"rounds\": {},\n  \"c_compares\": {},\n  \"rows\": [",
+                   report.extent.width, report.extent.height, report.rounds, quoted(unit_of(report)));
+    for (std::size_t i = 0; i < report.rows.size(); ++i) {
+        const Row& row = report.rows[i];
+        fmt::format_to(to, "{}\n    {{\"name\": {}", i == 0 ? "" : ",", quoted(row.name));
+        for (const Clock& clock : clocks) {
+            const std::vector<double> values = column(row, clock.member);
+            fmt::format_to(to, ", \"{0}\": {1:.4f}, \"{0}_min\": {2:.4f}", clock.name, median(values), minimum(values));
+        }
+        fmt::format_to(to, ", \"c\": {:.4f}}}", in_c(report, row));
+    }
+    out += "\n  ],\n  \"passes\": [";
+    for (std::size_t i = 0; i < report.passes.size(); ++i)
+        fmt::format_to(to, "{}\n    {{\"stack\": {}, \"pass\": {}, \"gpu_ms\": {:.4f}}}", i == 0 ? "" : ",",
+                       quoted(report.passes[i].stack), quoted(report.passes[i].pass), report.passes[i].milliseconds);
+    out += "\n  ],\n  \"figures\": [";
+    for (std::size_t i = 0; i < report.figures.size(); ++i) {
+        const Figure& figure = report.figures[i];
+        fmt::format_to(to, "{}\n    {{\"name\": {}, \"value\": {:.4f}, \"unit\": {}", i == 0 ? "" : ",",
+                       quoted(figure.name), figure.value, quoted(figure.unit));
+        if (figure.at_most) fmt::format_to(to, ", \"at_most\": {}, \"holds\": {}", *figure.at_most, figure.holds());
+        out += '}';
+    }
+    out += "\n  ]\n}\n";
+    return out;
+}
+
+std::string csv(const Report& report) {
+    std::string out = "name";
+    for (const Clock& clock : clocks) out += fmt::format(",{0},{0}_min", clock.name);
+    out += ",c\n";
+    for (const Row& row : report.rows) {
+        out += quoted(row.name);
+        for (const Clock& clock : clocks) {
+            const std::vector<double> values = column(row, clock.member);
+            out += fmt::format(",{:.4f},{:.4f}", median(values), minimum(values));
+        }
+        out += fmt::format(",{:.4f}\n", in_c(report, row));
+    }
+    return out;
+}
+
+}  // namespace darkroom::bench

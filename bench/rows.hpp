@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// All rows of the benchmark, and the figures that are made of them, with the targets they are held against.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measure.hpp"
+
+namespace darkroom::bench {
+
+inline constexpr std::string_view calibration_name = "calibration (1 c)";
+
+/// A number that is derived from rows or counted, and what it should be at most.
+struct Figure {
+    std::string name;
+    double value = 0;
+    std::string unit;
+    std::optional<double> at_most{};
+    [[nodiscard]] bool holds() const { return !at_most || value <= *at_most; }
+};
+
+/// The median time of one pass of a stack.
+struct PassRow {
+    std::string stack, pass;
+    double milliseconds = 0;
+};
+
+[[nodiscard]] std::vector<std::string> row_names();
+/// Only rows whose name holds `filter`, and always the calibration pass, which comes first.
+[[nodiscard]] Result<std::vector<Row>> make_rows(Bed& bed, std::string_view filter);
+/// Of the rows that were measured.
+[[nodiscard]] std::vector<Figure> ratio_figures(const Device& device, const std::vector<Row>& rows);
+/// Transient memory, and the CPU time and allocations of `record`.
+[[nodiscard]] Result<std::vector<Figure>> counted_figures(Bed& bed);
+/// The hand-written tail against the fused one: the same picture?
+[[nodiscard]] Result<std::vector<Figure>> picture_figures(Bed& bed, const std::vector<Row>& rows);
+/// GPU time of every pass of the stacks, by timestamps around each: these stop a driver from overlapping passes.
+[[nodiscard]] Result<std::vector<PassRow>> measure_passes(Bed& bed, std::uint32_t rounds);
+
+}  // namespace darkroom::bench

@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+# What ./darkroom and ./test share: installing missing packages, configuring, building. Sourced, with `root` set to the
+# folder of the tree. All it says goes to standard error, and what the compiler says to FOLDER/build.log.
+
+say() { printf 'darkroom: %s\n' "$*" >&2; }
+die() {
+    say "$*"
+    exit 2
+}
+
+wanted_packages() { sed 's/#.*//; s/[[:space:]]//g; /^$/d' "$root/packages.txt"; }
+
+missing_packages() {
+    local -A installed=()
+    local name status
+    while read -r name status; do
+        [[ $status == installed ]] && installed[$name]=1
+    done < <(wanted_packages | xargs dpkg-query -W -f='${Package} ${db:Status-Status}\n' 2>/dev/null)
+    for name in $(wanted_packages); do
+        [[ -n ${installed[$name]:-} ]] || printf '%s\n' "$name"
+    done
+}
+
+# Installs what is missing. Where that is not possible the build is tried all the same: the libraries may have come
+# another way, and if not, what CMake says names the first one.
+install_packages() {
+    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+        say "no apt-get here; if the build fails, these packages (names of Debian 12) are needed:" $(wanted_packages)
+        return
+    fi
+    local missing as_root=()
+    missing=$(missing_packages)
+    [[ -n $missing ]] || return 0
+    if [[ $(id -u) != 0 ]]; then
+        if ! command -v sudo >/dev/null; then
+            say "neither root nor sudo; these packages are missing and must be installed by hand:" $missing
+            return
+        fi
+        as_root=(sudo)
+    fi
+    say "installing" $missing
+    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
+    "${apt[@]}" update >>"$log" 2>&1 || say "apt-get update failed; going on with the package lists that are there"
+    # Word by word: $missing is a list.
+    "${apt[@]}" install -y --no-install-recommends $missing >>"$log" 2>&1 || failed "installing packages"
+}
+
+failed() {
+    [[ -t 2 ]] && printf '\r\033[K' >&2
+    tail -n 40 "$log" >&2
+    die "$1 failed; the lines above are the end of $log"
+}
+
+# On a terminal, the number of steps done, for as long as process $1 lives.
+show_progress() {
+    local steps
+    while kill -0 "$1" 2>/dev/null; do
+        steps=$(grep -ao '^\[[0-9]*/[0-9]*\]' "$log" | tail -n 1) || true
+        [[ -t 2 && -n $steps ]] && printf '\r\033[Kdarkroom: building %s' "$steps" >&2
+        sleep 0.2
+    done
+    [[ -t 2 ]] && printf '\r\033[K' >&2
+    return 0
+}
+
+# What the program is made of. A folder counts as well as the files in it: one that came or went changed it.
+program_sources=(CMakeLists.txt packages.txt cmake include src effects apps samples looks)
+
+# Was `program` built in folder $1 from what the tree holds now? It costs one walk over the sources and starts no CMake.
+# The stamp is as old as the start of that build, so a file saved while it ran is newer. Pictures in samples/ are made by
+# the build itself.
+is_current() {
+    local stamp=$1/.built
+    [[ -x $1/bin/darkroom && -f $stamp && $(<"$stamp") == "$root" ]] || return 1
+    compgen -G "$root/samples/*.exr" >/dev/null || return 1
+    [[ -z $(find "${program_sources[@]/#/$root/}" ! -path "$root/samples" ! -name '*.exr' -newer "$stamp" -print -quit) ]]
+}
+
+# build FOLDER TARGET CMAKE_OPTION...: configures and builds TARGET. One build at a time in a folder.
+build() {
+    local folder=$1 target=$2
+    shift 2
+    mkdir -p "$folder" 2>/dev/null && [[ -w $folder ]] ||
+        die "$folder cannot be written: name a folder for the build in DARKROOM_BUILD"
+    log=$folder/build.log
+    if command -v flock >/dev/null; then
+        exec 9>"$folder/.lock"
+        flock -n 9 || { say "waiting for another build in $folder" && flock 9; }
+    fi
+    : >"$log"
+    install_packages
+    command -v cmake >/dev/null || die "cmake not found; needed packages (names of Debian 12): $(wanted_packages | xargs)"
+
+    # A folder that was configured for a tree elsewhere (moved, copied) starts anew.
+    if [[ -f $folder/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
+        rm -rf "$folder/CMakeCache.txt" "$folder/CMakeFiles" "$folder/.built"
+    fi
+    [[ -x $folder/bin/darkroom ]] || say "building in $folder, some minutes the first time"
+    printf '%s' "$root" >"$folder/.building"
+    cmake -S "$root" -B "$folder" -G Ninja "$@" >>"$log" 2>&1 || failed "configuring"
+    # Without the lock, which a compiler cache's server would keep.
+    cmake --build "$folder" --target "$target" >>"$log" 2>&1 9>&- &
+    local builder=$!
+    trap 'kill "$builder" 2>/dev/null; exit 130' INT TERM
+    show_progress "$builder"
+    wait "$builder" || failed "building"
+    trap - INT TERM
+    mv "$folder/.building" "$folder/.built"
+    exec 9>&-
+}

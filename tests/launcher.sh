@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# launcher.sh TREE: when ./darkroom builds, when it does not, and what it says, in a small tree with a CMake that only
+# pretends. Nothing is compiled or installed.
+set -euo pipefail
+unset DARKROOM_BUILD XDG_RUNTIME_DIR
+work=$(mktemp -d)
+trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
+tree="$work/a tree"
+mkdir -p "$tree" "$work/bin" "$work/elsewhere"
+cp -rL "$1/darkroom" "$1/test" "$1/scripts" "$1/packages.txt" "$tree/"
+mkdir -p "$tree"/{cmake,include,src,effects,apps,samples,looks}
+touch "$tree/CMakeLists.txt" "$tree/src/one.cpp" "$tree/samples/a.exr"
+
+# A build that counts itself, and a machine that has every package.
+cat >"$work/bin/cmake" <<'STUB'
+#!/usr/bin/env bash
+echo "$*" >>"$STUB_LOG"
+[[ -n ${STUB_FAILS:-} ]] && { echo "one.cpp:1: error: it is broken" && exit 1; }
+if [[ $1 == --build ]]; then
+    mkdir -p "$2/bin"
+    printf '#!/usr/bin/env bash\nprintf "<%%s>" "$PWD" "$@"\n' >"$2/bin/darkroom"
+    chmod +x "$2/bin/darkroom"
+fi
+STUB
+cat >"$work/bin/dpkg-query" <<'STUB'
+#!/usr/bin/env bash
+shift 2
+for name in "$@"; do [[ $name == "${STUB_LACKS:-}" ]] || echo "$name installed"; done
+STUB
+cat >"$work/bin/apt-get" <<'STUB'
+#!/usr/bin/env bash
+echo "apt-get $*" >>"$STUB_LOG"
+STUB
+printf '#!/usr/bin/env bash\nexec "$@"\n' >"$work/bin/sudo"
+printf '#!/usr/bin/env bash\necho "ctest $*"\n' >"$work/bin/ctest"
+chmod +x "$work/bin/"*
+export PATH="$work/bin:$PATH" STUB_LOG="$work/calls"
+
+fail() {
+    printf 'launcher: %s\n' "$*"
+    cat "$STUB_LOG"
+    exit 1
+}
+calls() { wc -l <"$STUB_LOG"; }
+cd "$work/elsewhere"
+: >"$STUB_LOG"
+
+# The first run configures, builds, and hands the arguments on as they are, in the folder it was called from.
+out=$("$tree/darkroom" develop "a b.exr" '*' 2>"$work/said")
+[[ $out == "<$work/elsewhere><develop><a b.exr><*>" ]] || fail "arguments: $out"
+[[ $(calls) == 2 ]] || fail "the first run calls CMake twice"
+grep -q '^darkroom: building in ' "$work/said" || fail "the first run says what it does"
+
+# The second starts at once and says nothing; so does one through a link.
+"$tree/darkroom" >"$work/out" 2>"$work/said"
+ln -s "$tree/darkroom" "$work/link"
+"$work/link" >"$work/out" 2>>"$work/said"
+[[ $(calls) == 2 && ! -s $work/said ]] || fail "the second run builds again"
+
+# What changed, came or went is built; pictures that the build made are not sources.
+rebuilds() {
+    local before
+    before=$(calls)
+    "$tree/darkroom" >"$work/out" 2>"$work/said"
+    [[ $(calls) -gt $before ]] || fail "no build after: $1"
+    before=$(calls)
+    "$tree/darkroom" >"$work/out" 2>"$work/said"
+    [[ $(calls) == "$before" ]] || fail "two builds after: $1"
+}
+echo "int x;" >"$tree/src/one.cpp" && rebuilds "a source changed"
+touch "$tree/effects/two.glsl" && rebuilds "a source came"
+rm "$tree/src/one.cpp" && rebuilds "a source went"
+rm "$tree/samples/a.exr" && before=$(calls) && "$tree/darkroom" >"$work/out" 2>"$work/said"
+[[ $(calls) -gt $before ]] || fail "no build where the samples are gone"
+touch "$tree/samples/a.exr" && before=$(calls) && "$tree/darkroom" >"$work/out" 2>"$work/said"
+[[ $(calls) == "$before" ]] || fail "a build because of a sample"
+
+# A tree that moved is built anew.
+mv "$tree" "$work/moved" && tree=$work/moved && rebuilds "the tree moved"
+
+# A build that fails shows the end of its log, ends with 2, and is tried again.
+echo "int y;" >"$tree/src/three.cpp"
+status=0
+STUB_FAILS=1 "$tree/darkroom" >"$work/out" 2>"$work/said" || status=$?
+[[ $status == 2 && ! -s $work/out ]] && grep -q 'it is broken' "$work/said" || fail "a failing build"
+rebuilds "a build that failed"
+
+# What is missing is installed, and nothing else is.
+touch "$tree/src/three.cpp"
+STUB_LACKS=libfmt-dev "$tree/darkroom" >"$work/out" 2>"$work/said"
+grep -qE '^apt-get .*install -y --no-install-recommends libfmt-dev$' "$STUB_LOG" || fail "the missing package is not installed"
+
+# A folder that cannot be written is named, and so is the way out. Root can write everywhere.
+if [[ $(id -u) != 0 ]]; then
+    status=0
+    chmod u-w "$work/elsewhere"
+    DARKROOM_BUILD=$work/elsewhere/build "$tree/darkroom" 2>"$work/said" || status=$?
+    [[ $status == 2 ]] && grep -q DARKROOM_BUILD "$work/said" || fail "a folder that cannot be written"
+    chmod u+w "$work/elsewhere"
+fi
+DARKROOM_BUILD=$work/other "$tree/darkroom" >"$work/out" 2>"$work/said"
+[[ -x $work/other/bin/darkroom ]] || fail "DARKROOM_BUILD"
+
+# ./test chooses labels, and hands the rest to CTest.
+[[ $("$tree/test" -R Bloom 2>/dev/null) == "ctest --test-dir $tree/build "*" -LE ^soak$ -R Bloom" ]] || fail "./test -R"
+[[ $("$tree/test" --all 2>/dev/null) != *"-LE"* ]] || fail "./test --all"
+[[ $("$tree/test" --sanitize 2>/dev/null) == "ctest --test-dir $tree/build-sanitize "*" -L ^(fast|gpu)$" ]] || fail "./test --sanitize"
+grep -q 'DARKROOM_SANITIZE=ON' "$STUB_LOG" || fail "./test --sanitize configures without sanitizers"
+echo "launcher: all as it should be"
