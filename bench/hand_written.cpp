@@ -45,6 +45,9 @@ class TableCatcher : public PassBuilder {
     VkExtent2D max_extent() const override { return {64, 64}; }
     const void* parameters() const override { return parameters_; }
     PassImage create(const PassImageDesc&) override { return {}; }
+    History history(const PassImageDesc&) override { return {}; }
+    PassImage frame_image(FrameImage) override { return {}; }
+    PassImage shared(std::string_view, PassImage (*)(PassBuilder&)) override { return {}; }
     PassImage table(const TableDesc& desc) override {
         tables.push_back(desc);
         return {};
@@ -71,23 +74,6 @@ struct KernelRun {
     gpu::Binding output;
 };
 
-void barrier(const Bed& bed, VkCommandBuffer commands, VkImageLayout from, VkImageLayout to) {
-    const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                       .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                       .oldLayout = from,
-                                       .newLayout = to,
-                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .image = bed.target.handle,
-                                       .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    const VkDependencyInfo dependency{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
-    bed.context.vk.CmdPipelineBarrier2(commands, &dependency);
-}
-
 Result<gpu::Image> upload_table(gpu::Context& context, const TableDesc& table) {
     auto image = gpu::Image::create(context, {.name = table.name,
                                               .format = table.format,
@@ -99,21 +85,12 @@ Result<gpu::Image> upload_table(gpu::Context& context, const TableDesc& table) {
     if (!staging) return failure(std::move(staging));
     std::ranges::copy(table.data, staging->memory.mapped);
     auto done = gpu::submit_and_wait(context, "uploading a table", [&](VkCommandBuffer commands) {
-        const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                           .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                           .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                           .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-                                           .newLayout = VK_IMAGE_LAYOUT_GENERAL,
-                                           .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                           .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                           .image = image->handle,
-                                           .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
         const VkBufferImageCopy copy{.imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
                                      .imageExtent = table.extent};
-        context.vk.CmdPipelineBarrier2(commands, &dependency);
-        context.vk.CmdCopyBufferToImage(commands, staging->handle, image->handle, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+        transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        context.vk.CmdCopyBufferToImage(commands, staging->handle, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                        1, &copy);
+        transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
     });
     if (!done) return failure(std::move(done));
     return image;
@@ -191,14 +168,14 @@ Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, 
     const VkImageLayout layout =
         stage == gpu::Stage::Compute ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     return Row{.name = std::move(name), .record = [&bed, run, layout](VkCommandBuffer commands) -> Result<> {
-                   barrier(bed, commands, VK_IMAGE_LAYOUT_GENERAL, layout);
+                   transition(bed.context, commands, bed.target, VK_IMAGE_LAYOUT_GENERAL, layout);
                    run->kernel->record(commands, {.set = run->sets.sets[0],
                                                   .constants = run->constants.handle,
                                                   .constants_size = run->constants_size,
                                                   .pass_block = run->pass_block.handle,
                                                   .images = run->images,
                                                   .outputs = {&run->output, 1}});
-                   barrier(bed, commands, layout, VK_IMAGE_LAYOUT_GENERAL);
+                   transition(bed.context, commands, bed.target, layout, VK_IMAGE_LAYOUT_GENERAL);
                    return {};
                }};
 }

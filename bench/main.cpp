@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 
@@ -35,13 +36,11 @@ Result<VkExtent2D> parse_size(const std::string& text) {
     constexpr double largest = 16384;
     const std::size_t cross = text.find('x');
     const auto width = parse_number(text.substr(0, cross));
-    const auto height = cross == std::string::npos ? std::nullopt : parse_number(text.substr(cross + 1));
-    const auto is_size = [](const std::optional<double>& side) {
-        return side && *side >= 1 && *side <= largest && *side == static_cast<std::uint32_t>(*side);
-    };
-    if (!is_size(width) || !is_size(height))
+    const auto height = parse_number(cross == std::string::npos ? std::string() : text.substr(cross + 1));
+    const auto is_size = [](double side) { return side >= 1 && side <= largest && side == std::floor(side); };
+    if (!is_size(width.value_or(0)) || !is_size(height.value_or(0)))
         return user_error(fmt::format("--size {}: allowed is WIDTHxHEIGHT, each 1 to {}", text, largest));
-    return VkExtent2D{static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
+    return VkExtent2D{static_cast<std::uint32_t>(width.value_or(0)), static_cast<std::uint32_t>(height.value_or(0))};
 }
 
 /// Appends what `more` holds.

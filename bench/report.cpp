@@ -23,7 +23,7 @@ std::string_view unit_of(const Report& report) {
     return report.cost == &Sample::cpu_ms ? "process CPU time" : "GPU time";
 }
 
-std::string quoted(std::string_view text) {
+std::string json_text(std::string_view text) {
     std::string out = "\"";
     for (const char letter : text) {
         if (letter == '"' || letter == '\\') {
@@ -73,17 +73,17 @@ std::string json(const Report& report) {
     const auto to = std::back_inserter(out);
     fmt::format_to(
         to, "{{\n  \"device\": {},\n  \"driver\": {},\n  \"api_version\": \"{}.{}.{}\",\n  \"is_software\": {},\n",
-        quoted(report.device.name), quoted(report.device.driver), VK_API_VERSION_MAJOR(report.device.api_version),
+        json_text(report.device.name), json_text(report.device.driver), VK_API_VERSION_MAJOR(report.device.api_version),
         VK_API_VERSION_MINOR(report.device.api_version), VK_API_VERSION_PATCH(report.device.api_version),
         report.device.is_software);
     out += "  \"command_line\": [";
     for (std::size_t i = 0; i < report.command_line.size(); ++i)
-        out += (i == 0 ? "" : ", ") + quoted(report.command_line[i]);
+        out += (i == 0 ? "" : ", ") + json_text(report.command_line[i]);
     fmt::format_to(to, "],\n  \"size\": [{}, {}],\n  \"rounds\": {},\n  \"c_compares\": {},\n  \"rows\": [",
-                   report.extent.width, report.extent.height, report.rounds, quoted(unit_of(report)));
+                   report.extent.width, report.extent.height, report.rounds, json_text(unit_of(report)));
     for (std::size_t i = 0; i < report.rows.size(); ++i) {
         const Row& row = report.rows[i];
-        fmt::format_to(to, "{}\n    {{\"name\": {}", i == 0 ? "" : ",", quoted(row.name));
+        fmt::format_to(to, "{}\n    {{\"name\": {}", i == 0 ? "" : ",", json_text(row.name));
         for (const Clock& clock : clocks) {
             const std::vector<double> values = column(row, clock.member);
             fmt::format_to(to, ", \"{0}\": {1:.4f}, \"{0}_min\": {2:.4f}", clock.name, median(values), minimum(values));
@@ -93,12 +93,13 @@ std::string json(const Report& report) {
     out += "\n  ],\n  \"passes\": [";
     for (std::size_t i = 0; i < report.passes.size(); ++i)
         fmt::format_to(to, "{}\n    {{\"stack\": {}, \"pass\": {}, \"gpu_ms\": {:.4f}}}", i == 0 ? "" : ",",
-                       quoted(report.passes[i].stack), quoted(report.passes[i].pass), report.passes[i].milliseconds);
+                       json_text(report.passes[i].stack), json_text(report.passes[i].pass),
+                       report.passes[i].milliseconds);
     out += "\n  ],\n  \"figures\": [";
     for (std::size_t i = 0; i < report.figures.size(); ++i) {
         const Figure& figure = report.figures[i];
         fmt::format_to(to, "{}\n    {{\"name\": {}, \"value\": {:.4f}, \"unit\": {}", i == 0 ? "" : ",",
-                       quoted(figure.name), figure.value, quoted(figure.unit));
+                       json_text(figure.name), figure.value, json_text(figure.unit));
         if (figure.at_most) fmt::format_to(to, ", \"at_most\": {}, \"holds\": {}", *figure.at_most, figure.holds());
         out += '}';
     }
@@ -111,7 +112,7 @@ std::string csv(const Report& report) {
     for (const Clock& clock : clocks) out += fmt::format(",{0},{0}_min", clock.name);
     out += ",c\n";
     for (const Row& row : report.rows) {
-        out += quoted(row.name);
+        out += json_text(row.name);
         for (const Clock& clock : clocks) {
             const std::vector<double> values = column(row, clock.member);
             out += fmt::format(",{:.4f},{:.4f}", median(values), minimum(values));

@@ -29,9 +29,15 @@ struct Outcome {
 };
 
 std::string quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
+    std::string out(1, '\'');
+    for (const char c : text) {
+        if (c == '\'')
+            out += "'\\''";
+        else
+            out += c;
+    }
+    out += '\'';
+    return out;
 }
 std::string content(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -282,8 +288,8 @@ TEST_F(Cli, HostileFilesDevelopOrAreRefusedWhole) {
         const Outcome outcome = run({"develop", file.path().string(), "-o", path("x.png")});
         EXPECT_TRUE(outcome.code == 0 || outcome.code == 1) << file.path() << " " << outcome.err;
         EXPECT_EQ(fs::exists(path("x.png")), outcome.code == 0) << file.path();
-        if (outcome.code != 0)
-            EXPECT_NE(outcome.err.find(file.path().filename().string()), std::string::npos) << outcome.err;
+        const bool names_file = outcome.err.find(file.path().filename().string()) != std::string::npos;
+        EXPECT_TRUE(outcome.code == 0 || names_file) << outcome.err;
         fs::remove(path("x.png"));
         EXPECT_EQ(files(), std::vector<std::string>{"frame.exr"});
     }

@@ -40,11 +40,11 @@ int run(const Options& options) {
     if (a->encoding != b->encoding)
         return fail_user(fmt::format(
             "{} and {}: one is encoded for a display and the other holds linear floats, they cannot be compared",
-            darkroom::text::printable(options.a), darkroom::text::printable(options.b)));
+            darkroom::printable(options.a), darkroom::printable(options.b)));
     const Result<darkroom::Comparison> result = darkroom::compare(a->picture, b->picture, {.encoding = a->encoding});
     if (!result)
-        return fail({result.error().fault, fmt::format("{} and {}: {}", darkroom::text::printable(options.a),
-                                                       darkroom::text::printable(options.b), result.error().text)});
+        return fail({result.error().fault, fmt::format("{} and {}: {}", darkroom::printable(options.a),
+                                                       darkroom::printable(options.b), result.error().text)});
     if (!options.diff.empty())
         if (Result<> written = darkroom::write_picture(options.diff, result->flip_map); !written)
             return fail(written.error());
@@ -56,8 +56,8 @@ int run(const Options& options) {
         result->flip_mean, is_display ? "LDR" : "HDR", result->flip_weighted_median, is_display ? "LDR" : "HDR",
         result->flip_max);
     if (!options.fail_above || !(result->flip_mean > *options.fail_above)) return exit_ok;
-    return fail_user(fmt::format("{} and {}: mean FLIP {:.6f} is above {:g}", darkroom::text::printable(options.a),
-                                 darkroom::text::printable(options.b), result->flip_mean, *options.fail_above));
+    return fail_user(fmt::format("{} and {}: mean FLIP {:.6f} is above {:g}", darkroom::printable(options.a),
+                                 darkroom::printable(options.b), result->flip_mean, *options.fail_above));
 }
 
 }  // namespace

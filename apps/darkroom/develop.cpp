@@ -129,7 +129,7 @@ class Develop {
     }
 
     Result<std::string> develop(std::size_t index) {
-        const std::string shown = darkroom::text::printable(job_.inputs[index].string());
+        const std::string shown = darkroom::printable(job_.inputs[index].string());
         Result<darkroom::FrameFile> frame = darkroom::read_frame(job_.inputs[index], job_.frame);
         if (!frame) return failure(std::move(frame));
         for (const std::string& warning : frame->warnings) warn(fmt::format("{}: {}", shown, warning));
@@ -150,8 +150,8 @@ class Develop {
         const VkExtent2D size = picture->extent;
         if (Result<> done = write(job_.outputs[index], std::move(*picture), job_.write); !done)
             return failure(std::move(done));
-        return fmt::format("{} -> {} ({}x{})", shown, darkroom::text::printable(job_.outputs[index].string()),
-                           size.width, size.height);
+        return fmt::format("{} -> {} ({}x{})", shown, darkroom::printable(job_.outputs[index].string()), size.width,
+                           size.height);
     }
 
     // Linear targets skip the last steps by definition; that is no news.

@@ -29,8 +29,7 @@ Result<darkroom::KernelStage> DeviceFlags::stage() const {
     if (kernels_ == "auto") return darkroom::KernelStage::Auto;
     if (kernels_ == "compute") return darkroom::KernelStage::Compute;
     if (kernels_ == "raster") return darkroom::KernelStage::Raster;
-    return user_error(
-        fmt::format("--kernels {}: allowed is auto, compute or raster", darkroom::text::printable(kernels_)));
+    return user_error(fmt::format("--kernels {}: allowed is auto, compute or raster", darkroom::printable(kernels_)));
 }
 
 Result<darkroom::Device> DeviceFlags::create() const {
@@ -46,8 +45,8 @@ Result<VkExtent2D> parse_size(const std::string& text) {
         const bool is_done = i == 1 && next == end;
         const bool is_between = i == 0 && next != end && *next == 'x';
         if (error != std::errc() || sides[i] == 0 || !(is_done || is_between))
-            return user_error(fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, each at least 1",
-                                          darkroom::text::printable(text)));
+            return user_error(
+                fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, each at least 1", darkroom::printable(text)));
         at = next + 1;
     }
     return VkExtent2D{sides[0], sides[1]};
@@ -58,7 +57,7 @@ Result<darkroom::SampleKind> parse_bits(const std::string& text) {
     if (text == "16") return darkroom::SampleKind::Integer16;
     if (text == "half") return darkroom::SampleKind::Half;
     if (text == "float") return darkroom::SampleKind::Float;
-    return user_error(fmt::format("--bits {}: allowed is 8, 16, half or float", darkroom::text::printable(text)));
+    return user_error(fmt::format("--bits {}: allowed is 8, 16, half or float", darkroom::printable(text)));
 }
 
 darkroom::DevelopTarget target_for(darkroom::SampleKind samples) {

@@ -27,7 +27,7 @@ int show(const std::string& name) {
     if (effect == nullptr) {
         std::vector<std::string> names;
         for (const darkroom::EffectInfo* const known : darkroom::all_effects()) names.emplace_back(known->name);
-        return fail_user(fmt::format("effects: no effect '{}': there are {}{}", darkroom::text::printable(name),
+        return fail_user(fmt::format("effects: no effect '{}': there are {}{}", darkroom::printable(name),
                                      fmt::join(names, ", "), darkroom::suggestion(name, names)));
     }
     const std::string page = fmt::format("{}.md", effect->name);

@@ -60,7 +60,7 @@ Result<std::vector<LookOverride>> LookFlags::overrides() const {
     for (const std::string& set : sets_) {
         const std::size_t equals = set.find('=');
         if (equals == std::string::npos || equals == 0)
-            return user_error(fmt::format("--set {}: expected ENTRY.PARAM=VALUE", darkroom::text::printable(set)));
+            return user_error(fmt::format("--set {}: expected ENTRY.PARAM=VALUE", darkroom::printable(set)));
         const std::string key = set.substr(0, equals);
         out.push_back({key, set.substr(equals + 1), "--set " + key});
     }
@@ -75,15 +75,15 @@ Result<Look> LookFlags::look() const {
     if (!look) return look;
     if (!order_.empty()) {
         if (!look->is_flat)
-            return user_error(fmt::format("--order {}: {} has an explicit stack", darkroom::text::printable(order_),
-                                          look->shown_name));
+            return user_error(
+                fmt::format("--order {}: {} has an explicit stack", darkroom::printable(order_), look->shown_name));
         if (order_ == "documented")
             look->order = darkroom::LookOrder::Documented;
         else if (order_ == "scene_linear")
             look->order = darkroom::LookOrder::SceneLinear;
         else
             return user_error(
-                fmt::format("--order {}: allowed is documented or scene_linear", darkroom::text::printable(order_)));
+                fmt::format("--order {}: allowed is documented or scene_linear", darkroom::printable(order_)));
     }
     const Result<std::vector<LookOverride>> values = overrides();
     if (!values) return tl::unexpected(values.error());

@@ -28,14 +28,14 @@ std::string unknown_argument(const CLI::App& program) {
         const std::vector<std::string> rest = command->remaining();
         if (rest.empty()) continue;
         const std::string name = rest.front().substr(0, rest.front().find('='));
-        return fmt::format("{}: unknown argument '{}'{}", command->get_name(), darkroom::text::printable(rest.front()),
+        return fmt::format("{}: unknown argument '{}'{}", command->get_name(), darkroom::printable(rest.front()),
                            darkroom::suggestion(name, known_names(*command)));
     }
     std::vector<std::string> commands;
     for (const CLI::App* const command : program.get_subcommands({})) commands.push_back(command->get_name());
     const std::vector<std::string> rest = program.remaining();
     if (rest.empty()) return fmt::format("a command is needed: {}", fmt::join(commands, ", "));
-    return fmt::format("unknown command '{}': allowed is {}{}", darkroom::text::printable(rest.front()),
+    return fmt::format("unknown command '{}': allowed is {}{}", darkroom::printable(rest.front()),
                        fmt::join(commands, ", "), darkroom::suggestion(rest.front(), known_names(program)));
 }
 
@@ -59,12 +59,12 @@ int run(int argc, char** argv) {
     } catch (const CLI::ArgumentMismatch& error) {
         const std::string text = error.what();
         return app::fail_user(
-            fmt::format("{}: one value is needed", darkroom::text::printable(text.substr(0, text.find(':')))));
+            fmt::format("{}: one value is needed", darkroom::printable(text.substr(0, text.find(':')))));
     } catch (const CLI::RequiredError& error) {
         return app::fail_user(program.get_subcommands().empty() ? unknown_argument(program)
                                                                 : std::string(error.what()));
     } catch (const CLI::ParseError& error) {
-        return app::fail_user(darkroom::text::printable(error.what()));
+        return app::fail_user(darkroom::printable(error.what()));
     }
     const auto chosen = std::find_if(commands.begin(), commands.end(),
                                      [](const app::Command& command) { return command.app->parsed(); });

@@ -14,9 +14,9 @@
 namespace app {
 
 namespace fs = std::filesystem;
+using darkroom::printable;
 using darkroom::Result;
 using darkroom::user_error;
-using darkroom::text::printable;
 
 namespace {
 

@@ -28,6 +28,9 @@ class RecordingBuilder final : public PassBuilder {
         images.push_back(desc);
         return {next_++};
     }
+    History history(const PassImageDesc&) override { return {{next_++}, {next_++}}; }
+    PassImage frame_image(FrameImage) override { return {next_++}; }
+    PassImage shared(std::string_view, PassImage (*make)(PassBuilder&)) override { return make(*this); }
     PassImage table(const TableDesc&) override { return {next_++}; }
     PassImage add(const KernelPassDesc& desc) override {
         passes.push_back(desc);

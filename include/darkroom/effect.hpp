@@ -64,10 +64,16 @@ struct FlatPlace {
     bool starts_on = false;
 };
 
+/// Extent of an effect's output relative to its input: floored, at least 1.
+struct OutputScale {
+    std::uint32_t numerator = 1;
+    std::uint32_t denominator = 1;
+};
+
 /// Values that passes may depend on while recording.
 struct PassContext {
-    VkExtent2D frame_extent{};
-    VkExtent2D output_extent{};
+    VkExtent2D frame_extent{};   ///< of the picture that the effect gets
+    VkExtent2D output_extent{};  ///< of the image that the pass writes
     double time = 0;
     double delta_time = 0;
     std::uint64_t frame_index = 0;
@@ -89,7 +95,8 @@ struct PassImage {
 struct PassImageDesc {
     std::string name;
     VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT;
-    /// Size of mip 0 is floor(extent / denominator), at least 1.
+    /// Mip level 0 is numerator / denominator of the effect's input: floored, at least 1.
+    std::uint32_t numerator = 1;
     std::uint32_t denominator = 1;
     std::uint32_t mip_levels = 1;
 };
@@ -122,6 +129,9 @@ struct TableDesc {
     std::vector<std::byte> data;
 };
 
+/// Images of the host, beside the colour.
+enum class FrameImage : std::uint8_t { Depth, Normals, Velocity, Ui };
+
 /// What `build` of an effect declares its passes with. Runs at compile, never while recording.
 class PassBuilder {
   public:
@@ -136,6 +146,17 @@ class PassBuilder {
     [[nodiscard]] virtual const void* parameters() const = 0;
 
     [[nodiscard]] virtual PassImage create(const PassImageDesc& desc) = 0;
+    /// An image that outlives the frame: `current` is to be written, `previous` is what the last frame of this view wrote,
+    /// zero after a cut, a change of size, or a frame in which the effect was off.
+    struct History {
+        PassImage current, previous;
+    };
+    [[nodiscard]] virtual History history(const PassImageDesc& desc) = 0;
+    /// An image of the host that the effect's needs name.
+    [[nodiscard]] virtual PassImage frame_image(FrameImage which) = 0;
+    /// An image that several effects need (linear depth, say): `make` declares its passes for the first that asks, with
+    /// shaders of effects/shared; they run while any of the effects that asked is on.
+    [[nodiscard]] virtual PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&)) = 0;
     [[nodiscard]] virtual PassImage table(const TableDesc& desc) = 0;
     /// Adds a pass; returns the written image's new name.
     virtual PassImage add(const KernelPassDesc& desc) = 0;
@@ -167,6 +188,7 @@ struct EffectInfo {
     Domain (*makes)(Domain before, const void* parameters) = nullptr;
     Needs needs;
     FlatPlace flat;
+    OutputScale output_scale;  ///< of effects with a result of their own
     bool has_second = false;    ///< reads a second picture, as side image `second`
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
     void (*build)(PassBuilder&) = nullptr;

@@ -30,15 +30,69 @@ PassImage Builder::source() {
     return image_of(handle.is_given() ? planner_.value_of(handle, entry_) : input_);
 }
 
-PassImage Builder::create(const PassImageDesc& desc) {
-    const graph::Version version =
-        planner_.program_.graph.create({.name = fmt::format("{}.{}", planner_.stack_[entry_].inputs.name, desc.name),
-                                        .format = desc.format,
-                                        .size = graph::Size::fraction(desc.denominator),
-                                        .mip_levels = desc.mip_levels});
-    planner_.facts_[version.index] = {
-        .root = version.index, .format = desc.format, .has_storage = true, .fall_backs = {}};
+graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
+    const graph::Size size = planner_.values_[input_].size;
+    return {.name = fmt::format("{}.{}", planner_.stack_[entry_].inputs.name, desc.name),
+            .format = desc.format,
+            .size = {.numerator = size.numerator * desc.numerator, .denominator = size.denominator * desc.denominator},
+            .mip_levels = desc.mip_levels};
+}
+
+PassImage Builder::remember_new(graph::Version version, const graph::ImageDesc& desc) {
+    planner_.facts_[version.index] = {.root = version.index, .size = desc.size, .format = desc.format, .has_storage = true, .fall_backs = {}};
     return remember({.version = version, .first_written = {}, .format = desc.format});
+}
+
+PassImage Builder::create(const PassImageDesc& desc) {
+    const graph::ImageDesc image = image_desc(desc);
+    return remember_new(planner_.program_.graph.create(image), image);
+}
+
+PassBuilder::History Builder::history(const PassImageDesc& desc) {
+    const graph::ImageDesc image = image_desc(desc);
+    const graph::Graph::History made = planner_.program_.graph.history(image);
+    auto& entries = planner_.program_.history_entries;
+    if (entries.empty() || entries.back() != entry_) entries.push_back(entry_);
+    return {remember_new(made.current, image), remember_new(made.previous, image)};
+}
+
+PassImage Builder::frame_image(FrameImage which) {
+    const CompileDesc& desc = planner_.desc_;
+    struct Row {
+        HostImage image;
+        const char* name;
+        VkFormat format;
+    };
+    const std::array<Row, 4> rows{{{HostImage::Depth, "depth", desc.depth},
+                                   {HostImage::Normals, "normals", desc.normals},
+                                   {HostImage::Velocity, "velocity", desc.velocity},
+                                   {HostImage::Ui, "ui", desc.ui}}};
+    const Row& row = rows[static_cast<std::size_t>(which)];
+    if (row.format == VK_FORMAT_UNDEFINED) {
+        error = fmt::format("effect '{}' reads the frame's {} without naming it in its needs", planner_.stack_[entry_].info->name, row.name);
+        return {};
+    }
+    return remember({.version = planner_.import_host(row.image, row.name, row.format, VK_IMAGE_USAGE_SAMPLED_BIT, {}),
+                     .format = row.format});
+}
+
+PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&)) {
+    auto found = planner_.shared_.find(name);
+    if (found == planner_.shared_.end()) {
+        // A toggle of its own, which further effects join.
+        planner_.program_.toggles.push_back({});
+        shared_toggle_ = static_cast<std::int32_t>(planner_.program_.toggles.size() - 1);
+        const PassImage made = make(*this);
+        if (made.index >= images_.size()) return {};
+        const Image& written = images_[made.index];
+        const Planner::Shared row{written.version, written.first_written, written.format, shared_toggle_};
+        found = planner_.shared_.emplace(std::string(name), row).first;
+        shared_toggle_ = -1;
+    }
+    const Planner::Shared& image = found->second;
+    planner_.program_.toggles[static_cast<std::size_t>(image.toggle)].entries.push_back(entry_);
+    shared_toggles_.push_back(image.toggle);
+    return remember({.version = image.version, .first_written = image.first_written, .format = image.format});
 }
 
 PassImage Builder::table(const TableDesc& desc) {
@@ -78,7 +132,11 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     pass.spec.constants = frame_members() + entry_members(*entry.info, entry_, planner_.program_.block_words[entry_]);
     pass.spec.body =
         curve_struct() + parameter_struct(entry.info->parameters) + parameter_loader(*entry.info, entry_) + *text;
-    pass.toggle = planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
+    pass.toggle = shared_toggle_;
+    if (pass.toggle < 0) {
+        pass.toggle = planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
+        for (const std::int32_t shared : shared_toggles_) planner_.program_.graph.imply(pass.toggle, shared);
+    }
     const auto version = planner_.add_pass(std::move(pass), written.version, desc.output_mip_level);
     if (!version) {
         error = version.error().text;

@@ -16,7 +16,7 @@ namespace darkroom::compose {
 
 namespace {
 
-constexpr std::uint32_t most_images = 16;
+using gpu::most_images;
 constexpr std::uint32_t most_custom_vectors = 64;
 
 VkDeviceSize align(VkDeviceSize size, VkDeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
@@ -159,6 +159,8 @@ Result<> Chain::make_resources(bool has_timers) {
     if (!physical) return failure(std::move(physical));
     physical_.emplace(std::move(*physical));
     import_states_.resize(program_.imports.size());
+    views_.resize(desc_.views);
+    for (View& view : views_) view.was_on.resize(program_.history_entries.size());
 
     std::vector<VkDescriptorSetLayout> layouts;
     set_at_.assign(program_.passes.size(), 0);
@@ -275,15 +277,16 @@ Result<> Chain::check_frame(const Frame& frame) const {
             return user_error(fmt::format("record: frame.{} has format {}, the plan was compiled for {}",
                                           name_of(*which), gpu::format_name(image.format), gpu::format_name(expected)));
         const VkRect2D region = image.used_region();
-        const VkExtent2D frame_extent = frame.color.used_region().extent;
+        const VkExtent2D color_extent = frame.color.used_region().extent;
+        const VkExtent2D wanted = *which == HostImage::Target ? program_.target_size.of(color_extent) : color_extent;
         if (region.offset.x < 0 || region.offset.y < 0 || region.offset.x + region.extent.width > image.extent.width ||
             region.offset.y + region.extent.height > image.extent.height)
             return user_error(fmt::format("record: the region of frame.{} does not lie inside its {}x{} image",
                                           name_of(*which), image.extent.width, image.extent.height));
-        if (region.extent.width != frame_extent.width || region.extent.height != frame_extent.height)
-            return user_error(fmt::format("record: frame.{} is {}x{}, but frame.color is {}x{}", name_of(*which),
-                                          region.extent.width, region.extent.height, frame_extent.width,
-                                          frame_extent.height));
+        if (region.extent.width != wanted.width || region.extent.height != wanted.height)
+            return user_error(fmt::format("record: frame.{} is {}x{}; with a color of {}x{} it must be {}x{}", name_of(*which),
+                                          region.extent.width, region.extent.height, color_extent.width, color_extent.height,
+                                          wanted.width, wanted.height));
         if (image.layer_count != 1)
             return user_error(
                 fmt::format("record: frame.{} has {} layers; 1 is allowed", name_of(*which), image.layer_count));
@@ -309,8 +312,11 @@ void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
         const Toggle& toggle = program_.toggles[i];
         bool is_on = false;
         for (const std::uint32_t entry : toggle.entries) is_on = is_on || is_on_[entry];
-        if (is_on && toggle.condition != nullptr)
-            is_on = toggle.condition(words_of(toggle.entries.front()), context, toggle.argument);
+        if (is_on && toggle.condition != nullptr) {
+            PassContext own = context;
+            own.frame_extent = program_.entry_sizes[toggle.entries.front()].of(context.frame_extent);
+            is_on = toggle.condition(words_of(toggle.entries.front()), own, toggle.argument);
+        }
         toggles_[i] = is_on;
     }
 }
@@ -330,6 +336,8 @@ Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack) con
 }
 
 Result<> Chain::build_lean(std::span<const Entry> stack) {
+    // Toggles may have changed since the last recording.
+    evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
     for (std::size_t i = 0; i < program_.passes.size(); ++i) {
         if (!variants_[i]) continue;
         if (auto ok = variants_[i]->build(context_, shape_of(program_.passes[i], stack)); !ok) return ok;
@@ -381,7 +389,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
                                                         .base_mip_level = image.mip_level,
                                                         .base_array_layer = image.array_layer});
     }
-    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, recordings_);
+    reset_histories(commands, frame);
+    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, views_[frame.view].recordings++);
 
     const bool is_timed = timers_.pool != VK_NULL_HANDLE;
     if (is_timed) {
@@ -402,6 +411,22 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
     physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
     ++recordings_;
     return {};
+}
+
+/// Histories start from zero where nothing of the last frame of the view can be used.
+void Chain::reset_histories(VkCommandBuffer commands, const Frame& frame) {
+    if (program_.history_entries.empty()) return;
+    View& view = views_[frame.view];
+    const VkExtent2D extent = frame.color.used_region().extent;
+    bool is_related = view.recordings > 0 && !frame.camera.is_cut && frame.delta_time > 0 &&
+                      view.extent.width == extent.width && view.extent.height == extent.height;
+    for (std::size_t i = 0; i < program_.history_entries.size(); ++i) {
+        const bool is_on = is_on_[program_.history_entries[i]];
+        if (is_on && !view.was_on[i]) is_related = false;
+        view.was_on[i] = is_on ? 1 : 0;
+    }
+    view.extent = extent;
+    if (!is_related) physical_->record_reset(commands, context_.vk, frame.view);
 }
 
 gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
@@ -447,6 +472,7 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
     if (pass.constants != nullptr) {
         PassContext own = context;
+        own.frame_extent = program_.entry_sizes[pass.entry].of(context.frame_extent);
         own.output_extent = output.region.extent;
         pass.constants(words_of(pass.entry), own, custom);
     }

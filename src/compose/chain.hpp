@@ -38,6 +38,7 @@ class Chain {
     [[nodiscard]] Result<> make_resources(bool has_timers);
     [[nodiscard]] Result<> make_constants();
     [[nodiscard]] Result<> check_frame(const Frame& frame) const;
+    void reset_histories(VkCommandBuffer commands, const Frame& frame);
     void upload_constants(VkCommandBuffer commands);
     void evaluate(std::span<const Entry> stack, const PassContext& context);
     [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack) const;
@@ -77,6 +78,14 @@ class Chain {
     std::vector<graph::ImportState> import_states_;
     std::vector<PassVector> custom_;
     std::uint32_t slot_ = 0;
+
+    /// What the histories of a view were made from.
+    struct View {
+        std::uint64_t recordings = 0;
+        VkExtent2D extent{};
+        std::vector<std::uint8_t> was_on;  ///< per entry with histories
+    };
+    std::vector<View> views_;
 
     // Timers: what was recorded in each slot.
     std::vector<std::vector<std::uint32_t>> timed_passes_;

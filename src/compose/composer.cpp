@@ -32,6 +32,31 @@ std::string shown(const compose::Entry& entry, const ParamInfo& row) {
     return fmt::format("{}.{}", entry.inputs.name, row.name);
 }
 
+/// Whether a value is surely allowed, found out without memory: values change inside frame loops. What is not goes the
+/// long way through core, which knows every kind and makes the error's text.
+template <class T>
+bool is_inside(const ParamInfo& row, std::span<const std::uint32_t> words) {
+    std::array<std::uint32_t, sizeof(T) / 4> copy{};
+    std::copy_n(words.begin(), copy.size(), copy.begin());
+    return detail::is_inside(std::bit_cast<T>(copy), row.range);
+}
+bool is_surely_allowed(const ParamInfo& row, std::span<const std::uint32_t> words) {
+    if (words.size() != row.words) return false;
+    switch (row.kind) {
+        case Kind::Float: return is_inside<float>(row, words);
+        case Kind::Int: return is_inside<std::int32_t>(row, words);
+        case Kind::Toggle: return words[0] <= 1;
+        case Kind::Choice: return words[0] < row.choices.size();
+        case Kind::Vec2: return is_inside<Vec2>(row, words);
+        case Kind::Vec3: return is_inside<Vec3>(row, words);
+        case Kind::Vec4: return is_inside<Vec4>(row, words);
+        case Kind::Rgb: return is_inside<Rgb>(row, words);
+        case Kind::Curve:
+        case Kind::Resource: break;
+    }
+    return false;
+}
+
 }  // namespace
 
 namespace compose {
@@ -55,6 +80,7 @@ struct Composer::State {
         std::uint32_t recordings_left = 0;
     };
     std::vector<Retired> retired;
+    bool is_stale = false;  ///< the stack is not the one that was compiled
     double record_microseconds = 0;
 
     [[nodiscard]] std::uint32_t slots() const {
@@ -99,10 +125,14 @@ Handle Composer::add(const EffectInfo& info, const void* parameters, const Input
         entry.inputs.name = same == 0 ? std::string(info.name) : fmt::format("{}#{}", info.name, same + 1);
     }
     state_->stack.push_back(std::move(entry));
+    state_->is_stale = true;
     return {static_cast<std::uint32_t>(state_->stack.size())};
 }
 
-void Composer::clear() { state_->stack.clear(); }
+void Composer::clear() {
+    state_->stack.clear();
+    state_->is_stale = true;
+}
 
 std::optional<Handle> Composer::find(std::string_view entry_name) const {
     for (std::uint32_t i = 0; i < state_->stack.size(); ++i)
@@ -125,7 +155,7 @@ Result<> Composer::set_opacity(Handle handle, float opacity) {
     if (!(opacity >= 0 && opacity <= 1))
         return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.inputs.name, opacity));
     // An entry with passes of its own is laid over its input by the next kernel, if that was planned so.
-    const bool is_mixable = !state_->chain || state_->chain->program().is_mixable.size() < handle.id ||
+    const bool is_mixable = !state_->chain || state_->is_stale || state_->chain->program().is_mixable.size() < handle.id ||
                             state_->chain->program().is_mixable[handle.id - 1];
     if (!is_mixable && opacity > 0 && opacity < 1)
         return user_error(fmt::format(
@@ -140,7 +170,8 @@ Result<> Composer::set(Handle handle, std::string_view parameter, std::span<cons
     const auto row = state_->row(handle, parameter);
     if (!row) return tl::unexpected(row.error());
     compose::Entry& entry = state_->at(handle);
-    if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
+    if (!is_surely_allowed(**row, words))
+        if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
     std::copy(words.begin(), words.end(), entry.base.begin() + (*row)->word);
     return {};
 }
@@ -149,7 +180,17 @@ Result<> Composer::set(Handle handle, std::string_view parameter, double value) 
     const auto row = state_->row(handle, parameter);
     if (!row) return tl::unexpected(row.error());
     compose::Entry& entry = state_->at(handle);
-    return assign(**row, entry.base, value, shown(entry, **row));
+    const ParamInfo& info = **row;
+    const bool is_allowed = value >= info.range.min && value <= info.range.max;
+    if (is_allowed && info.kind == Kind::Float) {
+        entry.base[info.word] = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+        return {};
+    }
+    if (is_allowed && info.kind == Kind::Int && value == std::trunc(value)) {
+        entry.base[info.word] = static_cast<std::uint32_t>(static_cast<std::int32_t>(value));
+        return {};
+    }
+    return assign(info, entry.base, value, shown(entry, info));
 }
 
 void Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) {
@@ -163,7 +204,8 @@ Result<> Composer::set_override(Handle handle, std::string_view parameter, std::
     const auto row = state_->row(handle, parameter);
     if (!row) return tl::unexpected(row.error());
     compose::Entry& entry = state_->at(handle);
-    if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
+    if (!is_surely_allowed(**row, words))
+        if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
     const auto found = std::find_if(entry.overrides.begin(), entry.overrides.end(),
                                     [&](const auto& o) { return o.owner == owner && o.word == (*row)->word; });
     if (found == entry.overrides.end()) {
@@ -208,28 +250,33 @@ Result<Plan> Composer::compile(const CompileDesc& desc) {
         compose::Chain::create(state_->device->context(), std::move(*program), desc,
                                state_->desc.frames_in_flight * desc.views, state_->desc.has_timers, state_->stack);
     if (!chain) return failure(std::move(chain));
-    if (state_->chain) state_->retired.push_back({std::move(state_->chain), state_->slots()});
+    // With more views than before, more recordings may be made before the oldest one has finished.
+    const std::uint32_t newer = std::max(state_->slots(), state_->desc.frames_in_flight * desc.views);
+    for (State::Retired& retired : state_->retired) retired.recordings_left = std::max(retired.recordings_left, newer);
+    if (state_->chain) state_->retired.push_back({std::move(state_->chain), newer});
     state_->chain = std::move(*chain);
     state_->compiled_for = desc;
+    state_->is_stale = false;
     return state_->chain->describe();
 }
 
 Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {
     const auto start = std::chrono::steady_clock::now();
     if (!state_->chain) return user_error("record: the composer has no plan; compile it first");
-    if (state_->chain->program().is_left_out.size() != state_->stack.size())
+    if (state_->is_stale)
         return user_error("record: the stack changed since it was compiled; compile it again");
     // By the contract the recordings that used a retired chain have finished once as many newer ones are made.
-    if (!state_->retired.empty())
-        std::erase_if(state_->retired, [](State::Retired& retired) { return retired.recordings_left-- == 0; });
+    std::erase_if(state_->retired, [](const State::Retired& retired) { return retired.recordings_left == 0; });
     auto ok = state_->chain->record(commands, frame, state_->stack);
+    if (ok)
+        for (State::Retired& retired : state_->retired) --retired.recordings_left;
     state_->record_microseconds =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     return ok;
 }
 
 void Composer::wait_for_kernels() {
-    if (!state_->chain) return;
+    if (!state_->chain || state_->is_stale) return;
     if (const auto ok = state_->chain->build_lean(state_->stack); !ok)
         state_->device->context().say(Severity::Warning, ok.error().text);
 }

@@ -9,12 +9,14 @@
 namespace darkroom {
 namespace {
 
+using test::add;
+
 class ComposeFusion : public test::StackTest {};
 
 constexpr std::uint32_t stack_count = 10;
 
 std::uint32_t below(std::mt19937& random, std::uint32_t limit) { return static_cast<std::uint32_t>(random() % limit); }
-double between(std::mt19937& random, double low, double high) { return low + (high - low) * (random() / 4294967296.0); }
+double between(std::mt19937& random, double low, double high) { return low + (high - low) * (static_cast<double>(random()) / 4294967296.0); }
 
 /// Sane values: the widest ranges would make numbers that no chain of float pictures can hold.
 void set_random(std::mt19937& random, Composer& composer, Handle handle) {

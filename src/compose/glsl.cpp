@@ -214,7 +214,8 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t entry, std::s
 
 Result<std::string> instance_text(const EffectInfo& info, std::string_view file, std::uint32_t entry,
                                   std::span<const std::string> also) {
-    const std::string_view own = file_text(info.files, file);
+    std::string_view own = file_text(info.files, file);
+    if (own.empty()) own = file_text(shared_files(), file);
     const std::string shown = fmt::format("{}/{}", info.name, file);
     if (own.empty()) return user_error(fmt::format("effects/{}: there is no such file", shown));
 
@@ -240,7 +241,7 @@ Result<std::string> instance_text(const EffectInfo& info, std::string_view file,
     return out;
 }
 
-Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish) {
+Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, bool is_resampled) {
     std::string declarations, code;
     std::set<std::string_view> structs;
     bool has_merge = false;
@@ -285,10 +286,13 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish) 
                                              : "    color.rgb = srgb_decode(color.rgb);\n";
     }
     const bool is_warp = !steps.empty() && steps.front().info->touch == Touch::Warp && !steps.front().is_merge;
+    const std::string_view read = is_resampled ? "sample_linear(picture, pixel.uv)"
+                                  : is_warp    ? "load_clamped(picture, pixel.texel)"
+                                               : "load(picture, pixel.texel)";
     return fmt::format(
         "{}{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",
         curve_struct(), helpers, declarations,
-        is_warp ? "load_clamped(picture, pixel.texel)" : "load(picture, pixel.texel)", code);
+        read, code);
 }
 
 }  // namespace darkroom::compose

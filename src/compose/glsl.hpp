@@ -60,7 +60,8 @@ struct FusedStep {
     std::vector<Baked> baked;
 };
 enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb };
-/// The body of a fused kernel: reads image `picture`, applies the steps in order, finishes for the target.
-[[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish);
+/// The body of a fused kernel: reads image `picture`, applies the steps in order, finishes for the target. A resampled
+/// picture may have another extent than the output.
+[[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, bool is_resampled);
 
 }  // namespace darkroom::compose

@@ -233,7 +233,7 @@ TEST_F(ComposePlan, AWrongDomainIsOneRemarkAndReordersNothing) {
     for (const char* const name : {"tonemap", "bloom", "encode"}) add(composer, name);
     const Plan made = plan();
     ASSERT_EQ(made.remarks.size(), 1u);
-    EXPECT_NE(made.remarks[0].find("bloom expects a scene_linear picture and gets a display_linear one"), std::string::npos)
+    EXPECT_NE(made.remarks[0].find("bloom expects a picture that is scene_linear; this one is display_linear"), std::string::npos)
         << made.remarks[0];
     EXPECT_EQ(entries_of(made), (std::vector<std::string>{"tonemap", "bloom", "encode"}));
 }

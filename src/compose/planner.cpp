@@ -26,6 +26,13 @@ const char* name_of(Domain domain) {
     return "";
 }
 
+graph::Size scaled(graph::Size size, std::uint32_t numerator, std::uint32_t denominator) {
+    return {.numerator = size.numerator * numerator, .denominator = size.denominator * denominator};
+}
+bool is_same(graph::Size a, graph::Size b) {
+    return std::uint64_t{a.numerator} * b.denominator == std::uint64_t{b.numerator} * a.denominator;
+}
+
 bool is_float(VkFormat format) {
     return format == VK_FORMAT_R16G16B16A16_SFLOAT || format == VK_FORMAT_R32G32B32A32_SFLOAT ||
            format == VK_FORMAT_B10G11R11_UFLOAT_PACK32;
@@ -59,13 +66,14 @@ Result<Program> Planner::run() {
     if (auto ok = check_handles(); !ok) return failure(std::move(ok));
     lay_out_constants();
 
-    const graph::Version color = import_host(HostImage::Color, "color", desc_.color, desc_.color_usage);
+    const graph::Version color = import_host(HostImage::Color, "color", desc_.color, desc_.color_usage, {});
     values_.push_back({.image = color, .domain = Domain::SceneLinear, .why = "the scene colour starts here"});
     entry_values_.assign(stack_.size(), 0);
     count_readers();
 
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const std::size_t input = input_of(i);
+        program_.entry_sizes.push_back(values_[input].size);
         if (is_left_out(i)) {
             entry_values_[i] = input;
             continue;
@@ -128,7 +136,7 @@ void Planner::remark_domain(std::uint32_t entry, Domain domain) {
     std::string accepted;
     for (const Domain d : {Domain::SceneLinear, Domain::DisplayLinear, Domain::Encoded})
         if (info.accepts.contains(d)) accepted += fmt::format("{}{}", accepted.empty() ? "" : " or ", name_of(d));
-    program_.remarks.push_back(fmt::format("{} expects a {} picture and gets a {} one.", stack_[entry].inputs.name,
+    program_.remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", stack_[entry].inputs.name,
                                            accepted, name_of(domain)));
 }
 
@@ -195,12 +203,14 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
     program_.graph.fall_back(builder.output, *picture);
     facts_[builder.output.index].fall_backs.push_back(*picture);
 
+    const OutputScale& scale = stack_[entry].info->output_scale;
+    const graph::Size size = scaled(values_[input].size, scale.numerator, scale.denominator);
     if (stack_[entry].is_plain()) {
         program_.is_mixable[entry] = false;
-        values_.push_back({.image = builder.output, .domain = domain, .why = why});
+        values_.push_back({.image = builder.output, .size = size, .domain = domain, .why = why});
         return values_.size() - 1;
     }
-    values_.push_back({.image = *picture, .domain = domain, .why = why});
+    values_.push_back({.image = *picture, .size = size, .domain = domain, .why = why});
     FusedStep step{.info = stack_[entry].info, .entry = entry, .name = stack_[entry].inputs.name, .is_merge = true};
     return append(entry, values_.size() - 1, std::move(step), {{.version = builder.output}}, domain);
 }
@@ -210,6 +220,7 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
     const std::string& name = stack_[entry].inputs.name;
     const Value from = values_[input];
     std::size_t kernel = from.kernel;
+    const std::size_t side_count = sides.size() + (stack_[entry].inputs.mask.is_given() ? 1 : 0);
     if (kernel == no_kernel) {
         kernel = open_kernel(input, from.why);
     } else {
@@ -220,6 +231,8 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
             why = fmt::format("{} reads the picture at moved coordinates", name);
         else if (!from.reader.empty())
             why = fmt::format("{} reads the picture before it, too", from.reader);
+        else if (kernels_[kernel].images.size() + side_count >= gpu::most_images)
+            why = fmt::format("a kernel reads at most {} images", gpu::most_images);
         if (!why.empty()) {
             if (auto image = materialise(input, why); !image) return failure(std::move(image));
             kernel = open_kernel(input, std::move(why));
@@ -228,29 +241,34 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
     if (stack_[entry].inputs.mask.is_given()) {
         auto mask =
             materialise(value_of(stack_[entry].inputs.mask, entry), fmt::format("{} reads it as its mask", name));
+        if (mask) mask = at_size(*mask, from.size, fmt::format("{}.mask", name));
         if (!mask) return failure(std::move(mask));
         step.has_mask = true;
         kernels_[kernel].images.push_back({"mask" + entry_suffix(entry), {.version = *mask}});
     }
     for (std::size_t i = 0; i < sides.size(); ++i) {
+        const bool is_read_by_texel = step.is_merge || step.sides[i] == "second";
+        if (is_read_by_texel) {
+            auto version = at_size(sides[i].version, from.size, fmt::format("{}.resampled", name));
+            if (!version) return failure(std::move(version));
+            sides[i].version = *version;
+        }
         const std::string shown = step.is_merge ? "layer" : step.sides[i];
         kernels_[kernel].images.push_back({shown + entry_suffix(entry), sides[i]});
     }
     kernels_[kernel].steps.push_back(std::move(step));
-    values_.push_back({.kernel = kernel, .domain = domain, .reader = image_reader_[entry]});
+    values_.push_back({.kernel = kernel, .size = from.size, .domain = domain, .reader = image_reader_[entry]});
     return values_.size() - 1;
 }
 
 std::size_t Planner::open_kernel(std::size_t input, std::string why) {
-    kernels_.push_back({.picture = values_[input].image, .boundary = std::move(why)});
+    kernels_.push_back({.picture = values_[input].image, .size = values_[input].size, .boundary = std::move(why)});
     return kernels_.size() - 1;
 }
 
 Result<graph::Version> Planner::materialise(std::size_t index, const std::string& why) {
     if (values_[index].image.is_valid()) return values_[index].image;
-    const graph::Version image =
-        program_.graph.create({.name = fmt::format("picture {}", kernels_.size()), .format = desc_.intermediate});
-    facts_[image.index] = {.root = image.index, .format = desc_.intermediate, .has_storage = true};
+    const graph::Version image = create_picture(fmt::format("picture {}", kernels_.size()), values_[index].size);
     auto version = close_kernel(values_[index].kernel, image, desc_.intermediate, Finish::None, false);
     if (!version) return version;
     // Nobody joined the kernel behind this value (its reader was known), so whoever comes next starts a new one.
@@ -258,6 +276,26 @@ Result<graph::Version> Planner::materialise(std::size_t index, const std::string
     values_[index].why = why;
     values_[index].kernel = no_kernel;
     return *version;
+}
+
+graph::Version Planner::create_picture(std::string name, graph::Size size) {
+    const graph::Version image =
+        program_.graph.create({.name = std::move(name), .format = desc_.intermediate, .size = size});
+    facts_[image.index] = {.root = image.index, .size = size, .format = desc_.intermediate, .has_storage = true};
+    return image;
+}
+
+bool Planner::has_size(graph::Version version, graph::Size size) const {
+    const Facts& facts = facts_.at(version.index);
+    return is_same(facts.size, size) &&
+           std::ranges::all_of(facts.fall_backs, [&](graph::Version instead) { return has_size(instead, size); });
+}
+
+Result<graph::Version> Planner::at_size(graph::Version version, graph::Size size, const std::string& name) {
+    if (has_size(version, size)) return version;
+    kernels_.push_back({.picture = version, .size = size, .boundary = "its pictures differ in size"});
+    auto out = close_kernel(kernels_.size() - 1, create_picture(name, size), desc_.intermediate, Finish::None, true);
+    return out;
 }
 
 Result<> Planner::finish() {
@@ -280,7 +318,9 @@ Result<> Planner::finish() {
         if (auto image = materialise(last, why); !image) return failure(std::move(image));
         kernel = open_kernel(last, values_[last].why);
     }
-    const graph::Version target = import_host(HostImage::Target, "target", desc_.target, desc_.target_usage);
+    program_.target_size = kernels_[kernel].size;
+    const graph::Version target =
+        import_host(HostImage::Target, "target", desc_.target, desc_.target_usage, program_.target_size);
     auto version = close_kernel(kernel, target, desc_.target, finish, true);
     if (!version) return failure(std::move(version));
     program_.graph.keep(*version);
@@ -288,8 +328,8 @@ Result<> Planner::finish() {
 }
 
 Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version target, VkFormat format, Finish finish,
-                                             bool is_last) {
-    OpenKernel& kernel = kernels_[index];
+                                             bool is_always_on) {
+    const OpenKernel kernel = kernels_[index];
     ProgramPass pass{.boundary = kernel.boundary, .steps = kernel.steps, .finish = finish};
     const bool is_warp =
         !kernel.steps.empty() && kernel.steps.front().info->touch == Touch::Warp && !kernel.steps.front().is_merge;
@@ -309,21 +349,24 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     const bool is_shared = std::ranges::any_of(kernel.images, [&](const auto& image) {
         return image.second.table == no_table && may_share(kernel.picture, image.second.version);
     });
+    pass.is_resampled = !is_warp && !has_size(kernel.picture, kernel.size);
+    const bool is_sampled = is_warp || is_shared || pass.is_resampled;
     pass.spec.images.push_back(
-        {.name = "picture",
-         .storage_format = is_warp || is_shared ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
+        {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});
     for (const auto& [name, input] : kernel.images) {
         pass.spec.images.push_back(kernel_image(name, input));
         pass.inputs.push_back(input);
     }
-    auto body = fused_body(pass.steps, finish);
+    auto body = fused_body(pass.steps, finish, pass.is_resampled);
     if (!body) return failure(std::move(body));
     pass.spec.body = std::move(*body);
-    if (!is_last) pass.toggle = toggle_index(std::move(toggle));
+    // Unfused, a kernel whose entry is off copies: else every picture would live as long as those it may stand in for.
+    const bool has_toggle = !is_always_on && desc_.fuse;
+    if (has_toggle) pass.toggle = toggle_index(std::move(toggle));
     auto version = add_pass(std::move(pass), target, 0);
     if (!version) return version;
-    if (!is_last) {
+    if (has_toggle) {
         program_.graph.fall_back(*version, kernel.picture);
         facts_[version->index].fall_backs.push_back(kernel.picture);
     }
@@ -354,16 +397,23 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     return program_.passes.back().output;
 }
 
+bool Planner::is_shared_toggle(std::size_t index) const {
+    return std::ranges::any_of(shared_, [&](const auto& row) { return row.second.toggle == static_cast<std::int32_t>(index); });
+}
+
 std::int32_t Planner::toggle_index(Toggle toggle) {
     for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
         const Toggle& other = program_.toggles[i];
-        if (other.entries == toggle.entries && other.condition == toggle.condition && other.argument == toggle.argument)
+        if (!is_shared_toggle(i) && other.entries == toggle.entries && other.condition == toggle.condition &&
+            other.argument == toggle.argument)
             return static_cast<std::int32_t>(i);
     }
     const auto index = static_cast<std::int32_t>(program_.toggles.size());
     for (std::int32_t i = 0; i < index; ++i) {
         const Toggle& other = program_.toggles[static_cast<std::size_t>(i)];
-        if (other.entries != toggle.entries || other.condition != toggle.condition) continue;
+        if (is_shared_toggle(static_cast<std::size_t>(i)) || other.entries != toggle.entries ||
+            other.condition != toggle.condition)
+            continue;
         // A condition that holds for an argument holds for all smaller ones.
         if (other.argument < toggle.argument)
             program_.graph.imply(index, i);
@@ -374,11 +424,15 @@ std::int32_t Planner::toggle_index(Toggle toggle) {
     return index;
 }
 
-graph::Version Planner::import_host(HostImage image, const char* name, VkFormat format, VkImageUsageFlags usage) {
+graph::Version Planner::import_host(HostImage image, const char* name, VkFormat format, VkImageUsageFlags usage,
+                                    graph::Size size) {
+    if (const auto found = host_images_.find(image); found != host_images_.end()) return found->second;
     program_.imports.emplace_back(image);
-    const graph::Version version = program_.graph.import({.image = {.name = name, .format = format}, .usage = usage});
+    const graph::Version version =
+        program_.graph.import({.image = {.name = name, .format = format, .size = size}, .usage = usage});
+    host_images_[image] = version;
     facts_[version.index] = {
-        .root = version.index, .format = format, .has_storage = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0};
+        .root = version.index, .size = size, .format = format, .has_storage = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0};
     return version;
 }
 
@@ -393,7 +447,7 @@ graph::Version Planner::import_constant(TableDesc table) {
                                          .size = {.width = desc.extent.width, .height = desc.extent.height}},
                                .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
                                .is_constant = true});
-    facts_[version.index] = {.root = version.index, .format = desc.format, .has_storage = false};
+    facts_[version.index] = {.root = version.index, .size = {}, .format = desc.format, .has_storage = false};
     return version;
 }
 
@@ -434,7 +488,7 @@ Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& de
 
 Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps) {
     gpu::KernelSpec spec = pass.spec;
-    auto body = fused_body(steps, pass.finish);
+    auto body = fused_body(steps, pass.finish, pass.is_resampled);
     if (!body) return failure(std::move(body));
     spec.body = std::move(*body);
     return spec;

@@ -27,18 +27,21 @@ class Planner {
     struct Value {
         graph::Version image;
         std::size_t kernel = no_kernel;
+        graph::Size size{};
         Domain domain = Domain::SceneLinear;
         std::string why;     ///< of an image: why a new kernel starts from it
         std::string reader;  ///< of an open kernel: who else reads this picture, so that it must become an image
     };
     struct OpenKernel {
         graph::Version picture;
+        graph::Size size{};
         std::string boundary;
         std::vector<FusedStep> steps;
         std::vector<std::pair<std::string, PassInput>> images;
     };
     struct Facts {
         std::uint32_t root = 0;  ///< the version that the image began as
+        graph::Size size{};
         VkFormat format = VK_FORMAT_UNDEFINED;
         bool has_storage = false;
         std::vector<graph::Version> fall_backs;
@@ -59,12 +62,17 @@ class Planner {
     [[nodiscard]] std::size_t open_kernel(std::size_t input, std::string why);
     /// Makes the picture an image, if it is not one yet, by closing its kernel.
     [[nodiscard]] Result<graph::Version> materialise(std::size_t value, const std::string& why);
+    /// An image of exactly this size for what is read by texel: resampled, if anything else may stand there.
+    [[nodiscard]] Result<graph::Version> at_size(graph::Version version, graph::Size size, const std::string& name);
+    [[nodiscard]] bool has_size(graph::Version version, graph::Size size) const;
     [[nodiscard]] Result<graph::Version> close_kernel(std::size_t kernel, graph::Version target, VkFormat format,
-                                                      Finish finish, bool is_last);
+                                                      Finish finish, bool is_always_on);
     [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
+    [[nodiscard]] bool is_shared_toggle(std::size_t index) const;
     [[nodiscard]] std::int32_t toggle_index(Toggle toggle);
     [[nodiscard]] graph::Version import_host(HostImage image, const char* name, VkFormat format,
-                                             VkImageUsageFlags usage);
+                                             VkImageUsageFlags usage, graph::Size size);
+    [[nodiscard]] graph::Version create_picture(std::string name, graph::Size size);
     [[nodiscard]] graph::Version import_constant(TableDesc table);
     /// An input that is not the picture: sampled, but for tables that are only loaded.
     [[nodiscard]] gpu::KernelImage kernel_image(std::string name, const PassInput& input) const;
@@ -83,6 +91,15 @@ class Planner {
     std::vector<std::string> image_reader_;  ///< per entry: who reads its output as an image
     std::vector<OpenKernel> kernels_;
     std::map<std::uint32_t, Facts> facts_;  ///< by version
+    std::map<HostImage, graph::Version> host_images_;
+
+    /// What several effects share, by name; its passes run while any of those that asked is on.
+    struct Shared {
+        graph::Version version, first_written;
+        VkFormat format = VK_FORMAT_UNDEFINED;
+        std::int32_t toggle = -1;
+    };
+    std::map<std::string, Shared, std::less<>> shared_;
 };
 
 /// What an effect's build() sees.
@@ -98,9 +115,12 @@ class Builder final : public PassBuilder {
 
     [[nodiscard]] PassImage picture() override;
     [[nodiscard]] PassImage source() override;
-    [[nodiscard]] VkExtent2D max_extent() const override { return planner_.desc_.max_extent; }
+    [[nodiscard]] VkExtent2D max_extent() const override { return planner_.values_[input_].size.of(planner_.desc_.max_extent); }
     [[nodiscard]] const void* parameters() const override { return planner_.stack_[entry_].base.data(); }
     [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
+    [[nodiscard]] History history(const PassImageDesc& desc) override;
+    [[nodiscard]] PassImage frame_image(FrameImage which) override;
+    [[nodiscard]] PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&)) override;
     [[nodiscard]] PassImage table(const TableDesc& desc) override;
     PassImage add(const KernelPassDesc& desc) override;
     void side(std::string name, PassImage image, PassVector neutral) override;
@@ -117,6 +137,8 @@ class Builder final : public PassBuilder {
         VkFormat format = VK_FORMAT_UNDEFINED;
         std::uint32_t table = no_table;
     };
+    [[nodiscard]] graph::ImageDesc image_desc(const PassImageDesc& desc) const;
+    [[nodiscard]] PassImage remember_new(graph::Version version, const graph::ImageDesc& desc);
     [[nodiscard]] PassInput input_of(const Image& image, std::uint32_t mip_level) const;
     [[nodiscard]] PassImage remember(Image image);
     [[nodiscard]] PassImage image_of(std::size_t value);
@@ -125,6 +147,8 @@ class Builder final : public PassBuilder {
     std::uint32_t entry_ = 0;
     std::size_t input_ = 0;
     std::vector<Image> images_;
+    std::int32_t shared_toggle_ = -1;           ///< of the passes that `shared` is declaring
+    std::vector<std::int32_t> shared_toggles_;  ///< that this entry's passes rely on
 };
 
 }  // namespace darkroom::compose

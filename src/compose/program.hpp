@@ -65,6 +65,7 @@ struct ProgramPass {
     // A fused kernel:
     std::vector<FusedStep> steps;
     Finish finish = Finish::None;
+    bool is_resampled = false;
 };
 
 /// A table, or a neutral image that stands in for a version: uploaded once, constant after.
@@ -84,6 +85,9 @@ struct Program {
     std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a constant
     std::vector<std::uint32_t> block_words;         ///< per entry: first word of its block in the constants
     std::uint32_t constants_words = 0;
+    std::vector<graph::Size> entry_sizes;  ///< per entry: of the picture that it gets
+    graph::Size target_size;
+    std::vector<std::uint32_t> history_entries;  ///< entries with histories
     std::vector<bool> is_left_out;  ///< per entry
     std::vector<bool> is_mixable;   ///< per entry: opacity and blending may change while recording
     std::vector<std::string> left_out, remarks;

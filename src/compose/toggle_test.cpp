@@ -116,7 +116,7 @@ TEST_F(ComposeToggles, AMaskScalesOpacityPixelByPixel) {
     const test::Host host(picture);
     for (const bool is_fused : {true, false}) {
         Composer composer(host.device);
-        add(composer, "exposure", {{"exposure", 4}}, {.opacity = 0.5f, .mask = scene_color});
+        add(composer, "exposure", {{"exposure", 4}}, {.mask = scene_color, .opacity = 0.5f});
         CompileDesc desc = host.compile_desc();
         desc.fuse = is_fused;
         test::must(composer.compile(desc));

@@ -84,7 +84,7 @@ std::string suggestion(std::string_view wrong, std::span<const std::string> name
     return name.empty() ? std::string() : fmt::format(", did you mean '{}'?", name);
 }
 
-std::string text::printable(std::string_view text) {
+std::string printable(std::string_view text) {
     constexpr std::size_t longest = 200;
     std::string out;
     while (!text.empty() && out.size() < longest) {

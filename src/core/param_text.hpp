@@ -63,10 +63,8 @@ struct ParamProblem {
 [[nodiscard]] std::string nearest(std::string_view wrong, std::span<const std::string> names);
 /// ", did you mean 'x'?" or nothing.
 [[nodiscard]] std::string suggestion(std::string_view wrong, std::span<const std::string> names);
-inline namespace text {
 /// Text from outside made fit for one line of a terminal: control bytes and broken UTF-8 as \x1B, long texts cut.
 [[nodiscard]] std::string printable(std::string_view text);
-}  // namespace text
 
 /// The parameters of an effect as a table in Markdown: the generated part of its page.
 [[nodiscard]] std::string documentation(const ParamTable& table, std::string_view effect);

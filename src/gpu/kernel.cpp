@@ -17,7 +17,7 @@ namespace darkroom::gpu {
 namespace {
 
 // record() works in arrays of these sizes, on the stack. Vulkan promises 16 samplers a stage and 4 attachments.
-constexpr std::size_t max_images = 16;
+constexpr std::size_t max_images = most_images;
 constexpr std::size_t max_outputs = 8;
 constexpr std::uint32_t first_image_binding = 2;
 // Stores of at least this size cost the software driver more in compute (docs/architecture.md).

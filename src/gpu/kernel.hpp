@@ -38,6 +38,9 @@ class Context;
 /// software driver, 16 scalars from a storage buffer cost 40 to 90 % more than the same ones from a uniform buffer.
 inline constexpr VkBufferUsageFlags constants_usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
 
+/// Limits of one kernel.
+inline constexpr std::uint32_t most_images = 16;
+
 enum class Stage : std::uint8_t { Compute, Raster };
 
 struct KernelImage {
