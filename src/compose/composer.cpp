@@ -287,10 +287,10 @@ std::span<const PassTime> Composer::times() {
 double Composer::record_microseconds() const { return state_->record_microseconds; }
 
 Result<Plan> Composer::rebind(Device& device) {
+    if (!state_->compiled_for) return user_error("rebind: the composer was never compiled");
     state_->retired.clear();
     state_->chain.reset();
     state_->device = &device;
-    if (!state_->compiled_for) return user_error("rebind: the composer was never compiled");
     return compile(*state_->compiled_for);
 }
 

@@ -111,6 +111,7 @@ TEST_F(ComposeFusion, FusedAndUnfusedGiveTheSamePicture) {
         const auto unfused_plan = composer.compile(desc);
         ASSERT_TRUE(unfused_plan) << unfused_plan.error().text;
         unfused_kernels += unfused_plan->passes.size();
+        if(getenv("SHOW")){ for (auto& x : plan->passes) printf("%s | ", x.name.c_str()); printf("\n   "); for (auto& x : unfused_plan->passes) printf("%s | ", x.name.c_str()); printf("\n"); }
         EXPECT_LE(test::worst_codes(host.run(composer), fused), 1) << "unfused differs";
     }
     EXPECT_LT(fused_kernels + 10, unfused_kernels) << "nothing was fused";

@@ -249,8 +249,14 @@ Result<> create_device(Context& context) {
     const VkPhysicalDeviceFeatures available = query_features(context, context.physical_device).core;
     context.traits.has_extended_storage_formats = available.shaderStorageImageExtendedFormats == VK_TRUE;
     context.traits.has_storage_write_without_format = available.shaderStorageImageWriteWithoutFormat == VK_TRUE;
+    // For who submits on a device of ours; the library itself needs none. Every 1.3 device has it.
+    VkPhysicalDeviceVulkan12Features features12{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+        .timelineSemaphore = VK_TRUE,
+    };
     VkPhysicalDeviceVulkan13Features features13{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+        .pNext = &features12,
         .synchronization2 = VK_TRUE,
         .dynamicRendering = VK_TRUE,
     };
