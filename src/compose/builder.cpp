@@ -39,7 +39,8 @@ graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
 }
 
 PassImage Builder::remember_new(graph::Version version, const graph::ImageDesc& desc) {
-    planner_.facts_[version.index] = {.root = version.index, .size = desc.size, .format = desc.format, .has_storage = true, .fall_backs = {}};
+    planner_.facts_[version.index] = {
+        .root = version.index, .size = desc.size, .format = desc.format, .has_storage = true, .fall_backs = {}};
     return remember({.version = version, .first_written = {}, .format = desc.format});
 }
 
@@ -69,7 +70,8 @@ PassImage Builder::frame_image(FrameImage which) {
                                    {HostImage::Ui, "ui", desc.ui}}};
     const Row& row = rows[static_cast<std::size_t>(which)];
     if (row.format == VK_FORMAT_UNDEFINED) {
-        error = fmt::format("effect '{}' reads the frame's {} without naming it in its needs", planner_.stack_[entry_].info->name, row.name);
+        error = fmt::format("effect '{}' reads the frame's {} without naming it in its needs",
+                            planner_.stack_[entry_].info->name, row.name);
         return {};
     }
     return remember({.version = planner_.import_host(row.image, row.name, row.format, VK_IMAGE_USAGE_SAMPLED_BIT, {}),
@@ -134,7 +136,8 @@ PassImage Builder::add(const KernelPassDesc& desc) {
         curve_struct() + parameter_struct(entry.info->parameters) + parameter_loader(*entry.info, entry_) + *text;
     pass.toggle = shared_toggle_;
     if (pass.toggle < 0) {
-        pass.toggle = planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
+        pass.toggle =
+            planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
         for (const std::int32_t shared : shared_toggles_) planner_.program_.graph.imply(pass.toggle, shared);
     }
     const auto version = planner_.add_pass(std::move(pass), written.version, desc.output_mip_level);

@@ -17,11 +17,13 @@ constexpr auto rows = describe(field<&NoParameters::unused>("Nothing.", {0, 1}))
 
 constexpr EffectFile files[] = {
     {"double.glsl", "vec4 shade(Pixel pixel) { return load_clamped(double_in, pixel.texel / 2); }\n"},
-    {"trail.glsl", "vec4 shade(Pixel pixel) {\n"
-                   "    return vec4(0.5 * load(trail_before, pixel.texel).rgb + load(trail_in, pixel.texel).rgb, 1.0);\n}\n"},
+    {"trail.glsl",
+     "vec4 shade(Pixel pixel) {\n"
+     "    return vec4(0.5 * load(trail_before, pixel.texel).rgb + load(trail_in, pixel.texel).rgb, 1.0);\n}\n"},
     {"copy.glsl", "vec4 shade(Pixel pixel) { return load(copy_in, pixel.texel); }\n"},
-    {"plus.glsl", "vec4 plus(vec4 color, Pixel pixel, NoParameters parameters) {\n"
-                  "    return vec4(color.rgb + sample_linear(plus_side, pixel.uv).rgb, color.a);\n}\n"},
+    {"plus.glsl",
+     "vec4 plus(vec4 color, Pixel pixel, NoParameters parameters) {\n"
+     "    return vec4(color.rgb + sample_linear(plus_side, pixel.uv).rgb, color.a);\n}\n"},
 };
 
 void build_double(PassBuilder& builder) {
@@ -74,10 +76,12 @@ class Rig {
     Rig(VkExtent2D extent, VkExtent2D target_extent, float value)
         : composer(gpu::test::device(), {.frames_in_flight = 1}),
           extent_(extent),
-          color_(gpu::test::upload(
-              context(), gpu::test::make_pixels(extent.width, extent.height,
-                                                [=](std::uint32_t, std::uint32_t) { return std::array{value, value, value, 1.0F}; }),
-              format, VK_IMAGE_LAYOUT_GENERAL)),
+          color_(gpu::test::upload(context(),
+                                   gpu::test::make_pixels(extent.width, extent.height,
+                                                          [=](std::uint32_t, std::uint32_t) {
+                                                              return std::array{value, value, value, 1.0F};
+                                                          }),
+                                   format, VK_IMAGE_LAYOUT_GENERAL)),
           target_(gpu::test::blank(context(), target_extent, format)) {}
 
     [[nodiscard]] Result<Plan> compile(std::uint32_t views = 1) {

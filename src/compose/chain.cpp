@@ -118,7 +118,6 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program prog
     chain->schedule_.emplace(*chain->compiled_);
     if (auto ok = chain->make_kernels(stack); !ok) return failure(std::move(ok));
     if (auto ok = chain->make_resources(has_timers); !ok) return failure(std::move(ok));
-    if (auto ok = chain->make_constants(); !ok) return failure(std::move(ok));
     chain->builders_ = std::make_unique<Builders>(context, chain->variants_);
     return chain;
 }
@@ -158,6 +157,9 @@ Result<> Chain::make_resources(bool has_timers) {
     auto physical = graph::Physical::create(context_, *compiled_, desc_.views);
     if (!physical) return failure(std::move(physical));
     physical_.emplace(std::move(*physical));
+    auto tables = Tables::create(context_, program_.constants);
+    if (!tables) return failure(std::move(tables));
+    tables_ = std::move(*tables);
     import_states_.resize(program_.imports.size());
     views_.resize(desc_.views);
     for (View& view : views_) view.was_on.resize(program_.history_entries.size());
@@ -206,67 +208,6 @@ Result<> Chain::make_resources(bool has_timers) {
     return {};
 }
 
-Result<> Chain::make_constants() {
-    VkDeviceSize size = 0;
-    for (const Constant& constant : program_.constants) size += align(constant.desc.data.size(), 16);
-    if (size == 0) return {};
-    auto staging =
-        gpu::Buffer::create(context_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
-    if (!staging) return failure(std::move(staging));
-    staging_ = std::move(*staging);
-    VkDeviceSize offset = 0;
-    for (const Constant& constant : program_.constants) {
-        const TableDesc& desc = constant.desc;
-        std::memcpy(staging_.memory.mapped + offset, desc.data.data(), desc.data.size());
-        offset += align(desc.data.size(), 16);
-        const VkImageUsageFlags read = desc.is_load_only ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
-        auto image =
-            gpu::Image::create(context_, {.name = desc.name,
-                                          .format = desc.format,
-                                          .extent = desc.extent,
-                                          .usage = read | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                          .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
-        if (!image) return failure(std::move(image));
-        tables_.push_back(std::move(*image));
-    }
-    return {};
-}
-
-void Chain::upload_constants(VkCommandBuffer commands) {
-    if (is_uploaded_) return;
-    is_uploaded_ = true;
-    VkDeviceSize offset = 0;
-    for (std::size_t i = 0; i < tables_.size(); ++i) {
-        VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                      .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                      .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                      .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-                                      .newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                      .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                      .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                      .image = tables_[i].handle,
-                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
-        context_.vk.CmdPipelineBarrier2(commands, &dependency);
-        const VkBufferImageCopy copy{.bufferOffset = offset,
-                                     .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                     .imageExtent = program_.constants[i].desc.extent};
-        context_.vk.CmdCopyBufferToImage(commands, staging_.handle, tables_[i].handle,
-                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-        offset += align(program_.constants[i].desc.data.size(), 16);
-        barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-        barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-        barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-        const bool is_load_only = program_.constants[i].desc.is_load_only;
-        barrier.dstAccessMask =
-            is_load_only ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-        barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-        barrier.newLayout = is_load_only ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-        context_.vk.CmdPipelineBarrier2(commands, &dependency);
-    }
-}
-
 Result<> Chain::check_frame(const Frame& frame) const {
     for (const auto& which : program_.imports) {
         if (!which) continue;
@@ -284,9 +225,9 @@ Result<> Chain::check_frame(const Frame& frame) const {
             return user_error(fmt::format("record: the region of frame.{} does not lie inside its {}x{} image",
                                           name_of(*which), image.extent.width, image.extent.height));
         if (region.extent.width != wanted.width || region.extent.height != wanted.height)
-            return user_error(fmt::format("record: frame.{} is {}x{}; with a color of {}x{} it must be {}x{}", name_of(*which),
-                                          region.extent.width, region.extent.height, color_extent.width, color_extent.height,
-                                          wanted.width, wanted.height));
+            return user_error(fmt::format("record: frame.{} is {}x{}; with a color of {}x{} it must be {}x{}",
+                                          name_of(*which), region.extent.width, region.extent.height,
+                                          color_extent.width, color_extent.height, wanted.width, wanted.height));
         if (image.layer_count != 1)
             return user_error(
                 fmt::format("record: frame.{} has {} layers; 1 is allowed", name_of(*which), image.layer_count));
@@ -355,7 +296,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
                               .frame_index = frame.frame_index,
                               .camera = &frame.camera};
     slot_ = static_cast<std::uint32_t>(recordings_ % slots_);
-    upload_constants(commands);
+    tables_.upload(commands);
     evaluate(stack, context);
 
     auto* const block = reinterpret_cast<std::uint32_t*>(constants_.memory.mapped + constants_stride_ * slot_);
@@ -441,7 +382,7 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
     if (image.kind == graph::Slot::Kind::Constant) {
         const auto constant = std::find_if(program_.constants.begin(), program_.constants.end(),
                                            [&](const Constant& c) { return c.import_index == image.import_index; });
-        return bind_table(static_cast<std::size_t>(constant - program_.constants.begin()));
+        return tables_.binding(static_cast<std::size_t>(constant - program_.constants.begin()));
     }
     const std::uint32_t mip = std::min(mip_level, image.desc.mip_levels - 1);
     return {.view = physical_->mip_view(slot, mip, frame.view),
@@ -450,14 +391,8 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
                        graph::mip_extent(image.desc.size.of(desc_.max_extent), mip)}};
 }
 
-gpu::Binding Chain::bind_table(std::size_t index) const {
-    const gpu::Image& table = tables_[index];
-    const VkExtent2D size{table.info.extent.width, table.info.extent.height};
-    return {.view = table.view, .region = {{}, size, size}};
-}
-
 gpu::Binding Chain::bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const {
-    if (input.table != no_table) return bind_table(input.table);
+    if (input.table != no_table) return tables_.binding(input.table);
     return bind_slot(schedule_->slot_of(input.version), input.mip_level, frame, extent);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compose/program.hpp"
+#include "compose/tables.hpp"
 #include "compose/variants.hpp"
 #include "gpu/resources.hpp"
 #include "graph/physical.hpp"
@@ -36,13 +37,10 @@ class Chain {
     Chain(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots);
     [[nodiscard]] Result<> make_kernels(std::span<const Entry> stack);
     [[nodiscard]] Result<> make_resources(bool has_timers);
-    [[nodiscard]] Result<> make_constants();
     [[nodiscard]] Result<> check_frame(const Frame& frame) const;
     void reset_histories(VkCommandBuffer commands, const Frame& frame);
-    void upload_constants(VkCommandBuffer commands);
     void evaluate(std::span<const Entry> stack, const PassContext& context);
     [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack) const;
-    [[nodiscard]] gpu::Binding bind_table(std::size_t index) const;
     [[nodiscard]] gpu::Binding bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const;
     [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
                                          VkExtent2D extent) const;
@@ -55,7 +53,6 @@ class Chain {
     CompileDesc desc_;
     std::uint32_t slots_ = 1;
     std::uint64_t recordings_ = 0;
-    bool is_uploaded_ = false;
 
     std::optional<graph::Compiled> compiled_;
     std::optional<graph::Schedule> schedule_;
@@ -68,8 +65,7 @@ class Chain {
     std::vector<std::uint32_t> set_at_;  ///< per pass: index of its first set, then one a slot
     gpu::Buffer constants_, pass_blocks_;
     VkDeviceSize constants_stride_ = 0, pass_block_stride_ = 0;
-    std::vector<gpu::Image> tables_;
-    gpu::Buffer staging_;
+    Tables tables_;
     gpu::Timers timers_;
 
     // Scratch of a recording, sized at compile.

@@ -136,8 +136,8 @@ void Planner::remark_domain(std::uint32_t entry, Domain domain) {
     std::string accepted;
     for (const Domain d : {Domain::SceneLinear, Domain::DisplayLinear, Domain::Encoded})
         if (info.accepts.contains(d)) accepted += fmt::format("{}{}", accepted.empty() ? "" : " or ", name_of(d));
-    program_.remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", stack_[entry].inputs.name,
-                                           accepted, name_of(domain)));
+    program_.remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.",
+                                           stack_[entry].inputs.name, accepted, name_of(domain)));
 }
 
 std::size_t Planner::value_of(Handle handle, std::uint32_t entry) const {
@@ -398,7 +398,8 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
 }
 
 bool Planner::is_shared_toggle(std::size_t index) const {
-    return std::ranges::any_of(shared_, [&](const auto& row) { return row.second.toggle == static_cast<std::int32_t>(index); });
+    return std::ranges::any_of(shared_,
+                               [&](const auto& row) { return row.second.toggle == static_cast<std::int32_t>(index); });
 }
 
 std::int32_t Planner::toggle_index(Toggle toggle) {
@@ -431,8 +432,10 @@ graph::Version Planner::import_host(HostImage image, const char* name, VkFormat 
     const graph::Version version =
         program_.graph.import({.image = {.name = name, .format = format, .size = size}, .usage = usage});
     host_images_[image] = version;
-    facts_[version.index] = {
-        .root = version.index, .size = size, .format = format, .has_storage = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0};
+    facts_[version.index] = {.root = version.index,
+                             .size = size,
+                             .format = format,
+                             .has_storage = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0};
     return version;
 }
 

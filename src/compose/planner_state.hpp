@@ -115,7 +115,9 @@ class Builder final : public PassBuilder {
 
     [[nodiscard]] PassImage picture() override;
     [[nodiscard]] PassImage source() override;
-    [[nodiscard]] VkExtent2D max_extent() const override { return planner_.values_[input_].size.of(planner_.desc_.max_extent); }
+    [[nodiscard]] VkExtent2D max_extent() const override {
+        return planner_.values_[input_].size.of(planner_.desc_.max_extent);
+    }
     [[nodiscard]] const void* parameters() const override { return planner_.stack_[entry_].base.data(); }
     [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
     [[nodiscard]] History history(const PassImageDesc& desc) override;

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "compose/tables.hpp"
+
+#include <cstring>
+
+namespace darkroom::compose {
+
+Result<Tables> Tables::create(gpu::Context& context, std::span<const Constant> constants) {
+    Tables out;
+    VkDeviceSize size = 0;
+    for (const Constant& constant : constants) {
+        const TableDesc& desc = constant.desc;
+        const VkImageUsageFlags read = desc.is_load_only ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
+        auto image = gpu::Image::create(context, {.name = desc.name,
+                                                  .format = desc.format,
+                                                  .extent = desc.extent,
+                                                  .usage = read | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                                  .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
+        if (!image) return failure(std::move(image));
+        out.tables_.push_back({std::move(*image), size, desc.is_load_only});
+        // Copies start at multiples of a texel's size; 16 is the largest.
+        size += (desc.data.size() + 15) / 16 * 16;
+    }
+    if (size == 0) return out;
+    auto staging =
+        gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
+    if (!staging) return failure(std::move(staging));
+    out.staging_ = std::move(*staging);
+    for (std::size_t i = 0; i < constants.size(); ++i) {
+        const auto& data = constants[i].desc.data;
+        std::memcpy(out.staging_.memory.mapped + out.tables_[i].offset, data.data(), data.size());
+    }
+    return out;
+}
+
+void Tables::upload(VkCommandBuffer commands) {
+    if (is_uploaded_) return;
+    is_uploaded_ = true;
+    for (const Table& table : tables_) {
+        const gpu::Dispatch& vk = table.image.context->vk;
+        VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                      .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                      .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                      .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                                      .newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                      .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                      .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                      .image = table.image.handle,
+                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
+        vk.CmdPipelineBarrier2(commands, &dependency);
+        const VkBufferImageCopy copy{.bufferOffset = table.offset,
+                                     .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                     .imageExtent = table.image.info.extent};
+        vk.CmdCopyBufferToImage(commands, staging_.handle, table.image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                                &copy);
+        barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+        barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+        barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+        barrier.dstAccessMask =
+            table.is_load_only ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        barrier.newLayout = table.is_load_only ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        vk.CmdPipelineBarrier2(commands, &dependency);
+    }
+}
+
+gpu::Binding Tables::binding(std::size_t index) const {
+    const gpu::Image& image = tables_[index].image;
+    const VkExtent2D size{image.info.extent.width, image.info.extent.height};
+    return {.view = image.view, .region = {{}, size, size}};
+}
+
+}  // namespace darkroom::compose

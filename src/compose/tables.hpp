@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The constant images of a chain: tables of effects and 1x1 neutral ones. Made at compile, uploaded by the first
+// recording, never written again.
+
+#include <span>
+#include <vector>
+
+#include "compose/program.hpp"
+#include "gpu/resources.hpp"
+
+namespace darkroom::compose {
+
+class Tables {
+  public:
+    [[nodiscard]] static Result<Tables> create(gpu::Context& context, std::span<const Constant> constants);
+    /// The first time: copies and barriers. Later: nothing.
+    void upload(VkCommandBuffer commands);
+    [[nodiscard]] gpu::Binding binding(std::size_t index) const;
+
+  private:
+    struct Table {
+        gpu::Image image;
+        VkDeviceSize offset = 0;
+        bool is_load_only = false;
+    };
+    std::vector<Table> tables_;
+    gpu::Buffer staging_;
+    bool is_uploaded_ = false;
+};
+
+}  // namespace darkroom::compose
