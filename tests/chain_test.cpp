@@ -33,7 +33,9 @@ ReferenceImage scene(std::uint32_t width, std::uint32_t height) {
 /// Every flat effect in the documented order, or the other one, all on.
 void fill_default(Composer& composer, bool is_documented) {
     std::vector<const EffectInfo*> flat;
-    const auto rank = [&](const EffectInfo* info) { return is_documented ? info->flat.documented : info->flat.scene_linear; };
+    const auto rank = [&](const EffectInfo* info) {
+        return is_documented ? info->flat.documented : info->flat.scene_linear;
+    };
     for (const EffectInfo* const info : all_effects())
         if (rank(info) >= 0) flat.push_back(info);
     std::ranges::sort(flat, {}, rank);
@@ -72,7 +74,8 @@ TEST_F(ChainReference, TheDefaultOrders) {
 TEST_F(ChainReference, WiresOpacityMasksAndModes) {
     Composer composer(gpu::test::device());
     const Handle exposed = add(composer, "exposure", {{"exposure", 1.5}});
-    const Handle blurred = add(composer, "gaussian_blur", {{"radius", 3}}, {.opacity = 0.75f, .blend = BlendMode::Lighten});
+    const Handle blurred =
+        add(composer, "gaussian_blur", {{"radius", 3}}, {.opacity = 0.75f, .blend = BlendMode::Lighten});
     add(composer, "tonemap", {}, {.input = exposed});
     add(composer, "grayscale", {}, {.mask = blurred, .opacity = 0.5f});
     add(composer, "blend", {{"amount", 0.25}}, {.second = blurred, .blend = BlendMode::Screen});
@@ -80,6 +83,23 @@ TEST_F(ChainReference, WiresOpacityMasksAndModes) {
     test::must(composer.set_enabled(off, false));
     add(composer, "encode");
     expect_is_the_reference(composer, VK_FORMAT_R32G32B32A32_SFLOAT, 1);
+}
+
+// What a later entry reads must be the picture at that place, though the kernel could have gone on.
+TEST_F(ChainReference, APictureInTheMiddleIsReadAsItWasThere) {
+    for (const std::string_view wire : {"input", "source", "second", "mask"}) {
+        SCOPED_TRACE(wire);
+        Composer composer(gpu::test::device());
+        const Handle middle = add(composer, "exposure", {{"exposure", 0.5}});
+        add(composer, "negative");
+        add(composer, "vignette", {{"intensity", 1}});
+        if (wire == "input") add(composer, "grayscale", {}, {.input = middle});
+        if (wire == "source") add(composer, "bloom", {{"intensity", 1}, {"threshold", 0.1}}, {.source = middle});
+        if (wire == "second") add(composer, "blend", {}, {.second = middle});
+        if (wire == "mask") add(composer, "grayscale", {}, {.mask = middle});
+        add(composer, "encode");
+        expect_is_the_reference(composer, VK_FORMAT_R32G32B32A32_SFLOAT, 1);
+    }
 }
 
 TEST_F(ChainReference, AnEmptyStackIsEncoded) {
@@ -94,7 +114,8 @@ TEST_F(ChainReference, AnEmptyStackIsEncoded) {
 
 std::vector<std::filesystem::path> shipped_looks() {
     std::vector<std::filesystem::path> out;
-    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(DARKROOM_SOURCE_FOLDER) / "looks"))
+    for (const auto& file :
+         std::filesystem::directory_iterator(std::filesystem::path(DARKROOM_SOURCE_FOLDER) / "looks"))
         if (file.path().extension() == ".toml") out.push_back(file.path());
     std::ranges::sort(out);
     return out;
@@ -114,9 +135,9 @@ TEST_F(ChainLooks, EveryShippedLookDevelopsAsItsReference) {
 
 TEST_F(ChainLooks, TheShippedOrdersGiveNoRemark) {
     for (const char* const order : {"documented", "scene_linear"}) {
-        const auto look = parse_look("[post_process]\norder = \"" + std::string(order) +
-                                         "\"\nvignette_enabled = true\ndither_enabled = true\n",
-                                     "a.toml", {.is_strict = true});
+        const auto look = parse_look(
+            "[post_process]\norder = \"" + std::string(order) + "\"\nvignette_enabled = true\ndither_enabled = true\n",
+            "a.toml", {.is_strict = true});
         ASSERT_TRUE(look) << look.error().text;
         Composer composer(gpu::test::device());
         test::must(apply(*look, composer));

@@ -57,31 +57,33 @@ void build(PassBuilder& builder) {
     PassImage pyramid = builder.create({.name = "pyramid", .denominator = 2, .mip_levels = levels});
     pyramid = builder.add({.name = "prefilter",
                            .shader = "bloom_prefilter.glsl",
-                           .inputs = {{.name = "bloom_source", .image = builder.source()}},
+                           .inputs = {{.name = "bloom_source", .image = builder.source(), .is_loaded = true}},
                            .output = pyramid,
                            .custom_vectors = 2,
                            .constants = prefilter_constants,
                            .condition = is_level_used,
                            .argument = 0});
     for (std::uint32_t level = 1; level < levels; ++level)
-        pyramid = builder.add({.name = "downsample " + std::to_string(level),
-                               .shader = "bloom_downsample.glsl",
-                               .inputs = {{.name = "bloom_above", .image = pyramid, .mip_level = level - 1}},
-                               .output = pyramid,
-                               .output_mip_level = level,
-                               .condition = is_level_used,
-                               .argument = level});
+        pyramid = builder.add(
+            {.name = "downsample " + std::to_string(level),
+             .shader = "bloom_downsample.glsl",
+             .inputs = {{.name = "bloom_above", .image = pyramid, .mip_level = level - 1, .is_loaded = true}},
+             .output = pyramid,
+             .output_mip_level = level,
+             .condition = is_level_used,
+             .argument = level});
     for (std::uint32_t level = levels - 1; level-- > 0;)
-        pyramid = builder.add({.name = "upsample " + std::to_string(level),
-                               .shader = "bloom_upsample.glsl",
-                               .inputs = {{.name = "bloom_below", .image = pyramid, .mip_level = level + 1}},
-                               .output = pyramid,
-                               .output_mip_level = level,
-                               .is_additive = true,
-                               .custom_vectors = 1,
-                               .constants = upsample_constants,
-                               .condition = is_level_used,
-                               .argument = level + 1});
+        pyramid = builder.add(
+            {.name = "upsample " + std::to_string(level),
+             .shader = "bloom_upsample.glsl",
+             .inputs = {{.name = "bloom_below", .image = pyramid, .mip_level = level + 1, .is_loaded = true}},
+             .output = pyramid,
+             .output_mip_level = level,
+             .is_additive = true,
+             .custom_vectors = 1,
+             .constants = upsample_constants,
+             .condition = is_level_used,
+             .argument = level + 1});
     builder.side("bloom_pyramid", pyramid, neutral);
 }
 

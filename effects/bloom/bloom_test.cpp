@@ -279,6 +279,41 @@ TEST(BloomGpu, BothStagesMatchTheReference) {
         EXPECT_LE(worst_excess(bloom, picture, developed(bloom, picture, kernels)), 1.0);
 }
 
+/// Where loads are cheap, lean kernels read the texels under the taps one by one if every level is exactly half the one
+/// above; the complete kernels, and lean ones of other sizes, filter.
+TEST(BloomGpu, LoadsAndTapsMatchTheReference) {
+    struct Case {
+        std::uint32_t width, height;
+        Bloom bloom;
+    };
+    const Bloom conserving{.intensity = 1, .mode = BloomMode::EnergyConserving, .scatter = 1};
+    for (const Case& c :
+         {Case{256, 512, {.intensity = 1}}, Case{256, 256, everything_glows(5)}, Case{64, 160, conserving},
+          Case{32, 34, everything_glows(2)}, Case{32, 33, everything_glows(2)}, Case{33, 32, {.intensity = 1}}}) {
+        const ReferenceImage picture = test::round_to_float(test::random_hdr(c.width, c.height, 7));
+        for (const bool lean : {true, false})
+            for (const KernelStage kernels : {KernelStage::Compute, KernelStage::Raster}) {
+                const ReferenceImage out = test::develop([&](Composer& composer) { composer.add(c.bloom); }, picture,
+                                                         {.kernels = kernels, .wait_for_lean_kernels = lean});
+                EXPECT_LE(worst_excess(c.bloom, picture, out), 1.0) << c.width << "x" << c.height << " lean " << lean;
+            }
+    }
+}
+
+TEST(BloomGpu, LightBelowZeroTakesFromItsNeighbours) {
+    // Means are cleaned, not texels: of 8 and -4 a glow of 2 is left, and of 8 and -12 none.
+    for (const std::uint32_t width : {64u, 65u}) {
+        ReferenceImage picture = test::uniform(width, 64, {8, 8, 8, 1});
+        for (std::uint32_t y = 0; y < 64; ++y)
+            for (std::uint32_t x = y % 2; x < width; x += 2) picture.at(x, y) = {-4, -12, 0, 1};
+        const ReferenceImage out = developed(everything_glows(1), picture);
+        EXPECT_LE(worst_excess(everything_glows(1), picture, out), 1.0) << width;
+        if (width == 65 || out.pixels.empty()) continue;
+        EXPECT_NEAR(out.at(33, 32).r - picture.at(33, 32).r, 2.0, 0.01);
+        EXPECT_EQ(out.at(33, 32).g - picture.at(33, 32).g, 0.0);
+    }
+}
+
 TEST(BloomGpu, IntensityZeroChangesNothing) {
     const ReferenceImage picture = test::round_to_float(test::random_hdr(64, 48, 5));
     EXPECT_EQ(test::worst_difference(developed({.intensity = 0}, picture), picture), 0.0);
@@ -300,33 +335,35 @@ TEST(BloomGpu, SymmetricPicturesStaySymmetric) {
 
 TEST(BloomGpu, NanAndInfinityStayContained) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-    const ReferenceImage black = test::uniform(256, 256, {0, 0, 0, 1});
-    ReferenceImage picture = test::round_to_float(test::random_display(256, 256, 9)), broken = picture;
-    picture.at(100, 100) = {0, 0, 0, 1};
-    broken.at(100, 100) = {nan, nan, nan, 1};
-    const Bloom bloom = everything_glows(1);
-    const ReferenceImage clean = developed(bloom, picture), out = developed(bloom, broken);
-    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
-    for (std::uint32_t y = 0; y < 256; ++y)
-        for (std::uint32_t x = 0; x < 256; ++x) {
-            if (x == 100 && y == 100) continue;
-            EXPECT_TRUE(std::isfinite(out.at(x, y).r)) << x << "," << y;
-            // Three source texels of the filter, and two of the bilinear read of level 0.
-            if (std::max(std::abs(int(x) - 100), std::abs(int(y) - 100)) > 6) {
-                EXPECT_EQ(out.at(x, y).r, clean.at(x, y).r);
-            }
-        }
-
-    ReferenceImage bright = black;
-    bright.at(100, 100) = {infinity, -infinity, 0, 1};
-    for (const Bloom& values : {Bloom{}, everything_glows(5)}) {
-        const ReferenceImage glow = developed(values, bright);
-        ASSERT_EQ(glow.pixels.size(), black.pixels.size());
-        for (std::uint32_t y = 0; y < 256; ++y)
-            for (std::uint32_t x = 0; x < 256; ++x)
-                if (x != 100 || y != 100) {
-                    EXPECT_TRUE(std::isfinite(glow.at(x, y).r) && glow.at(x, y).g == 0.0) << x << "," << y;
+    for (const std::uint32_t side : {256u, 255u}) {
+        ReferenceImage picture = test::round_to_float(test::random_display(side, side, 9)), broken = picture;
+        picture.at(100, 100) = {0, 0, 0, 1};
+        broken.at(100, 100) = {nan, nan, nan, 1};
+        const Bloom bloom = everything_glows(1);
+        const ReferenceImage clean = developed(bloom, picture), out = developed(bloom, broken);
+        ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+        for (std::uint32_t y = 0; y < side; ++y)
+            for (std::uint32_t x = 0; x < side; ++x) {
+                if (x == 100 && y == 100) continue;
+                EXPECT_TRUE(std::isfinite(out.at(x, y).r)) << x << "," << y << " of " << side;
+                // Three source texels of the filter, and two of the bilinear read of level 0.
+                if (std::max(std::abs(int(x) - 100), std::abs(int(y) - 100)) > 6) {
+                    EXPECT_EQ(out.at(x, y).r, clean.at(x, y).r);
                 }
+            }
+
+        const ReferenceImage black = test::uniform(side, side, {0, 0, 0, 1});
+        ReferenceImage bright = black;
+        bright.at(100, 100) = {infinity, -infinity, 0, 1};
+        for (const Bloom& values : {Bloom{}, everything_glows(4)}) {
+            const ReferenceImage glow = developed(values, bright);
+            ASSERT_EQ(glow.pixels.size(), black.pixels.size());
+            for (std::uint32_t y = 0; y < side; ++y)
+                for (std::uint32_t x = 0; x < side; ++x)
+                    if (x != 100 || y != 100) {
+                        EXPECT_TRUE(std::isfinite(glow.at(x, y).r) && glow.at(x, y).g == 0.0) << x << "," << y;
+                    }
+        }
     }
 }
 

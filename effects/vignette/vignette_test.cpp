@@ -38,7 +38,8 @@ TEST(EffectVignette, FallsFromTheCentreToTheEdgeAndIsSymmetric) {
 }
 
 TEST(EffectVignette, LargerSmoothnessKeepsMoreOfTheMiddle) {
-    EXPECT_LT(factor_at(0.3, 0.4, {.intensity = 1, .smoothness = 1}), factor_at(0.3, 0.4, {.intensity = 1, .smoothness = 3}));
+    EXPECT_LT(factor_at(0.3, 0.4, {.intensity = 1, .smoothness = 1}),
+              factor_at(0.3, 0.4, {.intensity = 1, .smoothness = 3}));
 }
 
 TEST(EffectVignette, ZeroIsOff) {
@@ -63,8 +64,9 @@ TEST(EffectVignette, GpuOnTinyPictures) {
 
 TEST(EffectVignette, GpuMatchesReference) {
     const ReferenceImage picture = test::round_to_float(test::random_hdr(67, 41, 1));
-    for (const Vignette& parameters : {Vignette{}, Vignette{.intensity = 0.9f, .smoothness = 0.1f},
-                                       Vignette{.intensity = 0.9f, .smoothness = 16.0f}, Vignette{.intensity = 0.5f, .smoothness = 3.3f}}) {
+    for (const Vignette& parameters :
+         {Vignette{}, Vignette{.intensity = 0.9f, .smoothness = 0.1f}, Vignette{.intensity = 0.9f, .smoothness = 16.0f},
+          Vignette{.intensity = 0.5f, .smoothness = 3.3f}}) {
         SCOPED_TRACE(parameters.smoothness);
         test::expect_gpu_matches_reference(parameters, picture);
     }

@@ -76,6 +76,9 @@ struct CompileDesc {
     /// What the target takes: Encoded for pictures that are shown, SceneLinear for float files (encode and dither are
     /// then skipped). Unset: Encoded for UNORM and SRGB formats, SceneLinear for float formats.
     std::optional<Domain> target_domain;
+    /// Whether a picture that the stack leaves unencoded is sRGB-encoded for an Encoded target. Unset: for UNORM
+    /// formats; an SRGB one does it itself, and who chooses Encoded for floats encodes in the stack.
+    std::optional<bool> encodes_target;
     std::uint32_t views = 1;
     KernelStage kernels = KernelStage::Auto;
     bool fuse = true;  ///< false: every effect a pass of its own (tests, benchmarks)

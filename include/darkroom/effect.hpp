@@ -109,6 +109,7 @@ struct KernelPassDesc {
         std::string name;  ///< what the shader calls it
         PassImage image;
         std::uint32_t mip_level = 0;
+        bool is_loaded = false;  ///< load() of it shall be as cheap as it can be, beside sampling
     };
     std::vector<Input> inputs;
     PassImage output;
@@ -146,8 +147,8 @@ class PassBuilder {
     [[nodiscard]] virtual const void* parameters() const = 0;
 
     [[nodiscard]] virtual PassImage create(const PassImageDesc& desc) = 0;
-    /// An image that outlives the frame: `current` is to be written, `previous` is what the last frame of this view wrote,
-    /// zero after a cut, a change of size, or a frame in which the effect was off.
+    /// An image that outlives the frame: `current` is to be written, `previous` is what the last frame of this view
+    /// wrote, zero after a cut, a change of size, or a frame in which the effect was off.
     struct History {
         PassImage current, previous;
     };
@@ -188,7 +189,7 @@ struct EffectInfo {
     Domain (*makes)(Domain before, const void* parameters) = nullptr;
     Needs needs;
     FlatPlace flat;
-    OutputScale output_scale;  ///< of effects with a result of their own
+    OutputScale output_scale;   ///< of effects with a result of their own
     bool has_second = false;    ///< reads a second picture, as side image `second`
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
     void (*build)(PassBuilder&) = nullptr;

@@ -19,7 +19,7 @@ struct ImageRef {
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;  ///< one mip level, one layer, colour or depth aspect
     VkFormat format = VK_FORMAT_UNDEFINED;
-    VkExtent2D extent{};            ///< of the whole image
+    VkExtent2D extent{};            ///< of the whole mip level that the view shows
     VkRect2D region{};              ///< the part that holds the picture; extent (0,0): all of it
     std::uint32_t mip_level = 0;    ///< that the view shows
     std::uint32_t array_layer = 0;  ///< first layer that the view shows

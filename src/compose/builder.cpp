@@ -40,7 +40,7 @@ graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
 
 PassImage Builder::remember_new(graph::Version version, const graph::ImageDesc& desc) {
     planner_.facts_[version.index] = {
-        .root = version.index, .size = desc.size, .format = desc.format, .has_storage = true, .fall_backs = {}};
+        .root = version.index, .size = desc.size, .format = desc.format, .usage = own_usage, .fall_backs = {}};
     return remember({.version = version, .first_written = {}, .format = desc.format});
 }
 
@@ -118,8 +118,16 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     for (const KernelPassDesc::Input& input : desc.inputs) {
         if (input.image.index >= images_.size()) return {};
         names.push_back(input.name);
-        pass.inputs.push_back(input_of(images_[input.image.index], input.mip_level));
-        pass.spec.images.push_back(planner_.kernel_image(input.name + entry_suffix(entry_), pass.inputs.back()));
+        const PassInput from = input_of(images_[input.image.index], input.mip_level);
+        gpu::KernelImage image = planner_.kernel_image(input.name + entry_suffix(entry_), from);
+        const VkFormat format = from.table == no_table ? planner_.storage_format(from.version) : VK_FORMAT_UNDEFINED;
+        if (input.is_loaded && planner_.traits_.loads_are_cheap && format != VK_FORMAT_UNDEFINED) {
+            image.loads_by = image.name + "_texels";
+            pass.inputs.push_back(from);
+            pass.spec.images.push_back({.name = image.loads_by, .storage_format = format});
+        }
+        pass.inputs.push_back(from);
+        pass.spec.images.push_back(std::move(image));
     }
     Image written = images_[desc.output.index];
     auto text = instance_text(*entry.info, desc.shader, entry_, names);

@@ -97,6 +97,11 @@ Result<> for_all(std::size_t count, const Work& work) {
     return first;
 }
 
+bool is_whole(const gpu::Region& region) {
+    return region.offset.x == 0 && region.offset.y == 0 && region.extent.width == region.image.width &&
+           region.extent.height == region.image.height;
+}
+
 bool is_effective(const Entry& entry, float opacity, const std::uint32_t* words) {
     return entry.inputs.enabled && opacity > 0 &&
            (entry.info->is_identity == nullptr || !entry.info->is_identity(words));
@@ -107,7 +112,7 @@ bool is_effective(const Entry& entry, float opacity, const std::uint32_t* words)
 Chain::Chain(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots)
     : context_(context), program_(std::move(program)), desc_(desc), slots_(slots) {}
 
-Chain::~Chain() { builders_.reset(); }
+Chain::~Chain() = default;
 
 Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program program, const CompileDesc& desc,
                                              std::uint32_t slots, bool has_timers, std::span<const Entry> stack) {
@@ -116,6 +121,9 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program prog
     if (!compiled) return failure(std::move(compiled));
     chain->compiled_.emplace(std::move(*compiled));
     chain->schedule_.emplace(*chain->compiled_);
+    auto tables = Tables::create(context, chain->program_.constants);
+    if (!tables) return failure(std::move(tables));
+    chain->tables_ = std::move(*tables);
     if (auto ok = chain->make_kernels(stack); !ok) return failure(std::move(ok));
     if (auto ok = chain->make_resources(has_timers); !ok) return failure(std::move(ok));
     chain->builders_ = std::make_unique<Builders>(context, chain->variants_);
@@ -144,12 +152,16 @@ Result<> Chain::make_kernels(std::span<const Entry> stack) {
     is_on_ = std::make_unique<bool[]>(stack.size() + 1);
     toggles_ = std::make_unique<bool[]>(program_.toggles.size() + 1);
     evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
+    import_states_.resize(program_.imports.size());
+    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, 0);
+    last_shapes_.resize(program_.passes.size());
+    for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(program_.passes[i], stack);
 
-    // The complete kernel and the one of the present shape, for every pass.
+    // The complete kernel and the one of the expected shape, for every pass.
     return for_all(kept.size() * 2, [&](std::size_t i) -> Result<> {
         Variants& variants = *variants_[kept[i / 2]];
         if (i % 2 == 0) return variants.build_complete(context_);
-        return variants.build(context_, shape_of(program_.passes[kept[i / 2]], stack));
+        return variants.build(context_, last_shapes_[kept[i / 2]]);
     });
 }
 
@@ -157,10 +169,6 @@ Result<> Chain::make_resources(bool has_timers) {
     auto physical = graph::Physical::create(context_, *compiled_, desc_.views);
     if (!physical) return failure(std::move(physical));
     physical_.emplace(std::move(*physical));
-    auto tables = Tables::create(context_, program_.constants);
-    if (!tables) return failure(std::move(tables));
-    tables_ = std::move(*tables);
-    import_states_.resize(program_.imports.size());
     views_.resize(desc_.views);
     for (View& view : views_) view.was_on.resize(program_.history_entries.size());
 
@@ -262,9 +270,15 @@ void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
     }
 }
 
-Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack) const {
+Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack, const gpu::Region& output,
+                      std::span<const gpu::Binding> inputs) const {
     Shape shape;
     if (pass.steps.size() > max_lean_steps) return shape;
+    if (is_whole(output) && std::ranges::all_of(inputs, [](const gpu::Binding& b) { return is_whole(b.region); }))
+        shape.steps |= Shape::is_whole;
+    if (!inputs.empty() && inputs[0].region.extent.width == 2 * output.extent.width &&
+        inputs[0].region.extent.height == 2 * output.extent.height)
+        shape.steps |= Shape::input_is_twice;
     for (std::size_t i = 0; i < pass.steps.size(); ++i) {
         const std::uint32_t entry = pass.steps[i].entry;
         if (is_on_[entry]) shape.steps |= (stack[entry].is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);
@@ -276,12 +290,34 @@ Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack) con
     return shape;
 }
 
+/// The shape that a frame of the largest extent will have, in whole images: what most frames are.
+Shape Chain::expected_shape(const ProgramPass& pass, std::span<const Entry> stack) const {
+    const auto region = [&](std::uint32_t slot, std::uint32_t mip_level) {
+        // A pass that is off has no slot: any region does.
+        if (slot >= compiled_->slots().size()) return gpu::Region{{}, desc_.max_extent, desc_.max_extent};
+        const graph::ImageDesc& desc = compiled_->slots()[slot].desc;
+        const VkExtent2D extent =
+            graph::mip_extent(desc.size.of(desc_.max_extent), std::min(mip_level, desc.mip_levels - 1));
+        return gpu::Region{{}, extent, extent};
+    };
+    std::array<gpu::Binding, most_images> inputs;
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        const PassInput& input = pass.inputs[i];
+        inputs[i] = input.table != no_table
+                        ? tables_.binding(input.table)
+                        : gpu::Binding{.region = region(schedule_->slot_of(input.version), input.mip_level)};
+    }
+    return shape_of(pass, stack, region(schedule_->slot_of(pass.output), pass.output_mip_level),
+                    {inputs.data(), pass.inputs.size()});
+}
+
 Result<> Chain::build_lean(std::span<const Entry> stack) {
-    // Toggles may have changed since the last recording.
     evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
+    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, 0);
     for (std::size_t i = 0; i < program_.passes.size(); ++i) {
         if (!variants_[i]) continue;
-        if (auto ok = variants_[i]->build(context_, shape_of(program_.passes[i], stack)); !ok) return ok;
+        if (auto ok = variants_[i]->build(context_, expected_shape(program_.passes[i], stack)); !ok) return ok;
+        if (auto ok = variants_[i]->build(context_, last_shapes_[i]); !ok) return ok;
     }
     return {};
 }
@@ -400,7 +436,10 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
                         std::span<const Entry> stack) {
     const ProgramPass& pass = program_.passes[index];
     std::array<gpu::Binding, most_images> images;
-    for (std::size_t i = 0; i < pass.inputs.size(); ++i) images[i] = bind(pass.inputs[i], frame, context.frame_extent);
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        images[i] = bind(pass.inputs[i], frame, context.frame_extent);
+        if (!pass.spec.images[i].loads_by.empty()) images[i].layout = VK_IMAGE_LAYOUT_GENERAL;
+    }
     const gpu::Binding output =
         bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
 
@@ -416,7 +455,8 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     gpu::write_pass_block(pass.spec, output.region, inputs, custom,
                           {pass_blocks_.memory.mapped + block_offset, gpu::pass_block_size(pass.spec)});
 
-    const gpu::Kernel& kernel = variants_[index]->find(shape_of(pass, stack));
+    last_shapes_[index] = shape_of(pass, stack, output.region, inputs);
+    const gpu::Kernel& kernel = variants_[index]->find(last_shapes_[index]);
     if (variants_[index]->has_lean() && &kernel == &variants_[index]->complete()) builders_->wake();
     gpu::begin_label(context_, commands, pass.name.c_str());
     kernel.record(commands, {.set = sets_.sets[set_at_[index] + slot_],

@@ -28,6 +28,8 @@ class Chain {
     [[nodiscard]] Result<> record(VkCommandBuffer commands, const Frame& frame, std::span<const Entry> stack);
     /// Builds the lean kernels of the present toggles on the calling thread.
     [[nodiscard]] Result<> build_lean(std::span<const Entry> stack);
+    /// Recordings of it may be unfinished, but there will be no more: ends its thread.
+    void retire() { builders_.reset(); }
     [[nodiscard]] Plan describe() const;
     [[nodiscard]] const Program& program() const { return program_; }
     /// Times of the last finished recording.
@@ -40,7 +42,9 @@ class Chain {
     [[nodiscard]] Result<> check_frame(const Frame& frame) const;
     void reset_histories(VkCommandBuffer commands, const Frame& frame);
     void evaluate(std::span<const Entry> stack, const PassContext& context);
-    [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack) const;
+    [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack, const gpu::Region& output,
+                                 std::span<const gpu::Binding> inputs) const;
+    [[nodiscard]] Shape expected_shape(const ProgramPass& pass, std::span<const Entry> stack) const;
     [[nodiscard]] gpu::Binding bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const;
     [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
                                          VkExtent2D extent) const;
@@ -59,6 +63,7 @@ class Chain {
     std::optional<graph::Physical> physical_;
     std::vector<std::uint32_t> declared_pass_;  ///< kept pass -> pass of the program
 
+    std::vector<Shape> last_shapes_;                   ///< per pass: of its last recording
     std::vector<std::unique_ptr<Variants>> variants_;  ///< per pass of the program; null where the graph culled it
     std::unique_ptr<Builders> builders_;
     gpu::DescriptorSets sets_;

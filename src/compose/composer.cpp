@@ -43,16 +43,25 @@ bool is_inside(const ParamInfo& row, std::span<const std::uint32_t> words) {
 bool is_surely_allowed(const ParamInfo& row, std::span<const std::uint32_t> words) {
     if (words.size() != row.words) return false;
     switch (row.kind) {
-        case Kind::Float: return is_inside<float>(row, words);
-        case Kind::Int: return is_inside<std::int32_t>(row, words);
-        case Kind::Toggle: return words[0] <= 1;
-        case Kind::Choice: return words[0] < row.choices.size();
-        case Kind::Vec2: return is_inside<Vec2>(row, words);
-        case Kind::Vec3: return is_inside<Vec3>(row, words);
-        case Kind::Vec4: return is_inside<Vec4>(row, words);
-        case Kind::Rgb: return is_inside<Rgb>(row, words);
+        case Kind::Float:
+            return is_inside<float>(row, words);
+        case Kind::Int:
+            return is_inside<std::int32_t>(row, words);
+        case Kind::Toggle:
+            return words[0] <= 1;
+        case Kind::Choice:
+            return words[0] < row.choices.size();
+        case Kind::Vec2:
+            return is_inside<Vec2>(row, words);
+        case Kind::Vec3:
+            return is_inside<Vec3>(row, words);
+        case Kind::Vec4:
+            return is_inside<Vec4>(row, words);
+        case Kind::Rgb:
+            return is_inside<Rgb>(row, words);
         case Kind::Curve:
-        case Kind::Resource: break;
+        case Kind::Resource:
+            break;
     }
     return false;
 }
@@ -92,9 +101,12 @@ struct Composer::State {
     }
     [[nodiscard]] Result<compose::Program> program(const CompileDesc& compile_desc) const {
         const gpu::Context& context = device->context();
-        return compose::plan_program(stack, compile_desc, {.stage_of = [&](const gpu::KernelSpec& spec) {
-                                         return stage_of(context, spec, compile_desc.kernels);
-                                     }});
+        const bool is_software = context.traits.is_software;
+        const compose::PlannerTraits traits{
+            .stage_of = [&](const gpu::KernelSpec& spec) { return stage_of(context, spec, compile_desc.kernels); },
+            .loads_are_cheap = is_software,
+            .workgroup = is_software ? std::array{64u, 4u} : std::array{16u, 16u}};
+        return compose::plan_program(stack, compile_desc, traits);
     }
     Result<const ParamInfo*> row(Handle handle, std::string_view parameter) {
         const compose::Entry& entry = at(handle);
@@ -155,7 +167,8 @@ Result<> Composer::set_opacity(Handle handle, float opacity) {
     if (!(opacity >= 0 && opacity <= 1))
         return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.inputs.name, opacity));
     // An entry with passes of its own is laid over its input by the next kernel, if that was planned so.
-    const bool is_mixable = !state_->chain || state_->is_stale || state_->chain->program().is_mixable.size() < handle.id ||
+    const bool is_mixable = !state_->chain || state_->is_stale ||
+                            state_->chain->program().is_mixable.size() < handle.id ||
                             state_->chain->program().is_mixable[handle.id - 1];
     if (!is_mixable && opacity > 0 && opacity < 1)
         return user_error(fmt::format(
@@ -253,6 +266,7 @@ Result<Plan> Composer::compile(const CompileDesc& desc) {
     // With more views than before, more recordings may be made before the oldest one has finished.
     const std::uint32_t newer = std::max(state_->slots(), state_->desc.frames_in_flight * desc.views);
     for (State::Retired& retired : state_->retired) retired.recordings_left = std::max(retired.recordings_left, newer);
+    if (state_->chain) state_->chain->retire();
     if (state_->chain) state_->retired.push_back({std::move(state_->chain), newer});
     state_->chain = std::move(*chain);
     state_->compiled_for = desc;
@@ -263,8 +277,7 @@ Result<Plan> Composer::compile(const CompileDesc& desc) {
 Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {
     const auto start = std::chrono::steady_clock::now();
     if (!state_->chain) return user_error("record: the composer has no plan; compile it first");
-    if (state_->is_stale)
-        return user_error("record: the stack changed since it was compiled; compile it again");
+    if (state_->is_stale) return user_error("record: the stack changed since it was compiled; compile it again");
     // By the contract the recordings that used a retired chain have finished once as many newer ones are made.
     std::erase_if(state_->retired, [](const State::Retired& retired) { return retired.recordings_left == 0; });
     auto ok = state_->chain->record(commands, frame, state_->stack);

@@ -105,6 +105,7 @@ CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const De
             .color_usage = shader_usage(context, color_format),
             .target_usage = target_usage(context, target),
             .target_domain = desc.target == DevelopTarget::SceneLinear ? Domain::SceneLinear : Domain::Encoded,
+            .encodes_target = desc.target != DevelopTarget::SceneLinear,
             .kernels = desc.kernels,
             .fuse = desc.fuse};
 }

@@ -16,7 +16,9 @@ class ComposeFusion : public test::StackTest {};
 constexpr std::uint32_t stack_count = 10;
 
 std::uint32_t below(std::mt19937& random, std::uint32_t limit) { return static_cast<std::uint32_t>(random() % limit); }
-double between(std::mt19937& random, double low, double high) { return low + (high - low) * (static_cast<double>(random()) / 4294967296.0); }
+double between(std::mt19937& random, double low, double high) {
+    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+}
 
 /// Sane values: the widest ranges would make numbers that no chain of float pictures can hold.
 void set_random(std::mt19937& random, Composer& composer, Handle handle) {
@@ -25,10 +27,18 @@ void set_random(std::mt19937& random, Composer& composer, Handle handle) {
         for (std::uint32_t i = 0; i < std::min(row.words, 4u); ++i) {
             const double high = std::min(row.range.max, std::max(row.range.min * 4, 2.0));
             switch (row.kind) {
-                case Kind::Toggle: words[i] = below(random, 2); break;
-                case Kind::Choice: words[i] = below(random, static_cast<std::uint32_t>(row.choices.size())); break;
-                case Kind::Int: words[i] = static_cast<std::uint32_t>(std::lround(between(random, row.range.min, std::min(row.range.max, 6.0)))); break;
-                default: words[i] = std::bit_cast<std::uint32_t>(static_cast<float>(between(random, row.range.min, high)));
+                case Kind::Toggle:
+                    words[i] = below(random, 2);
+                    break;
+                case Kind::Choice:
+                    words[i] = below(random, static_cast<std::uint32_t>(row.choices.size()));
+                    break;
+                case Kind::Int:
+                    words[i] = static_cast<std::uint32_t>(
+                        std::lround(between(random, row.range.min, std::min(row.range.max, 6.0))));
+                    break;
+                default:
+                    words[i] = std::bit_cast<std::uint32_t>(static_cast<float>(between(random, row.range.min, high)));
             }
         }
         if (row.words <= 4) test::must(composer.set(handle, row.name, std::span(words).first(row.words)));
@@ -63,8 +73,7 @@ ReferenceImage picture_of(std::uint32_t number) {
     constexpr VkExtent2D sizes[] = {{64, 48}, {67, 41}, {1, 1}, {33, 2}, {97, 64}};
     const VkExtent2D size = sizes[number % std::size(sizes)];
     ReferenceImage picture = test::random_display(size.width, size.height, number);
-    for (Rgba& pixel : picture.pixels)
-        pixel = {pixel.r * 4.5 - 0.5, pixel.g * 4.5 - 0.5, pixel.b * 4.5 - 0.5, 1};
+    for (Rgba& pixel : picture.pixels) pixel = {pixel.r * 4.5 - 0.5, pixel.g * 4.5 - 0.5, pixel.b * 4.5 - 0.5, 1};
     return test::round_to_float(picture);
 }
 
@@ -74,10 +83,12 @@ std::string names_of(std::uint32_t number) {
     std::string out = "stack " + std::to_string(number) + ":";
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const Inputs& inputs = composer.inputs(composer.entry(i));
-        const auto shown = [](Handle handle) { return handle == scene_color ? std::string("scene") : std::to_string(handle.id); };
-        out += " " + inputs.name + "(in " + shown(inputs.input) + ", source " + shown(inputs.source) + ", second " + shown(inputs.second) +
-               ", mask " + shown(inputs.mask) + ", opacity " + std::to_string(inputs.opacity) + ", blend " +
-               std::to_string(static_cast<int>(inputs.blend)) + (inputs.enabled ? ")" : ", off)");
+        const auto shown = [](Handle handle) {
+            return handle == scene_color ? std::string("scene") : std::to_string(handle.id);
+        };
+        out += " " + inputs.name + "(in " + shown(inputs.input) + ", source " + shown(inputs.source) + ", second " +
+               shown(inputs.second) + ", mask " + shown(inputs.mask) + ", opacity " + std::to_string(inputs.opacity) +
+               ", blend " + std::to_string(static_cast<int>(inputs.blend)) + (inputs.enabled ? ")" : ", off)");
     }
     return out;
 }
@@ -134,7 +145,8 @@ TEST_F(ComposeFusion, FiniteInputStaysFinite) {
         desc.fuse = is_fused;
         test::must(composer.compile(desc));
         for (const Rgba& p : host.run(composer).pixels)
-            ASSERT_TRUE(p.r >= 0 && p.r <= 1 && p.g >= 0 && p.g <= 1 && p.b >= 0 && p.b <= 1) << p.r << " " << p.g << " " << p.b;
+            ASSERT_TRUE(p.r >= 0 && p.r <= 1 && p.g >= 0 && p.g <= 1 && p.b >= 0 && p.b <= 1)
+                << p.r << " " << p.g << " " << p.b;
     }
 }
 

@@ -20,7 +20,9 @@ void fill(Composer& composer) {
     add(composer, "exposure", {{"exposure", 2}});
     add(composer, "dither");
 }
-ReferenceImage small_picture(std::uint32_t number = 3) { return test::round_to_float(test::random_display(40, 33, number)); }
+ReferenceImage small_picture(std::uint32_t number = 3) {
+    return test::round_to_float(test::random_display(40, 33, number));
+}
 
 void move_to(const Host& host, gpu::test::Picture& picture, VkImageLayout layout) {
     test::must(gpu::submit_and_wait(host.device.context(), "moving a picture", [&](VkCommandBuffer commands) {
@@ -39,8 +41,10 @@ TEST_F(ComposeHost, EveryImageIsLeftInTheLayoutAskedFor) {
         CompileDesc desc = host.compile_desc();
         desc.kernels = stage;
         test::must(composer.compile(desc));
-        for (const VkImageLayout layout : {VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL}) {
+        for (const VkImageLayout layout :
+             {VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+              VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL}) {
             Frame frame = host.frame();
             frame.color.final_layout = layout;
             frame.target.final_layout = layout;
@@ -54,7 +58,9 @@ TEST_F(ComposeHost, EveryImageIsLeftInTheLayoutAskedFor) {
         move_to(host, host.color, VK_IMAGE_LAYOUT_GENERAL);
         move_to(host, host.target, VK_IMAGE_LAYOUT_GENERAL);
     }
-    EXPECT_EQ(test::worst_difference(test::image_of(gpu::test::download(host.device.context(), host.color)), small_picture()), 0)
+    EXPECT_EQ(
+        test::worst_difference(test::image_of(gpu::test::download(host.device.context(), host.color)), small_picture()),
+        0)
         << "the host's colour was written";
 }
 
@@ -91,7 +97,8 @@ class Submission {
         check(context_.vk.EndCommandBuffer(commands_));
     }
     void submit() {
-        const VkCommandBufferSubmitInfo own{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, .commandBuffer = commands_};
+        const VkCommandBufferSubmitInfo own{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                            .commandBuffer = commands_};
         const VkSubmitInfo2 submit{
             .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1, .pCommandBufferInfos = &own};
         const std::lock_guard lock(context_.queue_mutex);
@@ -100,7 +107,8 @@ class Submission {
     }
     void wait() {
         if (!is_pending_) return;
-        check(context_.vk.WaitForFences(context_.device, 1, &fence_, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
+        check(
+            context_.vk.WaitForFences(context_.device, 1, &fence_, VK_TRUE, std::numeric_limits<std::uint64_t>::max()));
         check(context_.vk.ResetFences(context_.device, 1, &fence_));
         is_pending_ = false;
     }
@@ -134,13 +142,15 @@ TEST_F(ComposeHost, ThreeFramesInFlightKeepTheirOwnValues) {
         const auto value = [&](std::size_t i) { return 2.0 + static_cast<double>(i) + 8.0 * round; };
         for (std::size_t i = 0; i < frames_in_flight; ++i) {
             test::must(composer.set(exposure, "exposure", value(i)));
-            submissions[i]->record(composer, {.color = test::image_ref(host.color), .target = test::image_ref(targets[i])});
+            submissions[i]->record(composer,
+                                   {.color = test::image_ref(host.color), .target = test::image_ref(targets[i])});
         }
         for (std::size_t i = 0; i < frames_in_flight; ++i) submissions[i]->submit();
         for (std::size_t i = 0; i < frames_in_flight; ++i) {
             submissions[i]->wait();
             const ReferenceImage out = test::image_of(gpu::test::download(context, targets[i]));
-            EXPECT_NEAR(out.pixels[99].g, picture.pixels[99].g * value(i), 1e-4) << "round " << round << ", frame " << i;
+            EXPECT_NEAR(out.pixels[99].g, picture.pixels[99].g * value(i), 1e-4)
+                << "round " << round << ", frame " << i;
         }
     }
 }
@@ -299,7 +309,9 @@ TEST_F(ComposeHost, ErrorsNameTheImageAndRecordNothing) {
     expect_error("frame.target is 40x32", [](Frame& frame) { frame.target.region = {{0, 0}, {40, 32}}; });
     expect_error("region of frame.color", [](Frame& frame) { frame.color.region = {{1, 0}, {40, 33}}; });
     expect_error("region of frame.target", [](Frame& frame) { frame.target.region = {{-1, 0}, {40, 33}}; });
-    expect_error("region of frame.color", [](Frame& frame) { frame.color.region = {{2000000000, 0}, {4000000000u, 33}}; });
+    expect_error("region of frame.color", [](Frame& frame) {
+        frame.color.region = {{2000000000, 0}, {4000000000u, 33}};
+    });
     expect_error("2 layers", [](Frame& frame) { frame.color.layer_count = 2; });
     EXPECT_EQ(test::worst_difference(host.read_target(), before), 0) << "a frame with an error wrote the target";
     test::must(host.record(composer, host.frame()));

@@ -10,9 +10,7 @@ namespace {
 
 using test::add;
 
-CompileDesc hd(VkFormat target = VK_FORMAT_R8G8B8A8_UNORM) {
-    return {.max_extent = {1920, 1080}, .target = target};
-}
+CompileDesc hd(VkFormat target = VK_FORMAT_R8G8B8A8_UNORM) { return {.max_extent = {1920, 1080}, .target = target}; }
 
 class ComposePlan : public test::StackTest {
   protected:
@@ -46,11 +44,13 @@ const PlanPass& pass_with(const Plan& plan, std::string_view entry) {
     return plan.passes.front();
 }
 std::size_t passes_without_entries(const Plan& plan) {
-    return static_cast<std::size_t>(std::ranges::count_if(plan.passes, [](const PlanPass& pass) { return pass.entries.empty(); }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(plan.passes, [](const PlanPass& pass) { return pass.entries.empty(); }));
 }
 
 TEST_F(ComposePlan, PointwiseEffectsAreOneKernelInTheUsersOrder) {
-    const std::vector<std::string> order{"vignette", "encode", "exposure", "dither", "negative", "tonemap", "grayscale"};
+    const std::vector<std::string> order{"vignette", "encode",  "exposure", "dither",
+                                         "negative", "tonemap", "grayscale"};
     for (const std::string& name : order) add(composer, name);
     const Plan made = plan();
     ASSERT_EQ(made.passes.size(), 1u) << passes_of(made);
@@ -97,8 +97,9 @@ TEST_F(ComposePlan, ANeighbourhoodEffectSplitsTheKernels) {
 
 TEST_F(ComposePlan, AWarpOpensAKernel) {
     static constexpr EffectFile file{.name = "shift.glsl",
-                                     .text = "vec4 shift(Pixel pixel, Shift parameters) {\n"
-                                             "    return load_clamped(picture, pixel.texel + ivec2(1, 0));\n}\n"};
+                                     .text =
+                                         "vec4 shift(Pixel pixel, Shift parameters) {\n"
+                                         "    return load_clamped(picture, pixel.texel + ivec2(1, 0));\n}\n"};
     static const EffectInfo shift{.name = "shift",
                                   .doc = "Moves the picture.",
                                   .parameters = {.struct_name = "Shift"},
@@ -233,7 +234,8 @@ TEST_F(ComposePlan, AWrongDomainIsOneRemarkAndReordersNothing) {
     for (const char* const name : {"tonemap", "bloom", "encode"}) add(composer, name);
     const Plan made = plan();
     ASSERT_EQ(made.remarks.size(), 1u);
-    EXPECT_NE(made.remarks[0].find("bloom expects a picture that is scene_linear; this one is display_linear"), std::string::npos)
+    EXPECT_NE(made.remarks[0].find("bloom expects a picture that is scene_linear; this one is display_linear"),
+              std::string::npos)
         << made.remarks[0];
     EXPECT_EQ(entries_of(made), (std::vector<std::string>{"tonemap", "bloom", "encode"}));
 }
@@ -241,14 +243,17 @@ TEST_F(ComposePlan, AWrongDomainIsOneRemarkAndReordersNothing) {
 TEST_F(ComposePlan, BothShippedOrdersGiveNoRemark) {
     for (const bool is_documented : {true, false}) {
         std::vector<const EffectInfo*> flat;
-        const auto rank = [&](const EffectInfo* info) { return is_documented ? info->flat.documented : info->flat.scene_linear; };
+        const auto rank = [&](const EffectInfo* info) {
+            return is_documented ? info->flat.documented : info->flat.scene_linear;
+        };
         for (const EffectInfo* const info : all_effects())
             if (rank(info) >= 0) flat.push_back(info);
         std::ranges::sort(flat, {}, rank);
         composer.clear();
         for (const EffectInfo* const info : flat) composer.add(*info, nullptr, {.source = scene_color});
         const Plan made = plan();
-        EXPECT_TRUE(made.remarks.empty()) << (is_documented ? "documented: " : "scene_linear: ") << made.remarks.front();
+        EXPECT_TRUE(made.remarks.empty())
+            << (is_documented ? "documented: " : "scene_linear: ") << made.remarks.front();
         EXPECT_EQ(entries_of(made).size(), flat.size());
     }
 }
@@ -278,7 +283,8 @@ TEST_F(ComposePlan, TheDefaultStackNeedsItsPyramidAndNothingElse) {
     CompileDesc desc = hd();
     desc.fuse = false;
     const Plan unfused = plan(desc);
-    EXPECT_LE(static_cast<double>(unfused.transient_bytes), 0.45 * static_cast<double>(unfused.transient_bytes_unaliased));
+    EXPECT_LE(static_cast<double>(unfused.transient_bytes),
+              0.45 * static_cast<double>(unfused.transient_bytes_unaliased));
 }
 
 }  // namespace

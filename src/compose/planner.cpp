@@ -281,7 +281,7 @@ Result<graph::Version> Planner::materialise(std::size_t index, const std::string
 graph::Version Planner::create_picture(std::string name, graph::Size size) {
     const graph::Version image =
         program_.graph.create({.name = std::move(name), .format = desc_.intermediate, .size = size});
-    facts_[image.index] = {.root = image.index, .size = size, .format = desc_.intermediate, .has_storage = true};
+    facts_[image.index] = {.root = image.index, .size = size, .format = desc_.intermediate, .usage = own_usage};
     return image;
 }
 
@@ -305,7 +305,7 @@ Result<> Planner::finish() {
     if (target_domain_ == Domain::Encoded) {
         if (domain == Domain::Encoded) {
             if (is_srgb(desc_.target)) finish = Finish::DecodeSrgb;
-        } else if (!is_srgb(desc_.target) && !is_float(desc_.target)) {
+        } else if (desc_.encodes_target.value_or(!is_srgb(desc_.target) && !is_float(desc_.target))) {
             finish = Finish::EncodeSrgb;
             program_.remarks.push_back(fmt::format(
                 "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
@@ -374,16 +374,25 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
 }
 
 Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level) {
+    pass.spec.loads_are_cheap = traits_.loads_are_cheap;
+    pass.spec.workgroup = traits_.workgroup;
     const auto stage = traits_.stage_of(pass.spec);
     if (!stage) return tl::unexpected(stage.error());
     pass.stage = *stage;
+    // What the host's target was made for decides over what would be faster.
+    const VkImageUsageFlags usage = facts_.at(target.index).usage;
+    if ((usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0) pass.stage = gpu::Stage::Raster;
+    if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) == 0) pass.stage = gpu::Stage::Compute;
     const bool is_raster = pass.stage == gpu::Stage::Raster;
     graph::PassDesc desc{.name = pass.name, .toggle = pass.toggle};
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         if (pass.inputs[i].table != no_table) continue;
         const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
-        const graph::Use use = is_storage ? (is_raster ? graph::Use::StorageReadFragment : graph::Use::StorageRead)
-                                          : (is_raster ? graph::Use::SampledFragment : graph::Use::SampledCompute);
+        const bool is_general = !pass.spec.images[i].loads_by.empty();
+        const graph::Use use =
+            is_storage   ? (is_raster ? graph::Use::StorageReadFragment : graph::Use::StorageRead)
+            : is_general ? (is_raster ? graph::Use::SampledGeneralFragment : graph::Use::SampledGeneralCompute)
+                         : (is_raster ? graph::Use::SampledFragment : graph::Use::SampledCompute);
         desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}});
     }
     const graph::Use use = pass.spec.is_additive ? (is_raster ? graph::Use::ColorBlend : graph::Use::StorageReadWrite)
@@ -432,10 +441,7 @@ graph::Version Planner::import_host(HostImage image, const char* name, VkFormat 
     const graph::Version version =
         program_.graph.import({.image = {.name = name, .format = format, .size = size}, .usage = usage});
     host_images_[image] = version;
-    facts_[version.index] = {.root = version.index,
-                             .size = size,
-                             .format = format,
-                             .has_storage = (usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0};
+    facts_[version.index] = {.root = version.index, .size = size, .format = format, .usage = usage};
     return version;
 }
 
@@ -450,7 +456,8 @@ graph::Version Planner::import_constant(TableDesc table) {
                                          .size = {.width = desc.extent.width, .height = desc.extent.height}},
                                .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
                                .is_constant = true});
-    facts_[version.index] = {.root = version.index, .size = {}, .format = desc.format, .has_storage = false};
+    facts_[version.index] = {
+        .root = version.index, .size = {}, .format = desc.format, .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
     return version;
 }
 
@@ -479,7 +486,8 @@ bool Planner::may_share(graph::Version a, graph::Version b) const {
 /// The format for imageLoad where every image that may stand behind `version` has it, else UNDEFINED: sampled.
 VkFormat Planner::storage_format(graph::Version version) const {
     const Facts& facts = facts_.at(version.index);
-    if (!facts.has_storage || gpu::format_traits(facts.format).glsl_qualifier.empty()) return VK_FORMAT_UNDEFINED;
+    if ((facts.usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0 || gpu::format_traits(facts.format).glsl_qualifier.empty())
+        return VK_FORMAT_UNDEFINED;
     for (const graph::Version instead : facts.fall_backs)
         if (storage_format(instead) != facts.format) return VK_FORMAT_UNDEFINED;
     return facts.format;
@@ -491,6 +499,7 @@ Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& de
 
 Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps) {
     gpu::KernelSpec spec = pass.spec;
+    if (!is_fused(pass)) return spec;
     auto body = fused_body(steps, pass.finish, pass.is_resampled);
     if (!body) return failure(std::move(body));
     spec.body = std::move(*body);

@@ -14,6 +14,10 @@ namespace darkroom::compose {
 
 class Builder;
 
+/// Images of the graph's own are made for whatever passes do with them.
+inline constexpr VkImageUsageFlags own_usage =
+    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+
 class Planner {
   public:
     Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits);
@@ -43,7 +47,7 @@ class Planner {
         std::uint32_t root = 0;  ///< the version that the image began as
         graph::Size size{};
         VkFormat format = VK_FORMAT_UNDEFINED;
-        bool has_storage = false;
+        VkImageUsageFlags usage = 0;
         std::vector<graph::Version> fall_backs;
     };
 

@@ -88,22 +88,26 @@ struct Program {
     std::vector<graph::Size> entry_sizes;  ///< per entry: of the picture that it gets
     graph::Size target_size;
     std::vector<std::uint32_t> history_entries;  ///< entries with histories
-    std::vector<bool> is_left_out;  ///< per entry
-    std::vector<bool> is_mixable;   ///< per entry: opacity and blending may change while recording
+    std::vector<bool> is_left_out;               ///< per entry
+    std::vector<bool> is_mixable;                ///< per entry: opacity and blending may change while recording
     std::vector<std::string> left_out, remarks;
 };
 
 struct PlannerTraits {
     /// Which stage runs a kernel: gpu::preferred_stage, or the one the user asked for where it can.
     std::function<Result<gpu::Stage>(const gpu::KernelSpec&)> stage_of;
+    bool loads_are_cheap = false;  ///< see gpu/kernel.hpp
+    std::array<std::uint32_t, 2> workgroup{16, 16};
 };
 
 /// Turns a stack into a program. Errors: a handle that names no earlier entry, a shader that is missing.
 [[nodiscard]] Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc,
                                            const PlannerTraits& traits);
 
-/// The kernel of a fused pass that holds only the steps that are on: same images and bindings, no branches.
+/// The kernel of a pass that holds only the steps that are on: same images and bindings, no branches. A pass of an
+/// effect has no steps and keeps its body.
 [[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps);
+[[nodiscard]] inline bool is_fused(const ProgramPass& pass) { return pass.entry == ~0u; }
 
 /// The program as users read it.
 [[nodiscard]] Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The promise of the frame loop: recording, toggles and changed values allocate nothing, create nothing, submit nothing and
-// wait for nothing on the recording thread. Every Vulkan call of it goes through a table whose entries count.
+// The promise of the frame loop: recording, toggles and changed values allocate nothing, create nothing, submit nothing
+// and wait for nothing on the recording thread. Every Vulkan call of it goes through a table whose entries count.
 
 #include <bit>
 #include <chrono>
@@ -68,27 +68,29 @@ PFN_vkCmdBindPipeline bind_pipeline = nullptr;
 
 void wrap_all(Dispatch& vk) {
     const auto for_commands = [&]<auto... Members>() { (wrap<Members, true>(vk), ...); };
-    for_commands.operator()<&Dispatch::UpdateDescriptorSets, &Dispatch::CmdBindPipeline, &Dispatch::CmdBindDescriptorSets,
-                            &Dispatch::CmdPushConstants, &Dispatch::CmdPipelineBarrier2, &Dispatch::CmdDispatch,
-                            &Dispatch::CmdBeginRendering, &Dispatch::CmdEndRendering, &Dispatch::CmdSetViewport,
-                            &Dispatch::CmdSetScissor, &Dispatch::CmdDraw, &Dispatch::CmdCopyBufferToImage,
-                            &Dispatch::CmdClearColorImage, &Dispatch::CmdResetQueryPool, &Dispatch::CmdWriteTimestamp2,
-                            &Dispatch::CmdBeginDebugUtilsLabelEXT, &Dispatch::CmdEndDebugUtilsLabelEXT>();
+    for_commands.
+    operator()<&Dispatch::UpdateDescriptorSets, &Dispatch::CmdBindPipeline, &Dispatch::CmdBindDescriptorSets,
+               &Dispatch::CmdPushConstants, &Dispatch::CmdPipelineBarrier2, &Dispatch::CmdDispatch,
+               &Dispatch::CmdBeginRendering, &Dispatch::CmdEndRendering, &Dispatch::CmdSetViewport,
+               &Dispatch::CmdSetScissor, &Dispatch::CmdDraw, &Dispatch::CmdCopyBufferToImage,
+               &Dispatch::CmdClearColorImage, &Dispatch::CmdResetQueryPool, &Dispatch::CmdWriteTimestamp2,
+               &Dispatch::CmdBeginDebugUtilsLabelEXT, &Dispatch::CmdEndDebugUtilsLabelEXT>();
     const auto forbidden = [&]<auto... Members>() { (wrap<Members, false>(vk), ...); };
-    forbidden.operator()<
-        &Dispatch::AllocateMemory, &Dispatch::MapMemory, &Dispatch::CreateBuffer, &Dispatch::CreateImage,
-        &Dispatch::CreateImageView, &Dispatch::CreateSampler, &Dispatch::CreateShaderModule, &Dispatch::CreatePipelineCache,
-        &Dispatch::CreateComputePipelines, &Dispatch::CreateGraphicsPipelines, &Dispatch::CreatePipelineLayout,
-        &Dispatch::CreateDescriptorSetLayout, &Dispatch::CreateDescriptorPool, &Dispatch::AllocateDescriptorSets,
-        &Dispatch::FreeDescriptorSets, &Dispatch::CreateQueryPool, &Dispatch::CreateFence, &Dispatch::CreateSemaphore,
-        &Dispatch::CreateCommandPool, &Dispatch::AllocateCommandBuffers, &Dispatch::BeginCommandBuffer,
-        &Dispatch::EndCommandBuffer, &Dispatch::DeviceWaitIdle, &Dispatch::QueueWaitIdle, &Dispatch::QueueSubmit2,
-        &Dispatch::WaitForFences, &Dispatch::WaitSemaphores, &Dispatch::ResetFences, &Dispatch::SetDebugUtilsObjectNameEXT>();
+    forbidden.
+    operator()<&Dispatch::AllocateMemory, &Dispatch::MapMemory, &Dispatch::CreateBuffer, &Dispatch::CreateImage,
+               &Dispatch::CreateImageView, &Dispatch::CreateSampler, &Dispatch::CreateShaderModule,
+               &Dispatch::CreatePipelineCache, &Dispatch::CreateComputePipelines, &Dispatch::CreateGraphicsPipelines,
+               &Dispatch::CreatePipelineLayout, &Dispatch::CreateDescriptorSetLayout, &Dispatch::CreateDescriptorPool,
+               &Dispatch::AllocateDescriptorSets, &Dispatch::FreeDescriptorSets, &Dispatch::CreateQueryPool,
+               &Dispatch::CreateFence, &Dispatch::CreateSemaphore, &Dispatch::CreateCommandPool,
+               &Dispatch::AllocateCommandBuffers, &Dispatch::BeginCommandBuffer, &Dispatch::EndCommandBuffer,
+               &Dispatch::DeviceWaitIdle, &Dispatch::QueueWaitIdle, &Dispatch::QueueSubmit2, &Dispatch::WaitForFences,
+               &Dispatch::WaitSemaphores, &Dispatch::ResetFences, &Dispatch::SetDebugUtilsObjectNameEXT>();
     const auto destroying = [&]<auto... Members>() { (wrap_destroy<Members>(vk), ...); };
-    destroying.operator()<&Dispatch::FreeMemory, &Dispatch::DestroyBuffer, &Dispatch::DestroyImage, &Dispatch::DestroyImageView,
-                          &Dispatch::DestroyShaderModule, &Dispatch::DestroyPipeline, &Dispatch::DestroyPipelineLayout,
-                          &Dispatch::DestroyDescriptorSetLayout, &Dispatch::DestroyDescriptorPool, &Dispatch::DestroyQueryPool,
-                          &Dispatch::UnmapMemory>();
+    destroying.operator()<&Dispatch::FreeMemory, &Dispatch::DestroyBuffer, &Dispatch::DestroyImage,
+                          &Dispatch::DestroyImageView, &Dispatch::DestroyShaderModule, &Dispatch::DestroyPipeline,
+                          &Dispatch::DestroyPipelineLayout, &Dispatch::DestroyDescriptorSetLayout,
+                          &Dispatch::DestroyDescriptorPool, &Dispatch::DestroyQueryPool, &Dispatch::UnmapMemory>();
     bind_pipeline = vk.CmdBindPipeline;
     vk.CmdBindPipeline = [](VkCommandBuffer commands, VkPipelineBindPoint point, VkPipeline pipeline) {
         if (is_in_frame) last_pipeline = pipeline;
@@ -123,9 +125,7 @@ class ComposeRecord : public test::StackTest {
         add(composer, "dither");
         vignette = add(composer, "vignette");
     }
-    static CompileDesc desc() {
-        return {.max_extent = {160, 120}, .views = 2};
-    }
+    static CompileDesc desc() { return {.max_extent = {160, 120}, .views = 2}; }
     /// Images that are never touched: commands go nowhere.
     static Frame frame(VkExtent2D extent = {160, 120}) {
         const auto handle = [](std::uintptr_t value) { return value; };
@@ -158,7 +158,8 @@ class ComposeRecord : public test::StackTest {
 
 TEST_F(ComposeRecord, TheTableCountsWhatItIsMeantTo) {
     const Counted seen = counted([&] {
-        (void)gpu::Buffer::create(device->context(), 16, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::Kind::Upload, "counted");
+        (void)gpu::Buffer::create(device->context(), 16, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::Kind::Upload,
+                                  "counted");
     });
     EXPECT_GE(seen.forbidden, 2u);
 }
@@ -258,7 +259,9 @@ TEST_F(ComposeRecord, KernelsThatAreBuiltAreNotBuiltAgain) {
     test::must(composer.compile(desc()));
     composer.wait_for_kernels();
     gpu::Context& context = device->context();
-    const auto made = [&] { return context.pipelines_created + context.shaders->compiled + context.shaders->from_cache; };
+    const auto made = [&] {
+        return context.pipelines_created + context.shaders->compiled + context.shaders->from_cache;
+    };
     const std::uint64_t after_compile = made();
     for (int i = 0; i < 5; ++i) (void)counted([&] { (void)is_recorded(composer, frame()); });
     std::this_thread::sleep_for(std::chrono::milliseconds(30));

@@ -97,7 +97,9 @@ TEST_F(ComposeResolution, NothingLeaksIntoOrOutOfARegion) {
                     if (x >= 5 && x < 80 && y >= 31 && y < 84)
                         inside.at(x - 5, y - 31) = p;
                     else
-                        ASSERT_TRUE(p.r == untouched.r && p.g == untouched.g && p.b == untouched.b && p.a == untouched.a) << x << " " << y;
+                        ASSERT_TRUE(p.r == untouched.r && p.g == untouched.g && p.b == untouched.b &&
+                                    p.a == untouched.a)
+                            << x << " " << y;
                 }
             }
             EXPECT_LE(test::worst_difference(inside, expected), 1e-3);
@@ -112,7 +114,8 @@ TEST_F(ComposeResolution, ADifferentRegionEveryFrame) {
     add(composer, "exposure", {{"exposure", 2}});
     test::must(composer.compile(host.compile_desc()));
     for (std::uint32_t i = 0; i < 6; ++i) {
-        const VkRect2D region{{static_cast<std::int32_t>(3 * i), static_cast<std::int32_t>(5 * i + 1)}, {150 - 11 * i - 3 * i, 60 - 7 * i}};
+        const VkRect2D region{{static_cast<std::int32_t>(3 * i), static_cast<std::int32_t>(5 * i + 1)},
+                              {150 - 11 * i - 3 * i, 60 - 7 * i}};
         Frame frame = host.frame();
         frame.color.region = frame.target.region = region;
         test::must(host.record(composer, frame));
@@ -129,12 +132,13 @@ class Layered {
   public:
     Layered(gpu::Context& owner, VkExtent2D extent, VkFormat format, std::uint32_t mip_level, std::uint32_t array_layer)
         : context_(owner), extent_(extent), mip_level_(mip_level), array_layer_(array_layer) {
-        image_ = test::must(gpu::Image::create(owner, {.name = "layered",
-                                                       .format = format,
-                                                       .extent = {extent.width << mip_level, extent.height << mip_level, 1},
-                                                       .mip_levels = mip_level + 2,
-                                                       .array_layers = array_layer + 2,
-                                                       .usage = gpu::test::all_usage(owner, format)}));
+        image_ =
+            test::must(gpu::Image::create(owner, {.name = "layered",
+                                                  .format = format,
+                                                  .extent = {extent.width << mip_level, extent.height << mip_level, 1},
+                                                  .mip_levels = mip_level + 2,
+                                                  .array_layers = array_layer + 2,
+                                                  .usage = gpu::test::all_usage(owner, format)}));
         const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                          .image = image_.handle,
                                          .viewType = VK_IMAGE_VIEW_TYPE_2D,
@@ -150,8 +154,10 @@ class Layered {
     void copy(const gpu::test::Picture& picture, bool is_upload) {
         test::must(gpu::submit_and_wait(context_, "copying a layer", [&](VkCommandBuffer commands) {
             const gpu::Image &from = is_upload ? picture.image : image_, &to = is_upload ? image_ : picture.image;
-            gpu::test::transition(context_, commands, from, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-            gpu::test::transition(context_, commands, to, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+            gpu::test::transition(context_, commands, from, VK_IMAGE_LAYOUT_GENERAL,
+                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+            gpu::test::transition(context_, commands, to, VK_IMAGE_LAYOUT_UNDEFINED,
+                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
             const VkImageSubresourceLayers own{VK_IMAGE_ASPECT_COLOR_BIT, mip_level_, array_layer_, 1};
             const VkImageSubresourceLayers other{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
             const VkImageCopy region{.srcSubresource = is_upload ? other : own,
@@ -159,8 +165,10 @@ class Layered {
                                      .extent = {extent_.width, extent_.height, 1}};
             context_.vk.CmdCopyImage(commands, from.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle,
                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-            gpu::test::transition(context_, commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
-            gpu::test::transition(context_, commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
+            gpu::test::transition(context_, commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                  VK_IMAGE_LAYOUT_GENERAL);
+            gpu::test::transition(context_, commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                  VK_IMAGE_LAYOUT_GENERAL);
         }));
     }
     [[nodiscard]] ImageRef ref() const {
@@ -187,7 +195,8 @@ TEST_F(ComposeResolution, OneLevelOfOneLayerOfTheHostsImages) {
     const CompileDesc desc = host.compile_desc();
     const ReferenceImage expected = expected_of(host, desc);
     for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
-        Layered color(host.device.context(), {44, 36}, desc.color, 1, 1), target(host.device.context(), {44, 36}, desc.target, 2, 1);
+        Layered color(host.device.context(), {44, 36}, desc.color, 1, 1),
+            target(host.device.context(), {44, 36}, desc.target, 2, 1);
         color.copy(host.color, true);
         target.copy(host.target, true);
         Composer composer(host.device);

@@ -60,7 +60,8 @@ struct Copy {
           toggles(std::move(on)),
           frame(of.frame) {}
     [[nodiscard]] graph::Recording recording() const {
-        return {.steps = steps, .barriers = barriers, .final_barriers = final_barriers, .toggles = toggles, .frame = frame};
+        return {
+            .steps = steps, .barriers = barriers, .final_barriers = final_barriers, .toggles = toggles, .frame = frame};
     }
     std::vector<graph::Step> steps;
     std::vector<graph::Barrier> barriers, final_barriers;
@@ -105,10 +106,11 @@ TEST_F(ComposeSchedule, TheCheckerAcceptsEveryFrameOfEveryStack) {
         desc.fuse = seed % 3 != 0;
         if (seed % 2 == 0) desc.color_usage |= VK_IMAGE_USAGE_STORAGE_BIT;
         // The stages mixed as a device with few formats would have them.
-        const auto program = plan_program(stack, desc, {.stage_of = [&](const gpu::KernelSpec& spec) -> Result<gpu::Stage> {
-                                              const std::size_t length = spec.name.size() + seed;
-                                              return length % 2 == 0 ? gpu::Stage::Compute : gpu::Stage::Raster;
-                                          }});
+        const auto program =
+            plan_program(stack, desc, {.stage_of = [&](const gpu::KernelSpec& spec) -> Result<gpu::Stage> {
+                             const std::size_t length = spec.name.size() + seed;
+                             return length % 2 == 0 ? gpu::Stage::Compute : gpu::Stage::Raster;
+                         }});
         ASSERT_TRUE(program) << program.error().text;
         const auto compiled = program->graph.compile(desc.max_extent, measure);
         ASSERT_TRUE(compiled) << compiled.error().text;

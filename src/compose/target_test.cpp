@@ -29,8 +29,9 @@ ReferenceImage ramp() {
     return test::round_to_float(picture);
 }
 /// `usage_without`: what the host's target was not made for.
-ReferenceImage developed(VkFormat target, const std::function<void(Composer&)>& fill, VkImageUsageFlags usage_without = 0,
-                         Plan* plan = nullptr, KernelStage stage = KernelStage::Auto) {
+ReferenceImage developed(VkFormat target, const std::function<void(Composer&)>& fill,
+                         VkImageUsageFlags usage_without = 0, Plan* plan = nullptr,
+                         KernelStage stage = KernelStage::Auto) {
     const test::Host host(ramp(), VK_FORMAT_R32G32B32A32_SFLOAT, target);
     Composer composer(host.device);
     fill(composer);
@@ -76,7 +77,8 @@ TEST_F(ComposeTarget, AnSrgbTargetGetsTheSameCodes) {
     EXPECT_LE(test::worst_codes(out, encoded(ramp())), 1);
     EXPECT_EQ(last_stage(plan), "raster");
     // Unencoded: the hardware's own curve is the one encoding.
-    const ReferenceImage linear = developed(VK_FORMAT_R8G8B8A8_SRGB, [](Composer& composer) { add(composer, "exposure"); });
+    const ReferenceImage linear =
+        developed(VK_FORMAT_R8G8B8A8_SRGB, [](Composer& composer) { add(composer, "exposure"); });
     EXPECT_LE(test::worst_codes(linear, encoded(ramp())), 1);
 }
 
@@ -86,7 +88,8 @@ TEST_F(ComposeTarget, ATargetWithoutStorageGetsARasterLastKernel) {
         developed(VK_FORMAT_R8G8B8A8_UNORM, encode_only, VK_IMAGE_USAGE_STORAGE_BIT, &plan, KernelStage::Compute);
     EXPECT_EQ(last_stage(plan), "raster");
     EXPECT_LE(test::worst_codes(out, encoded(ramp())), 1);
-    (void)developed(VK_FORMAT_R8G8B8A8_UNORM, encode_only, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, &plan, KernelStage::Raster);
+    (void)developed(VK_FORMAT_R8G8B8A8_UNORM, encode_only, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, &plan,
+                    KernelStage::Raster);
     EXPECT_EQ(last_stage(plan), "compute");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// For tests only: stacks of effects found by name, so that a tree without one of them still builds, and a host that lends
-// its images to a Composer and waits for what was recorded. Not part of the library.
+// For tests only: stacks of effects found by name, so that a tree without one of them still builds, and a host that
+// lends its images to a Composer and waits for what was recorded. Not part of the library.
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ using gpu::test::must;
 class StackTest : public ::testing::Test {
   protected:
     void SetUp() override {
-        for (const std::string_view name : {"blend", "bloom", "dither", "encode", "exposure", "gaussian_blur", "grayscale",
-                                            "negative", "tonemap", "vignette"})
+        for (const std::string_view name : {"blend", "bloom", "dither", "encode", "exposure", "gaussian_blur",
+                                            "grayscale", "negative", "tonemap", "vignette"})
             if (find_effect(name) == nullptr) GTEST_SKIP() << "this build has no effect " << name;
     }
 };
@@ -47,7 +47,8 @@ inline Handle add(Composer& composer, std::string_view effect, std::initializer_
 inline gpu::test::Pixels pixels_of(const ReferenceImage& image) {
     return gpu::test::make_pixels(image.width, image.height, [&](std::uint32_t x, std::uint32_t y) {
         const Rgba& p = image.at(x, y);
-        return std::array{static_cast<float>(p.r), static_cast<float>(p.g), static_cast<float>(p.b), static_cast<float>(p.a)};
+        return std::array{static_cast<float>(p.r), static_cast<float>(p.g), static_cast<float>(p.b),
+                          static_cast<float>(p.a)};
     });
 }
 inline ReferenceImage image_of(const gpu::test::Pixels& pixels) {

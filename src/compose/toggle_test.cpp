@@ -231,7 +231,8 @@ TEST_F(ComposeValues, WrongValuesAreRefusedWithTheInterval) {
 
 TEST_F(ComposeValues, NamesAndHandlesFindEntries) {
     Composer composer(gpu::test::device());
-    const Handle first = add(composer, "exposure"), second = add(composer, "exposure"), named = add(composer, "exposure", {}, {.name = "gain"});
+    const Handle first = add(composer, "exposure"), second = add(composer, "exposure"),
+                 named = add(composer, "exposure", {}, {.name = "gain"});
     EXPECT_EQ(composer.find("exposure"), first);
     EXPECT_EQ(composer.find("exposure#2"), second);
     EXPECT_EQ(composer.find("gain"), named);

@@ -29,6 +29,8 @@ Result<> Variants::build(gpu::Context& context, Shape shape) {
     std::erase_if(steps, [](const FusedStep& step) { return !step.is_certain; });
     auto spec = lean_spec(*pass_, steps);
     if (!spec) return failure(std::move(spec));
+    spec->is_whole = (shape.steps & Shape::is_whole) != 0;
+    spec->input_is_twice = (shape.steps & Shape::input_is_twice) != 0;
     auto kernel = gpu::Kernel::create(context, *spec, pass_->stage);
     if (!kernel) return failure(std::move(kernel));
     lean_[count] = {shape, std::move(*kernel)};

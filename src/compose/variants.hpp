@@ -18,14 +18,17 @@
 
 namespace darkroom::compose {
 
-/// What a lean kernel is made for. `steps`: two bits a step, whether it is on and whether it has an opacity, a blend
-/// mode or a mask. `choices`: the values of its choices and toggles, as far as they fit.
+/// What a lean kernel is made for: how its regions lie, and for a fused kernel, in two bits a step, whether it is on
+/// and whether it has an opacity, a blend mode or a mask. `choices`: the values of its choices and toggles, as far as
+/// they fit.
 struct Shape {
     std::uint64_t steps = 0;
     std::uint64_t choices = 0;
+    static constexpr std::uint64_t is_whole = std::uint64_t{1} << 62;        ///< in steps: all regions are whole images
+    static constexpr std::uint64_t input_is_twice = std::uint64_t{1} << 63;  ///< in steps
     friend bool operator==(const Shape&, const Shape&) = default;
 };
-inline constexpr std::size_t max_lean_steps = 32;
+inline constexpr std::size_t max_lean_steps = 31;
 
 /// Calls `visit(step, row, first_bit, bits)` for every choice and toggle that a shape of this pass holds.
 template <class Visit>
@@ -56,7 +59,7 @@ class Variants {
     [[nodiscard]] const gpu::Kernel& complete() const { return *complete_; }
     /// The shape that was last missing, once.
     [[nodiscard]] std::optional<Shape> take_wanted();
-    [[nodiscard]] bool has_lean() const { return !pass_->steps.empty() && pass_->steps.size() <= max_lean_steps; }
+    [[nodiscard]] bool has_lean() const { return pass_->steps.size() <= max_lean_steps; }
 
   private:
     struct Lean {

@@ -21,7 +21,6 @@ constexpr std::size_t max_images = most_images;
 constexpr std::size_t max_outputs = 8;
 constexpr std::uint32_t first_image_binding = 2;
 // Stores of at least this size cost the software driver more in compute (docs/architecture.md).
-constexpr std::uint32_t narrow_texel_bits = 32;
 
 // Three vertices make a triangle that covers the viewport: (-1, -1), (3, -1), (-1, 3).
 constexpr std::string_view full_screen_source = R"(#version 460
@@ -466,11 +465,7 @@ Stage preferred_stage(const Context& context, const KernelSpec& spec) {
     if (spec.is_compute_only || !usable(context, spec, Stage::Raster)) return Stage::Compute;
     if (!usable(context, spec, Stage::Compute)) return Stage::Raster;
     if (!context.traits.is_software) return Stage::Compute;
-    const bool filters = std::ranges::any_of(
-        spec.images, [](const KernelImage& image) { return image.storage_format == VK_FORMAT_UNDEFINED; });
-    const bool stores_wide = std::ranges::any_of(
-        spec.outputs, [](VkFormat format) { return format_traits(format).bits > narrow_texel_bits; });
-    return filters || stores_wide ? Stage::Raster : Stage::Compute;
+    return Stage::Raster;
 }
 
 }  // namespace darkroom::gpu

@@ -12,6 +12,9 @@
 //     void shade(Pixel pixel, out vec4 result[N])   with N
 // or, with KernelSpec::is_compute_only, void kernel(), which calls store_0(texel, value), store_1(...) itself or uses
 // the image2D result_0, result_1, ... and may use every built-in of a compute shader. output_size() is pixel.size.
+// and the constants, for choices that must not cost a branch,
+//     bool loads_are_cheap                   this device loads an own texel for less than a linear tap
+//     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
 // Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
 // The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where
 // a region ends inside its image, gather_red() does not leave it either, but gives the last whole 2x2 block there.
@@ -48,6 +51,9 @@ struct KernelImage {
     /// VK_FORMAT_UNDEFINED: sampled (any format). Else load() is an imageLoad of that format, the cheapest read of an
     /// own pixel, and the image is bound in VK_IMAGE_LAYOUT_GENERAL; sampling functions are then not available.
     VkFormat storage_format = VK_FORMAT_UNDEFINED;
+    /// A sampled image may name a storage one before it that shows the same view: its load() then goes through that
+    /// one.
+    std::string loads_by{};
     std::string sampler_type = "sampler2D";  ///< or "sampler3D", "usampler2D", ...
 };
 
@@ -55,6 +61,9 @@ struct KernelSpec {
     std::string name;  ///< debug label, pipeline name
     std::vector<KernelImage> images;
     std::vector<VkFormat> outputs;
+    bool is_whole = false;        ///< all regions are whole images: no region arithmetic
+    bool input_is_twice = false;  ///< constants that the body may ask for, see the top of this file
+    bool loads_are_cheap = false;
     bool is_additive = false;  ///< output 0 += result instead of = result
     /// GLSL members of the constants block, laid out as std430: scalars, vectors, mat3, mat4, arrays of scalars and
     /// vectors with a literal size. An array can only be indexed. Empty: none.
@@ -62,6 +71,7 @@ struct KernelSpec {
     std::uint32_t custom_vectors = 0;  ///< vec4 custom[n] at the end of the pass block: per-invocation constants
     std::string body;                  ///< GLSL: helpers and shade(); may hold #line directives
     bool is_compute_only = false;      ///< uses shared memory, atomics or barriers: the body is then main itself
+    /// Measured for kernels of a pixel: rows suit the software driver, squares the GPUs.
     std::array<std::uint32_t, 2> workgroup{16, 16};
 };
 
@@ -121,8 +131,7 @@ class Kernel {
 [[nodiscard]] Result<> usable(const Context& context, const KernelSpec& spec, Stage stage);
 
 /// Which stage runs `spec` best on this device, from the measurements in docs/architecture.md: GPUs compute; the
-/// software driver rasterises what filters or stores wide formats and computes the rest. Formats that the stage cannot
-/// write force the other one.
+/// software driver rasterises. Formats that the stage cannot write force the other one.
 [[nodiscard]] Stage preferred_stage(const Context& context, const KernelSpec& spec);
 
 }  // namespace darkroom::gpu

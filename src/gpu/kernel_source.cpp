@@ -66,7 +66,7 @@ void write_pass_declaration(Text text, const KernelSpec& spec) {
     fmt::format_to(text, "}};\n");
 }
 
-void write_storage_input(Text text, const KernelImage& image, std::uint32_t binding) {
+void write_storage_input(Text text, const KernelImage& image, std::uint32_t binding, bool is_whole) {
     const FormatTraits traits = format_traits(image.storage_format);
     const std::string_view prefix = prefix_of(traits.numeric);
     fmt::format_to(text, "layout(set = 0, binding = {}, {}) uniform readonly {}image2D {};\n", binding,
@@ -74,26 +74,33 @@ void write_storage_input(Text text, const KernelImage& image, std::uint32_t bind
     fmt::format_to(
         text,
         "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n"
-        "{1}vec4 load_{0}(ivec2 texel) {{ return imageLoad({0}, texel + darkroom_region_{0}.xy); }}\n"
+        "{1}vec4 load_{0}(ivec2 texel) {{ return imageLoad({0}, texel{2}); }}\n"
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n",
-        image.name, prefix);
+        image.name, prefix, is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name));
 }
 
-void write_sampled_input(Text text, const KernelImage& image, std::uint32_t binding, Stage stage) {
+void write_sampled_input(Text text, const KernelImage& image, std::uint32_t binding, Stage stage, bool is_whole) {
     fmt::format_to(text, "layout(set = 0, binding = {}) uniform {} {};\n", binding, image.sampler_type, image.name);
     if (!is_plain_2d(image.sampler_type)) return;
     const std::string_view prefix = prefix_of_sampler(image.sampler_type);
+    const std::string offset = is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name);
+    const std::string load = image.loads_by.empty() ? fmt::format("texelFetch({}, texel{}, 0)", image.name, offset)
+                                                    : fmt::format("load_{}(texel)", image.loads_by);
+    // The sampler clamps to the edge of the whole image.
+    const std::string place = is_whole
+                                  ? "    return uv;\n"
+                                  : fmt::format(
+                                        "    precise vec2 place = uv * darkroom_uv_{0}.xy + darkroom_uv_{0}.zw;\n"
+                                        "    return clamp(place, darkroom_bounds_{0}.xy, darkroom_bounds_{0}.zw);\n",
+                                        image.name);
     fmt::format_to(
         text,
         "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n"
-        "{1}vec4 load_{0}(ivec2 texel) {{ return texelFetch({0}, texel + darkroom_region_{0}.xy, 0); }}\n"
+        "{1}vec4 load_{0}(ivec2 texel) {{ return {2}; }}\n"
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n"
-        "vec2 darkroom_place_{0}(vec2 uv) {{\n"
-        "    precise vec2 place = uv * darkroom_uv_{0}.xy + darkroom_uv_{0}.zw;\n"
-        "    return clamp(place, darkroom_bounds_{0}.xy, darkroom_bounds_{0}.zw);\n"
-        "}}\n"
+        "vec2 darkroom_place_{0}(vec2 uv) {{\n{3}}}\n"
         "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 0); }}\n",
-        image.name, prefix);
+        image.name, prefix, load, place);
     // A view has one mip level, so the implicit level of detail changes no bit; some drivers filter much faster with
     // it.
     const std::string_view function = stage == Stage::Raster ? "texture" : "textureLod";
@@ -205,15 +212,17 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
         fmt::format_to(text, "layout(local_size_x = {}, local_size_y = {}) in;\n", spec.workgroup[0],
                        spec.workgroup[1]);
     }
+    fmt::format_to(text, "const bool loads_are_cheap = {};\nconst bool input_is_twice = {};\n", spec.loads_are_cheap,
+                   spec.input_is_twice);
     write_pass_declaration(text, spec);
     source += pixel_functions;
     std::vector<std::string_view> names;
     for (const KernelImage& image : spec.images) {
         const auto binding = first_image_binding + static_cast<std::uint32_t>(names.size());
         if (image.storage_format != VK_FORMAT_UNDEFINED) {
-            write_storage_input(text, image, binding);
+            write_storage_input(text, image, binding, spec.is_whole);
         } else {
-            write_sampled_input(text, image, binding, stage);
+            write_sampled_input(text, image, binding, stage, spec.is_whole);
         }
         names.emplace_back(image.name);
     }

@@ -208,10 +208,6 @@ TEST(GpuKernel, PrefersTheMeasuredStageOnTheSoftwareDriver) {
     if (!context().traits.is_software) GTEST_SKIP() << "not the software driver";
     KernelSpec spec = spec_of(bodies[0], VK_FORMAT_R8G8B8A8_UNORM);
     EXPECT_EQ(preferred_stage(context(), spec), Stage::Raster);
-    spec.images[0].storage_format = half4;
-    EXPECT_EQ(preferred_stage(context(), spec), Stage::Compute);
-    spec.outputs[0] = half4;
-    EXPECT_EQ(preferred_stage(context(), spec), Stage::Raster);
     spec.is_compute_only = true;
     EXPECT_EQ(preferred_stage(context(), spec), Stage::Compute);
     spec = {.name = "srgb", .outputs = {VK_FORMAT_R8G8B8A8_SRGB}};

@@ -24,6 +24,8 @@ namespace darkroom::graph {
 enum class Use : std::uint8_t {
     SampledCompute,       ///< texture() or texelFetch in a compute shader
     SampledFragment,      ///< the same in a fragment shader
+    SampledGeneralCompute,   ///< sampled in GENERAL, where the same pass loads from it, too
+    SampledGeneralFragment,
     StorageRead,          ///< imageLoad in a compute shader
     StorageReadFragment,  ///< imageLoad in a fragment shader
     StorageWrite,         ///< imageStore, every texel of the region written: the old content is dropped

@@ -24,11 +24,13 @@ bool keeps_content(Use use) { return use == Use::StorageReadWrite || use == Use:
 VkPipelineStageFlags2 stages_of(Use use) {
     switch (use) {
         case Use::SampledCompute:
+        case Use::SampledGeneralCompute:
         case Use::StorageRead:
         case Use::StorageWrite:
         case Use::StorageReadWrite:
             return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
         case Use::SampledFragment:
+        case Use::SampledGeneralFragment:
         case Use::StorageReadFragment:
             return VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
         case Use::ColorWrite:
@@ -50,6 +52,8 @@ VkAccessFlags2 access_of(Use use) {
     switch (use) {
         case Use::SampledCompute:
         case Use::SampledFragment:
+        case Use::SampledGeneralCompute:
+        case Use::SampledGeneralFragment:
             return VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
         case Use::StorageRead:
         case Use::StorageReadFragment:
@@ -101,6 +105,8 @@ VkImageUsageFlags usage_of(Use use) {
     switch (use) {
         case Use::SampledCompute:
         case Use::SampledFragment:
+        case Use::SampledGeneralCompute:
+        case Use::SampledGeneralFragment:
             return VK_IMAGE_USAGE_SAMPLED_BIT;
         case Use::StorageRead:
         case Use::StorageReadFragment:
