@@ -87,7 +87,7 @@ Result<> create_device(Bare& bare, const std::string& name) {
 Result<VkPipelineShaderStageCreateInfo> load_stage(Bare& bare, const std::filesystem::path& path,
                                                    VkShaderStageFlagBits stage) {
     const auto bytes = read_file(path);
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return failure(bytes.error());
     const void* const words = bytes->data();
     const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                         .codeSize = bytes->size(),

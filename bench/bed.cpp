@@ -59,33 +59,6 @@ ImageRef ref_of(const gpu::Image& image, VkExtent2D extent) {
 
 }  // namespace
 
-void transition(const gpu::Context& context, VkCommandBuffer commands, const gpu::Image& image, VkImageLayout from,
-                VkImageLayout to) {
-    const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                        .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                        .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                        .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                        .oldLayout = from,
-                                        .newLayout = to,
-                                        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                        .image = image.handle,
-                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                   .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                   .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                   .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-    const bool is_read_back = from == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                      .memoryBarrierCount = is_read_back ? 1u : 0u,
-                                      .pMemoryBarriers = &to_host,
-                                      .imageMemoryBarrierCount = 1,
-                                      .pImageMemoryBarriers = &barrier};
-    context.vk.CmdPipelineBarrier2(commands, &dependency);
-}
-
 Result<std::unique_ptr<Bed>> Bed::create(Device& device, VkExtent2D extent) {
     gpu::Context& context = device.context();
     const VkExtent3D size{extent.width, extent.height, 1};
@@ -103,11 +76,11 @@ Result<std::unique_ptr<Bed>> Bed::create(Device& device, VkExtent2D extent) {
     std::memcpy(staging->memory.mapped, pixels.data(), bytes);
     auto done = gpu::submit_and_wait(context, "uploading the scene", [&](VkCommandBuffer commands) {
         const VkBufferImageCopy copy = whole(extent);
-        transition(context, commands, *target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-        transition(context, commands, *scene, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        gpu::transition(context, commands, *target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+        gpu::transition(context, commands, *scene, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         context.vk.CmdCopyBufferToImage(commands, staging->handle, scene->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                         1, &copy);
-        transition(context, commands, *scene, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
+        gpu::transition(context, commands, *scene, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
     });
     if (!done) return failure(std::move(done));
     return std::unique_ptr<Bed>(new Bed{device, context, extent, std::move(*scene), std::move(*target)});
@@ -131,10 +104,10 @@ Result<std::vector<std::byte>> Bed::read_target() const {
     if (!staging) return failure(std::move(staging));
     auto done = gpu::submit_and_wait(context, "reading the target", [&](VkCommandBuffer commands) {
         const VkBufferImageCopy copy = whole(extent);
-        transition(context, commands, target, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+        gpu::transition(context, commands, target, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
         context.vk.CmdCopyImageToBuffer(commands, target.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging->handle,
                                         1, &copy);
-        transition(context, commands, target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
+        gpu::transition(context, commands, target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
     });
     if (!done) return failure(std::move(done));
     return std::vector<std::byte>(staging->memory.mapped, staging->memory.mapped + bytes);

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "allocations.hpp"
 #include "chains.hpp"
+#include "core/test_support_allocations.hpp"
 #include "rows.hpp"
 
 namespace darkroom::bench {
@@ -71,8 +71,7 @@ Result<std::vector<Figure>> picture_figures(Bed& bed, const std::vector<Row>& ro
         if (tail == nullptr || !row.name.starts_with(hand_written)) continue;
         std::array<std::vector<std::byte>, 2> pictures;
         for (std::size_t i = 0; i < pictures.size(); ++i) {
-            if (const auto ran = (*submitter)->run((i == 0 ? *tail : row).record); !ran)
-                return tl::unexpected(ran.error());
+            if (const auto ran = (*submitter)->run((i == 0 ? *tail : row).record); !ran) return failure(ran.error());
             auto picture = bed.read_target();
             if (!picture) return failure(std::move(picture));
             pictures[i] = std::move(*picture);
@@ -104,10 +103,10 @@ Result<std::vector<Figure>> counted_figures(Bed& bed) {
         auto commands = (*submitter)->begin();
         if (!commands) return failure(std::move(commands));
         const Frame frame = bed.frame();
-        const std::uint64_t before = allocation_count();
+        const std::uint64_t before = test::allocation_count();
         const auto recorded = fused->composer->record(*commands, frame);
-        const std::uint64_t made = allocation_count() - before;
-        if (!recorded) return tl::unexpected(recorded.error());
+        const std::uint64_t made = test::allocation_count() - before;
+        if (!recorded) return failure(recorded.error());
         auto ended = bed.context.check(bed.context.vk.EndCommandBuffer(*commands), "ending a command buffer");
         if (ended) ended = (*submitter)->submit();
         if (ended) ended = (*submitter)->wait();

@@ -87,10 +87,10 @@ Result<gpu::Image> upload_table(gpu::Context& context, const TableDesc& table) {
     auto done = gpu::submit_and_wait(context, "uploading a table", [&](VkCommandBuffer commands) {
         const VkBufferImageCopy copy{.imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
                                      .imageExtent = table.extent};
-        transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         context.vk.CmdCopyBufferToImage(commands, staging->handle, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                         1, &copy);
-        transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
+        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
     });
     if (!done) return failure(std::move(done));
     return image;
@@ -168,14 +168,14 @@ Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, 
     const VkImageLayout layout =
         stage == gpu::Stage::Compute ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     return Row{.name = std::move(name), .record = [&bed, run, layout](VkCommandBuffer commands) -> Result<> {
-                   transition(bed.context, commands, bed.target, VK_IMAGE_LAYOUT_GENERAL, layout);
+                   gpu::transition(bed.context, commands, bed.target, VK_IMAGE_LAYOUT_GENERAL, layout);
                    run->kernel->record(commands, {.set = run->sets.sets[0],
                                                   .constants = run->constants.handle,
                                                   .constants_size = run->constants_size,
                                                   .pass_block = run->pass_block.handle,
                                                   .images = run->images,
                                                   .outputs = {&run->output, 1}});
-                   transition(bed.context, commands, bed.target, layout, VK_IMAGE_LAYOUT_GENERAL);
+                   gpu::transition(bed.context, commands, bed.target, layout, VK_IMAGE_LAYOUT_GENERAL);
                    return {};
                }};
 }

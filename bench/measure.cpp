@@ -107,8 +107,7 @@ Result<> measure(Bed& bed, std::vector<Row>& rows, std::uint32_t rounds) {
         for (Row& row : rows) {
             const auto sample = run(row);
             if (!sample)
-                return tl::unexpected(
-                    Error{sample.error().fault, fmt::format("{}: {}", row.name, sample.error().text)});
+                return failure(Error{sample.error().fault, fmt::format("{}: {}", row.name, sample.error().text)});
             if (round > 0) row.samples.push_back(*sample);
         }
     }

@@ -29,10 +29,6 @@ struct Bed {
     gpu::Image target;  ///< RGBA8
 };
 
-/// Waits for everything before it. After a copy out of the image the host sees what was copied.
-void transition(const gpu::Context& context, VkCommandBuffer commands, const gpu::Image& image, VkImageLayout from,
-                VkImageLayout to);
-
 /// One run of a row.
 struct Sample {
     double cpu_ms = 0;   ///< of the whole process

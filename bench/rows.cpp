@@ -138,7 +138,7 @@ Result<std::vector<PassRow>> measure_passes(Bed& bed, std::uint32_t rounds) {
         std::vector<std::string> passes;
         std::vector<std::vector<double>> times;
         for (std::uint32_t round = 0; round <= rounds; ++round) {
-            if (const auto sample = (*submitter)->run(row.record); !sample) return tl::unexpected(sample.error());
+            if (const auto sample = (*submitter)->run(row.record); !sample) return failure(sample.error());
             const std::span<const PassTime> measured = chain->composer->times();
             if (round == 0) {
                 for (const PassTime& pass : measured) passes.emplace_back(pass.name);

@@ -103,7 +103,7 @@ Result<std::vector<Figure>> start_figures(const std::string& select, VkExtent2D 
         const auto least = bare_start(name, first->pipelines, first->pipeline_cache);
         if (!own || !least) {
             std::filesystem::remove_all(folder, error);
-            return tl::unexpected(own ? least.error() : own.error());
+            return failure(own ? least.error() : own.error());
         }
         if (round == 0) continue;
         bare.push_back(*least);

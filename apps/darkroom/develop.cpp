@@ -59,17 +59,17 @@ Result<Job> job_of(const Options& options) {
     job.write.alpha = options.has_alpha;
     if (!options.bits.empty()) {
         const Result<darkroom::SampleKind> bits = parse_bits(options.bits);
-        if (!bits) return tl::unexpected(bits.error());
+        if (!bits) return failure(bits.error());
         job.write.samples = *bits;
     }
     for (const std::filesystem::path& output : job.outputs) {
         const Result<darkroom::SampleKind> samples = darkroom::sample_kind(output, job.write);
-        if (!samples) return tl::unexpected(samples.error());
+        if (!samples) return failure(samples.error());
         job.develop.target = target_for(*samples);
     }
     if (!options.size.empty()) {
         const Result<VkExtent2D> size = parse_size(options.size);
-        if (!size) return tl::unexpected(size.error());
+        if (!size) return failure(size.error());
         job.size = *size;
     }
     for (const std::string& map : options.maps)
@@ -77,7 +77,7 @@ Result<Job> job_of(const Options& options) {
     job.frame.vertical_field_of_view = options.fov;
     job.frame.camera_file = options.camera;
     const Result<darkroom::KernelStage> stage = options.device.stage();
-    if (!stage) return tl::unexpected(stage.error());
+    if (!stage) return failure(stage.error());
     job.develop.kernels = *stage;
     job.develop.fuse = options.device.is_fused();
     Result<darkroom::Look> look = options.look.look();
@@ -106,7 +106,7 @@ class Develop {
         Progress progress(job_.inputs.size());
         for (std::size_t i = 0; i < job_.inputs.size(); ++i) {
             const Result<std::string> line = develop(i);
-            if (!line) return tl::unexpected(line.error());
+            if (!line) return failure(line.error());
             progress.step(*line);
             if (options_.has_timings) print_timings(*composer_);
         }
@@ -136,7 +136,7 @@ class Develop {
         if (Result<> done = make_composer(); !done) return failure(std::move(done));
         const VkExtent2D extent = job_.size.value_or(VkExtent2D{frame->color.width, frame->color.height});
         if (Result<> done = darkroom::check_extent(*device_, extent); !done)
-            return tl::unexpected(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown, done.error().text)});
+            return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown, done.error().text)});
         Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), extent.width, extent.height);
         if (!sized) return failure(std::move(sized));
         darkroom::DevelopInput input = develop_input(*sized);

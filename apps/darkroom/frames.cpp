@@ -56,7 +56,7 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
                                            .time = input.time,
                                            .frame_index = input.frame_index,
                                            .target_domain = domain});
-    if (!made) return tl::unexpected(made.error());
+    if (!made) return failure(made.error());
     DevelopedPicture out{.extent = {made->picture.width, made->picture.height}};
     if (target == DevelopTarget::Encoded8) {
         out.bytes = darkroom::round_to_bytes(made->picture);

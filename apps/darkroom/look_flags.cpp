@@ -86,7 +86,7 @@ Result<Look> LookFlags::look() const {
                 fmt::format("--order {}: allowed is documented or scene_linear", darkroom::printable(order_)));
     }
     const Result<std::vector<LookOverride>> values = overrides();
-    if (!values) return tl::unexpected(values.error());
+    if (!values) return failure(values.error());
     if (Result<> done = darkroom::override_look(*look, *values); !done) return failure(std::move(done));
     if (is_off_) {
         *look = darkroom::default_look();

@@ -46,7 +46,7 @@ Result<> check_output(const fs::path& output, std::span<const fs::path> inputs) 
         return user_error(fmt::format("{}: no such folder, the picture cannot be written", printable(folder.string())));
     // Reserving the file tells now, before any work, whether it can be written.
     const Result<darkroom::AtomicPath> reserved = darkroom::AtomicPath::beside(output);
-    if (!reserved) return tl::unexpected(reserved.error());
+    if (!reserved) return failure(reserved.error());
     return {};
 }
 

@@ -26,11 +26,11 @@ struct Options {
 
 Result<std::string> text_of(const Options& options) {
     const Result<darkroom::Look> look = options.look.look();
-    if (!look) return tl::unexpected(look.error());
+    if (!look) return failure(look.error());
     const Result<darkroom::SampleKind> samples = parse_bits(options.bits);
-    if (!samples) return tl::unexpected(samples.error());
+    if (!samples) return failure(samples.error());
     const Result<darkroom::KernelStage> stage = options.device.stage();
-    if (!stage) return tl::unexpected(stage.error());
+    if (!stage) return failure(stage.error());
     darkroom::FrameFile frame;
     darkroom::DevelopInput input{.extent = {1920, 1080}};
     if (!options.frame.empty()) {
@@ -41,7 +41,7 @@ Result<std::string> text_of(const Options& options) {
     }
     if (!options.size.empty()) {
         const Result<VkExtent2D> size = parse_size(options.size);
-        if (!size) return tl::unexpected(size.error());
+        if (!size) return failure(size.error());
         input.extent = *size;
     }
     Result<darkroom::Device> device = options.device.create();
@@ -54,7 +54,7 @@ Result<std::string> text_of(const Options& options) {
     darkroom::CompileDesc compile = darkroom::compile_desc_for(*device, input, desc);
     if (options.frame.empty()) compile.color = VK_FORMAT_R16G16B16A16_SFLOAT;  // what engines hand over
     const Result<darkroom::Plan> plan = composer.plan(compile);
-    if (!plan) return tl::unexpected(plan.error());
+    if (!plan) return failure(plan.error());
     return options.is_json ? plan->json() : plan->text();
 }
 

@@ -120,8 +120,8 @@ class Composer {
     Result<> set(Handle, std::string_view parameter, std::span<const std::uint32_t> words);
     Result<> set(Handle, std::string_view parameter, double value);
     template <class Effect>
-    void set(Handle handle, const Effect& parameters) {
-        set_all(handle, effect_info(parameters), &parameters);
+    Result<> set(Handle handle, const Effect& parameters) {
+        return set_all(handle, effect_info(parameters), &parameters);
     }
     /// A per-frame override by `owner` (a pulse, a script slot, a layer): replaces the base value until dropped; the
     /// last owner to set wins. The base value is never touched.
@@ -152,7 +152,7 @@ class Composer {
     [[nodiscard]] Result<Plan> rebind(Device& device);
 
   private:
-    void set_all(Handle, const EffectInfo&, const void* parameters);
+    Result<> set_all(Handle, const EffectInfo&, const void* parameters);
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -22,16 +22,16 @@ struct Error {
 template <class T = void>
 using Result = tl::expected<T, Error>;
 
-[[nodiscard]] inline tl::unexpected<Error> user_error(std::string text) {
-    return tl::unexpected(Error{Fault::User, std::move(text)});
-}
-[[nodiscard]] inline tl::unexpected<Error> machine_error(std::string text) {
-    return tl::unexpected(Error{Fault::Machine, std::move(text)});
-}
+/// Becomes the error of any Result.
+using Failure = tl::unexpected<Error>;
+
+[[nodiscard]] inline Failure failure(Error error) { return Failure(std::move(error)); }
+[[nodiscard]] inline Failure user_error(std::string text) { return failure({Fault::User, std::move(text)}); }
+[[nodiscard]] inline Failure machine_error(std::string text) { return failure({Fault::Machine, std::move(text)}); }
 /// Passes the error of one Result on as the error of another.
 template <class T>
-[[nodiscard]] tl::unexpected<Error> failure(Result<T>&& result) {
-    return tl::unexpected(std::move(result).error());
+[[nodiscard]] Failure failure(Result<T>&& result) {
+    return failure(std::move(result).error());
 }
 
 }  // namespace darkroom

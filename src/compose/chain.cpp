@@ -191,6 +191,11 @@ Result<> Chain::make_resources(bool has_timers) {
     sets_ = std::move(*sets);
     custom_.resize(most_custom_vectors);
 
+    // What every device binds as one uniform buffer.
+    constexpr std::uint32_t most_constants = 16384;
+    if (program_.constants_words * 4 > most_constants)
+        return user_error(fmt::format("the stack has {} bytes of parameters; at most {} are allowed",
+                                      program_.constants_words * 4, most_constants));
     constants_stride_ = align(program_.constants_words * 4, context_.traits.uniform_alignment);
     pass_block_stride_ = align(pass_block_size, context_.traits.uniform_alignment);
     auto constants = gpu::Buffer::create(context_, constants_stride_ * slots_, gpu::constants_usage,

@@ -66,6 +66,20 @@ bool is_surely_allowed(const ParamInfo& row, std::span<const std::uint32_t> word
     return false;
 }
 
+/// Allocates nothing where the value is allowed, but for curves.
+Result<> check_value(const compose::Entry& entry, const ParamInfo& row, std::span<const std::uint32_t> words) {
+    return is_surely_allowed(row, words) ? Result<>{} : check_words(row, words, shown(entry, row));
+}
+
+/// All values of an entry: a struct that a host filled may hold anything.
+Result<> check_values(const compose::Entry& entry, std::span<const std::uint32_t> words) {
+    for (const ParamInfo& row : entry.info->parameters.rows)
+        if (auto ok = check_value(entry, row, words.subspan(row.word, row.words)); !ok) return ok;
+    return {};
+}
+
+Failure unknown_handle() { return user_error("a handle that names no entry of this composer"); }
+
 }  // namespace
 
 namespace compose {
@@ -95,8 +109,9 @@ struct Composer::State {
     [[nodiscard]] std::uint32_t slots() const {
         return desc.frames_in_flight * (compiled_for ? compiled_for->views : 1);
     }
+    [[nodiscard]] bool has(Handle handle) const { return handle.id >= 1 && handle.id <= stack.size(); }
     compose::Entry& at(Handle handle) {
-        DARKROOM_ASSERT(handle.id >= 1 && handle.id <= stack.size());
+        DARKROOM_ASSERT(has(handle));
         return stack[handle.id - 1];
     }
     [[nodiscard]] Result<compose::Program> program(const CompileDesc& compile_desc) const {
@@ -109,6 +124,7 @@ struct Composer::State {
         return compose::plan_program(stack, compile_desc, traits);
     }
     Result<const ParamInfo*> row(Handle handle, std::string_view parameter) {
+        if (!has(handle)) return unknown_handle();
         const compose::Entry& entry = at(handle);
         if (const ParamInfo* const found = entry.info->parameters.find(parameter)) return found;
         std::vector<std::string> names;
@@ -158,11 +174,13 @@ const Inputs& Composer::inputs(Handle handle) const { return state_->at(handle).
 std::span<const std::uint32_t> Composer::words(Handle handle) const { return state_->at(handle).base; }
 
 Result<> Composer::set_enabled(Handle handle, bool enabled) {
+    if (!state_->has(handle)) return unknown_handle();
     state_->at(handle).inputs.enabled = enabled;
     return {};
 }
 
 Result<> Composer::set_opacity(Handle handle, float opacity) {
+    if (!state_->has(handle)) return unknown_handle();
     compose::Entry& entry = state_->at(handle);
     if (!(opacity >= 0 && opacity <= 1))
         return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.inputs.name, opacity));
@@ -181,17 +199,16 @@ Result<> Composer::set_opacity(Handle handle, float opacity) {
 
 Result<> Composer::set(Handle handle, std::string_view parameter, std::span<const std::uint32_t> words) {
     const auto row = state_->row(handle, parameter);
-    if (!row) return tl::unexpected(row.error());
+    if (!row) return failure(row.error());
     compose::Entry& entry = state_->at(handle);
-    if (!is_surely_allowed(**row, words))
-        if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
+    if (auto ok = check_value(entry, **row, words); !ok) return ok;
     std::copy(words.begin(), words.end(), entry.base.begin() + (*row)->word);
     return {};
 }
 
 Result<> Composer::set(Handle handle, std::string_view parameter, double value) {
     const auto row = state_->row(handle, parameter);
-    if (!row) return tl::unexpected(row.error());
+    if (!row) return failure(row.error());
     compose::Entry& entry = state_->at(handle);
     const ParamInfo& info = **row;
     const bool is_allowed = value >= info.range.min && value <= info.range.max;
@@ -206,19 +223,22 @@ Result<> Composer::set(Handle handle, std::string_view parameter, double value) 
     return assign(info, entry.base, value, shown(entry, info));
 }
 
-void Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) {
+Result<> Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) {
+    if (!state_->has(handle)) return unknown_handle();
     compose::Entry& entry = state_->at(handle);
-    DARKROOM_ASSERT(entry.info == &info);
-    std::memcpy(entry.base.data(), parameters, entry.base.size() * 4);
+    if (entry.info != &info) return user_error(fmt::format("{} is no {}", entry.inputs.name, info.name));
+    const std::span words(static_cast<const std::uint32_t*>(parameters), entry.base.size());
+    if (auto ok = check_values(entry, words); !ok) return ok;
+    std::copy(words.begin(), words.end(), entry.base.begin());
+    return {};
 }
 
 Result<> Composer::set_override(Handle handle, std::string_view parameter, std::string_view owner,
                                 std::span<const std::uint32_t> words) {
     const auto row = state_->row(handle, parameter);
-    if (!row) return tl::unexpected(row.error());
+    if (!row) return failure(row.error());
     compose::Entry& entry = state_->at(handle);
-    if (!is_surely_allowed(**row, words))
-        if (auto ok = check_words(**row, words, shown(entry, **row)); !ok) return ok;
+    if (auto ok = check_value(entry, **row, words); !ok) return ok;
     const auto found = std::find_if(entry.overrides.begin(), entry.overrides.end(),
                                     [&](const auto& o) { return o.owner == owner && o.word == (*row)->word; });
     if (found == entry.overrides.end()) {
@@ -257,6 +277,8 @@ Result<Plan> Composer::compile(const CompileDesc& desc) {
         return user_error(fmt::format("size {}x{}: this device allows 1x1 to {}x{}", desc.max_extent.width,
                                       desc.max_extent.height, limit, limit));
     if (desc.views == 0) return user_error("views = 0: allowed is 1 and more");
+    for (const compose::Entry& entry : state_->stack)
+        if (auto ok = check_values(entry, entry.base); !ok) return failure(std::move(ok));
     auto program = state_->program(desc);
     if (!program) return failure(std::move(program));
     auto chain =

@@ -155,7 +155,7 @@ class Parser {
     }
 
   private:
-    [[nodiscard]] tl::unexpected<Error> error(std::string_view text) const {
+    [[nodiscard]] Failure error(std::string_view text) const {
         return user_error(fmt::format("{}:{}: {}", shown_name_, line_, text));
     }
 

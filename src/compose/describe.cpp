@@ -38,10 +38,13 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
                      .boundary = pass.boundary,
                      .extent = graph::mip_extent(output.desc.size.of(desc.max_extent), pass.output_mip_level),
                      .bytes_written = bytes_of(output, desc.max_extent, pass.output_mip_level)};
-        for (const PassInput& input : pass.inputs)
-            if (input.table == no_table)
-                out.bytes_read +=
-                    bytes_of(compiled.slots()[schedule.slot_of(input.version)], desc.max_extent, input.mip_level);
+        for (std::size_t k = 0; k < pass.inputs.size(); ++k) {
+            const PassInput& input = pass.inputs[k];
+            // An image that is both loaded and sampled stands there twice.
+            if (input.table != no_table || !pass.spec.images[k].loads_by.empty()) continue;
+            out.bytes_read +=
+                bytes_of(compiled.slots()[schedule.slot_of(input.version)], desc.max_extent, input.mip_level);
+        }
         if (pass.spec.is_additive) out.bytes_read += out.bytes_written;
         for (const FusedStep& step : pass.steps) out.entries.push_back(step.name);
         plan.passes.push_back(std::move(out));

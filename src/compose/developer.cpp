@@ -45,24 +45,6 @@ VkImageUsageFlags target_usage(const gpu::Context& context, VkFormat format) {
     return usage;
 }
 
-void barrier(gpu::Context& context, VkCommandBuffer commands, const gpu::Image& image, VkImageLayout before,
-             VkImageLayout after) {
-    const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                       .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                       .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                       .oldLayout = before,
-                                       .newLayout = after,
-                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                       .image = image.handle,
-                                       .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    const VkDependencyInfo dependency{
-        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &change};
-    context.vk.CmdPipelineBarrier2(commands, &dependency);
-}
-
 VkBufferImageCopy whole(VkExtent2D extent) {
     return {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {extent.width, extent.height, 1}};
 }
@@ -229,7 +211,8 @@ struct Developer::State {
         for (std::size_t i = 0; i < images->layers.size(); ++i) {
             if (!images->layers[i]) continue;
             const gpu::Image& image = *images->layers[i];
-            barrier(context(), commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+            gpu::transition(context(), commands, image, VK_IMAGE_LAYOUT_UNDEFINED,
+                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
             context().vk.CmdCopyBufferToImage(commands, images->uploads[i]->handle, image.handle,
                                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
             *slots[i] = reference_to(image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);

@@ -26,7 +26,7 @@ ReferenceImage small_picture(std::uint32_t number = 3) {
 
 void move_to(const Host& host, gpu::test::Picture& picture, VkImageLayout layout) {
     test::must(gpu::submit_and_wait(host.device.context(), "moving a picture", [&](VkCommandBuffer commands) {
-        gpu::test::transition(host.device.context(), commands, picture.image, picture.layout, layout);
+        gpu::transition(host.device.context(), commands, picture.image, picture.layout, layout);
     }));
     picture.layout = layout;
 }

@@ -377,7 +377,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     pass.spec.loads_are_cheap = traits_.loads_are_cheap;
     pass.spec.workgroup = traits_.workgroup;
     const auto stage = traits_.stage_of(pass.spec);
-    if (!stage) return tl::unexpected(stage.error());
+    if (!stage) return failure(stage.error());
     pass.stage = *stage;
     // What the host's target was made for decides over what would be faster.
     const VkImageUsageFlags usage = facts_.at(target.index).usage;

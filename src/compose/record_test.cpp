@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "compose/test_host.hpp"
-#include "core/test_allocations.hpp"
+#include "core/test_support_allocations.hpp"
 #include "gpu/shader.hpp"
 
 namespace darkroom {

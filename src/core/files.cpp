@@ -29,12 +29,12 @@ struct Descriptor {
     }
 };
 
-tl::unexpected<Error> io_error(const fs::path& path, const char* doing, int code) {
+Failure io_error(const fs::path& path, const char* doing, int code) {
     return machine_error(fmt::format("{}: cannot {}: {}", path.string(), doing, std::strerror(code)));
 }
 
 // A wrong name is the user's to mend; a disk that fails is not.
-tl::unexpected<Error> open_error(const fs::path& path, int code) {
+Failure open_error(const fs::path& path, int code) {
     const std::string text = fmt::format("{}: cannot open: {}", path.string(), std::strerror(code));
     return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG ? user_error(text) : machine_error(text);
 }

@@ -395,7 +395,7 @@ Result<Device> Device::create(const DeviceDesc& desc) {
     if (Result<> created = create_instance(*context, wants_validation(desc)); !created)
         return failure(std::move(created));
     const Result<std::vector<Candidate>> candidates = find_devices(*context);
-    if (!candidates) return tl::unexpected(candidates.error());
+    if (!candidates) return failure(candidates.error());
     Result<Candidate> chosen = select_device(*candidates, desc.select);
     if (!chosen) return failure(std::move(chosen));
     context->physical_device = chosen->device;

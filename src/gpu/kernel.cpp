@@ -32,7 +32,7 @@ void main() {
 std::string_view stage_name(Stage stage) { return stage == Stage::Compute ? "compute" : "raster"; }
 
 /// The text of every refusal: kernel, stage, thing, format, reason.
-tl::unexpected<Error> refusal(const KernelSpec& spec, Stage stage, std::string_view thing, VkFormat format,
+Failure refusal(const KernelSpec& spec, Stage stage, std::string_view thing, VkFormat format,
                               std::string_view reason) {
     return user_error(fmt::format("kernel \"{}\" ({}): {} of format {} ({}): {}", spec.name, stage_name(stage), thing,
                                   format_name(format), static_cast<int>(format), reason));
@@ -153,9 +153,9 @@ Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& s
 Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& spec, VkPipelineLayout layout,
                                           const ShaderModule& fragment) {
     const Result<std::vector<std::uint32_t>> words = full_screen_vertex(context);
-    if (!words) return tl::unexpected(words.error());
+    if (!words) return failure(words.error());
     const Result<ShaderModule> vertex = ShaderModule::create(context, *words, "full-screen triangle");
-    if (!vertex) return tl::unexpected(vertex.error());
+    if (!vertex) return failure(vertex.error());
     const std::array stages{vertex->stage(VK_SHADER_STAGE_VERTEX_BIT), fragment.stage(VK_SHADER_STAGE_FRAGMENT_BIT)};
     const VkPipelineVertexInputStateCreateInfo vertex_input{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
@@ -300,9 +300,9 @@ Result<> Kernel::State::create_pipeline() {
         context.shaders->compile({.name = fmt::format("{} ({})", spec.name, stage_name(stage)),
                                   .text = kernel_source(spec, stage),
                                   .stage = is_compute ? ShaderStage::Compute : ShaderStage::Fragment});
-    if (!words) return tl::unexpected(words.error());
+    if (!words) return failure(words.error());
     const Result<ShaderModule> module = ShaderModule::create(context, *words, spec.name);
-    if (!module) return tl::unexpected(module.error());
+    if (!module) return failure(module.error());
     Result<VkPipeline> made = is_compute ? create_compute_pipeline(context, spec, pipeline_layout, *module)
                                          : create_raster_pipeline(context, spec, pipeline_layout, *module);
     if (!made) return failure(std::move(made));

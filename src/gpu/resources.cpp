@@ -196,7 +196,7 @@ Result<Image> Image::place(Context& context, const ImageInfo& info, const Memory
 
 Result<VkMemoryRequirements> Image::measure(Context& context, const ImageInfo& info) {
     const Result<VkImage> handle = create_image(context, info);
-    if (!handle) return tl::unexpected(handle.error());
+    if (!handle) return failure(handle.error());
     const VkMemoryRequirements requirements = requirements_of(context, *handle);
     context.vk.DestroyImage(context.device, *handle, nullptr);
     return requirements;

@@ -109,6 +109,10 @@ class Timers {
 [[nodiscard]] Result<> submit_and_wait(Context&, std::string_view what,
                                        const std::function<void(VkCommandBuffer)>& body);
 
+/// Brings a whole image into another layout, after everything before and before everything after; what a copy out of it
+/// wrote is then there for the host, too. For uploads and read-back, where nothing finer would gain.
+void transition(const Context&, VkCommandBuffer, const Image&, VkImageLayout from, VkImageLayout to);
+
 void name_object(Context&, VkObjectType, std::uint64_t handle, const std::string& name);
 void begin_label(const Context&, VkCommandBuffer, const char* name);
 void end_label(const Context&, VkCommandBuffer);

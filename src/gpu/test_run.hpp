@@ -87,16 +87,6 @@ inline std::vector<std::byte> download_bytes(Context& context, const Picture& pi
         context.vk.CmdCopyImageToBuffer(commands, image.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.handle, 1,
                                         &copy);
         transition(context, commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture.layout);
-        const VkMemoryBarrier2 to_host{
-            .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-            .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-            .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-            .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-            .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT,
-        };
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
-        context.vk.CmdPipelineBarrier2(commands, &dependency);
     }));
     return {staging.memory.mapped, staging.memory.mapped + size};
 }

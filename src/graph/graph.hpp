@@ -269,7 +269,7 @@ class Schedule {
 [[nodiscard]] Result<> check_frames(const Compiled& compiled, std::span<const Recording> frames,
                                     std::span<const ImportState> imports);
 
-/// A readable trace, one line a barrier or pass: what tests and `--trace` print.
+/// A readable trace, one line a barrier or pass: what tests print.
 [[nodiscard]] std::string trace(const Compiled& compiled, const Schedule& schedule);
 
 }  // namespace darkroom::graph

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "core/test_allocations.hpp"
+#include "core/test_support_allocations.hpp"
 #include "gpu/test_run.hpp"
 #include "graph/test_graphs.hpp"
 

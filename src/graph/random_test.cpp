@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/test_allocations.hpp"
+#include "core/test_support_allocations.hpp"
 #include "graph/test_graphs.hpp"
 
 namespace darkroom::graph::test {

@@ -105,7 +105,7 @@ class Finder {
         const auto found = names_.find(what);
         return found == names_.end() ? nullptr : &found->second;
     }
-    [[nodiscard]] tl::unexpected<Error> unknown(std::string_view what, const std::string& name) const;
+    [[nodiscard]] Failure unknown(std::string_view what, const std::string& name) const;
     [[nodiscard]] Result<ChannelSet> mapped_set(std::string_view what, const std::string& name,
                                                 std::span<const std::string_view> components) const;
     [[nodiscard]] std::optional<ChannelSet> lone_channel(const std::string& name) const;
@@ -124,7 +124,7 @@ class Finder {
     ChannelSet color_;
 };
 
-tl::unexpected<Error> Finder::unknown(std::string_view what, const std::string& name) const {
+Failure Finder::unknown(std::string_view what, const std::string& name) const {
     std::vector<std::string> candidates = channel_names(parts_);
     for (const Layer& layer : layers_)
         if (!layer.name.empty()) candidates.push_back(layer.name);

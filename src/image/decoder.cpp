@@ -166,7 +166,7 @@ struct Decoder::State {
                 message.erase(place, name.size());
         return message.empty() ? "damaged" : message;
     }
-    [[nodiscard]] tl::unexpected<Error> error(std::string_view what) const {
+    [[nodiscard]] Failure error(std::string_view what) const {
         return user_error(fmt::format("{}: {}", path, one_printable_line(what)));
     }
     [[nodiscard]] Result<> open();
@@ -255,7 +255,7 @@ Result<Decoder> Decoder::open(const std::filesystem::path& path) {
     if (state->kind == FileKind::Jpeg)
         if (auto checked = check_jpeg(state->bytes); !checked) return state->error(checked.error().text);
     try {
-        if (auto opened = state->open(); !opened) return tl::unexpected(std::move(opened).error());
+        if (auto opened = state->open(); !opened) return failure(std::move(opened).error());
     } catch (const std::exception& exception) {
         return state->error(fmt::format("cannot be read as {}: {}", name_of(*kind), exception.what()));
     }

@@ -25,7 +25,7 @@ struct Source {
 
 Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame) {
     const auto kind = file_kind(path);
-    if (!kind) return tl::unexpected(kind.error());
+    if (!kind) return failure(kind.error());
     if (*kind != FileKind::OpenExr)
         return user_error(
             fmt::format("{}: {} holds no depth and no camera; a frame needs .exr", path.string(), name_of(*kind)));

@@ -133,7 +133,7 @@ Result<FileKind> file_kind(const std::filesystem::path& path) {
 
 Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOptions& options) {
     const auto kind = file_kind(path);
-    if (!kind) return tl::unexpected(kind.error());
+    if (!kind) return failure(kind.error());
     const Format format = format_of(*kind);
     if (options.alpha && !format.has_alpha)
         return user_error(fmt::format("{}: {} has no alpha; .png .tif .exr have", path.string(), name_of(*kind)));
@@ -170,7 +170,7 @@ Result<> encode_to_file(const std::filesystem::path& path, FileKind kind, const 
 Result<> write_picture(const std::filesystem::path& path, const Picture& picture, const WriteOptions& options) {
     DARKROOM_ASSERT(picture.pixels.size() == std::size_t{picture.width} * picture.height * 4);
     const auto samples = sample_kind(path, options);
-    if (!samples) return tl::unexpected(samples.error());
+    if (!samples) return failure(samples.error());
     const FileKind kind = *file_kind(path);
     if (auto checked = check_size(path, kind, picture.width, picture.height); !checked) return checked;
     if (auto checked = check_quality(path, options); !checked) return checked;
@@ -198,7 +198,7 @@ Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std
     WriteOptions bytes = options;
     bytes.samples = SampleKind::Integer8;
     const auto samples = sample_kind(path, bytes);
-    if (!samples) return tl::unexpected(samples.error());
+    if (!samples) return failure(samples.error());
     const FileKind kind = *file_kind(path);
     if (auto checked = check_size(path, kind, width, height); !checked) return checked;
     if (auto checked = check_quality(path, options); !checked) return checked;

@@ -41,7 +41,7 @@ class Overrider {
     Result<> set(const LookOverride& one) {
         const std::string shown = printable(one.shown.empty() ? one.key : one.shown);
         const Result<Target> target = find(one.key, shown);
-        if (!target) return tl::unexpected(target.error());
+        if (!target) return failure(target.error());
         const auto& [entry, row, is_state] = *target;
         const Result<ParamValue> value = parse_text(*row, one.text);
         if (!value) return user_error(fmt::format("{}: {}", shown, value.error().text));
@@ -85,7 +85,7 @@ class Overrider {
                                       printable(member), fmt::join(members, ", "), suggestion(member, members)));
     }
 
-    tl::unexpected<Error> unheld(const std::string& shown, std::string_view name) const {
+    Failure unheld(const std::string& shown, std::string_view name) const {
         const std::vector<std::string> names = entry_names(look_);
         if (names.empty()) return user_error(fmt::format("{}: {} has no entries", shown, look_.shown_name));
         return user_error(fmt::format("{}: {} has no entry '{}', it has {}{}", shown, look_.shown_name, printable(name),

@@ -95,7 +95,7 @@ Result<Look> LookReader::finish(Look look) {
 Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options) {
     std::string shown = printable(shown_name);
     const Result<toml::table> file = parse_toml(text, shown);
-    if (!file) return tl::unexpected(file.error());
+    if (!file) return failure(file.error());
     return LookReader(std::move(shown), options).read(*file);
 }
 
@@ -110,7 +110,7 @@ Result<Look> read_look(const std::filesystem::path& path, const LookOptions& opt
     if (!error && size > largest)
         return user_error(fmt::format("{}: {} bytes, a look file has at most {}", shown, size, largest));
     const Result<std::vector<std::byte>> bytes = read_file(path);
-    if (!bytes) return tl::unexpected(bytes.error());
+    if (!bytes) return failure(bytes.error());
     return parse_look({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string(), options);
 }
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "core/test_support_allocations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+namespace darkroom::test {
+
+TEST(TestAllocations, AreCounted) {
+    if (!counts_allocations()) GTEST_SKIP() << "this build has its own operator new";
+    const std::uint64_t before = allocation_count();
+    const std::vector<int> numbers(100);
+    EXPECT_EQ(allocation_count(), before + 1);
+    EXPECT_EQ(numbers.size(), 100u);
+}
+
+TEST(TestAllocations, CountAlignedOnes) {
+    if (!counts_allocations()) GTEST_SKIP() << "this build has its own operator new";
+    struct alignas(64) Wide {
+        int value = 7;
+    };
+    const std::uint64_t before = allocation_count();
+    const auto wide = std::make_unique<Wide>();
+    EXPECT_EQ(allocation_count(), before + 1);
+    EXPECT_EQ(wide->value, 7);
+}
+
+}  // namespace darkroom::test
