@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "compose/program.hpp"
+#include "compose/variants.hpp"
 #include "gpu/shader.hpp"
 
 namespace {

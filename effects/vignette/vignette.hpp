@@ -11,7 +11,8 @@ struct Vignette {
     float smoothness = 2.0f;
 };
 inline constexpr auto vignette_rows = describe(
-    field<&Vignette::intensity>("How much the corners darken: the corner's factor is 1 - intensity.", {0, 1}).as_amount(),
+    field<&Vignette::intensity>("How much the corners darken: the corner's factor is 1 - intensity.", {0, 1})
+        .as_amount(),
     field<&Vignette::smoothness>("Exponent of the falloff: larger keeps more of the middle untouched.", {0.1, 16}));
 
 [[nodiscard]] const EffectInfo& effect_info(const Vignette&);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Vignette in double precision: c' = c * max(0, 1 - d^smoothness * intensity), d the distance from the centre in uv, 1 at
-// the corner.
+// Vignette in double precision: c' = c * max(0, 1 - d^smoothness * intensity), d the distance from the centre in uv, 1
+// at the corner.
 
 #include <algorithm>
 #include <cmath>

@@ -291,8 +291,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                                                : "load(picture, pixel.texel)";
     return fmt::format(
         "{}{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",
-        curve_struct(), helpers, declarations,
-        read, code);
+        curve_struct(), helpers, declarations, read, code);
 }
 
 }  // namespace darkroom::compose

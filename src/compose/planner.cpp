@@ -497,13 +497,4 @@ Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& de
     return Planner(stack, desc, traits).run();
 }
 
-Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps) {
-    gpu::KernelSpec spec = pass.spec;
-    if (!is_fused(pass)) return spec;
-    auto body = fused_body(steps, pass.finish, pass.is_resampled);
-    if (!body) return failure(std::move(body));
-    spec.body = std::move(*body);
-    return spec;
-}
-
 }  // namespace darkroom::compose

@@ -104,9 +104,7 @@ struct PlannerTraits {
 [[nodiscard]] Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc,
                                            const PlannerTraits& traits);
 
-/// The kernel of a pass that holds only the steps that are on: same images and bindings, no branches. A pass of an
-/// effect has no steps and keeps its body.
-[[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps);
+/// Made by the planner from entries; else by an effect's build.
 [[nodiscard]] inline bool is_fused(const ProgramPass& pass) { return pass.entry == ~0u; }
 
 /// The program as users read it.

@@ -154,10 +154,8 @@ class Layered {
     void copy(const gpu::test::Picture& picture, bool is_upload) {
         test::must(gpu::submit_and_wait(context_, "copying a layer", [&](VkCommandBuffer commands) {
             const gpu::Image &from = is_upload ? picture.image : image_, &to = is_upload ? image_ : picture.image;
-            gpu::transition(context_, commands, from, VK_IMAGE_LAYOUT_GENERAL,
-                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-            gpu::transition(context_, commands, to, VK_IMAGE_LAYOUT_UNDEFINED,
-                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+            gpu::transition(context_, commands, from, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+            gpu::transition(context_, commands, to, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
             const VkImageSubresourceLayers own{VK_IMAGE_ASPECT_COLOR_BIT, mip_level_, array_layer_, 1};
             const VkImageSubresourceLayers other{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
             const VkImageCopy region{.srcSubresource = is_upload ? other : own,
@@ -165,10 +163,8 @@ class Layered {
                                      .extent = {extent_.width, extent_.height, 1}};
             context_.vk.CmdCopyImage(commands, from.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle,
                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-            gpu::transition(context_, commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                  VK_IMAGE_LAYOUT_GENERAL);
-            gpu::transition(context_, commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                  VK_IMAGE_LAYOUT_GENERAL);
+            gpu::transition(context_, commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
+            gpu::transition(context_, commands, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
         }));
     }
     [[nodiscard]] ImageRef ref() const {

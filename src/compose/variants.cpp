@@ -3,6 +3,15 @@
 
 namespace darkroom::compose {
 
+Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps) {
+    gpu::KernelSpec spec = pass.spec;
+    if (!is_fused(pass)) return spec;
+    auto body = fused_body(steps, pass.finish, pass.is_resampled);
+    if (!body) return failure(std::move(body));
+    spec.body = std::move(*body);
+    return spec;
+}
+
 Result<> Variants::build_complete(gpu::Context& context) {
     auto kernel = gpu::Kernel::create(context, pass_->spec, pass_->stage);
     if (!kernel) return failure(std::move(kernel));

@@ -45,6 +45,10 @@ void for_each_choice(const ProgramPass& pass, const Visit& visit) {
     }
 }
 
+/// The kernel of a pass that holds only the steps that are on: same images and bindings, no branches. A pass of an
+/// effect has no steps and keeps its body.
+[[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps);
+
 class Variants {
   public:
     explicit Variants(const ProgramPass& pass) : pass_(&pass) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Counts heap allocations, so that a test or benchmark can say that a function makes none. The implementation replaces the
-// global operator new and is linked into those programs alone.
+// Counts heap allocations, so that a test or benchmark can say that a function makes none. The implementation replaces
+// the global operator new and is linked into those programs alone.
 
 #include <cstdint>
 

@@ -61,7 +61,8 @@ std::string accessor(const Type& type, std::string_view name, std::uint32_t offs
 
 ConstantsSource constants_source(std::string_view members) {
     static const std::regex comment(R"(//[^\n]*|/\*[\s\S]*?\*/)");
-    static const std::regex declaration(R"(\s*(?:layout\s*\(\s*offset\s*=\s*(\d{1,9})\s*\)\s*)?(\w+)\s+([^;]+);|\s*(\S[^;]*;?))");
+    static const std::regex declaration(
+        R"(\s*(?:layout\s*\(\s*offset\s*=\s*(\d{1,9})\s*\)\s*)?(\w+)\s+([^;]+);|\s*(\S[^;]*;?))");
     static const std::regex declarator(R"((\w+)\s*(?:\[\s*(\d{1,5})\s*\])?)");
     const std::string plain = std::regex_replace(std::string(members), comment, " ");
 

@@ -2,7 +2,8 @@
 #pragma once
 // Declares the constants of a kernel as a uniform buffer in the layout of std430, which GLSL allows only for storage
 // buffers unless the host enabled a feature. Members are scalars, vectors, mat3, mat4, and arrays of scalars and
-// vectors, each with `layout(offset = N)` before it if it does not follow its predecessor; structures are not among them.
+// vectors, each with `layout(offset = N)` before it if it does not follow its predecessor; structures are not among
+// them.
 
 #include <string>
 #include <string_view>

@@ -32,8 +32,7 @@ void main() {
 std::string_view stage_name(Stage stage) { return stage == Stage::Compute ? "compute" : "raster"; }
 
 /// The text of every refusal: kernel, stage, thing, format, reason.
-Failure refusal(const KernelSpec& spec, Stage stage, std::string_view thing, VkFormat format,
-                              std::string_view reason) {
+Failure refusal(const KernelSpec& spec, Stage stage, std::string_view thing, VkFormat format, std::string_view reason) {
     return user_error(fmt::format("kernel \"{}\" ({}): {} of format {} ({}): {}", spec.name, stage_name(stage), thing,
                                   format_name(format), static_cast<int>(format), reason));
 }

@@ -153,7 +153,9 @@ void Graph::fall_back(Version version, Version instead) {
     record.instead = instead.index;
 }
 
-void Graph::imply(std::int32_t toggle, std::int32_t implied) { declaration_->implications.push_back({toggle, implied}); }
+void Graph::imply(std::int32_t toggle, std::int32_t implied) {
+    declaration_->implications.push_back({toggle, implied});
+}
 
 void Graph::keep(Version version) {
     Declaration& declaration = *declaration_;

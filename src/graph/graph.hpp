@@ -22,9 +22,9 @@ namespace darkroom::graph {
 
 /// How a pass touches an image. From it follow the stage, the access mask, the layout and the usage flags.
 enum class Use : std::uint8_t {
-    SampledCompute,       ///< texture() or texelFetch in a compute shader
-    SampledFragment,      ///< the same in a fragment shader
-    SampledGeneralCompute,   ///< sampled in GENERAL, where the same pass loads from it, too
+    SampledCompute,         ///< texture() or texelFetch in a compute shader
+    SampledFragment,        ///< the same in a fragment shader
+    SampledGeneralCompute,  ///< sampled in GENERAL, where the same pass loads from it, too
     SampledGeneralFragment,
     StorageRead,          ///< imageLoad in a compute shader
     StorageReadFragment,  ///< imageLoad in a fragment shader

@@ -156,7 +156,8 @@ class Validator {
             std::uint32_t version = found.version;
             while (declaration_.versions[version].producer != none) {
                 const VersionRecord& record = declaration_.versions[version];
-                const bool is_on = certainty(declaration_, toggle_of(record.producer), found.assumptions) == Certainty::On;
+                const bool is_on =
+                    certainty(declaration_, toggle_of(record.producer), found.assumptions) == Certainty::On;
                 if (is_on && has_mip(record.mips, level) && !record.keeps_content) break;
                 if (!is_on && record.next() != record.replaced) {
                     return user_error(fmt::format("{}{}: pass '{}', which writes part of it, may be off", what,
