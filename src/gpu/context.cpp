@@ -101,6 +101,9 @@ Result<> Context::finish() {
     vk.GetPhysicalDeviceProperties(physical_device, &properties);
     traits.is_software = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     traits.max_image_dimension = properties.limits.maxImageDimension2D;
+    traits.sample_counts =
+        properties.limits.framebufferColorSampleCounts & properties.limits.framebufferDepthSampleCounts &
+        properties.limits.sampledImageColorSampleCounts & properties.limits.sampledImageDepthSampleCounts;
     traits.storage_alignment = properties.limits.minStorageBufferOffsetAlignment;
     traits.uniform_alignment = properties.limits.minUniformBufferOffsetAlignment;
 

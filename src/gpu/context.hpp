@@ -28,6 +28,9 @@ struct Traits {
     bool has_extended_storage_formats = false;  ///< shaderStorageImageExtendedFormats: r8, rg16f, r11f_g11f_b10f ...
     bool has_storage_write_without_format = false;
     bool has_debug_labels = false;
+    bool has_wireframe = false;                                ///< fillModeNonSolid
+    bool has_depth_clamp = false;                              ///< depthClamp
+    VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;  ///< of colour and depth attachments that are sampled
     std::uint32_t max_image_dimension = 0;
     VkDeviceSize storage_alignment = 256, uniform_alignment = 256;
     double timestamp_period_ns = 0;  ///< 0: this queue family has no timestamps

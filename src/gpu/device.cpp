@@ -249,6 +249,8 @@ Result<> create_device(Context& context) {
     const VkPhysicalDeviceFeatures available = query_features(context, context.physical_device).core;
     context.traits.has_extended_storage_formats = available.shaderStorageImageExtendedFormats == VK_TRUE;
     context.traits.has_storage_write_without_format = available.shaderStorageImageWriteWithoutFormat == VK_TRUE;
+    context.traits.has_wireframe = available.fillModeNonSolid == VK_TRUE;
+    context.traits.has_depth_clamp = available.depthClamp == VK_TRUE;
     // For who submits on a device of ours; the library itself needs none. Every 1.3 device has it.
     VkPhysicalDeviceVulkan12Features features12{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
@@ -266,7 +268,9 @@ Result<> create_device(Context& context) {
         .features = {.fullDrawIndexUint32 = available.fullDrawIndexUint32,
                      .imageCubeArray = available.imageCubeArray,
                      .independentBlend = available.independentBlend,
+                     .depthClamp = available.depthClamp,
                      .depthBiasClamp = available.depthBiasClamp,
+                     .fillModeNonSolid = available.fillModeNonSolid,
                      .samplerAnisotropy = available.samplerAnisotropy,
                      .fragmentStoresAndAtomics = available.fragmentStoresAndAtomics,
                      .shaderStorageImageExtendedFormats = available.shaderStorageImageExtendedFormats,
@@ -429,6 +433,8 @@ Result<Device> Device::adopt(const AdoptDesc& desc) {
     }
     context->traits.has_extended_storage_formats = enabled.core.shaderStorageImageExtendedFormats == VK_TRUE;
     context->traits.has_storage_write_without_format = enabled.core.shaderStorageImageWriteWithoutFormat == VK_TRUE;
+    context->traits.has_wireframe = enabled.core.fillModeNonSolid == VK_TRUE;
+    context->traits.has_depth_clamp = enabled.core.depthClamp == VK_TRUE;
     context->traits.has_debug_labels = has_debug_utils;
     if (Result<> loaded = context->vk.load_device(desc.device, has_debug_utils); !loaded)
         return failure(std::move(loaded));

@@ -59,7 +59,7 @@ Result<VkImage> create_image(Context& context, const ImageInfo& info) {
         .extent = info.extent,
         .mipLevels = info.mip_levels,
         .arrayLayers = info.array_layers,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .samples = info.samples,
         .tiling = VK_IMAGE_TILING_OPTIMAL,
         .usage = info.usage,
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
@@ -80,18 +80,23 @@ VkMemoryRequirements requirements_of(const Context& context, VkImage image) {
     return requirements;
 }
 
-Result<VkImageView> create_view(Context& context, const Image& image, std::uint32_t first_mip,
-                                std::uint32_t mip_count) {
+struct ViewPart {
+    std::uint32_t first_mip = 0, mip_count = 1;
+    std::uint32_t first_layer = 0, layer_count = 1;
+};
+
+Result<VkImageView> create_view(Context& context, const Image& image, VkImageViewType type, const ViewPart& part) {
     const VkImageViewCreateInfo create_info{
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
         .image = image.handle,
-        .viewType = view_type(image.info),
+        .viewType = type,
         .format = image.info.format,
         .subresourceRange = {.aspectMask = static_cast<VkImageAspectFlags>(
                                  has_depth(image.info.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
-                             .baseMipLevel = first_mip,
-                             .levelCount = mip_count,
-                             .layerCount = image.info.array_layers},
+                             .baseMipLevel = part.first_mip,
+                             .levelCount = part.mip_count,
+                             .baseArrayLayer = part.first_layer,
+                             .layerCount = part.layer_count},
     };
     VkImageView view = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateImageView(context.device, &create_info, nullptr, &view);
@@ -103,13 +108,20 @@ Result<VkImageView> create_view(Context& context, const Image& image, std::uint3
 /// The image is bound to its memory already.
 Result<> create_views(Context& context, Image& image) {
     if ((image.info.usage & viewable_usage) == 0) return {};
-    Result<VkImageView> whole = create_view(context, image, 0, image.info.mip_levels);
+    const VkImageViewType type = view_type(image.info);
+    const std::uint32_t mips = image.info.mip_levels, layers = image.info.array_layers;
+    Result<VkImageView> whole = create_view(context, image, type, {.mip_count = mips, .layer_count = layers});
     if (!whole) return failure(std::move(whole));
     image.view = *whole;
-    for (std::uint32_t mip = 0; mip < image.info.mip_levels; ++mip) {
-        Result<VkImageView> view = create_view(context, image, mip, 1);
+    for (std::uint32_t mip = 0; mip < mips; ++mip) {
+        Result<VkImageView> view = create_view(context, image, type, {.first_mip = mip, .layer_count = layers});
         if (!view) return failure(std::move(view));
         image.mip_views.push_back(*view);
+    }
+    for (std::uint32_t layer = 0; layers > 1 && layer < layers; ++layer) {
+        Result<VkImageView> view = create_view(context, image, VK_IMAGE_VIEW_TYPE_2D, {.first_layer = layer});
+        if (!view) return failure(std::move(view));
+        image.layer_views.push_back(*view);
     }
     return {};
 }
@@ -207,6 +219,7 @@ Image& Image::operator=(Image&& other) noexcept {
     std::swap(handle, other.handle);
     std::swap(view, other.view);
     std::swap(mip_views, other.mip_views);
+    std::swap(layer_views, other.layer_views);
     std::swap(info, other.info);
     std::swap(memory, other.memory);
     std::swap(context, other.context);
@@ -215,6 +228,7 @@ Image& Image::operator=(Image&& other) noexcept {
 Image::~Image() {
     if (handle == VK_NULL_HANDLE) return;
     for (const VkImageView mip_view : mip_views) context->vk.DestroyImageView(context->device, mip_view, nullptr);
+    for (const VkImageView layer_view : layer_views) context->vk.DestroyImageView(context->device, layer_view, nullptr);
     context->vk.DestroyImageView(context->device, view, nullptr);
     context->vk.DestroyImage(context->device, handle, nullptr);
 }

@@ -41,9 +41,11 @@ struct ImageInfo {
     std::uint32_t array_layers = 1;
     VkImageUsageFlags usage = 0;
     VkImageType type = VK_IMAGE_TYPE_2D;
+    VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
 };
 
-/// An image, one view of the whole and one of each mip level. With its own memory, or placed in somebody else's.
+/// An image, one view of the whole, one of each mip level, and of an array one of each layer's first level. With its
+/// own memory, or placed in somebody else's.
 class Image {
   public:
     Image() = default;
@@ -57,6 +59,7 @@ class Image {
     VkImage handle = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
     std::vector<VkImageView> mip_views;
+    std::vector<VkImageView> layer_views;  ///< only where there are several layers
     ImageInfo info{};
     Memory memory;
     Context* context = nullptr;
