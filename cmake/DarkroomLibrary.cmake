@@ -12,7 +12,7 @@ function(darkroom_shared_library name)
   foreach(part ${library_PARTS})
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
     target_link_libraries(${name} PRIVATE
-      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|compose|effects|looks)$>")
+      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|compose|effects|toml|looks)$>")
   endforeach()
   set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
     LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -30,7 +30,7 @@ darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS co
 # The headers name Vulkan types; a host calls Vulkan through whatever loader it has.
 target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)
 if(TARGET darkroom_looks)
-  darkroom_shared_library(darkroom_looks_shared OUTPUT darkroom_looks EXPORT looks PARTS looks)
+  darkroom_shared_library(darkroom_looks_shared OUTPUT darkroom_looks EXPORT looks PARTS toml looks)
   target_link_libraries(darkroom_looks_shared PUBLIC darkroom_shared)
 endif()
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "looks/toml_text.hpp"
+#include "toml/toml_text.hpp"
 
 namespace darkroom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "looks/toml_text.hpp"
+#include "toml/toml_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The edge to toml++: text to a tree, nodes to the values of core/param_text.hpp. Nothing of toml++ passes look.hpp.
+// The edge to toml++: text to a tree, nodes to the values of core/param_text.hpp. Public headers name nothing of toml++.
 
 #include <toml++/toml.h>
 #include <darkroom/result.hpp>
