@@ -61,6 +61,7 @@ struct Look {
 struct LookOptions {
     bool is_strict = false;                        ///< unknown keys and values out of range are errors, not warnings
     std::vector<std::string>* warnings = nullptr;  ///< "file:line:column: ..." of what was passed over
+    bool is_scene = false;                         ///< the file is a scene: its other tables are no slips
 };
 
 /// The flat table with nothing written in it.

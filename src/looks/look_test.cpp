@@ -229,6 +229,39 @@ TEST(Look, SurvivesWriting) {
     }
 }
 
+constexpr std::string_view scene_text =
+    "[scene]\nname = \"a\"\n[camera]\nfov = 80\n[environment]\nskybox = \"sky.hdr\"\n[ui]\n[prefabs.p]\n"
+    "template = \"lamp\"\n[entities.sun.light]\nintensity = 6\n[templates.t]\n[archetypes.wall]\n";
+
+TEST(Look, OfASceneOnlyItsOwnTablesAreRead) {
+    if (lacks({"bloom", "gaussian_blur"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    std::vector<std::string> warnings;
+    const LookOptions options{.is_strict = true, .warnings = &warnings, .is_scene = true};
+    const std::string scene(scene_text);
+    Result<Look> flat = parse_look(scene + "[post_process]\nbloom_intensity = 2\n", "a.toml", options);
+    ASSERT_TRUE(flat) << flat.error().text;
+    EXPECT_EQ(value_of(*flat, "bloom", "intensity"), "2.0");
+    Result<Look> stack = parse_look(scene + "[[stack]]\neffect = \"gaussian_blur\"\nradius = 3\n", "a.toml", options);
+    ASSERT_TRUE(stack) << stack.error().text;
+    EXPECT_FALSE(stack->is_flat);
+    EXPECT_EQ(value_of(*stack, "gaussian_blur", "radius"), "3");
+    const Result<Look> none = parse_look(scene_text, "a.toml", options);
+    ASSERT_TRUE(none) << none.error().text;
+    EXPECT_EQ(write_look(*none), write_look(default_look()));
+    EXPECT_TRUE(warnings.empty()) << warnings.front();
+}
+
+TEST(Look, OfASceneItsOwnTablesAreCheckedStill) {
+    const LookOptions options{.is_strict = true, .is_scene = true};
+    const auto error = [&](const std::string& look) {
+        const Result<Look> out = parse_look(std::string(scene_text) + look, "a.toml", options);
+        return out ? "accepted" : out.error().text;
+    };
+    EXPECT_TRUE(error("[post_process]\nblom = 2\n").starts_with("a.toml:15:1: unknown key 'blom'"));
+    EXPECT_TRUE(contains(error("[post_process]\n[[stack]]\n"), "[[stack]] beside [post_process]"));
+    EXPECT_TRUE(contains(error_of(scene_text, true), "unknown key 'camera'")) << "a look alone has no other tables";
+}
+
 TEST(Look, OverridesWinOverTheFileWhichWinsOverDefaults) {
     if (lacks({"bloom"})) GTEST_SKIP() << "an effect that this test names is not in this build";
     Look look = look_of("[post_process]\nbloom_intensity = 0.2\nbloom_threshold = 0.5\n");

@@ -23,8 +23,9 @@ Result<Look> LookReader::read(const toml::table& file) {
 
 void LookReader::read_top(const toml::table& file) {
     const std::vector<std::string> names{"format", "post_process", "stack"};
+    // Of a scene's other tables the reader of scenes reports what it does not know.
     for (const auto& [key, node] : file)
-        if (std::find(names.begin(), names.end(), key.str()) == names.end())
+        if (!options_.is_scene && std::find(names.begin(), names.end(), key.str()) == names.end())
             report(key.source().begin, Weight::Slip,
                    fmt::format("unknown key '{}'{}", printable(key.str()), suggestion(key.str(), names)));
     const toml::node* const format = file.get("format");
@@ -100,7 +101,7 @@ Result<Look> parse_look(std::string_view text, std::string shown_name, const Loo
 }
 
 Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) {
-    constexpr std::uintmax_t largest = 4u << 20;
+    const std::uintmax_t largest = options.is_scene ? 16U << 20 : 4U << 20;
     const std::string shown = printable(path.string());
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
