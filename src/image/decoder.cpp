@@ -281,6 +281,15 @@ std::vector<float> Decoder::numbers(std::size_t part, const std::string& attribu
     return values;
 }
 
+std::optional<double> Decoder::number(std::size_t part, const std::string& attribute) const {
+    const OIIO::ParamValue* found = state_->specs[part].find_attribute(attribute);
+    if (found == nullptr || found->type().basevalues() != 1) return std::nullopt;
+    if (found->type().basetype == OIIO::TypeDesc::FLOAT) return *static_cast<const float*>(found->data());
+    if (found->type().basetype == OIIO::TypeDesc::DOUBLE) return *static_cast<const double*>(found->data());
+    if (found->type().basetype == OIIO::TypeDesc::INT32) return *static_cast<const int*>(found->data());
+    return std::nullopt;
+}
+
 bool Decoder::has_attribute_starting(std::size_t part, std::string_view start) const {
     const auto& attributes = state_->specs[part].extra_attribs;
     return std::any_of(attributes.begin(), attributes.end(),

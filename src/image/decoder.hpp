@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -50,6 +51,8 @@ class Decoder {
     /// The numbers of an attribute of a part (one number, a point, a matrix by rows), empty if it has none of that
     /// name.
     [[nodiscard]] std::vector<float> numbers(std::size_t part, const std::string& attribute) const;
+    /// An attribute that is one number, in all its bits.
+    [[nodiscard]] std::optional<double> number(std::size_t part, const std::string& attribute) const;
     [[nodiscard]] bool has_attribute_starting(std::size_t part, std::string_view start) const;
 
     /// Hands out channels `first` to `first + count - 1` of the data window from top to bottom: the first row of the

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
 #include <optional>
@@ -32,12 +33,16 @@ struct FrameCamera {
     std::optional<Matrix> projection;       ///< camera to clip space
     /// Given with a field of view, the projection is made from it: y down, depth 0 at 0.1 and 1 at 1000.
     std::optional<double> vertical_field_of_view;  ///< degrees
+    std::optional<Matrix> previous_world_to_camera, previous_projection;
+    std::optional<float> near_distance, far_distance;  ///< far may be infinite
 };
 
 struct FrameOptions {
     LayerNames names;                              ///< go before the known names; see add_mapping
     std::optional<double> vertical_field_of_view;  ///< degrees; goes before the file's projection
-    std::filesystem::path camera_file;             ///< see read_camera; goes before what the frame's own file says
+    /// See read_camera; goes before what the frame's own file says. Of a camera that is not the file's, the previous
+    /// place and the distances are not known either.
+    std::filesystem::path camera_file;
 };
 
 /// Pixels that were not finite, and are now: NaN became 0, an infinity +-65504 (the largest half); alpha 1.
@@ -59,6 +64,8 @@ struct FrameFile {
     std::optional<Plane<3>> normals;   ///< world space; 0 where there is no surface
     std::optional<Plane<2>> velocity;  ///< previous minus current position, pixels, y down
     FrameCamera camera;
+    std::optional<double> time, delta_time;    ///< seconds
+    std::optional<std::uint64_t> frame_index;  ///< at most 2^53
     FileKind kind = FileKind::OpenExr;
     SampleKind samples = SampleKind::Half;  ///< of the colour, in the file
     PixelCounts counts;
@@ -70,8 +77,10 @@ struct FrameFile {
 /// primaries other than Rec. 709. The error text begins with the path.
 [[nodiscard]] Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options = {});
 
-/// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, worldToCamera
-/// and darkroom:projection. Colour is half, or float if `frame.samples` is; depth and motion are float, normals half.
+/// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, worldToCamera,
+/// and as attributes of our own darkroom:projection, previousWorldToCamera, previousProjection, near, far, time,
+/// deltaTime and frameIndex, bit for bit. Colour is half, or float if `frame.samples` is; depth and motion are float,
+/// normals half.
 [[nodiscard]] Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame);
 
 /// A camera in a TOML file: `world_to_camera` or `camera_to_world` (16 numbers, row by row as one writes a matrix for

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "image/primaries.hpp"
 #include "image/test_files.hpp"
@@ -30,6 +31,15 @@ FrameFile full_frame() {
     frame.camera.world_to_camera = matrix;
     matrix[3] = -7;
     frame.camera.projection = matrix;
+    matrix[0] = 1.0F / 3;
+    frame.camera.previous_world_to_camera = matrix;
+    matrix[15] = 1e-30F;
+    frame.camera.previous_projection = matrix;
+    frame.camera.near_distance = 0.1F;
+    frame.camera.far_distance = std::numeric_limits<float>::infinity();
+    frame.time = 1.0 / 3;
+    frame.delta_time = 1.0 / 24;
+    frame.frame_index = 5'000'000'000;
     return frame;
 }
 
@@ -44,8 +54,46 @@ TEST_F(ImageFrame, WhatIsWrittenIsRead) {
     EXPECT_EQ(back->velocity, frame.velocity);
     EXPECT_EQ(back->camera.world_to_camera, frame.camera.world_to_camera);
     EXPECT_EQ(back->camera.projection, frame.camera.projection);
+    EXPECT_EQ(back->camera.previous_world_to_camera, frame.camera.previous_world_to_camera);
+    EXPECT_EQ(back->camera.previous_projection, frame.camera.previous_projection);
+    EXPECT_EQ(back->camera.near_distance, frame.camera.near_distance);
+    EXPECT_EQ(back->camera.far_distance, frame.camera.far_distance);
+    EXPECT_EQ(back->time, frame.time);
+    EXPECT_EQ(back->delta_time, frame.delta_time);
+    EXPECT_EQ(back->frame_index, frame.frame_index);
     EXPECT_TRUE(back->warnings.empty());
     EXPECT_FALSE(write_frame(file("a.png"), frame));
+}
+
+TEST_F(ImageFrame, WhatIsNotGivenStaysUnknown) {
+    FrameFile frame = full_frame();
+    frame.camera = {.world_to_camera = frame.camera.world_to_camera};
+    frame.time = frame.delta_time = std::nullopt;
+    frame.frame_index = std::nullopt;
+    ASSERT_TRUE(write_frame(file("a.exr"), frame));
+    const auto back = read_frame(file("a.exr"));
+    ASSERT_TRUE(back) << back.error().text;
+    EXPECT_TRUE(back->camera.world_to_camera);
+    EXPECT_FALSE(back->camera.previous_world_to_camera || back->camera.previous_projection);
+    EXPECT_FALSE(back->camera.near_distance || back->camera.far_distance);
+    EXPECT_FALSE(back->time || back->delta_time || back->frame_index);
+}
+
+TEST_F(ImageFrame, AnotherCameraHasNoPast) {
+    ASSERT_TRUE(write_frame(file("a.exr"), full_frame()));
+    const auto wide = read_frame(file("a.exr"), {.vertical_field_of_view = 90});
+    ASSERT_TRUE(wide) << wide.error().text;
+    EXPECT_FALSE(wide->camera.previous_projection || wide->camera.far_distance);
+    EXPECT_TRUE(wide->time);
+}
+
+TEST_F(ImageFrame, SignsOfZeroAreKept) {
+    FrameFile frame = full_frame();
+    frame.color.pixels[0] = -0.0F;
+    ASSERT_TRUE(write_frame(file("a.exr"), frame));
+    const auto back = read_frame(file("a.exr"));
+    ASSERT_TRUE(back) << back.error().text;
+    EXPECT_TRUE(std::signbit(back->color.pixels[0]));
 }
 
 TEST_F(ImageFrame, MappingGoesBeforeTheKnownNames) {

@@ -87,6 +87,8 @@ void decode_srgb(Picture& color, SampleKind samples) {
 }
 
 void convert(Picture& color, const ColorMatrix& matrix) {
+    // Not even the sign of a zero may change in a picture that is in our primaries.
+    if (matrix == ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) return;
     constexpr double largest = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < color.pixels.size(); i += 4) {
         float* pixel = &color.pixels[i];
@@ -109,6 +111,7 @@ class FrameReader {
     Result<> read_normals();
     Result<> read_velocity();
     Result<> read_camera_of_file();
+    void read_time_of_file();
     void convert_color();
     [[nodiscard]] Result<> check(const ChannelSet& set, std::uint32_t components, const char* what) const;
     [[nodiscard]] const FilePart& part(const ChannelSet& set) const { return decoder_.parts()[set.part]; }
@@ -252,6 +255,22 @@ Result<> FrameReader::read_camera_of_file() {
     const double aspect = static_cast<double>(frame_.color.width) / frame_.color.height;
     camera.world_to_camera = matrix("worldtocamera");
     camera.projection = matrix("darkroom:projection");
+    camera.previous_world_to_camera = matrix("darkroom:previousWorldToCamera");
+    camera.previous_projection = matrix("darkroom:previousProjection");
+    const auto distance = [&](const char* name) -> std::optional<float> {
+        const std::optional<double> value = decoder_.number(found_.color.part, name);
+        if (!value || !(*value >= 0)) return std::nullopt;
+        return static_cast<float>(*value);
+    };
+    camera.near_distance = distance("darkroom:near");
+    camera.far_distance = distance("darkroom:far");
+    // What follows from another camera than the file's is known of the file's alone.
+    const auto forget = [&] {
+        camera.previous_world_to_camera.reset();
+        camera.previous_projection.reset();
+        camera.near_distance.reset();
+        camera.far_distance.reset();
+    };
     if (is_vray_) {
         if (camera.world_to_camera)
             for (std::size_t i = 0; i < 16; ++i)
@@ -265,6 +284,7 @@ Result<> FrameReader::read_camera_of_file() {
     if (!options_.camera_file.empty()) {
         auto given = read_camera(options_.camera_file);
         if (!given) return failure(std::move(given));
+        forget();
         if (given->world_to_camera) camera.world_to_camera = given->world_to_camera;
         if (given->projection || given->vertical_field_of_view) {
             camera.projection = given->projection;
@@ -275,12 +295,26 @@ Result<> FrameReader::read_camera_of_file() {
         if (!(*options_.vertical_field_of_view > 0 && *options_.vertical_field_of_view < 180))
             return user_error(fmt::format("a field of view of {} degrees; more than 0 and less than 180 is allowed",
                                           *options_.vertical_field_of_view));
+        forget();
         camera.projection.reset();
         camera.vertical_field_of_view = options_.vertical_field_of_view;
     }
     if (!camera.projection && camera.vertical_field_of_view)
         camera.projection = perspective(*camera.vertical_field_of_view, aspect);
     return {};
+}
+
+void FrameReader::read_time_of_file() {
+    const auto number = [&](const char* name) -> std::optional<double> {
+        const std::optional<double> value = decoder_.number(found_.color.part, name);
+        return value && std::isfinite(*value) ? value : std::nullopt;
+    };
+    frame_.time = number("darkroom:time");
+    frame_.delta_time = number("darkroom:deltaTime");
+    constexpr double most = 9007199254740992;  // 2^53: whole numbers beyond are not exact in a double
+    const std::optional<double> index = number("darkroom:frameIndex");
+    if (index && *index >= 0 && *index <= most && *index == std::floor(*index))
+        frame_.frame_index = static_cast<std::uint64_t>(*index);
 }
 
 Result<FrameFile> FrameReader::read() {
@@ -295,6 +329,7 @@ Result<FrameFile> FrameReader::read() {
     if (auto done = read_normals(); !done) return failure(std::move(done));
     if (auto done = read_velocity(); !done) return failure(std::move(done));
     if (auto done = read_camera_of_file(); !done) return failure(std::move(done));
+    read_time_of_file();
     const std::vector<float> aspect = decoder_.numbers(found_.color.part, "PixelAspectRatio");
     if (aspect.size() == 1 && std::abs(aspect[0] - 1) > 1e-3f)
         frame_.warnings.push_back(fmt::format("pixels are {:g} times as wide as high: taken as square", aspect[0]));

@@ -72,10 +72,23 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame) 
     constexpr std::array rec709{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
     spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), rec709.data());
     // OpenImageIO's name for the standard attribute worldToCamera.
-    if (frame.camera.world_to_camera)
-        spec.attribute("worldtocamera", OIIO::TypeMatrix44, frame.camera.world_to_camera->data());
-    if (frame.camera.projection)
-        spec.attribute("darkroom:projection", OIIO::TypeMatrix44, frame.camera.projection->data());
+    const auto add_matrix = [&](const char* name, const std::optional<Matrix>& matrix) {
+        if (matrix) spec.attribute(name, OIIO::TypeMatrix44, matrix->data());
+    };
+    const auto add_number = [&](const char* name, const auto& number) {
+        if (!number) return;
+        const double value = static_cast<double>(*number);
+        spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE), &value);
+    };
+    add_matrix("worldtocamera", frame.camera.world_to_camera);
+    add_matrix("darkroom:projection", frame.camera.projection);
+    add_matrix("darkroom:previousWorldToCamera", frame.camera.previous_world_to_camera);
+    add_matrix("darkroom:previousProjection", frame.camera.previous_projection);
+    add_number("darkroom:near", frame.camera.near_distance);
+    add_number("darkroom:far", frame.camera.far_distance);
+    add_number("darkroom:time", frame.time);
+    add_number("darkroom:deltaTime", frame.delta_time);
+    add_number("darkroom:frameIndex", frame.frame_index);
     return encode_to_file(path, FileKind::OpenExr, spec, OIIO::TypeFloat, samples.data());
 }
 
