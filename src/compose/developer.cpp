@@ -7,14 +7,14 @@
 #include <cstring>
 #include <optional>
 
+#include "compose/half.hpp"
+#include "core/assert.hpp"
 #include "gpu/context.hpp"
 #include "gpu/resources.hpp"
 
 namespace darkroom {
 
 namespace {
-
-constexpr VkFormat color_format = VK_FORMAT_R32G32B32A32_SFLOAT;
 
 /// A layer of the frame: what it is made of and where it goes.
 struct Layer {
@@ -23,13 +23,28 @@ struct Layer {
     std::uint32_t given = 0;  ///< numbers a pixel in `values`
     std::uint32_t kept = 0;   ///< numbers a pixel in the image; three-component formats are rarely sampled
     VkFormat format = VK_FORMAT_UNDEFINED;
-};
+    bool is_half = false;
 
-std::array<Layer, 4> layers_of(const DevelopInput& input) {
-    return {{{"color", input.color, 4, 4, color_format},
-             {"depth", input.depth, 1, 1, VK_FORMAT_R32_SFLOAT},
-             {"normals", input.normals, 3, 4, VK_FORMAT_R32G32B32A32_SFLOAT},
-             {"velocity", input.velocity, 2, 2, VK_FORMAT_R32G32_SFLOAT}}};
+    [[nodiscard]] VkDeviceSize texel() const { return VkDeviceSize{kept} * (is_half ? 2 : 4); }
+};
+using Layers = std::array<Layer, 4>;
+
+bool is_all_half(std::span<const float> values) {
+    return std::all_of(values.begin(), values.end(), [](float value) { return exact_half(value).has_value(); });
+}
+
+Layers layers_of(const DevelopInput& input) {
+    const auto layer = [](const char* name, std::span<const float> values, std::uint32_t given, std::uint32_t kept,
+                          VkFormat half, VkFormat whole) -> Layer {
+        const bool is_half = half != whole && is_all_half(values);
+        return {name, values, given, kept, is_half ? half : whole, is_half};
+    };
+    constexpr VkFormat half4 = VK_FORMAT_R16G16B16A16_SFLOAT, float4 = VK_FORMAT_R32G32B32A32_SFLOAT;
+    // Depth stays whole: a renderer's planar distance is, too.
+    return {layer("color", input.color, 4, 4, half4, float4),
+            layer("depth", input.depth, 1, 1, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32_SFLOAT),
+            layer("normals", input.normals, 3, 4, half4, float4),
+            layer("velocity", input.velocity, 2, 2, VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R32G32_SFLOAT)};
 }
 
 VkImageUsageFlags shader_usage(const gpu::Context& context, VkFormat format) {
@@ -49,15 +64,6 @@ VkBufferImageCopy whole(VkExtent2D extent) {
     return {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {extent.width, extent.height, 1}};
 }
 
-/// Images of one size, and the buffers that fill and read them.
-struct Images {
-    VkExtent2D extent{};
-    std::array<std::optional<gpu::Image>, 4> layers;
-    std::array<std::optional<gpu::Buffer>, 4> uploads;
-    gpu::Image target;
-    gpu::Buffer readback;
-};
-
 ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayout after) {
     return {.image = image.handle,
             .view = image.mip_views[0],
@@ -68,28 +74,78 @@ ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayo
             .final_layout = after};
 }
 
-}  // namespace
-
-CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const DevelopDesc& desc) {
-    const gpu::Context& context = device.context();
+/// All of a CompileDesc that follows from the target alone.
+CompileDesc compile_desc_for(Device& device, const DevelopDesc& desc) {
     const bool is_bytes = desc.target == DevelopTarget::Encoded8;
     const VkFormat target = is_bytes ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
-    const std::array<Layer, 4> layers = layers_of(input);
-    const auto format = [&](std::size_t i) {
-        return layers[i].values.empty() ? VK_FORMAT_UNDEFINED : layers[i].format;
-    };
-    return {.max_extent = input.extent,
-            .color = color_format,
-            .depth = format(1),
-            .normals = format(2),
-            .velocity = format(3),
-            .target = target,
-            .color_usage = shader_usage(context, color_format),
-            .target_usage = target_usage(context, target),
+    return {.target = target,
+            .target_usage = target_usage(device.context(), target),
             .target_domain = desc.target == DevelopTarget::SceneLinear ? Domain::SceneLinear : Domain::Encoded,
             .encodes_target = desc.target != DevelopTarget::SceneLinear,
             .kernels = desc.kernels,
             .fuse = desc.fuse};
+}
+
+CompileDesc compile_desc_for(Device& device, VkExtent2D extent, const Layers& layers, const DevelopDesc& desc) {
+    const auto format = [&](std::size_t i) {
+        return layers[i].values.empty() ? VK_FORMAT_UNDEFINED : layers[i].format;
+    };
+    CompileDesc out = compile_desc_for(device, desc);
+    out.max_extent = extent;
+    out.color = layers[0].format;
+    out.color_usage = shader_usage(device.context(), layers[0].format);
+    out.depth = format(1);
+    out.normals = format(2);
+    out.velocity = format(3);
+    return out;
+}
+
+/// Do two descriptions that one DevelopDesc made ask for the same?
+bool is_same(const CompileDesc& a, const CompileDesc& b) {
+    return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
+           a.color == b.color && a.color_usage == b.color_usage && a.depth == b.depth && a.normals == b.normals &&
+           a.velocity == b.velocity && a.ui == b.ui && a.has_shadows == b.has_shadows;
+}
+
+/// Images of one size for pictures from main memory, and the buffers that fill them.
+struct Uploads {
+    std::array<std::optional<gpu::Image>, 4> images;
+    std::array<std::optional<gpu::Buffer>, 4> buffers;
+};
+
+void fill(const Layer& layer, std::byte* out) {
+    std::array<float, 4> texel{0, 0, 0, 1};
+    for (std::size_t at = 0; at < layer.values.size(); at += layer.given, out += layer.texel()) {
+        std::copy_n(layer.values.begin() + static_cast<std::ptrdiff_t>(at), layer.given, texel.begin());
+        if (!layer.is_half) {
+            std::memcpy(out, texel.data(), layer.texel());
+            continue;
+        }
+        std::array<std::uint16_t, 4> halves{};
+        for (std::uint32_t i = 0; i < layer.kept; ++i) halves[i] = *exact_half(texel[i]);
+        std::memcpy(out, halves.data(), layer.texel());
+    }
+}
+
+}  // namespace
+
+CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const DevelopDesc& desc) {
+    return compile_desc_for(device, input.extent, layers_of(input), desc);
+}
+
+CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const DevelopDesc& desc) {
+    const Frame& frame = input.frame;
+    CompileDesc out = compile_desc_for(device, desc);
+    out.max_extent = frame.color.used_region().extent;
+    out.color = frame.color.format;
+    out.color_usage = input.color_usage;
+    out.depth = frame.depth.format;
+    out.normals = frame.normals.format;
+    out.velocity = frame.velocity.format;
+    out.ui = frame.ui.format;
+    out.has_shadows = std::any_of(frame.lights.begin(), frame.lights.end(),
+                                  [](const Light& light) { return light.cascades.is_given(); });
+    return out;
 }
 
 Result<> check_extent(Device& device, VkExtent2D extent) {
@@ -106,14 +162,16 @@ struct Developer::State {
     std::optional<CompileDesc> compiled;
     const Composer* compiled_composer = nullptr;
     Plan plan;
-    std::optional<Images> images;
+    std::optional<Uploads> uploads;
+    gpu::Image target;
+    std::optional<Readback> readback;
 
     gpu::Context& context() const { return device->context(); }
 
-    Result<> check(const DevelopInput& input) const {
-        if (Result<> done = check_extent(*device, input.extent); !done) return done;
-        const auto [width, height] = input.extent;
-        for (const Layer& layer : layers_of(input)) {
+    Result<> check(VkExtent2D extent, const Layers& layers) const {
+        if (Result<> done = check_extent(*device, extent); !done) return done;
+        const auto [width, height] = extent;
+        for (const Layer& layer : layers) {
             const std::size_t wanted = std::size_t{width} * height * layer.given;
             const bool is_required = layer.given == 4;
             if (layer.values.size() != wanted && (is_required || !layer.values.empty()))
@@ -123,126 +181,100 @@ struct Developer::State {
         return {};
     }
 
-    Result<> compile(Composer& composer, const DevelopInput& input) {
-        const CompileDesc wanted = compile_desc_for(*device, input, desc);
-        const bool is_same =
-            compiled && compiled_composer == &composer && compiled->max_extent.width == wanted.max_extent.width &&
-            compiled->max_extent.height == wanted.max_extent.height && compiled->depth == wanted.depth &&
-            compiled->normals == wanted.normals && compiled->velocity == wanted.velocity;
-        if (is_same) return {};
+    /// Plan, kernels, target and read-back.
+    Result<> compile(Composer& composer, const CompileDesc& wanted) {
+        if (compiled && compiled_composer == &composer && is_same(*compiled, wanted)) return {};
         compiled.reset();
-        images.reset();
+        uploads.reset();
         Result<Plan> made = composer.compile(wanted);
         if (!made) return failure(std::move(made));
         plan = std::move(*made);
         composer.wait_for_kernels();
-        if (Result<> done = make_images(wanted, input); !done) return done;
+        auto image = gpu::Image::create(context(), {.name = "target",
+                                                    .format = wanted.target,
+                                                    .extent = {wanted.max_extent.width, wanted.max_extent.height, 1},
+                                                    .usage = wanted.target_usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+        if (!image) return failure(std::move(image));
+        target = std::move(*image);
+        auto read = Readback::create(context(), target_before_reading());
+        if (!read) return failure(std::move(read));
+        readback = std::move(*read);
         compiled = wanted;
         compiled_composer = &composer;
         return {};
     }
 
-    Result<> make_images(const CompileDesc& wanted, const DevelopInput& input) {
-        Images made{.extent = input.extent};
-        const VkExtent3D extent{input.extent.width, input.extent.height, 1};
-        const VkDeviceSize pixels = VkDeviceSize{extent.width} * extent.height;
-        const std::array<Layer, 4> layers = layers_of(input);
+    [[nodiscard]] ImageRef target_before_reading() const {
+        return reference_to(target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    }
+
+    Result<> make_uploads(VkExtent2D extent, const Layers& layers) {
+        if (uploads) return {};
+        Uploads made;
         for (std::size_t i = 0; i < layers.size(); ++i) {
             const Layer& layer = layers[i];
             if (layer.values.empty()) continue;
             auto image = gpu::Image::create(
                 context(), {.name = layer.name,
                             .format = layer.format,
-                            .extent = extent,
+                            .extent = {extent.width, extent.height, 1},
                             .usage = shader_usage(context(), layer.format) | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
             if (!image) return failure(std::move(image));
-            auto buffer = gpu::Buffer::create(context(), pixels * layer.kept * sizeof(float),
+            auto buffer = gpu::Buffer::create(context(), VkDeviceSize{extent.width} * extent.height * layer.texel(),
                                               VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, layer.name);
             if (!buffer) return failure(std::move(buffer));
-            made.layers[i] = std::move(*image);
-            made.uploads[i] = std::move(*buffer);
+            made.images[i] = std::move(*image);
+            made.buffers[i] = std::move(*buffer);
         }
-        auto target = gpu::Image::create(context(), {.name = "target",
-                                                     .format = wanted.target,
-                                                     .extent = extent,
-                                                     .usage = wanted.target_usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-        if (!target) return failure(std::move(target));
-        const VkDeviceSize texel = desc.target == DevelopTarget::Encoded8 ? 4 : 16;
-        auto readback = gpu::Buffer::create(context(), pixels * texel, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                            gpu::Memory::Kind::Readback, "developed picture");
-        if (!readback) return failure(std::move(readback));
-        made.target = std::move(*target);
-        made.readback = std::move(*readback);
-        images = std::move(made);
+        uploads = std::move(made);
         return {};
     }
 
-    void fill(const DevelopInput& input) {
-        const std::array<Layer, 4> layers = layers_of(input);
-        for (std::size_t i = 0; i < layers.size(); ++i) {
-            const Layer& layer = layers[i];
-            if (layer.values.empty()) continue;
-            std::byte* out = images->uploads[i]->memory.mapped;
-            if (layer.given == layer.kept) {
-                std::memcpy(out, layer.values.data(), layer.values.size_bytes());
-                continue;
-            }
-            for (std::size_t at = 0; at < layer.values.size(); at += layer.given, out += layer.kept * sizeof(float)) {
-                std::array<float, 4> texel{0, 0, 0, 1};
-                std::copy_n(layer.values.begin() + static_cast<std::ptrdiff_t>(at), layer.given, texel.begin());
-                std::memcpy(out, texel.data(), layer.kept * sizeof(float));
-            }
-        }
-    }
-
-    Result<> run(Composer& composer, const DevelopInput& input) {
-        Result<> recorded{};
-        const Result<> submitted =
-            gpu::submit_and_wait(context(), "developing a picture",
-                                 [&](VkCommandBuffer commands) { recorded = record(composer, input, commands); });
-        if (!recorded) return recorded;
-        return submitted;
-    }
-
-    Result<> record(Composer& composer, const DevelopInput& input, VkCommandBuffer commands) {
-        const VkBufferImageCopy copy = whole(input.extent);
-        Frame frame{.camera = input.camera, .time = input.time, .frame_index = input.frame_index};
-        ImageRef* const slots[] = {&frame.color, &frame.depth, &frame.normals, &frame.velocity};
-        for (std::size_t i = 0; i < images->layers.size(); ++i) {
-            if (!images->layers[i]) continue;
-            const gpu::Image& image = *images->layers[i];
+    void record_uploads(VkExtent2D extent, VkCommandBuffer commands) const {
+        const VkBufferImageCopy copy = whole(extent);
+        for (std::size_t i = 0; i < uploads->images.size(); ++i) {
+            if (!uploads->images[i]) continue;
+            const gpu::Image& image = *uploads->images[i];
             gpu::transition(context(), commands, image, VK_IMAGE_LAYOUT_UNDEFINED,
                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-            context().vk.CmdCopyBufferToImage(commands, images->uploads[i]->handle, image.handle,
+            context().vk.CmdCopyBufferToImage(commands, uploads->buffers[i]->handle, image.handle,
                                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-            *slots[i] = reference_to(image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
         }
-        frame.target = reference_to(images->target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-        if (Result<> recorded = composer.record(commands, frame); !recorded) return recorded;
-        context().vk.CmdCopyImageToBuffer(commands, images->target.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                          images->readback.handle, 1, &copy);
-        const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                       .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                       .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                       .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-        const VkDependencyInfo dependency{
-            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
-        context().vk.CmdPipelineBarrier2(commands, &dependency);
-        return {};
     }
 
-    DevelopedPicture read() const {
-        DevelopedPicture out{.extent = images->extent};
-        const std::size_t numbers = std::size_t{out.extent.width} * out.extent.height * 4;
-        const std::byte* const mapped = images->readback.memory.mapped;
-        if (desc.target == DevelopTarget::Encoded8) {
-            out.bytes.resize(numbers);
-            std::memcpy(out.bytes.data(), mapped, numbers);
-        } else {
-            out.pixels.resize(numbers);
-            std::memcpy(out.pixels.data(), mapped, numbers * sizeof(float));
-        }
+    /// The frame's images as record_uploads leaves them.
+    [[nodiscard]] Frame uploaded_frame(const DevelopInput& input) const {
+        Frame frame{.camera = input.camera,
+                    .time = input.time,
+                    .delta_time = input.delta_time,
+                    .frame_index = input.frame_index};
+        ImageRef* const slots[] = {&frame.color, &frame.depth, &frame.normals, &frame.velocity};
+        for (std::size_t i = 0; i < uploads->images.size(); ++i)
+            if (uploads->images[i])
+                *slots[i] =
+                    reference_to(*uploads->images[i], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
+        return frame;
+    }
+
+    /// `before`, the composer and the read-back in one submission.
+    Result<> run(Composer& composer, const Frame& frame, const RecordBefore& before, const FrameReadback* layers) {
+        Result<> recorded{};
+        Result<> submitted = gpu::submit_and_wait(context(), "developing a picture", [&](VkCommandBuffer commands) {
+            if (before) recorded = before(commands);
+            if (!recorded) return;
+            if (layers != nullptr) layers->record(commands);
+            recorded = composer.record(commands, frame);
+            if (recorded) readback->record(commands);
+        });
+        return recorded ? submitted : recorded;
+    }
+
+    [[nodiscard]] DevelopedPicture picture() const {
+        DevelopedPicture out{.extent = {target.info.extent.width, target.info.extent.height}};
+        if (desc.target == DevelopTarget::Encoded8)
+            out.bytes = readback->bytes();
+        else
+            out.pixels = readback->floats(4);
         return out;
     }
 };
@@ -256,11 +288,49 @@ Developer& Developer::operator=(Developer&&) noexcept = default;
 Developer::~Developer() = default;
 
 Result<DevelopedPicture> Developer::develop(Composer& composer, const DevelopInput& input) {
-    if (Result<> done = state_->check(input); !done) return failure(std::move(done));
-    if (Result<> done = state_->compile(composer, input); !done) return failure(std::move(done));
-    state_->fill(input);
-    if (Result<> done = state_->run(composer, input); !done) return failure(std::move(done));
-    return state_->read();
+    State& state = *state_;
+    const Layers layers = layers_of(input);
+    if (Result<> done = state.check(input.extent, layers); !done) return failure(std::move(done));
+    const CompileDesc wanted = compile_desc_for(*state.device, input.extent, layers, state.desc);
+    if (Result<> done = state.compile(composer, wanted); !done) return failure(std::move(done));
+    if (Result<> done = state.make_uploads(input.extent, layers); !done) return failure(std::move(done));
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (state.uploads->buffers[i]) fill(layers[i], state.uploads->buffers[i]->memory.mapped);
+    Frame frame = state.uploaded_frame(input);
+    frame.target = reference_to(state.target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    const RecordBefore upload = [&](VkCommandBuffer commands) -> Result<> {
+        state.record_uploads(input.extent, commands);
+        return {};
+    };
+    if (Result<> done = state.run(composer, frame, upload, nullptr); !done) return failure(std::move(done));
+    return state.picture();
+}
+
+Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFrame& input, FrameLayers* layers) {
+    State& state = *state_;
+    Frame frame = input.frame;
+    DARKROOM_ASSERT(frame.color.is_given());
+    if (Result<> done = check_extent(*state.device, frame.color.used_region().extent); !done)
+        return failure(std::move(done));
+    const CompileDesc wanted = compile_desc_for(*state.device, input, state.desc);
+    if (Result<> done = state.compile(composer, wanted); !done) return failure(std::move(done));
+    frame.target = reference_to(state.target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    std::optional<FrameReadback> readback;
+    if (layers != nullptr) {
+        Result<FrameReadback> made = FrameReadback::create(state.context(), frame);
+        if (!made) return failure(std::move(made));
+        readback = std::move(*made);
+    }
+    for (ImageRef* const image : {&frame.color, &frame.depth, &frame.normals, &frame.velocity}) {
+        if (image->final_layout == VK_IMAGE_LAYOUT_UNDEFINED) image->final_layout = image->layout;
+        if (!readback) continue;
+        image->last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  // the read-back's
+        image->last_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    }
+    Result<> done = state.run(composer, frame, input.record_before, readback ? &*readback : nullptr);
+    if (!done) return failure(std::move(done));
+    if (readback) *layers = readback->layers();
+    return state.picture();
 }
 
 const Plan& Developer::plan() const { return state_->plan; }

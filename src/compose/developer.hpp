@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Headless developing: pictures in main memory go through a Composer on a device of our own and come back. It uploads,
-// records, submits, waits and reads back; it reads no files. What hosts do with their own command buffers is in
-// darkroom/composer.hpp, and this does the same with buffers of its own.
+// Headless developing: pictures in main memory, or on the device already, go through a Composer on a device of our own
+// and come back. It uploads, records, submits, waits and reads back; it reads no files. What hosts do with their own
+// command buffers is in darkroom/composer.hpp, and this does the same with buffers of its own.
 
 #include <cstdint>
 #include <darkroom/composer.hpp>
@@ -10,6 +10,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "compose/readback.hpp"
 
 namespace darkroom {
 
@@ -22,7 +24,15 @@ struct DevelopInput {
     std::span<const float> velocity;  ///< x, y
     Camera camera;
     double time = 0;
+    double delta_time = 1.0 / 60;
     std::uint64_t frame_index = 0;
+};
+
+/// A frame whose images are on the device, or will be when `record_before` has run.
+struct DeviceFrame {
+    Frame frame;                                                 ///< without target
+    VkImageUsageFlags color_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of the colour image
+    RecordBefore record_before;                                  ///< goes first, in the same submission
 };
 
 /// Encoded8: bytes for the screen, in DevelopedPicture::bytes. EncodedFloat: the same before it is rounded, for 16-bit
@@ -35,14 +45,11 @@ struct DevelopDesc {
     bool fuse = true;
 };
 
-struct DevelopedPicture {
-    VkExtent2D extent{};
-    std::vector<std::uint8_t> bytes;  ///< Encoded8: four a pixel
-    std::vector<float> pixels;        ///< else: four a pixel
-};
-
-/// What the Composer is compiled for, given an input and a target: also what `darkroom plan` plans.
+/// What the Composer is compiled for, given an input and a target: also what `darkroom plan` plans. Layers whose
+/// numbers are all halves are kept as halves, as a renderer has them: the kernels are then the same, and so are the
+/// bits.
 [[nodiscard]] CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const DevelopDesc& desc);
+[[nodiscard]] CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const DevelopDesc& desc);
 
 /// Can this device hold images of this size?
 [[nodiscard]] Result<> check_extent(Device& device, VkExtent2D extent);
@@ -58,6 +65,10 @@ class Developer {
     /// Develops one picture. Compiles the composer first where size or layers differ from the last one's, and waits for
     /// its leaner kernels.
     [[nodiscard]] Result<DevelopedPicture> develop(Composer& composer, const DevelopInput& input);
+    /// The same for images on the device: what draws them, the composer and the read-back are one submission. `layers`:
+    /// where what the composer was given goes, if it is wanted.
+    [[nodiscard]] Result<DevelopedPicture> develop(Composer& composer, const DeviceFrame& input,
+                                                   FrameLayers* layers = nullptr);
     /// The plan of the last develop().
     [[nodiscard]] const Plan& plan() const;
 

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "compose/developer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <darkroom/effects.hpp>
+#include <limits>
+
+#include "compose/half.hpp"
+#include "gpu/test_run.hpp"
+
+namespace darkroom {
+namespace {
+
+namespace support = gpu::test;
+
+TEST(ComposeHalf, EveryHalfComesBackAndNothingElseIsOne) {
+    for (std::uint32_t bits = 0; bits <= 0xffffU; ++bits) {
+        const auto half = static_cast<std::uint16_t>(bits);
+        const float value = half_to_float(half);
+        if (!std::isfinite(value)) {
+            EXPECT_EQ(bits & 0x7c00U, 0x7c00U);
+            continue;
+        }
+        ASSERT_EQ(exact_half(value), half) << value;
+        const float above = std::nextafter(value, std::numeric_limits<float>::infinity());
+        ASSERT_FALSE(exact_half(above)) << value;
+    }
+    EXPECT_EQ(half_to_float(0x0001), std::ldexp(1.0F, -24));
+    EXPECT_EQ(half_to_float(0xc000), -2.0F);
+    for (const float none : {65520.0F, 1e30F, 0.1F, std::numeric_limits<float>::infinity(), std::nanf("")})
+        EXPECT_FALSE(exact_half(none)) << none;
+}
+
+/// Every effect of the flat table that is on, and those that depend on the frame's number.
+void fill(Composer& composer) {
+    for (const EffectInfo* const effect : all_effects())
+        if (effect->flat.documented >= 0) composer.add(*effect, nullptr, {.source = scene_color});
+}
+
+ImageRef reference_to(const support::Picture& picture) {
+    return {.image = picture.image.handle,
+            .view = picture.image.mip_views[0],
+            .format = picture.image.info.format,
+            .extent = {picture.image.info.extent.width, picture.image.info.extent.height},
+            .layout = picture.layout};
+}
+
+support::Pixels scene(std::uint32_t width, std::uint32_t height) {
+    return support::make_pixels(width, height, [](std::uint32_t x, std::uint32_t y) {
+        // All of them halves.
+        const float red = x == 5 && y == 3 ? 300.0F : static_cast<float>(x) / 16;
+        return std::array{red, static_cast<float>(y) / 8, 0.25F, 0.5F};
+    });
+}
+
+TEST(ComposeDeveloper, ImagesOfTheDeviceAndOfMainMemoryGiveTheSameBytes) {
+    Device& device = support::device();
+    gpu::Context& context = device.context();
+    const support::Pixels pixels = scene(33, 17);
+    const support::Pixels depth = support::make_pixels(33, 17, [](std::uint32_t x, std::uint32_t) {
+        return std::array{1.0F + static_cast<float>(x) / 3, 0.0F, 0.0F, 1.0F};
+    });
+    const support::Picture color = support::upload(context, pixels, VK_FORMAT_R16G16B16A16_SFLOAT);
+    const support::Picture planar = support::upload(context, depth, VK_FORMAT_R32_SFLOAT);
+    for (const DevelopTarget target :
+         {DevelopTarget::Encoded8, DevelopTarget::EncodedFloat, DevelopTarget::SceneLinear}) {
+        Composer composer(device, {.frames_in_flight = 1});
+        fill(composer);
+        Developer developer(device, {.target = target});
+        const DeviceFrame on_device{
+            .frame = {.color = reference_to(color), .depth = reference_to(planar), .time = 2, .frame_index = 3},
+            .color_usage = color.image.info.usage};
+        FrameLayers layers;
+        const Result<DevelopedPicture> first = developer.develop(composer, on_device, &layers);
+        ASSERT_TRUE(first) << first.error().text;
+        EXPECT_EQ(layers.color, pixels.rgba);
+        ASSERT_EQ(layers.depth.size(), 33U * 17U);
+        EXPECT_EQ(layers.depth[4], 1.0F + 4.0F / 3);
+        EXPECT_TRUE(layers.normals.empty());
+
+        const DevelopInput in_memory{
+            .extent = {33, 17}, .color = layers.color, .depth = layers.depth, .time = 2, .frame_index = 3};
+        EXPECT_EQ(compile_desc_for(device, in_memory, {}).color, VK_FORMAT_R16G16B16A16_SFLOAT);
+        const Result<DevelopedPicture> second = developer.develop(composer, in_memory);
+        ASSERT_TRUE(second) << second.error().text;
+        EXPECT_EQ(first->bytes, second->bytes);
+        EXPECT_EQ(first->pixels, second->pixels);
+        // And back again: nothing of the other way is left over.
+        const Result<DevelopedPicture> third = developer.develop(composer, on_device);
+        ASSERT_TRUE(third) << third.error().text;
+        EXPECT_EQ(first->bytes, third->bytes);
+        EXPECT_EQ(first->pixels, third->pixels);
+    }
+}
+
+TEST(ComposeDeveloper, WhatIsRecordedBeforeIsSeenAndItsErrorEndsIt) {
+    Device& device = support::device();
+    gpu::Context& context = device.context();
+    const support::Picture color = support::blank(context, {8, 8}, VK_FORMAT_R16G16B16A16_SFLOAT);
+    Composer composer(device, {.frames_in_flight = 1});
+    Developer developer(device, {.target = DevelopTarget::SceneLinear});
+    DeviceFrame input{.frame = {.color = reference_to(color)}, .color_usage = color.image.info.usage};
+    input.record_before = [&](VkCommandBuffer commands) -> Result<> {
+        const VkClearColorValue value{.float32 = {0.5F, 2, 4, 1}};
+        const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        gpu::transition(context, commands, color.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+        context.vk.CmdClearColorImage(commands, color.image.handle, VK_IMAGE_LAYOUT_GENERAL, &value, 1, &range);
+        gpu::transition(context, commands, color.image, VK_IMAGE_LAYOUT_GENERAL, color.layout);
+        return {};
+    };
+    for (int i = 0; i < 2; ++i) {
+        FrameLayers layers;
+        const Result<DevelopedPicture> picture = developer.develop(composer, input, &layers);
+        ASSERT_TRUE(picture) << picture.error().text;
+        EXPECT_EQ(picture->pixels[1], 2);
+        EXPECT_EQ(layers.color[2], 4);
+    }
+    const Result<FrameLayers> layers = read_layers(device, input.frame, input.record_before);
+    ASSERT_TRUE(layers) << layers.error().text;
+    EXPECT_EQ(layers->color[0], 0.5F);
+    input.record_before = [](VkCommandBuffer) -> Result<> { return user_error("no"); };
+    const Result<DevelopedPicture> failed = developer.develop(composer, input);
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(failed.error().text, "no");
+}
+
+TEST(ComposeDeveloper, ReadsPicturesOfBytesAndHalves) {
+    gpu::Context& context = support::device().context();
+    const support::Pixels pixels = scene(3, 2);
+    const support::Picture halves = support::upload(context, pixels, VK_FORMAT_R16G16B16A16_SFLOAT);
+    const Result<DevelopedPicture> floats = read_picture(support::device(), reference_to(halves), {});
+    ASSERT_TRUE(floats) << floats.error().text;
+    EXPECT_EQ(floats->pixels, pixels.rgba);
+    const support::Picture bytes = support::upload(context, pixels, VK_FORMAT_R8G8B8A8_UNORM);
+    const Result<DevelopedPicture> read = read_picture(support::device(), reference_to(bytes), {});
+    ASSERT_TRUE(read) << read.error().text;
+    ASSERT_EQ(read->bytes.size(), 24U);
+    EXPECT_EQ(read->bytes[2], 64);
+    ImageRef other = reference_to(bytes);
+    other.format = VK_FORMAT_R8_UNORM;
+    EXPECT_FALSE(read_picture(support::device(), other, {}));
+}
+
+}  // namespace
+}  // namespace darkroom

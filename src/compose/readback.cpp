@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "compose/readback.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+#include <string_view>
+
+#include "compose/half.hpp"
+#include "core/assert.hpp"
+
+namespace darkroom {
+
+namespace {
+
+struct Layout {
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    std::uint32_t channels = 0;
+    std::uint32_t bytes = 0;  ///< of one channel
+};
+constexpr std::array layouts{
+    Layout{VK_FORMAT_R8G8B8A8_UNORM, 4, 1},      Layout{VK_FORMAT_R16_SFLOAT, 1, 2},
+    Layout{VK_FORMAT_R16G16_SFLOAT, 2, 2},       Layout{VK_FORMAT_R16G16B16A16_SFLOAT, 4, 2},
+    Layout{VK_FORMAT_R32_SFLOAT, 1, 4},          Layout{VK_FORMAT_R32G32_SFLOAT, 2, 4},
+    Layout{VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4},
+};
+
+const Layout* layout_of(VkFormat format) {
+    for (const Layout& layout : layouts)
+        if (layout.format == format) return &layout;
+    return nullptr;
+}
+
+void barrier(const gpu::Context& context, VkCommandBuffer commands, const ImageRef& image, VkImageLayout from,
+             VkImageLayout to) {
+    const VkImageMemoryBarrier2 of_image{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+        .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+        .srcAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+        .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+        .oldLayout = from,
+        .newLayout = to,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = image.image,
+        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, image.mip_level, 1, image.array_layer, 1},
+    };
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &of_image};
+    context.vk.CmdPipelineBarrier2(commands, &dependency);
+}
+
+void barrier_to_host(const gpu::Context& context, VkCommandBuffer commands) {
+    const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                   .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                   .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+                                   .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+    const VkDependencyInfo dependency{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &to_host};
+    context.vk.CmdPipelineBarrier2(commands, &dependency);
+}
+
+float number(const std::byte* at, std::uint32_t bytes) {
+    if (bytes == 1) return static_cast<float>(std::to_integer<int>(*at)) / 255.0F;
+    if (bytes == 2) {
+        std::uint16_t half = 0;
+        std::memcpy(&half, at, sizeof half);
+        return half_to_float(half);
+    }
+    float value = 0;
+    std::memcpy(&value, at, sizeof value);
+    return value;
+}
+
+/// `body` records into a buffer that is submitted and waited for.
+Result<> submit(gpu::Context& context, const RecordBefore& before, const std::function<void(VkCommandBuffer)>& body) {
+    Result<> recorded{};
+    Result<> submitted = gpu::submit_and_wait(context, "reading a picture", [&](VkCommandBuffer commands) {
+        if (before) recorded = before(commands);
+        if (recorded) body(commands);
+    });
+    return recorded ? submitted : recorded;
+}
+
+}  // namespace
+
+Result<Readback> Readback::create(gpu::Context& context, const ImageRef& image) {
+    const Layout* const layout = layout_of(image.format);
+    if (layout == nullptr)
+        return user_error(
+            fmt::format("an image of VkFormat {} cannot be read back, only RGBA8 and floats of 16 or 32 bits",
+                        static_cast<int>(image.format)));
+    const VkExtent2D extent = image.used_region().extent;
+    const VkDeviceSize bytes = VkDeviceSize{extent.width} * extent.height * layout->channels * layout->bytes;
+    Result<gpu::Buffer> buffer = gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                                     gpu::Memory::Kind::Readback, "read-back picture");
+    if (!buffer) return failure(std::move(buffer));
+    Readback out;
+    out.context_ = &context;
+    out.image_ = image;
+    out.buffer_ = std::move(*buffer);
+    return out;
+}
+
+void Readback::record(VkCommandBuffer commands) const {
+    const VkRect2D region = image_.used_region();
+    const VkBufferImageCopy copy{
+        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, image_.mip_level, image_.array_layer, 1},
+        .imageOffset = {region.offset.x, region.offset.y, 0},
+        .imageExtent = {region.extent.width, region.extent.height, 1}};
+    barrier(*context_, commands, image_, image_.layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    context_->vk.CmdCopyImageToBuffer(commands, image_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer_.handle, 1,
+                                      &copy);
+    barrier(*context_, commands, image_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image_.layout);
+    barrier_to_host(*context_, commands);
+}
+
+std::vector<float> Readback::floats(std::uint32_t channels) const {
+    const Layout& layout = *layout_of(image_.format);
+    DARKROOM_ASSERT(channels <= layout.channels);
+    const VkExtent2D extent = image_.used_region().extent;
+    const std::size_t pixels = std::size_t{extent.width} * extent.height;
+    std::vector<float> out(pixels * channels);
+    const std::byte* at = buffer_.memory.mapped;
+    if (layout.bytes == sizeof(float) && layout.channels == channels) {
+        std::memcpy(out.data(), at, out.size() * sizeof(float));
+        return out;
+    }
+    for (std::size_t pixel = 0; pixel < pixels; ++pixel, at += std::size_t{layout.channels} * layout.bytes)
+        for (std::uint32_t c = 0; c < channels; ++c)
+            out[pixel * channels + c] = number(at + std::size_t{c} * layout.bytes, layout.bytes);
+    return out;
+}
+
+std::vector<std::uint8_t> Readback::bytes() const {
+    DARKROOM_ASSERT(image_.format == VK_FORMAT_R8G8B8A8_UNORM);
+    const VkExtent2D extent = image_.used_region().extent;
+    std::vector<std::uint8_t> out(std::size_t{extent.width} * extent.height * 4);
+    std::memcpy(out.data(), buffer_.memory.mapped, out.size());
+    return out;
+}
+
+Result<FrameReadback> FrameReadback::create(gpu::Context& context, const Frame& frame) {
+    FrameReadback out;
+    out.extent_ = frame.color.used_region().extent;
+    const auto add = [&](const ImageRef& image, std::optional<Readback>& slot) -> Result<> {
+        if (!image.is_given()) return {};
+        Result<Readback> made = Readback::create(context, image);
+        if (!made) return failure(std::move(made));
+        slot = std::move(*made);
+        return {};
+    };
+    if (Result<> done = add(frame.color, out.color_); !done) return failure(std::move(done));
+    if (Result<> done = add(frame.depth, out.depth_); !done) return failure(std::move(done));
+    if (Result<> done = add(frame.normals, out.normals_); !done) return failure(std::move(done));
+    if (Result<> done = add(frame.velocity, out.velocity_); !done) return failure(std::move(done));
+    return out;
+}
+
+void FrameReadback::record(VkCommandBuffer commands) const {
+    for (const std::optional<Readback>* const layer : {&color_, &depth_, &normals_, &velocity_})
+        if (*layer) (*layer)->record(commands);
+}
+
+FrameLayers FrameReadback::layers() const {
+    FrameLayers out{.extent = extent_};
+    if (color_) out.color = color_->floats(4);
+    if (depth_) out.depth = depth_->floats(1);
+    if (normals_) out.normals = normals_->floats(3);
+    if (velocity_) out.velocity = velocity_->floats(2);
+    return out;
+}
+
+Result<FrameLayers> read_layers(Device& device, const Frame& frame, const RecordBefore& before) {
+    Result<FrameReadback> readback = FrameReadback::create(device.context(), frame);
+    if (!readback) return failure(std::move(readback));
+    const Result<> done = submit(device.context(), before, [&](VkCommandBuffer c) { readback->record(c); });
+    if (!done) return failure(done.error());
+    return readback->layers();
+}
+
+Result<DevelopedPicture> read_picture(Device& device, const ImageRef& image, const RecordBefore& before) {
+    Result<Readback> readback = Readback::create(device.context(), image);
+    if (!readback) return failure(std::move(readback));
+    const Result<> done = submit(device.context(), before, [&](VkCommandBuffer c) { readback->record(c); });
+    if (!done) return failure(done.error());
+    DevelopedPicture out{.extent = image.used_region().extent};
+    if (image.format == VK_FORMAT_R8G8B8A8_UNORM)
+        out.bytes = readback->bytes();
+    else
+        out.pixels = readback->floats(4);
+    return out;
+}
+
+}  // namespace darkroom
