@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#include "scene/assets.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+
+#include "image/decoder.hpp"
+#include "image/frame_file.hpp"
+#include "scene/image_batch.hpp"
+
+namespace darkroom::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_file(const fs::path& path) {
+    std::error_code error;
+    return fs::exists(path, error) && !fs::is_directory(path, error);
+}
+
+fs::path first_file(std::span<const fs::path> places) {
+    for (const fs::path& place : places)
+        if (is_file(place)) return place;
+    return {};
+}
+
+fs::path find_model(const fs::path& folder, const std::string& asset) {
+    const fs::path name(asset);
+    const bool is_model_file = name.extension() == ".glb" || name.extension() == ".gltf";
+    const auto with = [&](const char* extension) { return fs::path(asset + extension); };
+    std::vector<fs::path> places;
+    if (is_model_file) places.push_back(folder / name);
+    for (const char* models : {"models", "../models"}) {
+        if (is_model_file) places.push_back(folder / models / name);
+        places.push_back(folder / models / with(".glb"));
+        places.push_back(folder / models / with(".gltf"));
+    }
+    return first_file(places);
+}
+
+fs::path find_texture(const fs::path& folder, const fs::path& name) {
+    const std::array places{folder / name, folder / "textures" / name, folder / "../textures" / name};
+    return first_file(places);
+}
+
+/// Which files are wanted, each once, in the order in which they are first asked for.
+class FileList {
+  public:
+    std::uint32_t add(const fs::path& file, const std::string& asked_for_by) {
+        std::error_code error;
+        const fs::path canonical = fs::weakly_canonical(file, error);
+        const auto [found, is_new] =
+            index_.emplace(error ? file : canonical, static_cast<std::uint32_t>(files_.size()));
+        if (is_new) {
+            files_.push_back(file);
+            asked_for_by_.push_back(asked_for_by);
+        }
+        return found->second;
+    }
+    [[nodiscard]] const std::vector<fs::path>& files() const { return files_; }
+    [[nodiscard]] const std::string& asked_for_by(std::size_t i) const { return asked_for_by_[i]; }
+
+  private:
+    std::map<fs::path, std::uint32_t> index_;
+    std::vector<fs::path> files_;
+    std::vector<std::string> asked_for_by_;
+};
+
+std::string entity_name(const Entity& entity) { return fmt::format("entity '{}'", one_printable_line(entity.name)); }
+
+struct Wanted {
+    FileList models, images;
+    fs::path skybox;
+};
+
+Wanted find_files(const Scene& scene, Assets& assets) {
+    Wanted wanted;
+    const auto warn_missing = [&](const std::string& asked_for, const std::string& by) {
+        assets.warnings.push_back(fmt::format("{}: not found (asked for by {})", one_printable_line(asked_for), by));
+    };
+    const auto texture = [&](const fs::path& name, const std::string& by) {
+        if (name.empty()) return no_index;
+        const fs::path file = find_texture(scene.folder, name);
+        if (!file.empty()) return wanted.images.add(file, by);
+        warn_missing(name.string(), by);
+        return no_index;
+    };
+    if (!scene.environment.skybox.empty()) {
+        wanted.skybox = find_texture(scene.folder, scene.environment.skybox);
+        if (wanted.skybox.empty()) warn_missing(scene.environment.skybox.string(), "the environment");
+    }
+    for (const Entity& entity : scene.entities) {
+        const std::string by = entity_name(entity);
+        EntityAssets& found = assets.entities.emplace_back();
+        if (entity.model && !entity.model->asset.empty()) {
+            const fs::path file = find_model(scene.folder, entity.model->asset);
+            if (file.empty())
+                warn_missing(entity.model->asset, by);
+            else
+                found.model = wanted.models.add(file, by);
+        }
+        if (entity.material) found.material_texture = texture(entity.material->texture, by);
+        if (entity.sprite) found.sprite_texture = texture(entity.sprite->texture, by);
+        if (entity.emitter) found.particle_texture = texture(entity.emitter->texture, by);
+    }
+    return wanted;
+}
+
+// What could not be loaded leaves an empty place behind, which nobody names any more.
+void forget(std::vector<EntityAssets>& entities, std::uint32_t EntityAssets::*member, std::size_t index) {
+    for (EntityAssets& entity : entities)
+        if (entity.*member == index) entity.*member = no_index;
+}
+
+}  // namespace
+
+Assets load_assets(const Scene& scene) {
+    Assets assets;
+    const Wanted wanted = find_files(scene, assets);
+
+    // The skybox and the models are loaded side by side, the skybox first, since it is often the largest.
+    const std::vector<fs::path>& model_files = wanted.models.files();
+    std::vector<Result<Model>> models(model_files.size());
+    std::optional<Result<FrameFile>> sky;
+    parallel_for(model_files.size() + 1, [&](std::size_t i) {
+        if (i > 0)
+            models[i - 1] = read_model(model_files[i - 1]);
+        else if (!wanted.skybox.empty())
+            sky = read_frame(wanted.skybox);
+    });
+    std::vector<EncodedImage> sources;
+    for (const fs::path& file : wanted.images.files())
+        sources.push_back({.name = file.filename().string(), .file = file});
+    std::vector<Result<Image>> images = decode_images(sources);
+
+    if (sky && *sky) {
+        assets.skybox = std::move((*sky)->color);
+        for (const std::string& warning : (*sky)->warnings)
+            assets.warnings.push_back(fmt::format("{}: {}", wanted.skybox.string(), warning));
+    } else if (sky) {
+        assets.warnings.push_back(fmt::format("{} (asked for by the environment)", sky->error().text));
+    }
+    for (std::size_t i = 0; i < models.size(); ++i) {
+        if (models[i]) {
+            assets.models.push_back(std::move(*models[i]));
+            for (const std::string& warning : assets.models.back().warnings)
+                assets.warnings.push_back(fmt::format("{}: {}", model_files[i].string(), warning));
+            continue;
+        }
+        assets.warnings.push_back(
+            fmt::format("{} (asked for by {})", models[i].error().text, wanted.models.asked_for_by(i)));
+        assets.models.emplace_back();
+        forget(assets.entities, &EntityAssets::model, i);
+    }
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (images[i]) {
+            assets.images.push_back(std::move(*images[i]));
+            continue;
+        }
+        assets.warnings.push_back(fmt::format("{}: {} (asked for by {})", wanted.images.files()[i].string(),
+                                              images[i].error().text, wanted.images.asked_for_by(i)));
+        assets.images.push_back({.name = sources[i].name});
+        for (const auto member :
+             {&EntityAssets::material_texture, &EntityAssets::sprite_texture, &EntityAssets::particle_texture})
+            forget(assets.entities, member, i);
+    }
+    return assets;
+}
+
+}  // namespace darkroom::scene

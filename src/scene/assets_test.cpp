@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "scene/assets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "image/frame_file.hpp"
+#include "image/test_files.hpp"
+#include "scene/gltf_test_model.hpp"
+#include "scene/image_batch.hpp"
+
+namespace darkroom::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SceneAssets : public WithFolder {
+  protected:
+    static Entity with_model(const char* name, const char* asset) {
+        Entity entity{.name = name};
+        entity.model = ModelReference{.asset = asset};
+        return entity;
+    }
+    void put_model(const fs::path& path) {
+        fs::create_directories(path.parent_path());
+        TestModel test;
+        test.add_triangle();
+        put(path, test.text());
+    }
+    static bool has_warning(const Assets& assets, const std::string& text) {
+        return std::find(assets.warnings.begin(), assets.warnings.end(), text) != assets.warnings.end();
+    }
+};
+
+TEST_F(SceneAssets, ModelsAreFoundAndLoadedOnce) {
+    const fs::path folder = file("scenes");
+    put_model(folder / "models/near.gltf");
+    put_model(file("models/far.gltf"));
+    put_model(folder / "own.gltf");
+    Scene scene{.folder = folder};
+    scene.entities = {with_model("a", "near"), with_model("b", "far"),  with_model("c", "own.gltf"),
+                      with_model("d", "near"), with_model("e", "none"), Entity{.name = "f"}};
+    const Assets assets = load_assets(scene);
+    ASSERT_EQ(assets.entities.size(), 6u);
+    ASSERT_EQ(assets.models.size(), 3u);
+    EXPECT_EQ(assets.entities[0].model, 0u);
+    EXPECT_EQ(assets.entities[1].model, 1u);
+    EXPECT_EQ(assets.entities[2].model, 2u);
+    EXPECT_EQ(assets.entities[3].model, 0u);
+    EXPECT_EQ(assets.entities[4].model, no_index);
+    EXPECT_EQ(assets.entities[5].model, no_index);
+    EXPECT_EQ(assets.models[1].name, "far");
+    EXPECT_TRUE(has_warning(assets, "none: not found (asked for by entity 'e')"));
+}
+
+TEST_F(SceneAssets, ABrokenModelIsReportedAndTheRestLoads) {
+    put(file("bad.gltf"), "{");
+    put_model(file("good.gltf"));
+    Scene scene{.folder = folder_};
+    scene.entities = {with_model("a", "bad.gltf"), with_model("b", "good.gltf")};
+    const Assets assets = load_assets(scene);
+    EXPECT_EQ(assets.entities[0].model, no_index);
+    ASSERT_NE(assets.entities[1].model, no_index);
+    EXPECT_EQ(assets.models[assets.entities[1].model].meshes.size(), 1u);
+    const bool is_reported = std::any_of(assets.warnings.begin(), assets.warnings.end(), [](const std::string& text) {
+        return text.find("bad.gltf: ") != std::string::npos && text.ends_with("(asked for by entity 'a')");
+    });
+    EXPECT_TRUE(is_reported);
+}
+
+TEST_F(SceneAssets, TexturesAndSkybox) {
+    Picture picture(4, 2);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] = i % 4 == 3 ? 1.0F : 0.5F;
+    fs::create_directories(file("scenes/textures"));
+    fs::create_directories(file("textures"));
+    ASSERT_TRUE(write_frame(file("scenes/sky.exr"), {.color = picture}));
+    ASSERT_TRUE(write_frame(file("scenes/textures/wall.exr"), {.color = picture}));
+    ASSERT_TRUE(write_frame(file("textures/spark.exr"), {.color = picture}));
+    Scene scene{.folder = file("scenes")};
+    scene.environment.skybox = "sky.exr";
+    Entity entity{.name = "thing"};
+    entity.material = Material{.texture = "wall.exr"};
+    entity.sprite = Sprite{.texture = "textures/wall.exr"};
+    entity.emitter = ParticleEmitter{.texture = "spark.exr"};
+    Entity other{.name = "other"};
+    other.sprite = Sprite{.texture = "gone.png"};
+    scene.entities = {entity, other};
+    const Assets assets = load_assets(scene);
+    ASSERT_TRUE(assets.skybox);
+    EXPECT_EQ(assets.skybox->width, 4u);
+    EXPECT_FLOAT_EQ(*assets.skybox->at(1, 1), 0.5F);
+    ASSERT_EQ(assets.images.size(), 2u);
+    EXPECT_EQ(assets.entities[0].material_texture, 0u);
+    EXPECT_EQ(assets.entities[0].sprite_texture, 0u);
+    EXPECT_EQ(assets.entities[0].particle_texture, 1u);
+    EXPECT_EQ(assets.entities[1].sprite_texture, no_index);
+    EXPECT_TRUE(has_warning(assets, "gone.png: not found (asked for by entity 'other')"));
+    // 0.5 of light is 188 in sRGB.
+    EXPECT_EQ(assets.images[0].rgba.at(0), 188);
+    EXPECT_EQ(assets.images[0].rgba.at(3), 255);
+}
+
+TEST_F(SceneAssets, BrokenImagesSayWhatAndWhere) {
+    put(file("text.png"), "no picture");
+    const auto image = read_image(file("text.png"));
+    ASSERT_FALSE(image);
+    EXPECT_TRUE(image.error().text.starts_with(file("text.png").string() + ": ")) << image.error().text;
+    EXPECT_EQ(image.error().text.find(file("text.png").string(), 1), std::string::npos) << image.error().text;
+    EXPECT_FALSE(read_image(file("none.png")));
+    const auto bytes = decode_image({}, "nothing");
+    ASSERT_FALSE(bytes);
+    EXPECT_EQ(bytes.error().text, "nothing: is empty");
+}
+
+TEST(SceneParallel, EveryIndexOnce) {
+    std::vector<int> visits(1000);
+    parallel_for(visits.size(), [&](std::size_t i) { ++visits[i]; });
+    EXPECT_TRUE(std::all_of(visits.begin(), visits.end(), [](int count) { return count == 1; }));
+    parallel_for(0, [](std::size_t) { FAIL(); });
+}
+
+}  // namespace
+}  // namespace darkroom::scene

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <optional>
+
+#include "core/files.hpp"
+#include "image/decoder.hpp"
+#include "image/exr_check.hpp"
+#include "image/jpeg_check.hpp"
+#include "image/png_check.hpp"
+#include "scene/assets.hpp"
+#include "scene/image_batch.hpp"
+
+namespace darkroom::scene {
+namespace {
+
+// GPUs take no larger textures.
+constexpr int most_texture_side = 16384;
+
+// What a batch may become, in pixels: a few bytes of a damaged file must not ask for gigabytes.
+constexpr std::size_t free_pixels = std::size_t{1} << 27;
+constexpr std::size_t pixels_per_byte = 64;
+
+// OpenImageIO 2.4 does not ask whether a position is past the end.
+class MemoryReader final : public OIIO::Filesystem::IOMemReader {
+  public:
+    explicit MemoryReader(std::span<const std::byte> bytes) : IOMemReader(bytes.data(), bytes.size()) {}
+
+    size_t pread(void* buffer, size_t size, int64_t offset) override {
+        const std::size_t available = m_buf.size();
+        if (offset < 0 || static_cast<std::size_t>(offset) >= available) return 0;
+        const std::size_t count = std::min(size, available - static_cast<std::size_t>(offset));
+        std::memcpy(buffer, m_buf.data() + offset, count);
+        return count;
+    }
+    size_t read(void* buffer, size_t size) override {
+        const std::size_t count = pread(buffer, size, m_pos);
+        m_pos += static_cast<int64_t>(count);
+        return count;
+    }
+};
+
+struct Format {
+    const char* reader;
+    std::string_view shown;
+    Result<> (*check)(std::span<const std::byte>) = nullptr;
+};
+
+const Format* format_of(std::span<const std::byte> bytes) {
+    static constexpr Format png{"png", "PNG", &check_png};
+    static constexpr Format jpeg{"jpeg", "JPEG", &check_jpeg};
+    static constexpr Format exr{"openexr", "OpenEXR", &check_exr};
+    static constexpr Format tiff{"tiff", "TIFF"};
+    static constexpr Format radiance{"hdr", "Radiance HDR"};
+    const std::string_view start(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 8));
+    if (start.starts_with("\x89PNG\r\n\x1a\n")) return &png;
+    if (start.starts_with("\xff\xd8\xff")) return &jpeg;
+    if (start.starts_with("\x76\x2f\x31\x01")) return &exr;
+    if (start.starts_with("#?")) return &radiance;
+    if (start.starts_with(std::string_view("II*\0", 4)) || start.starts_with(std::string_view("MM\0*", 4)))
+        return &tiff;
+    return nullptr;
+}
+
+// IEC 61966-2-1: colour textures are decoded as sRGB where they are used.
+std::uint8_t encoded(float linear) {
+    if (!(linear > 0)) return 0;
+    const float value = linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
+    return static_cast<std::uint8_t>(std::lround(std::min(value, 1.0F) * 255));
+}
+
+std::uint8_t unencoded(float value) {
+    return value > 0 ? static_cast<std::uint8_t>(std::lround(std::min(value, 1.0F) * 255)) : std::uint8_t{0};
+}
+
+/// A file whose header has been read and whose pixels have not.
+class OpenedImage {
+  public:
+    [[nodiscard]] static Result<OpenedImage> open(std::span<const std::byte> bytes) {
+        if (bytes.empty()) return user_error("is empty");
+        const Format* format = format_of(bytes);
+        if (format == nullptr) return user_error("is no image that is read here (PNG, JPEG, TIFF, OpenEXR, Radiance)");
+        if (format->check != nullptr)
+            if (auto checked = format->check(bytes); !checked) return failure(std::move(checked));
+        OpenedImage image;
+        image.memory_ = std::make_unique<MemoryReader>(bytes);
+        image.byte_count_ = bytes.size();
+        try {
+            image.input_ = OIIO::ImageInput::create(format->reader);
+            if (!image.input_) return user_error(fmt::format("OpenImageIO was built without {}", format->shown));
+            image.input_->set_ioproxy(image.memory_.get());
+            OIIO::ImageSpec config;
+            config.attribute("oiio:UnassociatedAlpha", 1);
+            OIIO::ImageSpec spec;
+            if (!image.input_->open(fmt::format("memory.{}", format->reader), spec, config))
+                return user_error(fmt::format("cannot be read as {}: {}", format->shown, image.reason()));
+        } catch (const std::exception& exception) {
+            return user_error(fmt::format("cannot be read as {}: {}", format->shown, exception.what()));
+        }
+        const OIIO::ImageSpec& spec = image.input_->spec();
+        if (spec.deep || spec.nchannels < 1 || spec.depth > 1) return user_error("is no flat picture");
+        if (spec.width < 1 || spec.height < 1 || spec.width > most_texture_side || spec.height > most_texture_side)
+            return user_error(fmt::format("the picture is {}x{}, 1 to {} a side is allowed", spec.width, spec.height,
+                                          most_texture_side));
+        return image;
+    }
+
+    [[nodiscard]] std::size_t pixel_count() const {
+        return static_cast<std::size_t>(input_->spec().width) * static_cast<std::size_t>(input_->spec().height);
+    }
+    [[nodiscard]] std::size_t byte_count() const { return byte_count_; }
+
+    [[nodiscard]] Result<Image> decode() {
+        const OIIO::ImageSpec& spec = input_->spec();
+        Image image{.width = static_cast<std::uint32_t>(spec.width), .height = static_cast<std::uint32_t>(spec.height)};
+        try {
+            const bool is_float = spec.format.is_floating_point();
+            const bool is_read = is_float ? read_floats(image) : read_integers(image);
+            if (!is_read) return user_error(fmt::format("damaged or truncated: {}", reason()));
+        } catch (const std::exception& exception) {
+            return user_error(fmt::format("cannot be decoded: {}", exception.what()));
+        }
+        return image;
+    }
+
+  private:
+    [[nodiscard]] std::string reason() const {
+        std::string message = one_printable_line(input_->geterror());
+        return message.empty() ? "damaged" : message;
+    }
+    [[nodiscard]] int channel_count() const { return std::min(input_->spec().nchannels, 4); }
+
+    // One channel is grey, two are grey and alpha.
+    template <class T, class ToColor, class ToAlpha>
+    static void spread(std::span<const T> from, std::size_t channels, const ToColor& to_color, const ToAlpha& to_alpha,
+                       std::vector<std::uint8_t>& rgba) {
+        const std::size_t count = from.size() / channels;
+        rgba.resize(count * 4);
+        const bool is_gray = channels < 3;
+        for (std::size_t i = 0; i < count; ++i) {
+            const T* pixel = from.data() + i * channels;
+            for (std::size_t c = 0; c < 3; ++c) rgba[i * 4 + c] = to_color(pixel[is_gray ? 0 : c]);
+            rgba[i * 4 + 3] = channels % 2 == 0 ? to_alpha(pixel[channels - 1]) : std::uint8_t{255};
+        }
+    }
+
+    [[nodiscard]] bool read_integers(Image& image) {
+        const int channels = channel_count();
+        std::vector<std::uint8_t> samples(pixel_count() * static_cast<std::size_t>(channels));
+        if (!input_->read_image(0, 0, 0, channels, OIIO::TypeUInt8, samples.data())) return false;
+        const auto same = [](std::uint8_t value) { return value; };
+        if (channels == 4)
+            image.rgba = std::move(samples);
+        else
+            spread<std::uint8_t>(samples, static_cast<std::size_t>(channels), same, same, image.rgba);
+        return true;
+    }
+
+    [[nodiscard]] bool read_floats(Image& image) {
+        const int channels = channel_count();
+        std::vector<float> samples(pixel_count() * static_cast<std::size_t>(channels));
+        if (!input_->read_image(0, 0, 0, channels, OIIO::TypeFloat, samples.data())) return false;
+        spread<float>(samples, static_cast<std::size_t>(channels), encoded, unencoded, image.rgba);
+        return true;
+    }
+
+    std::unique_ptr<MemoryReader> memory_;
+    OIIO::ImageInput::unique_ptr input_;  // after `memory_`, which it reads from until it is destroyed
+    std::size_t byte_count_ = 0;
+};
+
+}  // namespace
+
+std::vector<Result<Image>> decode_images(std::span<const EncodedImage> sources) {
+    std::vector<Result<Image>> results(sources.size());
+    std::vector<std::vector<std::byte>> files(sources.size());
+    std::vector<std::optional<OpenedImage>> opened(sources.size());
+    parallel_for(sources.size(), [&](std::size_t i) {
+        std::span<const std::byte> bytes = sources[i].bytes;
+        if (bytes.empty() && !sources[i].file.empty()) {
+            auto file = read_file(sources[i].file);
+            if (!file) {
+                // The caller names the file.
+                std::string text = file.error().text;
+                const std::string start = sources[i].file.string() + ": ";
+                if (text.starts_with(start)) text.erase(0, start.size());
+                results[i] = failure({file.error().fault, std::move(text)});
+                return;
+            }
+            files[i] = std::move(*file);
+            bytes = files[i];
+        }
+        auto image = OpenedImage::open(bytes);
+        if (image)
+            opened[i] = std::move(*image);
+        else
+            results[i] = failure(std::move(image));
+    });
+    std::size_t allowed = free_pixels;
+    for (const auto& image : opened)
+        if (image) allowed += image->byte_count() * pixels_per_byte;
+    for (std::size_t i = 0; i < opened.size(); ++i) {
+        if (!opened[i]) continue;
+        const std::size_t count = opened[i]->pixel_count();
+        if (count <= allowed) {
+            allowed -= count;
+            continue;
+        }
+        results[i] = user_error(
+            fmt::format("{} pixels in {} bytes: larger than its file can be worth", count, opened[i]->byte_count()));
+        opened[i].reset();
+    }
+    parallel_for(sources.size(), [&](std::size_t i) {
+        if (!opened[i]) return;
+        results[i] = opened[i]->decode();
+        if (results[i]) results[i]->name = sources[i].name;
+        opened[i].reset();
+        files[i] = {};
+    });
+    return results;
+}
+
+Result<Image> decode_image(std::span<const std::byte> bytes, std::string name) {
+    const EncodedImage source{.name = std::move(name), .bytes = bytes};
+    Result<Image> image = std::move(decode_images({&source, 1}).front());
+    if (!image) return user_error(fmt::format("{}: {}", source.name, image.error().text));
+    return image;
+}
+
+Result<Image> read_image(const std::filesystem::path& path) {
+    const EncodedImage source{.name = path.filename().string(), .file = path};
+    Result<Image> image = std::move(decode_images({&source, 1}).front());
+    if (!image) return failure({image.error().fault, fmt::format("{}: {}", path.string(), image.error().text)});
+    return image;
+}
+
+}  // namespace darkroom::scene

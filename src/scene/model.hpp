@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A glTF 2.0 model on the CPU, checked: every index is in range, nodes form trees (parents before children), arrays of
+// a primitive have one length. Nothing of the parsing library passes this header.
+
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/math.hpp"
+#include "scene/scene.hpp"
+
+namespace darkroom::scene {
+
+inline constexpr std::uint32_t no_index = ~0U;
+
+/// Four bytes a pixel, top row first. Which transfer function they have is a matter of use: base colour and emissive
+/// are sRGB, everything else linear.
+struct Image {
+    std::string name;
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+    [[nodiscard]] bool is_empty() const { return rgba.empty(); }
+};
+
+enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };
+
+struct Texture {
+    std::uint32_t image = no_index;  ///< in Model::images; no_index: none
+    Wrap wrap_u = Wrap::Repeat, wrap_v = Wrap::Repeat;
+    bool is_nearest = false;
+    std::uint32_t uv_set = 0;  ///< 0 or 1
+    mat3 uv_transform{1};      ///< KHR_texture_transform, applied to (u, v, 1)
+    [[nodiscard]] bool is_given() const { return image != no_index; }
+};
+
+/// Metallic-roughness. Textures multiply factors.
+struct ModelMaterial {
+    std::string name;
+    vec4 base_color{1};
+    Texture base_color_texture;
+    float metallic = 1, roughness = 1;
+    Texture metallic_roughness_texture;  ///< green roughness, blue metallic
+    Texture normal_texture;
+    float normal_scale = 1;
+    Texture occlusion_texture;  ///< red
+    float occlusion_strength = 1;
+    vec3 emissive{0};  ///< times KHR_materials_emissive_strength
+    Texture emissive_texture;
+    SurfaceBlend blend = SurfaceBlend::Opaque;  ///< Opaque, Mask or Alpha
+    float alpha_cutoff = 0.5F;
+    bool is_double_sided = false;
+    bool is_unlit = false;
+};
+
+/// One vertex as the GPU gets it.
+struct Vertex {
+    vec3 position{0};
+    vec3 normal{0, 1, 0};
+    vec4 tangent{0};  ///< w: handedness; all 0: the shader makes one from derivatives
+    vec2 uv0{0}, uv1{0};
+    std::array<std::uint8_t, 4> color{255, 255, 255, 255};  ///< linear
+};
+
+/// Joint indices of a skinned vertex and their weights, which sum to 1.
+struct VertexSkin {
+    std::array<std::uint16_t, 4> joints{};
+    vec4 weights{1, 0, 0, 0};
+};
+
+/// One morph target: what is added per unit of weight, as many as there are vertices (normals may be empty).
+struct MorphTarget {
+    std::vector<vec3> positions, normals;
+};
+
+struct Primitive {
+    std::vector<Vertex> vertices;
+    std::vector<VertexSkin> skin;        ///< empty, or one a vertex
+    std::vector<std::uint32_t> indices;  ///< triangles
+    std::vector<MorphTarget> targets;
+    std::uint32_t material = no_index;  ///< no_index: the default material
+    Box bounds;                         ///< of the vertices as they are in the file
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+    std::vector<float> weights;  ///< of the morph targets at rest
+};
+
+struct Node {
+    std::string name;
+    std::uint32_t parent = no_index;  ///< always before its children in Model::nodes
+    Transform transform;
+    std::optional<mat4> matrix;  ///< given instead of the transform; such nodes are not animated
+    std::uint32_t mesh = no_index, skin = no_index, camera = no_index, light = no_index;
+    std::vector<float> weights;  ///< overrides the mesh's
+};
+
+struct Skin {
+    std::vector<std::uint32_t> joints;  ///< nodes
+    std::vector<mat4> inverse_bind;     ///< one a joint
+};
+
+enum class Interpolation : std::uint8_t { Step, Linear, CubicSpline };
+enum class AnimatedProperty : std::uint8_t { Translation, Rotation, Scale, Weights };
+
+struct AnimationChannel {
+    std::uint32_t node = 0;
+    AnimatedProperty property = AnimatedProperty::Translation;
+    Interpolation interpolation = Interpolation::Linear;
+    std::vector<float> times;  ///< seconds, increasing
+    /// `width` numbers a key (3, 4 as x y z w, or the count of weights); cubic splines have in-tangent, value and
+    /// out-tangent a key, in this order.
+    std::vector<float> values;
+    std::uint32_t width = 3;
+};
+
+struct Animation {
+    std::string name;
+    std::vector<AnimationChannel> channels;
+    float duration = 0;  ///< seconds
+};
+
+struct ModelCamera {
+    std::string name;
+    Projection projection = Projection::Perspective;
+    float field_of_view = 45;  ///< vertical, degrees
+    float ortho_height = 10;
+    float near_distance = 0.1F, far_distance = 1000;
+};
+
+struct Model {
+    std::string name;
+    std::vector<Image> images;
+    std::vector<ModelMaterial> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Node> nodes;  ///< of the default scene
+    std::vector<Skin> skins;
+    std::vector<Animation> animations;
+    std::vector<ModelCamera> cameras;
+    std::vector<Light> lights;          ///< KHR_lights_punctual, in the units of the file (candela and lux as they are)
+    std::vector<std::string> warnings;  ///< one line each, without the file's name
+};
+
+/// Reads .glb or .gltf. Images are decoded in parallel; a missing or broken image is a warning and is drawn as white.
+/// Errors begin with the path and name the fault: damaged structure, an index or accessor out of range, a cycle of
+/// nodes, a URI that leaves the model's folder, a required extension this reader lacks.
+[[nodiscard]] Result<Model> read_model(const std::filesystem::path& path);
+
+}  // namespace darkroom::scene

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#include "scene/scene_file.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "core/files.hpp"
+#include "core/param_text.hpp"
+
+namespace darkroom::scene::reading {
+
+Result<std::string> read_scene_text(const std::filesystem::path& path) {
+    const std::string shown = printable(path.string());
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
+        return user_error(fmt::format("{}: is a device, expected a scene file", shown));
+    const std::uintmax_t size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
+    if (!error && size > largest_file)
+        return user_error(fmt::format("{}: {} bytes, a scene file has at most {}", shown, size, largest_file));
+    const Result<std::vector<std::byte>> bytes = read_file(path);
+    if (!bytes) return failure(bytes.error());
+    return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+}  // namespace darkroom::scene::reading
