@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "render/frame_buffers.hpp"
+
+#include <algorithm>
+
+namespace darkroom::render {
+
+Result<> HostBuffer::reserve(gpu::Context& context, VkDeviceSize size, VkBufferUsageFlags usage,
+                             std::string_view name) {
+    if (size <= capacity_) return {};
+    const VkDeviceSize wanted = std::max(size, capacity_ + capacity_ / 2);
+    Result<gpu::Buffer> made = gpu::Buffer::create(context, wanted, usage, gpu::Memory::Kind::Upload, name);
+    if (!made) return failure(std::move(made));
+    buffer_ = std::move(*made);
+    capacity_ = wanted;
+    return {};
+}
+
+std::array<VkDescriptorPoolSize, 3> frame_set_sizes() {
+    return {VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
+            VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 5},
+            VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, most_directional_lights + 3}};
+}
+
+Result<FrameBuffers> FrameBuffers::create(gpu::Context& context, SetAllocator& sets, VkDescriptorSetLayout layout) {
+    FrameBuffers out;
+    Result<VkDescriptorSet> set = sets.allocate(layout);
+    if (!set) return failure(std::move(set));
+    out.set = *set;
+    constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+    Result<> made = out.frame_.reserve(context, sizeof(blocks::Frame), usage, "frame block");
+    if (made) made = out.lights_.reserve(context, sizeof(blocks::Lights), usage, "light block");
+    if (made) made = out.shadows_.reserve(context, sizeof(blocks::Shadows), usage, "shadow block");
+    if (!made) return failure(std::move(made));
+    return out;
+}
+
+Result<> FrameBuffers::reserve(gpu::Context& context, const Counts& counts) {
+    constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    // A binding cannot be empty, so there is room for one of each.
+    const auto bytes = [](std::size_t count, std::size_t size) { return std::max<std::size_t>(count, 1) * size; };
+    Result<> made = instances_.reserve(context, bytes(counts.instances, sizeof(blocks::Instance)), usage, "instances");
+    if (made) made = materials_.reserve(context, bytes(counts.materials, sizeof(blocks::Material)), usage, "materials");
+    if (made) made = joints_.reserve(context, bytes(counts.joints, 2 * sizeof(scene::mat4)), usage, "joints");
+    if (made) made = weights_.reserve(context, bytes(counts.weights, sizeof(scene::vec2)), usage, "morph weights");
+    return made;
+}
+
+void FrameBuffers::write_set(const gpu::Context& context, const GpuScene& scene, const ShadowPass& shadows,
+                             const GpuEnvironment& environment) const {
+    const std::array buffers{frame_.info(),     lights_.info(),
+                             shadows_.info(),   instances_.info(),
+                             materials_.info(), joints_.info(),
+                             weights_.info(),   VkDescriptorBufferInfo{scene.morph_deltas.handle, 0, VK_WHOLE_SIZE}};
+    constexpr VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    std::array<VkDescriptorImageInfo, most_directional_lights + 3> images{};
+    for (std::uint32_t light = 0; light < most_directional_lights; ++light)
+        images[light] = {shadows.sampler(), shadows.map(light).view, layout};
+    images[4] = {environment.sampler, environment.prefiltered.view, layout};
+    images[5] = {environment.sampler, environment.skybox.view, layout};
+    images[6] = {environment.sampler, environment.split_sum.view, layout};
+
+    std::array<VkWriteDescriptorSet, frame_bindings> writes{};
+    for (std::uint32_t binding = 0; binding < frame_bindings; ++binding) {
+        VkWriteDescriptorSet& write = writes[binding];
+        write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                 .dstSet = set,
+                 .dstBinding = binding,
+                 .descriptorCount = 1};
+        if (binding < buffers.size()) {
+            write.descriptorType = binding < 3 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            write.pBufferInfo = &buffers[binding];
+            continue;
+        }
+        write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        const bool are_maps = binding == buffers.size();
+        write.descriptorCount = are_maps ? most_directional_lights : 1;
+        write.pImageInfo = are_maps ? images.data() : &images[binding - buffers.size() + most_directional_lights - 1];
+    }
+    context.vk.UpdateDescriptorSets(context.device, frame_bindings, writes.data(), 0, nullptr);
+}
+
+}  // namespace darkroom::render

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Draws snapshots of a scene: linear HDR colour with depth, normals, velocity and shadow maps for a Composer, or the
+// finished display picture by the scene's own shaders. The multi-sampled scene is resolved once, for all effects.
+//
+//     auto renderer = Renderer::create(device, scene, assets, {.extent = {1280, 720}});
+//     renderer->prepare(snapshot);
+//     renderer->record(commands);      // then composer.record(commands, renderer->frame())
+
+#include <darkroom/device.hpp>
+#include <darkroom/frame.hpp>
+#include <darkroom/result.hpp>
+#include <memory>
+#include <string>
+
+#include "render/cascades.hpp"
+#include "render/frame_set.hpp"
+#include "scene/assets.hpp"
+#include "scene/snapshot.hpp"
+
+namespace darkroom::render {
+
+struct RenderDesc {
+    VkExtent2D extent{1920, 1080};
+    std::uint32_t samples = 1;
+    Output output = Output::Hdr;
+    /// Of the picture for Output::Display; its first channels red, green, blue, alpha, sRGB-encoded by the shader.
+    VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
+    bool is_tone_mapped = true;         ///< Output::Display: ACES (Narkowicz) before encoding
+    DebugView debug = DebugView::None;  ///< others need Output::Display, and are neither tone-mapped nor encoded
+    bool has_shadows = true;
+    CascadeDesc cascades;
+    bool has_grid = true;
+    bool has_wireframe_overlay = false;
+    bool has_normal_arrows = false;
+    std::uint32_t frames_in_flight = 1;
+};
+
+struct RenderCounters {
+    std::uint64_t draw_calls = 0, instances = 0, culled = 0;  ///< of the last prepared frame, shadows included
+    std::uint64_t resolves = 0;                               ///< since creation
+};
+
+class Renderer {
+  public:
+    /// Uploads the assets and compiles the pipelines. Errors: a size or a sample count that the device lacks (the text
+    /// names those it has), a debug view with Output::Hdr, VkResult.
+    [[nodiscard]] static Result<Renderer> create(Device& device, const scene::Scene& scene, const scene::Assets& assets,
+                                                 const RenderDesc& desc);
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+    ~Renderer();
+
+    /// Culls, sorts and fills the buffers of the next frame; the recording made `frames_in_flight` frames ago must have
+    /// finished. The snapshot must stay until record() has returned. Errors are those of the machine.
+    Result<> prepare(const scene::Snapshot& snapshot);
+    Result<> prepare(scene::Snapshot&& snapshot) = delete;
+    /// Records shadows, scene and resolve of what was prepared.
+    Result<> record(VkCommandBuffer commands);
+
+    /// The images as record() leaves them, the camera and the lights, for Composer::record. Depth is planar distance in
+    /// R32F (1e10 where there is no surface). Lights refer to memory of the renderer. Target, frame_index and view are
+    /// the caller's. Only for Output::Hdr.
+    [[nodiscard]] Frame frame() const;
+    /// The picture of either output, as record() leaves it: TRANSFER_SRC_OPTIMAL for Display.
+    [[nodiscard]] const ImageRef& picture() const;
+
+    [[nodiscard]] const RenderCounters& counters() const;
+    [[nodiscard]] const RenderDesc& desc() const;
+
+  private:
+    Renderer();
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// The sample counts that this device can render and resolve, as "1, 4".
+[[nodiscard]] std::string sample_counts(const Device& device);
+
+}  // namespace darkroom::render

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// From a snapshot to the numbers that the shaders read, and to the camera and lights of a darkroom::Frame. No GPU.
+
+#include <darkroom/frame.hpp>
+#include <span>
+#include <vector>
+
+#include "render/draw_list.hpp"
+#include "render/frame_set.hpp"
+#include "render/gpu_scene.hpp"
+
+namespace darkroom::render {
+
+/// What the frame block says beyond the snapshot.
+struct FrameSettings {
+    VkExtent2D extent{};
+    Output output = Output::Hdr;
+    bool is_tone_mapped = true;
+    DebugView debug = DebugView::None;
+    scene::Environment environment;
+    std::array<scene::vec3, 9> irradiance{};
+    std::uint32_t environment_levels = 1;
+    bool has_environment = false;
+};
+
+[[nodiscard]] blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& settings);
+/// `shadow_maps`: of the first that many casting directional lights.
+[[nodiscard]] blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps);
+[[nodiscard]] blocks::Material material_block(const scene::SnapshotMaterial& material);
+[[nodiscard]] blocks::Instance instance_block(const scene::Instance& instance, const GpuMesh& mesh);
+
+[[nodiscard]] Camera frame_camera(const scene::CameraState& camera);
+/// A directional light as effects get it, without its cascades.
+[[nodiscard]] Light frame_light(const scene::LightState& light);
+[[nodiscard]] Matrix matrix_of(const scene::mat4& matrix);
+
+/// The directional lights that are drawn, in the snapshot's order.
+[[nodiscard]] std::vector<const scene::LightState*> directional_lights(const scene::Snapshot& snapshot);
+/// Of directional ones: has a shadow map, as ShadowPass sees it.
+[[nodiscard]] bool is_caster(const scene::LightState* state);
+
+}  // namespace darkroom::render

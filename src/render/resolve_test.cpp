@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "render/resolve.hpp"
+
+#include <gtest/gtest.h>
+
+#include "render/renderer_test_support.hpp"
+
+namespace darkroom::render {
+namespace {
+
+using namespace test;
+
+constexpr VkExtent2D small{64, 48};
+
+bool has_four_samples() { return (gpu::test::context().traits.sample_counts & VK_SAMPLE_COUNT_4_BIT) != 0; }
+
+/// A bright wall whose left edge cuts pixels of column 20 in half: at distance 4 there are 6 pixels a metre.
+scene::Snapshot half_covered(float brightness) {
+    scene::Snapshot snapshot = snapshot_of(small);
+    add_box(snapshot, {(20.5F - 32) / 6, -9, -5}, {9, 9, -4}, plain({brightness, brightness, brightness, 1}));
+    return snapshot;
+}
+
+scene::Scene dark_scene() {
+    scene::Scene scene;
+    scene.environment.background = vec3(0);
+    return scene;
+}
+
+TEST(RenderGpuResolve, OneSampleHasHardEdges) {
+    Renderer renderer = renderer_for({.extent = small}, {}, dark_scene());
+    const Shot shot = shoot(renderer, half_covered(4));
+    EXPECT_EQ(shot.color.at(19, 24)[0], 0);
+    EXPECT_EQ(shot.color.at(21, 24)[0], 4);
+    EXPECT_TRUE(shot.color.at(20, 24)[0] == 0 || shot.color.at(20, 24)[0] == 4);
+}
+
+TEST(RenderGpuResolve, EdgesAreWeighedByTheInverseOfOnePlusLuminance) {
+    if (!has_four_samples()) GTEST_SKIP() << "the device has no 4 samples";
+    Renderer renderer = renderer_for({.extent = small, .samples = 4}, {}, dark_scene());
+    const Shot shot = shoot(renderer, half_covered(4));
+    EXPECT_EQ(shot.color.at(19, 24)[0], 0);
+    EXPECT_NEAR(shot.color.at(21, 24)[0], 4, 4e-3F);
+    // Two samples of 4 with weight 1/5, two of 0 with weight 1: 2 * 4/5 / (2 + 2/5). A plain mean would be 2.
+    EXPECT_NEAR(shot.color.at(20, 24)[0], 1.6F / 2.4F, 2e-3F);
+    EXPECT_EQ(shot.color.at(20, 24)[3], 1);
+}
+
+TEST(RenderGpuResolve, DepthNormalsAndVelocityAreOfTheNearestSample) {
+    if (!has_four_samples()) GTEST_SKIP() << "the device has no 4 samples";
+    Renderer renderer = renderer_for({.extent = small, .samples = 4}, {}, dark_scene());
+    scene::Snapshot snapshot = half_covered(1);
+    snapshot.instances[0].previous_world = glm::translate(mat4(1), {0, 0.5F, 0}) * snapshot.instances[0].world;
+    add_wall(snapshot, 10, 30, plain(vec4(1)));
+    const Shot shot = shoot(renderer, snapshot);
+    EXPECT_NEAR(shot.depth.at(19, 24)[0], 10, 1e-3F);
+    EXPECT_NEAR(shot.depth.at(20, 24)[0], 4, 1e-3F);
+    EXPECT_NEAR(shot.depth.at(21, 24)[0], 4, 1e-3F);
+    EXPECT_NEAR(shot.normals.at(20, 24)[2], 1, 1e-3F);
+    EXPECT_NEAR(shot.velocity.at(19, 24)[1], 0, 0.01F);
+    EXPECT_NEAR(shot.velocity.at(20, 24)[1], -3, 0.01F);
+}
+
+TEST(RenderGpuResolve, AlphaIsAPlainMean) {
+    if (!has_four_samples()) GTEST_SKIP() << "the device has no 4 samples";
+    scene::Scene scene = dark_scene();
+    scene.has_alpha_layer = true;
+    Renderer renderer = renderer_for({.extent = small, .samples = 4}, {}, scene);
+    scene::Snapshot snapshot = half_covered(4);
+    snapshot.materials[0].writes = scene::Writes::Alpha;
+    const Shot shot = shoot(renderer, snapshot);
+    EXPECT_EQ(shot.color.at(19, 24)[3], 0);
+    EXPECT_EQ(shot.color.at(20, 24)[3], 0.5F);
+    EXPECT_EQ(shot.color.at(21, 24)[3], 1);
+}
+
+TEST(RenderGpuResolve, ThereIsOneAFrameForAllEffects) {
+    for (const std::uint32_t samples : {1U, 4U}) {
+        if (samples == 4 && !has_four_samples()) continue;
+        Renderer renderer = renderer_for({.extent = small, .samples = samples});
+        for (std::uint64_t frame = 1; frame <= 3; ++frame) {
+            draw(renderer, half_covered(4));
+            EXPECT_EQ(renderer.counters().resolves, frame);
+        }
+    }
+}
+
+TEST(RenderGpuResolve, DisplayPicturesHaveNone) {
+    for (const std::uint32_t samples : {1U, 4U}) {
+        if (samples == 4 && !has_four_samples()) continue;
+        Renderer renderer =
+            renderer_for({.extent = small, .samples = samples, .output = Output::Display, .is_tone_mapped = false}, {},
+                         dark_scene());
+        const Pixels picture = shoot(renderer, half_covered(1)).color;
+        EXPECT_EQ(renderer.counters().resolves, 0U);
+        EXPECT_EQ(picture.at(19, 24)[0], 0);
+        EXPECT_EQ(picture.at(21, 24)[0], 1);
+        if (samples == 4) {
+            EXPECT_NEAR(picture.at(20, 24)[0], 0.5F, 1.5F / 255) << "the mean of encoded samples";
+        }
+    }
+}
+
+TEST(RenderGpuResolve, DisplayPicturesAreEncoded) {
+    Renderer renderer =
+        renderer_for({.extent = small, .output = Output::Display, .is_tone_mapped = false}, {}, dark_scene());
+    scene::Snapshot snapshot = snapshot_of(small);
+    add_wall(snapshot, 4, 3, plain({0.5F, 0.0F, 1, 1}));
+    const std::array<float, 4> found = shoot(renderer, snapshot).color.at(32, 24);
+    EXPECT_NEAR(found[0], 188.0F / 255, 0.6F / 255);
+    EXPECT_EQ(found[1], 0);
+    EXPECT_EQ(found[2], 1);
+}
+
+}  // namespace
+}  // namespace darkroom::render

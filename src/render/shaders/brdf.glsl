@@ -1,0 +1,65 @@
+// How a surface reflects light: Lambert under a microfacet layer (Cook and Torrance, "A Reflectance Model for Computer
+// Graphics", 1982) with the choices of Karis, "Real Shading in Unreal Engine 4", 2013. Needs nothing else; in double
+// precision it is render/brdf_reference.hpp.
+const float pi = 3.14159265358979;
+const float dielectric_f0 = 0.04;    // of glass and most plastics: index of refraction 1.5
+const float least_roughness = 0.04;  // a smoother highlight of a light without size would fall between the pixels
+
+struct Reflectance {
+    vec3 diffuse;  // albedo of what light enters the surface
+    vec3 f0;       // reflectance head-on
+    float roughness;
+};
+
+Reflectance reflectance(vec3 base_color, float metallic, float roughness) {
+    return Reflectance(base_color * (1.0 - metallic), mix(vec3(dielectric_f0), base_color, metallic),
+                       clamp(roughness, least_roughness, 1.0));
+}
+
+// Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007, equation 33. 1 - (n.h)^2 is taken as
+// |n x h|^2, which keeps the peak of smooth surfaces exact in single precision.
+float ggx_distribution(vec3 n, vec3 h, float alpha) {
+    float n_dot_h = max(dot(n, h), 0.0);
+    vec3 sine = cross(n, h);
+    float square = alpha * alpha;
+    float denominator = max(n_dot_h * n_dot_h * square + dot(sine, sine), 1e-9);
+    return square / (pi * denominator * denominator);
+}
+
+// Schlick's form of Smith's shadowing with Karis' k for lights without size.
+float smith_shadowing(float n_dot_v, float n_dot_l, float roughness) {
+    float k = (roughness + 1.0) * (roughness + 1.0) / 8.0;
+    return n_dot_v / (n_dot_v * (1.0 - k) + k) * (n_dot_l / (n_dot_l * (1.0 - k) + k));
+}
+
+// Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, equation 15.
+vec3 fresnel_schlick(vec3 f0, float v_dot_h) {
+    float c = clamp(1.0 - v_dot_h, 0.0, 1.0);
+    float square = c * c;
+    return f0 + (1.0 - f0) * (square * square * c);
+}
+
+// What leaves toward v of light of unit radiance from l: the BRDF times n.l. All directions are normalised and point
+// away from the surface.
+vec3 reflected(Reflectance surface, vec3 n, vec3 v, vec3 l) {
+    float n_dot_l = max(dot(n, l), 0.0);
+    float n_dot_v = max(dot(n, v), 0.0);
+    vec3 half_vector = v + l;
+    vec3 h = half_vector * inversesqrt(max(dot(half_vector, half_vector), 1e-12));
+    vec3 fresnel = fresnel_schlick(surface.f0, dot(v, h));
+    float specular = ggx_distribution(n, h, surface.roughness * surface.roughness) *
+                     smith_shadowing(n_dot_v, n_dot_l, surface.roughness) / (4.0 * n_dot_v * n_dot_l + 1e-4);
+    return ((1.0 - fresnel) * surface.diffuse / pi + fresnel * specular) * n_dot_l;
+}
+
+// What leaves of light from everywhere: `irradiance` over pi, `reflection` from the mirrored direction, as blurred as
+// the surface is rough, `scale_and_bias` the split sum of Karis. The light that bounces between microfacets comes back
+// as in Fdez-Aguero, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting", 2019, so that a white
+// surface in white light is white.
+vec3 reflected_surroundings(Reflectance surface, vec3 irradiance, vec3 reflection, vec2 scale_and_bias) {
+    vec3 single = surface.f0 * scale_and_bias.x + scale_and_bias.y;
+    float lost = 1.0 - (scale_and_bias.x + scale_and_bias.y);
+    vec3 average_fresnel = surface.f0 + (1.0 - surface.f0) / 21.0;
+    vec3 multiple = lost * single * average_fresnel / (1.0 - average_fresnel * lost);
+    return single * reflection + (multiple + surface.diffuse * (1.0 - single - multiple)) * irradiance;
+}

@@ -1,0 +1,55 @@
+// Light that arrives at a point of a surface. Needs frame.glsl, brdf.glsl and shadow.glsl before it where it says so.
+
+// Karis, "Real Shading in Unreal Engine 4", 2013, equation 9, without its 1 in the denominator: the inverse square,
+// brought to 0 at the light's range. Nearer than a centimetre it grows no more.
+float distance_attenuation(float squared_distance, float range) {
+    float ratio = squared_distance / max(range * range, 1e-8);
+    float window = clamp(1.0 - ratio * ratio, 0.0, 1.0);
+    return window * window / max(squared_distance, 1e-4);
+}
+
+// 1 inside the inner angle, 0 outside the outer one, smooth between; all angles as cosines, from the cone's axis.
+float cone_attenuation(float cosine, float outer_cosine, float inner_cosine) {
+    float t = clamp((cosine - outer_cosine) / max(inner_cosine - outer_cosine, 1e-5), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// Light from above and from below, over pi, where there is no environment.
+vec3 hemisphere(vec3 n, vec3 sky, vec3 ground) {
+    return mix(ground, sky, n.y * 0.5 + 0.5);
+}
+
+// Sum over all lights of what leaves toward v. `n` is shaded, `surface_normal` is the geometry's, which shadows are
+// offset along; `view_distance` is along the camera's axis.
+vec3 reflected_lights(Reflectance surface, vec3 position, vec3 n, vec3 surface_normal, vec3 v, float view_distance,
+                      bool shadows_are_on) {
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < frame.light_counts.x; ++i) {
+        vec4 direction = lights.directional_direction[i];
+        float visibility = 1.0;
+        if (shadows_are_on && direction.w >= 0.0 && dot(n, direction.xyz) > 0.0) {
+            visibility = shadow_visibility(uint(direction.w), position, surface_normal, view_distance);
+        }
+        sum += reflected(surface, n, v, direction.xyz) * lights.directional_color[i].rgb * visibility;
+    }
+    for (uint i = 0u; i < frame.light_counts.y; ++i) {
+        vec3 to_light = lights.point_position[i].xyz - position;
+        float squared_distance = dot(to_light, to_light);
+        float attenuation = distance_attenuation(squared_distance, lights.point_position[i].w);
+        if (attenuation > 0.0) {
+            vec3 l = to_light * inversesqrt(max(squared_distance, 1e-12));
+            sum += reflected(surface, n, v, l) * lights.point_color[i].rgb * attenuation;
+        }
+    }
+    for (uint i = 0u; i < frame.light_counts.z; ++i) {
+        vec3 to_light = lights.spot_position[i].xyz - position;
+        float squared_distance = dot(to_light, to_light);
+        vec3 l = to_light * inversesqrt(max(squared_distance, 1e-12));
+        vec4 axis = lights.spot_direction[i];
+        vec4 color = lights.spot_color[i];
+        float attenuation = distance_attenuation(squared_distance, lights.spot_position[i].w) *
+                            cone_attenuation(dot(axis.xyz, -l), axis.w, color.w);
+        if (attenuation > 0.0) sum += reflected(surface, n, v, l) * color.rgb * attenuation;
+    }
+    return sum;
+}

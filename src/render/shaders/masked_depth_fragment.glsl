@@ -1,0 +1,10 @@
+// Holes of masked materials in shadow maps: what base colour's alpha leaves out lets light through.
+layout(constant_id = 0) const bool has_textures = true;
+
+#include "frame.glsl"
+#include "mesh_varyings_in.glsl"
+#include "surface.glsl"
+
+void main() {
+    if (surface_base_color().a < materials[material_index].emissive.w) discard;
+}

@@ -1,0 +1,80 @@
+// Meshes of every kind: lit, unlit, masked, transparent, and the debug views. What a pipeline never needs is switched
+// off by its constants, so that it costs nothing.
+layout(constant_id = 0) const bool has_textures = true;
+layout(constant_id = 1) const bool has_shadows = true;
+layout(constant_id = 2) const bool has_environment = true;
+layout(constant_id = 3) const bool is_masked = false;
+layout(constant_id = 4) const uint output_mode = 0u;
+layout(constant_id = 5) const uint debug_view = 0u;
+layout(constant_id = 6) const bool is_tone_mapped = true;
+layout(constant_id = 7) const bool is_transparent = false;  // alpha is the material's, for blending or as all there is
+
+#include "frame.glsl"
+#include "mesh_varyings_in.glsl"
+#include "brdf.glsl"
+#include "environment.glsl"
+#include "shadow.glsl"
+#include "lights.glsl"
+#include "surface.glsl"
+#include "output.glsl"
+
+layout(location = 0) out vec4 out_color;
+layout(location = 1) out vec4 out_normal;
+layout(location = 2) out vec2 out_velocity;
+
+// Along the camera's axis, metres.
+float view_distance() { return dot(world_position - frame.camera_position.xyz, frame.camera_forward.xyz); }
+
+vec3 toward_camera() {
+    if (frame.camera_position.w == 0.0) return -frame.camera_forward.xyz;
+    return normalize(frame.camera_position.xyz - world_position);
+}
+
+// Light from everywhere. The hemisphere has no mirror images, so base colour stands for all that leaves, of metals too.
+vec3 surroundings(Surface surface, Reflectance material, vec3 v) {
+    if (!has_environment) {
+        return hemisphere(surface.normal, frame.ambient_sky.rgb, frame.ambient_ground.rgb) * surface.base_color;
+    }
+    float n_dot_v = clamp(dot(surface.normal, v), 0.0, 1.0);
+    return reflected_surroundings(material, environment_irradiance(surface.normal),
+                                  environment_reflection(reflect(-v, surface.normal), material.roughness),
+                                  environment_brdf(n_dot_v, material.roughness));
+}
+
+vec3 leaving_light(Surface surface) {
+    if (has_flag(Material_unlit)) return surface.base_color;
+    vec3 v = toward_camera();
+    Reflectance material = reflectance(surface.base_color, surface.metallic, surface.roughness);
+    return reflected_lights(material, world_position, surface.normal, surface.geometry_normal, v, view_distance(),
+                            has_shadows) +
+           surroundings(surface, material, v) * surface.occlusion + surface.emissive;
+}
+
+// Display values. Depth is logarithmic, so that it shows something at every scale: white at the near distance, black at
+// the far one.
+vec3 debug_color(Surface surface) {
+    if (debug_view == Debug_normals) return surface.normal * 0.5 + 0.5;
+    if (debug_view == Debug_depth) {
+        float near_distance = max(frame.planes.x, 1e-3);
+        float far_distance = max(frame.planes.y, 2.0 * near_distance);
+        float distance = clamp(view_distance(), near_distance, far_distance);
+        return vec3(log(far_distance / distance) / log(far_distance / near_distance));
+    }
+    if (debug_view == Debug_uv) return vec3(fract(uv.xy), 0.0);
+    if (debug_view == Debug_unlit) return srgb_encode(clamp(surface.base_color, 0.0, 1.0));
+    if (debug_view == Debug_metal_rough) return vec3(surface.metallic, surface.roughness, 0.0);
+    return vec3(1.0);
+}
+
+void main() {
+    Surface surface = surface_at_fragment();
+    if (is_masked && surface.alpha < materials[material_index].emissive.w) discard;
+    float alpha = is_transparent ? surface.alpha : 1.0;
+    if (debug_view == Debug_none) {
+        out_color = finish(leaving_light(surface), alpha, output_mode, is_tone_mapped);
+    } else {
+        out_color = vec4(debug_color(surface), alpha);
+    }
+    out_normal = vec4(surface.normal, 1.0);
+    out_velocity = motion(clip_position, previous_clip_position);
+}

@@ -1,0 +1,35 @@
+// From the light that reaches the camera to what is written. Needs frame.glsl before it.
+
+// The largest finite half float.
+const float brightest = 65504.0;
+
+// A comparison with NaN is false; what min and max make of it is not defined.
+vec3 finite_light(vec3 light) {
+    return mix(vec3(0.0), min(light, vec3(brightest)), greaterThan(light, vec3(0.0)));
+}
+
+// Krzysztof Narkowicz, "ACES Filmic Tone Mapping Curve", 2016; the same as the effect's, so that a picture without
+// effects looks like one with all of them neutral.
+vec3 tone_map(vec3 light) {
+    return light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14);
+}
+
+// IEC 61966-2-1; `linear` is in [0, 1].
+vec3 srgb_encode(vec3 linear) {
+    vec3 power = 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055;
+    return mix(power, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
+}
+
+// What is stored for light: linear HDR, or the finished picture.
+vec4 finish(vec3 scene_linear, float alpha, uint output_mode, bool is_tone_mapped) {
+    vec3 light = finite_light(scene_linear);
+    float opacity = alpha > 0.0 ? min(alpha, 1.0) : 0.0;
+    if (output_mode == Output_hdr) return vec4(light, opacity);
+    vec3 display = is_tone_mapped ? tone_map(light) : light;
+    return vec4(srgb_encode(clamp(display, 0.0, 1.0)), opacity);
+}
+
+// By the frame's own modes, for passes without constants of their own.
+vec4 finish(vec3 scene_linear, float alpha) {
+    return finish(scene_linear, alpha, frame.modes.x, frame.modes.y != 0u);
+}

@@ -1,0 +1,14 @@
+// Particles: unlit and blended; without a texture a soft round disc.
+#include "frame.glsl"
+#include "billboard_varyings.glsl"
+#include "billboard_texture.glsl"
+#include "output.glsl"
+
+layout(location = 0) in Varyings square;
+layout(location = 0) out vec4 color;
+
+void main() {
+    vec4 texel = billboard_texel(square) * square.tint;
+    float inside = max(1.0 - dot(square.disc, square.disc), 0.0);
+    color = finish(texel.rgb, texel.a * inside * inside);
+}
