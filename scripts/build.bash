@@ -64,16 +64,18 @@ show_progress() {
 }
 
 # What the program is made of. A folder counts as well as the files in it: one that came or went changed it.
-program_sources=(CMakeLists.txt packages.txt cmake include src effects apps samples looks)
+program_sources=(CMakeLists.txt packages.txt cmake include src effects apps samples scenes looks)
 
 # Was `program` built in folder $1 from what the tree holds now? It costs one walk over the sources and starts no CMake.
-# The stamp is as old as the start of that build, so a file saved while it ran is newer. Pictures in samples/ are made by
-# the build itself.
+# The stamp is as old as the start of that build, so a file saved while it ran is newer. Pictures in samples/, and models
+# and pictures in scenes/, are made by the build itself.
 is_current() {
     local stamp=$1/.built
     [[ -x $1/bin/darkroom && -f $stamp && $(<"$stamp") == "$root" ]] || return 1
-    compgen -G "$root/samples/*.exr" >/dev/null || return 1
-    [[ -z $(find "${program_sources[@]/#/$root/}" ! -path "$root/samples" ! -name '*.exr' -newer "$stamp" -print -quit) ]]
+    compgen -G "$root/samples/*.exr" >/dev/null && compgen -G "$root/scenes/models/*.glb" >/dev/null || return 1
+    local made=('(' -path "$root/samples" -o -path "$root/scenes" -o -path "$root/scenes/models" -o -name '*.exr' -o
+        -name '*.glb' -o -name '*.hdr' -o -name '*.png' ')')
+    [[ -z $(find "${program_sources[@]/#/$root/}" ! "${made[@]}" -newer "$stamp" -print -quit) ]]
 }
 
 # build FOLDER TARGET CMAKE_OPTION...: configures and builds TARGET. One build at a time in a folder.

@@ -9,8 +9,8 @@ trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 tree="$work/a tree"
 mkdir -p "$tree" "$work/bin" "$work/elsewhere"
 cp -rL "$1/darkroom" "$1/test" "$1/scripts" "$1/packages.txt" "$tree/"
-mkdir -p "$tree"/{cmake,include,src,effects,apps,samples,looks}
-touch "$tree/CMakeLists.txt" "$tree/src/one.cpp" "$tree/samples/a.exr"
+mkdir -p "$tree"/{cmake,include,src,effects,apps,samples,scenes/models,looks}
+touch "$tree/CMakeLists.txt" "$tree/src/one.cpp" "$tree/samples/a.exr" "$tree/scenes/models/a.glb"
 
 # A build that counts itself, and a machine that has every package.
 cat >"$work/bin/cmake" <<'STUB'
