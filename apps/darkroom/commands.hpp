@@ -15,6 +15,7 @@ struct Command {
     Run run;
 };
 
+[[nodiscard]] Command add_render(CLI::App& program);
 [[nodiscard]] Command add_develop(CLI::App& program);
 [[nodiscard]] Command add_plan(CLI::App& program);
 [[nodiscard]] Command add_effects(CLI::App& program);

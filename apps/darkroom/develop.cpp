@@ -28,8 +28,7 @@ struct Options {
     DeviceFlags device;
     std::vector<std::string> inputs, maps;
     std::string out, size, bits, camera;
-    std::optional<double> fov;
-    double time = 0;
+    std::optional<double> fov, time;
     bool is_reference = false, has_timings = false, has_alpha = false;
 };
 
@@ -47,7 +46,7 @@ Result<Job> job_of(const Options& options) {
     Job job;
     if (options.is_reference && options.has_timings)
         return user_error("--timings: the references do not run on the device");
-    if (!std::isfinite(options.time)) return user_error("--time: expected a finite number of seconds");
+    if (options.time && !std::isfinite(*options.time)) return user_error("--time: expected a finite number of seconds");
     if (options.fov && !(*options.fov > 0 && *options.fov < 180))
         return user_error(fmt::format("--fov = {}: allowed is ]0, 180[ deg", *options.fov));
     Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
@@ -84,18 +83,6 @@ Result<Job> job_of(const Options& options) {
     if (!look) return failure(std::move(look));
     job.look = std::move(*look);
     return job;
-}
-
-void print_timings(darkroom::Composer& composer) {
-    double sum = 0;
-    for (const darkroom::PassTime& pass : composer.times()) {
-        fmt::print("{:>10.3f} ms  {}\n", pass.milliseconds, pass.name);
-        sum += pass.milliseconds;
-    }
-    if (composer.times().empty())
-        warn("this device has no timestamps");
-    else
-        fmt::print("{:>10.3f} ms  together\n", sum);
 }
 
 class Develop {
@@ -140,27 +127,18 @@ class Develop {
         Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), extent.width, extent.height);
         if (!sized) return failure(std::move(sized));
         darkroom::DevelopInput input = develop_input(*sized);
-        input.time = options_.time;
-        input.frame_index = index;
+        if (options_.time) input.time = *options_.time;
+        if (!sized->frame_index) input.frame_index = index;
         Result<darkroom::DevelopedPicture> picture = options_.is_reference
                                                          ? develop_by_reference(*composer_, input, job_.develop.target)
                                                          : developer_->develop(*composer_, input);
         if (!picture) return failure(std::move(picture));
-        if (index == 0) warn_of_what_is_left_out();
+        if (index == 0) warn_of_what_is_left_out(*composer_, developer_->plan());
         const VkExtent2D size = picture->extent;
         if (Result<> done = write(job_.outputs[index], std::move(*picture), job_.write); !done)
             return failure(std::move(done));
         return fmt::format("{} -> {} ({}x{})", shown, darkroom::printable(job_.outputs[index].string()), size.width,
                            size.height);
-    }
-
-    // Linear targets skip the last steps by definition; that is no news.
-    void warn_of_what_is_left_out() const {
-        for (const std::string& text : developer_->plan().left_out) {
-            const std::optional<darkroom::Handle> entry = composer_->find(text.substr(0, text.find(':')));
-            const bool is_on = entry && composer_->inputs(*entry).enabled && !composer_->info(*entry).is_last_step;
-            if (is_on) warn(fmt::format("left out: {}", text));
-        }
     }
 
     const Options& options_;
@@ -199,7 +177,8 @@ Command add_develop(CLI::App& program) {
     command->add_flag("--alpha", options->has_alpha, "Keeps alpha; without it pictures are opaque");
     command->add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
     command->add_flag("--timings", options->has_timings, "Prints the GPU milliseconds of every pass");
-    command->add_option("--time", options->time, "Seconds, for effects that move")->type_name("S");
+    command->add_option("--time", options->time, "Seconds, for effects that move; default: what the frame says, or 0")
+        ->type_name("S");
     const std::string frame_group = "The frame";
     command
         ->add_option("--map", options->maps,

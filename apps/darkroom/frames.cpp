@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "frames.hpp"
 
+#include <fmt/format.h>
+
+#include "report.hpp"
+
 namespace app {
 
+using darkroom::Camera;
 using darkroom::DevelopedPicture;
 using darkroom::DevelopInput;
 using darkroom::DevelopTarget;
@@ -21,19 +26,90 @@ ReferenceImage reference_image(std::span<const float> values, VkExtent2D extent,
     return out;
 }
 
+Camera camera_of(const darkroom::FrameCamera& stored) {
+    Camera camera{.depth = darkroom::DepthKind::Planar};
+    if (stored.world_to_camera) camera.view = *stored.world_to_camera;
+    if (stored.projection) camera.projection = *stored.projection;
+    camera.previous_view = stored.previous_world_to_camera.value_or(camera.view);
+    camera.previous_projection = stored.previous_projection.value_or(camera.projection);
+    if (stored.near_distance) camera.near_distance = *stored.near_distance;
+    if (stored.far_distance) camera.far_distance = *stored.far_distance;
+    return camera;
+}
+
+darkroom::FrameCamera stored_camera(const Camera& camera) {
+    return {.world_to_camera = camera.view,
+            .projection = camera.projection,
+            .previous_world_to_camera = camera.previous_view,
+            .previous_projection = camera.previous_projection,
+            .near_distance = camera.near_distance,
+            .far_distance = camera.far_distance};
+}
+
+template <std::uint32_t channels>
+std::optional<darkroom::Plane<channels>> plane(VkExtent2D extent, std::vector<float> values) {
+    if (values.empty()) return std::nullopt;
+    darkroom::Plane<channels> out;
+    out.width = extent.width;
+    out.height = extent.height;
+    out.values = std::move(values);
+    return out;
+}
+
 }  // namespace
+
+Camera as_stored(const Camera& camera) { return camera_of(stored_camera(camera)); }
 
 DevelopInput develop_input(const darkroom::FrameFile& frame) {
     DevelopInput input{.extent = {frame.color.width, frame.color.height}, .color = frame.color.pixels};
     if (frame.depth) input.depth = frame.depth->values;
     if (frame.normals) input.normals = frame.normals->values;
     if (frame.velocity) input.velocity = frame.velocity->values;
-    input.camera.depth = darkroom::DepthKind::Planar;
-    if (frame.camera.world_to_camera) input.camera.view = *frame.camera.world_to_camera;
-    if (frame.camera.projection) input.camera.projection = *frame.camera.projection;
-    input.camera.previous_view = input.camera.view;
-    input.camera.previous_projection = input.camera.projection;
+    input.camera = camera_of(frame.camera);
+    if (frame.time) input.time = *frame.time;
+    if (frame.delta_time) input.delta_time = *frame.delta_time;
+    if (frame.frame_index) input.frame_index = *frame.frame_index;
     return input;
+}
+
+darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLayers layers) {
+    darkroom::FrameFile out;
+    const auto [width, height] = layers.extent;
+    out.color.width = width;
+    out.color.height = height;
+    out.color.pixels = std::move(layers.color);
+    out.has_alpha = true;
+    out.depth = plane<1>(layers.extent, std::move(layers.depth));
+    out.normals = plane<3>(layers.extent, std::move(layers.normals));
+    out.velocity = plane<2>(layers.extent, std::move(layers.velocity));
+    out.camera = stored_camera(frame.camera);
+    out.time = frame.time;
+    out.delta_time = frame.delta_time;
+    out.frame_index = frame.frame_index;
+    const bool is_half = frame.color.format == VK_FORMAT_R16G16B16A16_SFLOAT;
+    out.samples = is_half ? darkroom::SampleKind::Half : darkroom::SampleKind::Float;
+    return out;
+}
+
+// Linear targets skip the last steps by definition; that is no news.
+void warn_of_what_is_left_out(const darkroom::Composer& composer, const darkroom::Plan& plan) {
+    for (const std::string& text : plan.left_out) {
+        const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
+        const bool is_on = entry && composer.inputs(*entry).enabled && !composer.info(*entry).is_last_step;
+        if (is_on) warn(fmt::format("left out: {}", text));
+    }
+}
+
+void print_timings(darkroom::Composer& composer) {
+    double sum = 0;
+    for (const darkroom::PassTime& pass : composer.times()) {
+        fmt::print("{:>10.3f} ms  {}\n", pass.milliseconds, pass.name);
+        sum += pass.milliseconds;
+    }
+    if (composer.times().empty())
+        warn("this device has no timestamps");
+    else
+        fmt::print("{:>10.3f} ms  together\n", sum);
 }
 
 Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer, const DevelopInput& input,

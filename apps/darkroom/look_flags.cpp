@@ -15,6 +15,13 @@ using darkroom::LookOverride;
 using darkroom::Result;
 using darkroom::user_error;
 
+namespace {
+
+// Scenes hold a look beside other tables; what has another name is a look alone, and unknown tables are slips.
+bool is_scene_name(const std::filesystem::path& path) { return path.filename().string().ends_with(".scene.toml"); }
+
+}  // namespace
+
 void LookFlags::add_value(CLI::App& command, const std::string& key, const std::string& help,
                           const std::string& group) {
     values_.push_back(std::make_unique<Value>(Value{.key = key, .flag = darkroom::flag_name(key)}));
@@ -26,7 +33,10 @@ void LookFlags::add_value(CLI::App& command, const std::string& key, const std::
 void LookFlags::add_to(CLI::App& command, bool has_look_flag) {
     const std::string group = "The look";
     if (has_look_flag)
-        command.add_option("--look", file, "A look file (TOML). Default: the flat table at its defaults")
+        command
+            .add_option("--look", file,
+                        "A look file (TOML), or a scene (.scene.toml) for the look in it. Default: the scene's own, or "
+                        "the flat table at its defaults")
             ->type_name("FILE")
             ->group(group);
     command.add_option("--order", order_, "Order of the flat table: documented or scene_linear")
@@ -67,10 +77,12 @@ Result<std::vector<LookOverride>> LookFlags::overrides() const {
     return out;
 }
 
-Result<Look> LookFlags::look() const {
+Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
     std::vector<std::string> warnings;
-    Result<Look> look = file.empty() ? Result<Look>(darkroom::default_look())
-                                     : darkroom::read_look(file, {.is_strict = is_strict_, .warnings = &warnings});
+    const darkroom::LookOptions options{
+        .is_strict = is_strict_, .warnings = &warnings, .is_scene = file.empty() || is_scene_name(file)};
+    const std::filesystem::path path = file.empty() ? scene : std::filesystem::path(file);
+    Result<Look> look = path.empty() ? Result<Look>(darkroom::default_look()) : darkroom::read_look(path, options);
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
     if (!order_.empty()) {

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <darkroom/look.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,8 +16,11 @@ class LookFlags {
   public:
     /// `has_look_flag`: false where the look is a positional argument.
     void add_to(CLI::App& command, bool has_look_flag);
-    /// Reads the look and applies the flags. Prints warnings.
-    [[nodiscard]] darkroom::Result<darkroom::Look> look() const;
+    /// Reads the look and applies the flags. Prints warnings. Without a file of its own it is that of the scene.
+    [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& scene = {}) const;
+    /// --no-postprocess. look() is then the default one, switched off.
+    [[nodiscard]] bool is_off() const { return is_off_; }
+    [[nodiscard]] bool is_strict() const { return is_strict_; }
 
     std::string file;
 

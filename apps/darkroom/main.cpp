@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// darkroom: develops raw HDR frames into finished pictures. Arguments to library calls, and errors to exit codes; no
-// effect is named here and no picture is touched.
+// darkroom: renders scenes and develops raw HDR frames into finished pictures. Arguments to library calls, and errors
+// to exit codes; no effect is named here and no picture is touched.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ std::string unknown_argument(const CLI::App& program) {
 }
 
 int run(int argc, char** argv) {
-    CLI::App program("Develops raw HDR frames into finished pictures.", "darkroom");
+    CLI::App program("Renders scenes, and develops raw HDR frames into finished pictures.", "darkroom");
     program.set_version_flag("--version", "darkroom " DARKROOM_VERSION);
     program.require_subcommand(1);
     program.get_formatter()->column_width(34);
@@ -48,8 +48,8 @@ int run(int argc, char** argv) {
         "`darkroom COMMAND --help` lists the flags of a command.\n"
         "DARKROOM_VALIDATE=1 turns the Vulkan validation layer on. Exit codes: 0 done, 1 the request is wrong, 2 the "
         "machine failed.");
-    const std::array commands{app::add_develop(program), app::add_plan(program), app::add_effects(program),
-                              app::add_devices(program), app::add_compare(program)};
+    const std::array commands{app::add_render(program),  app::add_develop(program), app::add_plan(program),
+                              app::add_effects(program), app::add_devices(program), app::add_compare(program)};
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& done) {

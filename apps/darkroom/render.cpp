@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "compose/developer.hpp"
+#include "core/param_text.hpp"
+#include "frames.hpp"
+#include "render_flags.hpp"
+#include "report.hpp"
+#include "scene/assets.hpp"
+#include "scene/scene.hpp"
+
+namespace app {
+
+namespace {
+
+namespace render = darkroom::render;
+namespace scene = darkroom::scene;
+using darkroom::DevelopedPicture;
+using darkroom::DevelopTarget;
+using darkroom::Result;
+
+/// How a picture comes about.
+enum class Way {
+    Developed,  ///< linear light through the look
+    Display,    ///< by the scene's own shaders
+    Linear,     ///< linear light as it is, into a float file
+};
+
+std::string shown(const std::filesystem::path& path) { return darkroom::printable(path.string()); }
+
+// Models hold no look.
+bool is_model(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".glb" || extension == ".gltf";
+}
+
+// The effects that bring light into the range of a display. None is known by name.
+bool switch_tone_mapping_off(darkroom::Look& look) {
+    bool was_there = false;
+    for (darkroom::LookEntry& entry : look.entries) {
+        const darkroom::EffectInfo& effect = *entry.effect;
+        if (effect.makes == nullptr || !effect.accepts.contains(darkroom::Domain::SceneLinear)) continue;
+        if (effect.makes(darkroom::Domain::SceneLinear, entry.words.data()) != darkroom::Domain::DisplayLinear)
+            continue;
+        entry.state.enabled = false;
+        was_there = true;
+    }
+    return was_there;
+}
+
+class Render {
+  public:
+    explicit Render(const RenderFlags& flags) : flags_(flags) {}
+
+    Result<> run() {
+        if (Result<> done = read(); !done) return done;
+        if (Result<> done = make(); !done) return done;
+        Progress progress(job_.shots.size());
+        for (const Shot& shot : job_.shots) {
+            if (Result<> done = render(shot); !done) return done;
+            progress.step(fmt::format("Rendered {}x{} image to {}", job_.desc.extent.width, job_.desc.extent.height,
+                                      shown(shot.picture)));
+            if (composer_ && flags_.has_timings) print_timings(*composer_);
+        }
+        return {};
+    }
+
+    [[nodiscard]] int exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
+
+  private:
+    // Everything that needs no device: a slip is told before one is made.
+    Result<> read() {
+        Result<RenderJob> job = flags_.job();
+        if (!job) return failure(std::move(job));
+        job_ = std::move(*job);
+        const Result<darkroom::KernelStage> stage = flags_.device.stage();
+        if (!stage) return failure(stage.error());
+        develop_ = {.target = target_for(job_.samples), .kernels = *stage, .fuse = flags_.device.is_fused()};
+        std::vector<std::string> warnings;
+        Result<scene::Scene> scene =
+            scene::read_scene(flags_.scene, {.is_strict = flags_.look.is_strict(), .warnings = &warnings});
+        for (const std::string& warning : warnings) warn(warning);
+        if (!scene) return failure(std::move(scene));
+        scene_ = std::move(*scene);
+        if (!flags_.has_time()) {
+            Shot& shot = job_.shots.front();
+            shot.time = scene_.time;
+            shot.previous_time = std::max(0.0, scene_.time - shot.delta_time);
+        }
+        Result<darkroom::Look> look = flags_.look.look(is_model(flags_.scene) ? "" : flags_.scene);
+        if (!look) return failure(std::move(look));
+        look_ = std::move(*look);
+        choose_way();
+        if (flags_.has_timings && way_ != Way::Developed)
+            return darkroom::user_error("--timings: nothing is post-processed");
+        const bool is_orthographic = scene_.camera.projection == scene::Projection::Orthographic;
+        if (job_.orbit.field_of_view && is_orthographic) warn("--fov: the scene's camera is orthographic, it has none");
+        assets_ = scene::load_assets(scene_);
+        if (Result<> done = check_model(); !done) return done;
+        for (const std::string& warning : assets_.warnings) warn(warning);
+        fmt::print("Loaded scene {}\nEntities: {}\n", darkroom::printable(scene_.name), scene_.entities.size());
+        std::fflush(stdout);
+        return {};
+    }
+
+    // In a scene a broken model is a gap; alone there is nothing left, and its error counts.
+    [[nodiscard]] Result<> check_model() const {
+        const bool is_drawn = !assets_.models.empty() && !assets_.models.front().meshes.empty();
+        if (is_drawn || !is_model(flags_.scene)) return {};
+        Result<scene::Model> model = scene::read_model(flags_.scene);
+        if (!model) return failure(std::move(model));
+        return {};
+    }
+
+    void choose_way() {
+        const bool is_debug = job_.desc.debug != render::DebugView::None;
+        const bool is_off = flags_.look.is_off() || !look_.is_enabled;
+        if (!is_debug && !is_off)
+            way_ = Way::Developed;
+        else
+            way_ = !is_debug && develop_.target == DevelopTarget::SceneLinear ? Way::Linear : Way::Display;
+        if (way_ == Way::Developed && !flags_.is_tone_mapped() && !switch_tone_mapping_off(look_))
+            warn("--no-tonemapping: the look has no tone mapping");
+    }
+
+    Result<> make() {
+        Result<darkroom::Device> device = flags_.device.create();
+        if (!device) return failure(std::move(device));
+        device_ = std::make_unique<darkroom::Device>(std::move(*device));
+        render::RenderDesc& desc = job_.desc;
+        if (Result<> done = darkroom::check_extent(*device_, desc.extent); !done) return done;
+        desc.has_grid = desc.has_grid && scene_.has_grid;
+        const bool has_frames = !job_.shots.front().frame.empty();
+        if (way_ == Way::Display) {
+            desc.output = render::Output::Display;
+            // What the file holds more of than eight bits: half floats have eleven, and no range to leave.
+            if (develop_.target != DevelopTarget::Encoded8) desc.display_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+            if (Result<> done = make_renderer(desc, display_); !done) return done;
+        }
+        if (way_ != Way::Display || has_frames) {
+            desc.output = render::Output::Hdr;
+            desc.debug = render::DebugView::None;
+            if (Result<> done = make_renderer(desc, hdr_); !done) return done;
+        }
+        if (way_ != Way::Developed) return {};
+        composer_ = std::make_unique<darkroom::Composer>(
+            *device_, darkroom::ComposerDesc{.frames_in_flight = 1, .has_timers = flags_.has_timings});
+        developer_ = std::make_unique<darkroom::Developer>(*device_, develop_);
+        return darkroom::apply(look_, *composer_);
+    }
+
+    Result<> make_renderer(const render::RenderDesc& desc, std::optional<render::Renderer>& to) {
+        Result<render::Renderer> made = render::Renderer::create(*device_, scene_, assets_, desc);
+        if (!made) return failure(std::move(made));
+        to.emplace(std::move(*made));
+        return {};
+    }
+
+    Result<> render(const Shot& shot) {
+        const auto [width, height] = job_.desc.extent;
+        const scene::Snapshot snapshot =
+            scene::snapshot(scene_, assets_,
+                            {.time = shot.time,
+                             .previous_time = shot.previous_time,
+                             .aspect = static_cast<float>(width) / static_cast<float>(height),
+                             .seed = job_.seed,
+                             .orbit = job_.orbit});
+        for (const std::string& warning : snapshot.warnings)
+            if (&shot == &job_.shots.front()) warn(warning);
+        DevelopedPicture picture;
+        if (display_) {
+            if (Result<> done = display_->prepare(snapshot); !done) return done;
+            Result<DevelopedPicture> read = darkroom::read_picture(*device_, display_->picture(), recorder(*display_));
+            if (!read) return failure(std::move(read));
+            picture = std::move(*read);
+        }
+        if (hdr_)
+            if (Result<> done = render_light(shot, snapshot, picture); !done) return done;
+        return write(shot.picture, std::move(picture), job_.write);
+    }
+
+    /// The linear frame: through the look, or as it is, and into a file of its own.
+    Result<> render_light(const Shot& shot, const scene::Snapshot& snapshot, DevelopedPicture& picture) {
+        if (Result<> done = hdr_->prepare(snapshot); !done) return done;
+        darkroom::DeviceFrame input{.frame = hdr_->frame(),
+                                    .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+                                    .record_before = recorder(*hdr_)};
+        input.frame.camera = as_stored(input.frame.camera);
+        input.frame.time = shot.time;
+        input.frame.delta_time = shot.delta_time;
+        input.frame.frame_index = shot.number;
+        darkroom::FrameLayers layers;
+        const bool has_frame = !shot.frame.empty();
+        if (way_ == Way::Developed) {
+            Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
+            if (!made) return failure(std::move(made));
+            if (&shot == &job_.shots.front()) warn_of_what_is_left_out(*composer_, developer_->plan());
+            picture = std::move(*made);
+        } else {
+            Result<darkroom::FrameLayers> read = darkroom::read_layers(*device_, input.frame, input.record_before);
+            if (!read) return failure(std::move(read));
+            layers = std::move(*read);
+            if (way_ == Way::Linear) picture = {.extent = layers.extent, .pixels = layers.color};
+        }
+        if (!has_frame) return {};
+        return darkroom::write_frame(shot.frame, frame_file(input.frame, std::move(layers)));
+    }
+
+    static darkroom::RecordBefore recorder(render::Renderer& renderer) {
+        return [&renderer](VkCommandBuffer commands) { return renderer.record(commands); };
+    }
+
+    const RenderFlags& flags_;
+    RenderJob job_;
+    darkroom::DevelopDesc develop_;
+    scene::Scene scene_;
+    scene::Assets assets_;
+    darkroom::Look look_;
+    Way way_ = Way::Developed;
+    std::unique_ptr<darkroom::Device> device_;
+    std::optional<render::Renderer> hdr_, display_;
+    std::unique_ptr<darkroom::Composer> composer_;
+    std::unique_ptr<darkroom::Developer> developer_;
+};
+
+int run(const RenderFlags& flags) {
+    Render render(flags);
+    const Result<> done = render.run();
+    return render.exit_code(done ? exit_ok : fail(done.error()));
+}
+
+}  // namespace
+
+Command add_render(CLI::App& program) {
+    CLI::App* const command = program.add_subcommand("render", "Renders a scene and post-processes it");
+    const auto flags = std::make_shared<RenderFlags>();
+    flags->add_to(*command);
+    return {command, [flags] { return run(*flags); }};
+}
+
+}  // namespace app

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+#include "render_flags.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/param_text.hpp"
+#include "image/sequence.hpp"
+#include "outputs.hpp"
+#include "report.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+using darkroom::render::DebugView;
+
+namespace {
+
+constexpr VkExtent2D default_extent{1920, 1080};
+
+struct DebugMode {
+    const char* name;
+    DebugView view;
+};
+constexpr std::array debug_modes{
+    DebugMode{"wireframe", DebugView::Wireframe}, DebugMode{"normals", DebugView::Normals},
+    DebugMode{"depth", DebugView::Depth},         DebugMode{"uv", DebugView::Uv},
+    DebugMode{"unlit", DebugView::Unlit},         DebugMode{"metalrough", DebugView::MetalRough}};
+
+Result<DebugView> parse_debug_mode(const std::string& text) {
+    std::vector<std::string> names;
+    for (const DebugMode& mode : debug_modes) {
+        if (text == mode.name) return mode.view;
+        names.emplace_back(mode.name);
+    }
+    return user_error(fmt::format("--debug-mode {}: allowed is {}{}", printable(text), fmt::join(names, ", "),
+                                  darkroom::suggestion(text, names)));
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (text.starts_with(' ')) text.remove_prefix(1);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    return text;
+}
+
+Result<darkroom::scene::vec3> parse_vec3(std::string_view flag, const std::string& text) {
+    darkroom::scene::vec3 out;
+    std::string_view rest = text;
+    for (int i = 0; i < 3; ++i) {
+        const std::size_t comma = rest.find(',');
+        const bool is_last = comma == std::string_view::npos;
+        const std::optional<double> number = darkroom::parse_number(trimmed(rest.substr(0, comma)));
+        if (!number || is_last != (i == 2) || std::abs(*number) > std::numeric_limits<float>::max())
+            return user_error(fmt::format("{} {}: expected three numbers, X,Y,Z", flag, printable(text)));
+        out[i] = static_cast<float>(*number);
+        if (!is_last) rest.remove_prefix(comma + 1);
+    }
+    return out;
+}
+
+struct FrameRange {
+    std::uint64_t first = 0, last = 0;
+};
+
+Result<FrameRange> parse_frames(const std::string& text) {
+    FrameRange range;
+    const char* const end = text.data() + text.size();
+    const auto [dash, first_error] = std::from_chars(text.data(), end, range.first);
+    std::errc error = first_error;
+    const char* last = dash;
+    range.last = range.first;
+    if (error == std::errc() && dash != end && *dash == '-') {
+        const auto parsed = std::from_chars(dash + 1, end, range.last);
+        last = parsed.ptr;
+        error = parsed.ec;
+    }
+    constexpr std::uint64_t most_number = 1'000'000'000;  // what fits a file name and a float file's attributes
+    if (error != std::errc() || last != end || range.first > most_number || range.last > most_number)
+        return user_error(
+            fmt::format("--frames {}: expected FIRST-LAST, whole numbers from 0 to {}", printable(text), most_number));
+    if (range.last < range.first)
+        return user_error(fmt::format("--frames {}: the last frame is before the first", printable(text)));
+    constexpr std::uint64_t most = 100'000;
+    if (range.last - range.first >= most)
+        return user_error(fmt::format("--frames {}: at most {} frames at once", printable(text), most));
+    return range;
+}
+
+struct Interval {
+    double least = 0, most = 0;
+    bool is_open = false;
+};
+
+Result<std::optional<float>> in_range(std::string_view flag, std::optional<double> value, const Interval& allowed) {
+    if (!value) return std::optional<float>();
+    const auto& [least, most, is_open] = allowed;
+    const bool is_inside = is_open ? *value > least && *value < most : *value >= least && *value <= most;
+    if (!is_inside)
+        return user_error(fmt::format("{} = {}: allowed is {}{}, {}{}", flag, *value, is_open ? ']' : '[', least, most,
+                                      is_open ? '[' : ']'));
+    return std::optional<float>(static_cast<float>(*value));
+}
+
+}  // namespace
+
+void RenderFlags::add_to(CLI::App& command) {
+    command.add_option("SCENE", scene, "A scene (.toml) or a model (.glb, .gltf)")->required();
+    command
+        .add_option("-o,--output,--out", out_,
+                    "The picture: .png .jpg .tif .exr .hdr; for several frames a name with %04d")
+        ->type_name("OUT")
+        ->capture_default_str();
+    command.add_option("--frame", frame_, "The raw frame, too: linear light, depth, normals, motion and camera (.exr)")
+        ->type_name("OUT.exr");
+    command.add_option("--width", width_, "Of the picture, default 1920")->type_name("PIXELS");
+    command.add_option("--height", height_, "Of the picture, default 1080")->type_name("PIXELS");
+    command.add_option("--size", size_, "Both at once")->type_name("WxH");
+    command.add_option("--bits", bits_, "Samples of the file: 8, 16, half or float")->type_name("BITS");
+    command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque");
+    command.add_flag("--timings", has_timings, "Prints the GPU milliseconds of every pass of post-processing");
+    command.add_option("--schemas", schemas_, "Taken for the sake of old command lines; there is nothing to check")
+        ->type_name("DIR")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_moments(command);
+    add_camera(command);
+    add_drawing(command);
+    device.add_to(command);
+    look.add_to(command, true);
+}
+
+void RenderFlags::add_moments(CLI::App& command) {
+    const std::string group = "The moment";
+    command.add_option("--time", time_, "Seconds, default 0")->type_name("S")->group(group);
+    command.add_option("--frames", frames_, "Several frames; the time of a frame is its number / fps")
+        ->type_name("FIRST-LAST")
+        ->group(group);
+    command.add_option("--fps", frames_per_second_, "Frames a second, for --frames and for motion")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group(group);
+    command.add_option("--seed", seed_, "Of the particles")->type_name("N")->capture_default_str()->group(group);
+}
+
+void RenderFlags::add_camera(CLI::App& command) {
+    const std::string group = "The camera, each on top of the scene's own";
+    command.add_option("--distance", distance_, "From the target")->type_name("METRES")->group(group);
+    command.add_option("--yaw", yaw_, "Around the target")->type_name("DEGREES")->group(group);
+    command.add_option("--pitch", pitch_, "Above the target")->type_name("DEGREES")->group(group);
+    command.add_option("--target", target_, "What is looked at; the camera moves with it")
+        ->type_name("X,Y,Z")
+        ->group(group);
+    command.add_option("--fov", field_of_view_, "Vertical field of view")->type_name("DEGREES")->group(group);
+}
+
+void RenderFlags::add_drawing(CLI::App& command) {
+    const std::string group = "What is drawn";
+    command.add_flag("--no-grid", has_no_grid_, "No grid on the ground")->group(group);
+    command
+        .add_option("--debug-mode", debug_mode_,
+                    "wireframe, normals, depth, uv, unlit or metalrough; neither tone-mapped nor post-processed")
+        ->type_name("MODE")
+        ->group(group);
+    command.add_flag("--wireframe-overlay", has_wireframe_overlay_, "Edges of all triangles on top")->group(group);
+    command.add_flag("--show-normals", has_normal_arrows_, "An arrow for the normal of every vertex")->group(group);
+    command.add_flag("--no-tonemapping", has_no_tone_mapping_, "Light above 1 is cut off")->group(group);
+    command.add_flag("--no-shadows", has_no_shadows_, "No light casts shadows")->group(group);
+    command.add_option("--shadow-resolution", shadow_resolution_, "Of each cascade of a shadow map, [16, 16384]")
+        ->type_name("TEXELS")
+        ->capture_default_str()
+        ->group(group);
+    command.add_option("--msaa", samples_, "Samples a pixel, of the counts that the device has")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group(group);
+}
+
+Result<VkExtent2D> RenderFlags::extent() const {
+    if (size_) {
+        if (width_ || height_)
+            return user_error(fmt::format("--size {}: it says width and height, leave out --{}", printable(*size_),
+                                          width_ ? "width" : "height"));
+        return parse_size(*size_);
+    }
+    const auto check = [](std::string_view flag, std::int64_t value) -> Result<> {
+        constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();
+        if (value >= 1 && value <= most) return {};
+        return user_error(fmt::format("{} = {}: expected pixels, at least 1", flag, value));
+    };
+    const std::int64_t width = width_.value_or(default_extent.width), height = height_.value_or(default_extent.height);
+    if (Result<> done = check("--width", width); !done) return failure(std::move(done));
+    if (Result<> done = check("--height", height); !done) return failure(std::move(done));
+    return VkExtent2D{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+}
+
+Result<darkroom::scene::OrbitOverride> RenderFlags::orbit() const {
+    darkroom::scene::OrbitOverride out;
+    const struct {
+        std::string_view flag;
+        std::optional<double> value;
+        Interval allowed;
+        std::optional<float>* to;
+    } numbers[] = {{"--distance", distance_, {0, 1e9, true}, &out.distance},
+                   {"--yaw", yaw_, {-1e6, 1e6}, &out.yaw},
+                   {"--pitch", pitch_, {-90, 90}, &out.pitch},
+                   {"--fov", field_of_view_, {0, 180, true}, &out.field_of_view}};
+    for (const auto& number : numbers) {
+        const Result<std::optional<float>> value = in_range(number.flag, number.value, number.allowed);
+        if (!value) return failure(value.error());
+        *number.to = *value;
+    }
+    if (target_) {
+        const Result<darkroom::scene::vec3> target = parse_vec3("--target", *target_);
+        if (!target) return failure(target.error());
+        out.target = *target;
+    }
+    return out;
+}
+
+Result<darkroom::render::RenderDesc> RenderFlags::desc() const {
+    darkroom::render::RenderDesc out;
+    const Result<VkExtent2D> size = extent();
+    if (!size) return failure(size.error());
+    out.extent = *size;
+    constexpr std::int64_t least = 16, most = 16384;
+    if (shadow_resolution_ < least || shadow_resolution_ > most)
+        return user_error(
+            fmt::format("--shadow-resolution = {}: allowed is [{}, {}] texels", shadow_resolution_, least, most));
+    if (samples_ < 1 || samples_ > 64)
+        return user_error(
+            fmt::format("--msaa = {}: allowed is 1, 2, 4, 8 and so on, as the device has them", samples_));
+    if (debug_mode_) {
+        const Result<DebugView> view = parse_debug_mode(*debug_mode_);
+        if (!view) return failure(view.error());
+        out.debug = *view;
+    }
+    out.samples = static_cast<std::uint32_t>(samples_);
+    out.cascades.resolution = static_cast<std::uint32_t>(shadow_resolution_);
+    out.is_tone_mapped = !has_no_tone_mapping_;
+    out.has_shadows = !has_no_shadows_;
+    out.has_grid = !has_no_grid_;
+    out.has_wireframe_overlay = has_wireframe_overlay_;
+    out.has_normal_arrows = has_normal_arrows_;
+    return out;
+}
+
+Result<std::vector<Shot>> RenderFlags::shots() const {
+    if (!(frames_per_second_ > 0 && std::isfinite(frames_per_second_)))
+        return user_error(fmt::format("--fps = {}: expected a number above 0", frames_per_second_));
+    if (time_ && !(*time_ >= 0 && std::isfinite(*time_)))
+        return user_error(fmt::format("--time = {}: expected seconds, at least 0", *time_));
+    if (time_ && frames_) return user_error("--time: --frames says the time of every frame, leave out one of them");
+    const double step = 1 / frames_per_second_;
+    const auto shot = [&](std::uint64_t number, double time) {
+        return Shot{.number = number,
+                    .time = time,
+                    .previous_time = std::max(0.0, time - step),
+                    .delta_time = step,
+                    .picture = darkroom::numbered(out_, static_cast<long long>(number)),
+                    .frame = darkroom::numbered(frame_.value_or(""), static_cast<long long>(number))};
+    };
+    if (!frames_) return std::vector{shot(0, time_.value_or(0))};
+    const Result<FrameRange> range = parse_frames(*frames_);
+    if (!range) return failure(range.error());
+    std::vector<Shot> out;
+    for (std::uint64_t number = range->first; number <= range->last; ++number)
+        out.push_back(shot(number, static_cast<double>(number) / frames_per_second_));
+    return out;
+}
+
+Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
+    const bool is_many = shots.size() > 1;
+    if (out_.empty()) return user_error("-o: an output file is needed");
+    if (is_many && !darkroom::has_number_pattern(out_))
+        return user_error(fmt::format("-o {}: {} frames need a name with %04d", printable(out_), shots.size()));
+    if (frame_) {
+        const Result<darkroom::FileKind> kind = darkroom::file_kind(*frame_);
+        if (!kind || *kind != darkroom::FileKind::OpenExr)
+            return user_error(fmt::format("--frame {}: a frame is an .exr file", printable(*frame_)));
+        if (is_many && !darkroom::has_number_pattern(*frame_))
+            return user_error(
+                fmt::format("--frame {}: {} frames need a name with %04d", printable(*frame_), shots.size()));
+    }
+    const std::array<fs::path, 1> inputs{scene};
+    std::set<fs::path> outputs;
+    for (const Shot& shot : shots)
+        for (const fs::path& path : {shot.picture, shot.frame}) {
+            if (path.empty()) continue;
+            if (!outputs.insert(path.lexically_normal()).second)
+                return user_error(fmt::format("{}: would be picture and frame", printable(path.string())));
+            if (Result<> done = check_output(path, inputs); !done) return done;
+        }
+    return {};
+}
+
+Result<RenderJob> RenderFlags::job() const {
+    RenderJob job;
+    if (seed_ < 0) return user_error(fmt::format("--seed = {}: expected a whole number, at least 0", seed_));
+    job.seed = static_cast<std::uint64_t>(seed_);
+    Result<darkroom::render::RenderDesc> desc = this->desc();
+    if (!desc) return failure(std::move(desc));
+    job.desc = *desc;
+    const Result<darkroom::scene::OrbitOverride> orbit = this->orbit();
+    if (!orbit) return failure(orbit.error());
+    job.orbit = *orbit;
+    job.write.alpha = has_alpha_;
+    if (bits_) {
+        const Result<darkroom::SampleKind> bits = parse_bits(*bits_);
+        if (!bits) return failure(bits.error());
+        job.write.samples = *bits;
+    }
+    const Result<darkroom::SampleKind> samples = darkroom::sample_kind(out_, job.write);
+    if (!samples) return failure(samples.error());
+    job.samples = *samples;
+    Result<std::vector<Shot>> shots = this->shots();
+    if (!shots) return failure(std::move(shots));
+    job.shots = std::move(*shots);
+    if (Result<> done = check_files(job.shots); !done) return failure(std::move(done));
+    if (!schemas_.empty()) warn("--schemas: scenes are checked without schema files, the folders are not read");
+    return job;
+}
+
+}  // namespace app

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The flags of `render` and what they ask for: size, camera, moments, files, what is drawn. Everything that can be
+// known without the scene and without a device is checked here.
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "device_flags.hpp"
+#include "image/write.hpp"
+#include "look_flags.hpp"
+#include "render/renderer.hpp"
+#include "scene/snapshot.hpp"
+
+namespace app {
+
+/// One picture: a moment of the scene and the files it becomes.
+struct Shot {
+    std::uint64_t number = 0;  ///< of the frame
+    double time = 0;           ///< seconds
+    double previous_time = 0;  ///< one frame before, but not before 0
+    double delta_time = 0;
+    std::filesystem::path picture;
+    std::filesystem::path frame;  ///< empty: not asked for
+};
+
+struct RenderJob {
+    darkroom::render::RenderDesc desc;  ///< without `output`: that is for the look to say
+    darkroom::scene::OrbitOverride orbit;
+    std::vector<Shot> shots;
+    darkroom::WriteOptions write;
+    darkroom::SampleKind samples = darkroom::SampleKind::Integer8;  ///< of the pictures
+    std::uint64_t seed = 0;
+};
+
+class RenderFlags {
+  public:
+    void add_to(CLI::App& command);
+    [[nodiscard]] darkroom::Result<RenderJob> job() const;
+
+    LookFlags look;
+    DeviceFlags device;
+    std::string scene;
+    bool has_timings = false;
+    bool is_tone_mapped() const { return !has_no_tone_mapping_; }
+    /// Do the flags say a time? Else it is the scene's.
+    bool has_time() const { return time_ || frames_; }
+
+  private:
+    void add_camera(CLI::App& command);
+    void add_drawing(CLI::App& command);
+    void add_moments(CLI::App& command);
+    [[nodiscard]] darkroom::Result<VkExtent2D> extent() const;
+    [[nodiscard]] darkroom::Result<darkroom::scene::OrbitOverride> orbit() const;
+    [[nodiscard]] darkroom::Result<darkroom::render::RenderDesc> desc() const;
+    [[nodiscard]] darkroom::Result<std::vector<Shot>> shots() const;
+    [[nodiscard]] darkroom::Result<> check_files(const std::vector<Shot>& shots) const;
+
+    // Optional, so that an empty text is a wrong value, not a missing one.
+    std::string out_ = "render.png";
+    std::optional<std::string> frame_, size_, target_, debug_mode_, frames_, bits_;
+    std::vector<std::string> schemas_;
+    std::optional<std::int64_t> width_, height_;
+    std::optional<double> distance_, yaw_, pitch_, field_of_view_, time_;
+    double frames_per_second_ = 24;
+    std::int64_t shadow_resolution_ = 2048, samples_ = 1, seed_ = 0;
+    bool has_no_grid_ = false, has_wireframe_overlay_ = false, has_normal_arrows_ = false;
+    bool has_no_tone_mapping_ = false, has_no_shadows_ = false, has_alpha_ = false;
+};
+
+}  // namespace app
