@@ -5,6 +5,7 @@
 #include "chains.hpp"
 #include "core/test_support_allocations.hpp"
 #include "rows.hpp"
+#include "scene.hpp"
 
 namespace darkroom::bench {
 
@@ -36,6 +37,15 @@ constexpr std::array targets{
     Target{"default stack / calibration, raster", "default/fused/raster", calibration_name},
 };
 
+/// Of a frame of the dungeon, how much is post-processing.
+std::optional<Figure> post_share(const std::vector<Row>& rows, double Sample::*cost) {
+    const Row* const scene = find_row(rows, dungeon_scene_name);
+    const Row* const post = find_row(rows, dungeon_post_name);
+    if (scene == nullptr || post == nullptr) return std::nullopt;
+    const double of_scene = ratio(*post, *scene, cost);
+    return Figure{"dungeon, post-processing share", 100 * of_scene / (1 + of_scene), "%"};
+}
+
 double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
 }  // namespace
@@ -59,6 +69,7 @@ std::vector<Figure> ratio_figures(const Device& device, const std::vector<Row>& 
         figures.push_back({std::string(target.name), ratio(*row, *unit, cost),
                            target.unit == calibration_name ? "c" : "", target.at_most});
     }
+    if (const std::optional<Figure> share = post_share(rows, cost)) figures.push_back(*share);
     return figures;
 }
 

@@ -9,6 +9,8 @@
 
 #include "chains.hpp"
 #include "hand_written.hpp"
+#include "recipe.hpp"
+#include "scene.hpp"
 
 namespace darkroom::bench {
 
@@ -27,12 +29,6 @@ std::string_view stage_name(KernelStage stage) {
     }
     return "auto";
 }
-
-/// A row that is made only when it is asked for.
-struct Recipe {
-    std::string name;
-    std::function<Result<Row>(Bed&, const std::string& name)> make;
-};
 
 Recipe chain_recipe(std::string name, Stack stack, const ChainDesc& desc) {
     return {.name = std::move(name),
@@ -102,6 +98,7 @@ std::vector<Recipe> recipes() {
         for (const KernelStage stage : stages)
             out.push_back(chain_recipe(fmt::format("bloom/{}", stage_name(stage)), bloom, {.kernels = stage}));
     add_chains(out, "default", default_stack());
+    for (Recipe& recipe : scene_recipes()) out.push_back(std::move(recipe));
     return out;
 }
 
@@ -119,7 +116,7 @@ Result<std::vector<Row>> make_rows(Bed& bed, std::string_view filter) {
         if (recipe.name != calibration_name && recipe.name.find(filter) == std::string::npos) continue;
         auto row = recipe.make(bed, recipe.name);
         if (!row) return user_error(fmt::format("{}: {}", recipe.name, row.error().text));
-        rows.push_back(std::move(*row));
+        if (row->record || row->host) rows.push_back(std::move(*row));
     }
     return rows;
 }
