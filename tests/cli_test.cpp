@@ -2,20 +2,15 @@
 // The command line as its users meet it: the built program is run, and its exit code, its standard error and its files
 // are looked at.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <darkroom/effects.hpp>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "cli_support.hpp"
 #include "core/param_text.hpp"
-#include "image/compare.hpp"
-#include "image/display_picture.hpp"
 #include "image/frame_file.hpp"
 
 namespace darkroom {
@@ -23,92 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-    int code = -1;  ///< 128 and more: ended by a signal
-    std::string out, err;
-};
+using test::content;
+using test::Outcome;
 
-std::string quoted(const std::string& text) {
-    std::string out(1, '\'');
-    for (const char c : text) {
-        if (c == '\'')
-            out += "'\\''";
-        else
-            out += c;
-    }
-    out += '\'';
-    return out;
-}
-std::string content(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
-class Cli : public testing::Test {
+class Cli : public test::CliFixture {
   protected:
-    void SetUp() override {
-        if (!fs::exists(program)) GTEST_SKIP() << program << " is not built";
-        std::string name = (fs::temp_directory_path() / "darkroom_cli_XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
+    void make_files() override {
         FrameFile frame;
         frame.color = Picture(48, 32);
         for (std::size_t i = 0; i < frame.color.pixels.size(); ++i)
             frame.color.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((i * 37) % 101) / 40.0f;
         ASSERT_TRUE(write_frame(path("frame.exr"), frame));
     }
-    void TearDown() override {
-        if (!folder_.empty()) fs::remove_all(folder_);
-    }
-
-    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(path(name), std::ios::binary) << text;
-        return path(name);
-    }
-    [[nodiscard]] std::vector<std::string> files() const {
-        std::vector<std::string> names;
-        for (const auto& file : fs::directory_iterator(folder_)) names.push_back(file.path().filename().string());
-        std::sort(names.begin(), names.end());
-        return names;
-    }
-    [[nodiscard]] Outcome run(const std::vector<std::string>& arguments) const {
-        const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
-        std::string command = quoted(program);
-        for (const std::string& argument : arguments) command += " " + quoted(argument);
-        const int status =
-            std::system((command + " >" + quoted(out.string()) + " 2>" + quoted(err.string()) + " </dev/null").c_str());
-        Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128, content(out), content(err)};
-        fs::remove(out);
-        fs::remove(err);
-        return outcome;
-    }
     [[nodiscard]] Outcome develop(std::vector<std::string> arguments, const std::string& out = "out.png") const {
         arguments.insert(arguments.begin(), {"develop", path("frame.exr"), "-o", path(out)});
         return run(arguments);
     }
-    /// Refused: the code, one line that names the program and `part`, and no new file.
-    void expect_refused(const std::vector<std::string>& arguments, int code, const std::string& part) const {
-        const std::vector<std::string> before = files();
-        const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.code, code) << outcome.err;
-        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-        EXPECT_TRUE(outcome.err.starts_with("darkroom: ")) << outcome.err;
-        EXPECT_NE(outcome.err.find(part), std::string::npos) << part << " is not in " << outcome.err;
-        EXPECT_EQ(files(), before);
-    }
-    [[nodiscard]] Picture picture(const std::string& name) const {
-        const Result<ComparablePicture> read = read_comparable(path(name));
-        EXPECT_TRUE(read) << read.error().text;
-        return read ? read->picture : Picture{};
-    }
-
-    static constexpr const char* program = DARKROOM_BINARY_FOLDER "/bin/darkroom";
-
-  private:
-    fs::path folder_;
 };
 
 TEST_F(Cli, DevelopsAFrame) {

@@ -71,6 +71,8 @@ struct ModelReference {
     std::string animation;    ///< name or number of a clip; empty: the first
     bool is_animated = true;  ///< false: the pose of the file
     float animation_speed = 1;
+    /// Of the model's lights, which glTF has in candela and lux: the default undoes the 683 lm/W of exporters.
+    float light_scale = 1.0F / 683;
 };
 
 enum class LightType : std::uint8_t { Directional, Point, Spot };

@@ -87,12 +87,14 @@ asset = "fox"
 animation = "Run"
 animated = false
 animation_speed = 2
+light_scale = 0.5
 )")
                                       .model;
     EXPECT_EQ(model.asset, "fox");
     EXPECT_EQ(model.animation, "Run");
     EXPECT_FALSE(model.is_animated);
     EXPECT_EQ(model.animation_speed, 2);
+    EXPECT_EQ(model.light_scale, 0.5F);
     EXPECT_EQ(entity_of("[entities.a.model]\nasset = \"fox\"\nanimation = 2\n").model->animation, "2");
 }
 

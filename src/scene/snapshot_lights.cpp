@@ -51,6 +51,7 @@ void add_model_lights(const Entity& entity, const Model& model, const mat4& worl
         const std::string part = node.name.empty() ? fmt::format("node {}", i) : node.name;
         out.push_back(
             model_light(model.lights[node.light], fmt::format("{}/{}", entity.name, part), world * pose.nodes[i]));
+        out.back().light.intensity *= entity.model.value_or(ModelReference{}).light_scale;
     }
 }
 

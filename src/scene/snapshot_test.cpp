@@ -299,6 +299,9 @@ TEST(SceneLights, OfModelsShineAlongTheirNode) {
     expect_near(found.lights[1].direction, {-1, 0, 0});  // out of the light
     expect_near(found.lights[1].position, {7, 0, 0});
     EXPECT_EQ(found.lights[1].name, "house/torch");
+    EXPECT_FLOAT_EQ(found.lights[1].light.intensity, 1.0F / 683);  // candela to the scene's unit
+    entity.model = ModelReference{.light_scale = 3};
+    EXPECT_FLOAT_EQ(snapshot(with_camera({entity}), assets, {}).lights[1].light.intensity, 3);
 }
 
 TEST(SceneLights, KeepTheStrongestInOrder) {
