@@ -47,7 +47,10 @@ class TableCatcher : public PassBuilder {
     PassImage create(const PassImageDesc&) override { return {}; }
     History history(const PassImageDesc&) override { return {}; }
     PassImage frame_image(FrameImage) override { return {}; }
-    PassImage shared(std::string_view, PassImage (*)(PassBuilder&)) override { return {}; }
+    bool has_frame_image(FrameImage) const override { return false; }
+    bool is_depth_planar() const override { return false; }
+    PassImage shadow_map(std::uint32_t) override { return {}; }
+    PassImage shared(std::string_view, PassImage (*)(PassBuilder&), ConditionFunction) override { return {}; }
     PassImage table(const TableDesc& desc) override {
         tables.push_back(desc);
         return {};

@@ -19,6 +19,9 @@ namespace {
 /// Writes down what build() declares.
 class RecordingBuilder final : public PassBuilder {
   public:
+    bool has_frame_image(FrameImage) const override { return false; }
+    bool is_depth_planar() const override { return false; }
+    PassImage shadow_map(std::uint32_t) override { return {}; }
     explicit RecordingBuilder(VkExtent2D extent) : extent_(extent) {}
     PassImage picture() override { return {0}; }
     PassImage source() override { return {1}; }
@@ -30,7 +33,9 @@ class RecordingBuilder final : public PassBuilder {
     }
     History history(const PassImageDesc&) override { return {{next_++}, {next_++}}; }
     PassImage frame_image(FrameImage) override { return {next_++}; }
-    PassImage shared(std::string_view, PassImage (*make)(PassBuilder&)) override { return make(*this); }
+    PassImage shared(std::string_view, PassImage (*make)(PassBuilder&), ConditionFunction) override {
+        return make(*this);
+    }
     PassImage table(const TableDesc&) override { return {next_++}; }
     PassImage add(const KernelPassDesc& desc) override {
         passes.push_back(desc);

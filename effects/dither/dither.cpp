@@ -5,16 +5,14 @@
 #include <cstring>
 
 #include "dither/dither_reference.hpp"
+#include "shared/blue_noise.hpp"
 
 namespace darkroom {
 
 namespace {
 
+static_assert(dither_tile_size == blue_noise_size);
 constexpr std::size_t texel_count = std::size_t{dither_tile_size} * dither_tile_size;
-
-constexpr std::array<std::uint16_t, texel_count> ranks{
-#include "dither/dither_tile.inc"
-};
 
 /// Far apart on the tile, which is nearly uncorrelated over such distances: three points of the R2 sequence.
 constexpr std::array<DitherOffset, 3> channel_offsets{{{0, 0}, {48, 36}, {32, 8}}};
@@ -41,6 +39,7 @@ void build(PassBuilder& builder) {
 
 const std::array<DitherTexel, texel_count>& dither_tile() {
     static const std::array<DitherTexel, texel_count> tile = [] {
+        const auto& ranks = blue_noise_ranks();
         std::array<DitherTexel, texel_count> texels{};
         for (std::uint32_t y = 0; y < dither_tile_size; ++y) {
             for (std::uint32_t x = 0; x < dither_tile_size; ++x) {

@@ -66,10 +66,12 @@ struct CompileDesc {
     VkExtent2D max_extent{};
     VkFormat color = VK_FORMAT_R16G16B16A16_SFLOAT;
     VkFormat depth = VK_FORMAT_UNDEFINED;  ///< UNDEFINED: not given
+    /// Every frame's camera says DepthKind::Planar: the depth image is then read as it is, without a pass.
+    bool is_depth_planar = false;
     VkFormat normals = VK_FORMAT_UNDEFINED;
     VkFormat velocity = VK_FORMAT_UNDEFINED;
     VkFormat ui = VK_FORMAT_UNDEFINED;
-    bool has_shadows = false;
+    bool has_shadows = false;  ///< frames have lights with cascades in D32_SFLOAT
     VkFormat target = VK_FORMAT_R8G8B8A8_UNORM;
     VkImageUsageFlags color_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< with STORAGE, own pixels are read cheaper
     VkImageUsageFlags target_usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT;

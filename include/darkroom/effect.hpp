@@ -9,7 +9,8 @@
 // file scope begins with the effect's name. Alpha passes unchanged unless the effect is about alpha.
 // A pass of its own lives in effects/<name>/<name>_<pass>.glsl and defines
 //     vec4 shade(Pixel pixel)
-// with `<Struct> <name>_parameters()` at hand, `frame_time` and its like, and custom[i] from the pass's constants.
+// with `<Struct> <name>_parameters()` at hand, `frame_time` and its like, and custom[i] from the pass's constants; the
+// camera is reached by the functions of effects/shared/camera.glsl.
 
 #include <vulkan/vulkan.h>
 #include <array>
@@ -78,6 +79,7 @@ struct PassContext {
     double delta_time = 0;
     std::uint64_t frame_index = 0;
     const Camera* camera = nullptr;
+    std::span<const Light> lights;
 };
 
 using PassVector = std::array<float, 4>;
@@ -155,9 +157,17 @@ class PassBuilder {
     [[nodiscard]] virtual History history(const PassImageDesc& desc) = 0;
     /// An image of the host that the effect's needs name.
     [[nodiscard]] virtual PassImage frame_image(FrameImage which) = 0;
+    /// Does a frame have this image? For needs that are no more than wishes.
+    [[nodiscard]] virtual bool has_frame_image(FrameImage which) const = 0;
+    /// Are the numbers of the depth image planar distances already?
+    [[nodiscard]] virtual bool is_depth_planar() const = 0;
+    /// The cascades of shadow_light(frame.lights, number), for effects that need shadows: a sampler2DArrayShadow, used
+    /// by its name. Where a frame has fewer such lights, one that is lit everywhere.
+    [[nodiscard]] virtual PassImage shadow_map(std::uint32_t number) = 0;
     /// An image that several effects need (linear depth, say): `make` declares its passes for the first that asks, with
-    /// shaders of effects/shared; they run while any of the effects that asked is on.
-    [[nodiscard]] virtual PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&)) = 0;
+    /// shaders of effects/shared; they run while any of the effects that asked is on, and its `condition` holds.
+    [[nodiscard]] virtual PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&),
+                                           ConditionFunction condition = nullptr) = 0;
     [[nodiscard]] virtual PassImage table(const TableDesc& desc) = 0;
     /// Adds a pass; returns the written image's new name.
     virtual PassImage add(const KernelPassDesc& desc) = 0;
@@ -195,6 +205,9 @@ struct EffectInfo {
     void (*build)(PassBuilder&) = nullptr;
     /// The published equation in double precision; see reference.hpp.
     ReferenceFunction reference = nullptr;
+    /// What is wrong with values that are each allowed by themselves, as "end = 3: must lie beyond start = 5"; empty:
+    /// nothing. Values of a frame may still be so (overrides): shaders must survive them.
+    std::string (*conflict)(const void* parameters) = nullptr;
     /// For a frame's parameters: does the effect change nothing? Such an entry is treated as switched off.
     bool (*is_identity)(const void* parameters) = nullptr;
 };

@@ -58,19 +58,28 @@ struct Camera {
     bool is_cut = false;  ///< nothing of the last frame is related to this one: histories are reset
 };
 
-/// One light of the frame, with its shadow cascades where it casts.
+/// One directional light of the frame, with its shadow cascades where it casts.
 struct Light {
     static constexpr std::size_t max_cascades = 4;
     std::array<float, 3> direction{0, 1, 0};  ///< toward the light, world space
     std::array<float, 3> color{1, 1, 1};      ///< linear Rec. 709, times intensity
     float volumetric_intensity = 0;
     std::array<float, 3> volumetric_color{1, 1, 1};
-    ImageRef cascades;  ///< depth array; not given: casts no shadow
+    /// Depth array, a layer a cascade, its view of all layers; depth 0 near the light .. 1. Not given: casts no shadow.
+    ImageRef cascades;
     std::uint32_t cascade_count = 0;
+    /// To x, y in [-1, 1] (y down) and depth in [0, 1].
     std::array<Matrix, max_cascades> world_to_cascade{identity_matrix, identity_matrix, identity_matrix,
                                                       identity_matrix};
-    std::array<float, max_cascades> splits{};  ///< far distance of each cascade
+    std::array<float, max_cascades> splits{};  ///< far distance of each cascade, along the view axis
 };
+inline constexpr std::uint32_t max_shadow_lights = 4;
+/// The lights whose shadows effects can read: the first four of the frame that have cascades. Null: there are fewer.
+[[nodiscard]] inline const Light* shadow_light(std::span<const Light> lights, std::uint32_t number) {
+    for (const Light& light : lights)
+        if (light.cascades.is_given() && light.cascade_count > 0 && number-- == 0) return &light;
+    return nullptr;
+}
 
 /// One frame of one view.
 struct Frame {

@@ -84,6 +84,7 @@ struct ParamInfo {
     Range range;
     Kind kind = Kind::Float;
     bool is_amount = false;                       ///< 0 switches the effect off: see field().as_amount()
+    std::uint32_t switched_word = ~0u;            ///< of a toggle: see field().as_amount_of()
     std::uint32_t word = 0;                       ///< offset in the struct, in 4-byte words
     std::uint32_t words = 1;                      ///< size, in 4-byte words
     std::span<const std::string_view> choices{};  ///< names in snake_case, for Kind::Choice
@@ -248,6 +249,15 @@ struct Field {
     [[nodiscard]] constexpr Field as_amount() const {
         Field copy = *this;
         copy.info.is_amount = true;
+        return copy;
+    }
+    /// The amount of a part of the effect: a value above 0 on the command line turns that part's toggle on, and the
+    /// effect with it.
+    template <auto Part>
+    [[nodiscard]] constexpr Field as_amount_of() const {
+        static_assert(std::is_same_v<typename detail::Member<Part>::Type, Toggle>);
+        Field copy = *this;
+        copy.info.switched_word = detail::word_of<Part>();
         return copy;
     }
     [[nodiscard]] constexpr Field formerly(std::string_view name) const {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <darkroom/frame.hpp>
+#include <span>
 #include <vector>
 
 namespace darkroom {
@@ -32,6 +33,14 @@ struct ReferenceImage {
     }
 };
 
+/// A light with its shadow maps on the CPU, as darkroom::Light has them on the device.
+struct ReferenceLight {
+    Light light;
+    std::uint32_t resolution = 0;  ///< of the square cascades
+    /// One list a cascade, row-major, top row first: depth 0 near the light .. 1. Empty: casts no shadow.
+    std::vector<std::vector<float>> cascades;
+};
+
 /// What a reference reads beside its parameters. Images that are not there are null.
 struct ReferenceInput {
     const ReferenceImage* picture = nullptr;
@@ -40,6 +49,7 @@ struct ReferenceInput {
     const ReferenceImage* depth = nullptr;  ///< red: planar distance
     const ReferenceImage* normals = nullptr;
     const ReferenceImage* velocity = nullptr;
+    std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
     double delta_time = 0;

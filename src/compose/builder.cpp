@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "compose/planner_state.hpp"
@@ -57,18 +58,30 @@ PassBuilder::History Builder::history(const PassImageDesc& desc) {
     return {remember_new(made.current, image), remember_new(made.previous, image)};
 }
 
+namespace {
+
+struct FrameImageRow {
+    HostImage image;
+    const char* name;
+    VkFormat format;
+};
+
+FrameImageRow frame_image_row(const CompileDesc& desc, FrameImage which) {
+    const std::array<FrameImageRow, 4> rows{{{HostImage::Depth, "depth", desc.depth},
+                                             {HostImage::Normals, "normals", desc.normals},
+                                             {HostImage::Velocity, "velocity", desc.velocity},
+                                             {HostImage::Ui, "ui", desc.ui}}};
+    return rows[static_cast<std::size_t>(which)];
+}
+
+}  // namespace
+
+bool Builder::has_frame_image(FrameImage which) const {
+    return frame_image_row(planner_.desc_, which).format != VK_FORMAT_UNDEFINED;
+}
+
 PassImage Builder::frame_image(FrameImage which) {
-    const CompileDesc& desc = planner_.desc_;
-    struct Row {
-        HostImage image;
-        const char* name;
-        VkFormat format;
-    };
-    const std::array<Row, 4> rows{{{HostImage::Depth, "depth", desc.depth},
-                                   {HostImage::Normals, "normals", desc.normals},
-                                   {HostImage::Velocity, "velocity", desc.velocity},
-                                   {HostImage::Ui, "ui", desc.ui}}};
-    const Row& row = rows[static_cast<std::size_t>(which)];
+    const FrameImageRow row = frame_image_row(planner_.desc_, which);
     if (row.format == VK_FORMAT_UNDEFINED) {
         error = fmt::format("effect '{}' reads the frame's {} without naming it in its needs",
                             planner_.stack_[entry_].info->name, row.name);
@@ -78,23 +91,55 @@ PassImage Builder::frame_image(FrameImage which) {
                      .format = row.format});
 }
 
-PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&)) {
+PassImage Builder::shadow_map(std::uint32_t number) {
+    constexpr std::array<const char*, max_shadow_lights> names{"shadow 0", "shadow 1", "shadow 2", "shadow 3"};
+    DARKROOM_ASSERT(number < max_shadow_lights);
+    if (!planner_.desc_.has_shadows) {
+        error = fmt::format("effect '{}' reads shadows without naming them in its needs",
+                            planner_.stack_[entry_].info->name);
+        return {};
+    }
+    const auto which = static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::Shadow0) + number);
+    return remember({.version = planner_.import_host(which, names[number], VK_FORMAT_D32_SFLOAT,
+                                                     VK_IMAGE_USAGE_SAMPLED_BIT, {.width = 1, .height = 1}),
+                     .format = VK_FORMAT_D32_SFLOAT,
+                     .is_shadow_map = true});
+}
+
+PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&), ConditionFunction condition) {
     auto found = planner_.shared_.find(name);
     if (found == planner_.shared_.end()) {
-        // A toggle of its own, which further effects join.
+        // A toggle of its own, which further effects join; what is shared may itself need something shared.
         planner_.program_.toggles.push_back({});
-        shared_toggle_ = static_cast<std::int32_t>(planner_.program_.toggles.size() - 1);
+        const auto own = static_cast<std::int32_t>(planner_.program_.toggles.size() - 1);
+        const std::int32_t outer = std::exchange(shared_toggle_, own);
+        const std::vector<std::int32_t> outer_needs = std::exchange(shared_needs_, {});
         const PassImage made = make(*this);
+        shared_toggle_ = outer;
+        const std::vector<std::int32_t> needs = std::exchange(shared_needs_, outer_needs);
         if (made.index >= images_.size()) return {};
         const Image& written = images_[made.index];
-        const Planner::Shared row{written.version, written.first_written, written.format, shared_toggle_};
-        found = planner_.shared_.emplace(std::string(name), row).first;
-        shared_toggle_ = -1;
+        found = planner_.shared_
+                    .emplace(std::string(name), Planner::Shared{.version = written.version,
+                                                                .first_written = written.first_written,
+                                                                .format = written.format,
+                                                                .toggle = own,
+                                                                .needs = needs})
+                    .first;
     }
     const Planner::Shared& image = found->second;
-    planner_.program_.toggles[static_cast<std::size_t>(image.toggle)].entries.push_back(entry_);
-    shared_toggles_.push_back(image.toggle);
-    return remember({.version = image.version, .first_written = image.first_written, .format = image.format});
+    const auto join = [&](std::int32_t index) {
+        Toggle& toggle = planner_.program_.toggles[static_cast<std::size_t>(index)];
+        toggle.entries.push_back(entry_);
+        toggle.conditions.push_back(condition);
+        shared_needs_.push_back(index);
+    };
+    join(image.toggle);
+    for (const std::int32_t need : image.needs) join(need);
+    return remember({.version = image.version,
+                     .first_written = image.first_written,
+                     .format = image.format,
+                     .shared_toggle = image.toggle});
 }
 
 PassImage Builder::table(const TableDesc& desc) {
@@ -104,7 +149,8 @@ PassImage Builder::table(const TableDesc& desc) {
 }
 
 PassInput Builder::input_of(const Image& image, std::uint32_t mip_level) const {
-    return {.version = image.version, .mip_level = mip_level, .table = image.table};
+    return {
+        .version = image.version, .mip_level = mip_level, .table = image.table, .is_shadow_map = image.is_shadow_map};
 }
 
 PassImage Builder::add(const KernelPassDesc& desc) {
@@ -140,14 +186,17 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     pass.spec.is_additive = desc.is_additive;
     pass.spec.custom_vectors = desc.custom_vectors;
     pass.spec.constants = frame_members() + entry_members(*entry.info, entry_, planner_.program_.block_words[entry_]);
-    pass.spec.body =
-        curve_struct() + parameter_struct(entry.info->parameters) + parameter_loader(*entry.info, entry_) + *text;
+    pass.info = entry.info;
+    pass.text = std::move(*text);
+    pass.spec.body = effect_pass_body(pass, {});
     pass.toggle = shared_toggle_;
     if (pass.toggle < 0) {
         pass.toggle =
             planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
-        for (const std::int32_t shared : shared_toggles_) planner_.program_.graph.imply(pass.toggle, shared);
     }
+    for (const KernelPassDesc::Input& input : desc.inputs)
+        if (const std::int32_t shared = images_[input.image.index].shared_toggle; shared >= 0)
+            planner_.program_.graph.imply(pass.toggle, shared);
     const auto version = planner_.add_pass(std::move(pass), written.version, desc.output_mip_level);
     if (!version) {
         error = version.error().text;

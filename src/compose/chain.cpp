@@ -17,7 +17,7 @@ namespace darkroom::compose {
 namespace {
 
 using gpu::most_images;
-constexpr std::uint32_t most_custom_vectors = 64;
+constexpr std::uint32_t most_custom_vectors = 96;
 
 VkDeviceSize align(VkDeviceSize size, VkDeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
 
@@ -35,8 +35,9 @@ const char* name_of(HostImage image) {
             return "ui";
         case HostImage::Target:
             return "target";
+        default:
+            return "lights";
     }
-    return "";
 }
 
 const ImageRef& host_image(const Frame& frame, HostImage image) {
@@ -51,10 +52,9 @@ const ImageRef& host_image(const Frame& frame, HostImage image) {
             return frame.velocity;
         case HostImage::Ui:
             return frame.ui;
-        case HostImage::Target:
-            break;
+        default:
+            return frame.target;
     }
-    return frame.target;
 }
 
 VkFormat expected_format(const CompileDesc& desc, HostImage image) {
@@ -69,10 +69,9 @@ VkFormat expected_format(const CompileDesc& desc, HostImage image) {
             return desc.velocity;
         case HostImage::Ui:
             return desc.ui;
-        case HostImage::Target:
-            break;
+        default:
+            return desc.target;
     }
-    return desc.target;
 }
 
 /// Runs `work(i)` for i in [0, count) on a few threads; the first error wins.
@@ -124,6 +123,11 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program prog
     auto tables = Tables::create(context, chain->program_.constants);
     if (!tables) return failure(std::move(tables));
     chain->tables_ = std::move(*tables);
+    if (std::ranges::any_of(chain->program_.imports, [](const auto& i) { return i && shadow_number(*i) >= 0; })) {
+        auto lit = LitShadowMap::create(context);
+        if (!lit) return failure(std::move(lit));
+        chain->lit_ = std::move(*lit);
+    }
     if (auto ok = chain->make_kernels(stack); !ok) return failure(std::move(ok));
     if (auto ok = chain->make_resources(has_timers); !ok) return failure(std::move(ok));
     chain->builders_ = std::make_unique<Builders>(context, chain->variants_);
@@ -224,7 +228,13 @@ Result<> Chain::make_resources(bool has_timers) {
 Result<> Chain::check_frame(const Frame& frame) const {
     for (const auto& which : program_.imports) {
         if (!which) continue;
-        const ImageRef& image = host_image(frame, *which);
+        const ImageRef& image = image_of(frame, *which);
+        if (shadow_number(*which) >= 0) {
+            if (image.format != VK_FORMAT_D32_SFLOAT)
+                return user_error(fmt::format("record: the cascades of a light have format {}; allowed is D32_SFLOAT",
+                                              gpu::format_name(image.format)));
+            continue;
+        }
         if (!image.is_given())
             return user_error(fmt::format("record: frame.{} is not given, and the plan reads it", name_of(*which)));
         if (const VkFormat expected = expected_format(desc_, *which); image.format != expected)
@@ -245,6 +255,8 @@ Result<> Chain::check_frame(const Frame& frame) const {
             return user_error(
                 fmt::format("record: frame.{} has {} layers; 1 is allowed", name_of(*which), image.layer_count));
     }
+    if (desc_.is_depth_planar && frame.camera.depth != DepthKind::Planar)
+        return user_error("record: the plan was compiled for planar depth; frame.camera.depth must be Planar");
     const VkExtent2D extent = frame.color.used_region().extent;
     if (extent.width == 0 || extent.height == 0 || extent.width > desc_.max_extent.width ||
         extent.height > desc_.max_extent.height)
@@ -264,13 +276,18 @@ void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
     }
     for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
         const Toggle& toggle = program_.toggles[i];
-        bool is_on = false;
-        for (const std::uint32_t entry : toggle.entries) is_on = is_on || is_on_[entry];
-        if (is_on && toggle.condition != nullptr) {
+        const auto holds = [&](std::uint32_t entry, ConditionFunction condition) {
+            if (condition == nullptr) return true;
             PassContext own = context;
-            own.frame_extent = program_.entry_sizes[toggle.entries.front()].of(context.frame_extent);
-            is_on = toggle.condition(words_of(toggle.entries.front()), own, toggle.argument);
+            own.frame_extent = program_.entry_sizes[entry].of(context.frame_extent);
+            return condition(words_of(entry), own, toggle.argument);
+        };
+        bool is_on = false;
+        for (std::size_t e = 0; e < toggle.entries.size(); ++e) {
+            const std::uint32_t entry = toggle.entries[e];
+            is_on = is_on || (is_on_[entry] && (toggle.conditions.empty() || holds(entry, toggle.conditions[e])));
         }
+        is_on = is_on && holds(toggle.entries.front(), toggle.condition);
         toggles_[i] = is_on;
     }
 }
@@ -289,7 +306,7 @@ Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack, con
         if (is_on_[entry]) shape.steps |= (stack[entry].is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);
     }
     for_each_choice(pass, [&](std::size_t step, const ParamInfo& row, std::uint32_t bit, std::uint32_t bits) {
-        const std::uint32_t entry = pass.steps[step].entry;
+        const std::uint32_t entry = is_fused(pass) ? pass.steps[step].entry : pass.entry;
         if (is_on_[entry]) shape.choices |= std::uint64_t{words_of(entry)[row.word] & ((1u << bits) - 1)} << bit;
     });
     return shape;
@@ -335,19 +352,23 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
                               .time = frame.time,
                               .delta_time = frame.delta_time,
                               .frame_index = frame.frame_index,
-                              .camera = &frame.camera};
+                              .camera = &frame.camera,
+                              .lights = frame.lights};
     slot_ = static_cast<std::uint32_t>(recordings_ % slots_);
     tables_.upload(commands);
+    lit_.upload(commands);
     evaluate(stack, context);
 
     auto* const block = reinterpret_cast<std::uint32_t*>(constants_.memory.mapped + constants_stride_ * slot_);
     // Shaders get time in a float, so it wraps after an hour of the 1/60 s steps that effects think in.
     const float time = static_cast<float>(std::fmod(frame.time, 3600.0));
     const float delta = static_cast<float>(frame.delta_time);
-    const std::array<std::uint32_t, frame_words> frame_block{std::bit_cast<std::uint32_t>(time),
-                                                             std::bit_cast<std::uint32_t>(delta),
-                                                             static_cast<std::uint32_t>(frame.frame_index), frame.view};
+    const std::array<std::uint32_t, 4> frame_block{std::bit_cast<std::uint32_t>(time),
+                                                   std::bit_cast<std::uint32_t>(delta),
+                                                   static_cast<std::uint32_t>(frame.frame_index), frame.view};
     std::copy(frame_block.begin(), frame_block.end(), block);
+    const CameraBlock camera = camera_block(frame.camera);
+    std::memcpy(block + frame_block.size(), camera.data(), sizeof camera);
     for (std::size_t i = 0; i < stack.size(); ++i) {
         const ParamTable& table = stack[i].info->parameters;
         const std::span<std::uint32_t> words(block + program_.block_words[i], block_words(table));
@@ -359,7 +380,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
 
     for (std::size_t i = 0; i < program_.imports.size(); ++i) {
         if (!program_.imports[i]) continue;
-        const ImageRef& image = host_image(frame, *program_.imports[i]);
+        const ImageRef& image = image_of(frame, *program_.imports[i]);
         import_states_[i] = {.layout = image.layout,
                              .stages = image.last_stages,
                              .access = image.last_access,
@@ -369,7 +390,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
         physical_->bind(static_cast<std::uint32_t>(i), {.handle = image.image,
                                                         .view = image.view,
                                                         .base_mip_level = image.mip_level,
-                                                        .base_array_layer = image.array_layer});
+                                                        .base_array_layer = image.array_layer,
+                                                        .array_layers = image.layer_count});
     }
     reset_histories(commands, frame);
     schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, views_[frame.view].recordings++);
@@ -395,6 +417,12 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
     return {};
 }
 
+const ImageRef& Chain::image_of(const Frame& frame, HostImage which) const {
+    if (shadow_number(which) < 0) return host_image(frame, which);
+    const Light* const light = shadow_light(frame.lights, static_cast<std::uint32_t>(shadow_number(which)));
+    return light != nullptr ? light->cascades : lit_.reference;
+}
+
 /// Histories start from zero where nothing of the last frame of the view can be used.
 void Chain::reset_histories(VkCommandBuffer commands, const Frame& frame) {
     if (program_.history_entries.empty()) return;
@@ -415,8 +443,13 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
                               VkExtent2D extent) const {
     const graph::Slot& image = compiled_->slots()[slot];
     if (image.kind == graph::Slot::Kind::Import) {
-        const ImageRef& host = host_image(frame, *program_.imports[image.import_index]);
+        const HostImage which = *program_.imports[image.import_index];
+        const ImageRef& host = image_of(frame, which);
         const VkRect2D region = host.used_region();
+        if (shadow_number(which) >= 0)
+            return {.view = host.view,
+                    .region = {region.offset, region.extent, host.extent},
+                    .sampler = context_.shadow_sampler};
         const bool is_depth = host.format == VK_FORMAT_D32_SFLOAT || host.format == VK_FORMAT_D16_UNORM;
         return {.view = host.view, .region = {region.offset, region.extent, host.extent}, .is_nearest = is_depth};
     }

@@ -40,6 +40,7 @@ class Chain {
     [[nodiscard]] Result<> make_kernels(std::span<const Entry> stack);
     [[nodiscard]] Result<> make_resources(bool has_timers);
     [[nodiscard]] Result<> check_frame(const Frame& frame) const;
+    [[nodiscard]] const ImageRef& image_of(const Frame& frame, HostImage which) const;
     void reset_histories(VkCommandBuffer commands, const Frame& frame);
     void evaluate(std::span<const Entry> stack, const PassContext& context);
     [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack, const gpu::Region& output,
@@ -71,6 +72,7 @@ class Chain {
     gpu::Buffer constants_, pass_blocks_;
     VkDeviceSize constants_stride_ = 0, pass_block_stride_ = 0;
     Tables tables_;
+    LitShadowMap lit_;
     gpu::Timers timers_;
 
     // Scratch of a recording, sized at compile.

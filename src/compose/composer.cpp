@@ -71,11 +71,17 @@ Result<> check_value(const compose::Entry& entry, const ParamInfo& row, std::spa
     return is_surely_allowed(row, words) ? Result<>{} : check_words(row, words, shown(entry, row));
 }
 
+Result<> check_together(const compose::Entry& entry, std::span<const std::uint32_t> words) {
+    if (entry.info->conflict == nullptr) return {};
+    const std::string conflict = entry.info->conflict(words.data());
+    return conflict.empty() ? Result<>{} : user_error(fmt::format("{}: {}", entry.inputs.name, conflict));
+}
+
 /// All values of an entry: a struct that a host filled may hold anything.
 Result<> check_values(const compose::Entry& entry, std::span<const std::uint32_t> words) {
     for (const ParamInfo& row : entry.info->parameters.rows)
         if (auto ok = check_value(entry, row, words.subspan(row.word, row.words)); !ok) return ok;
-    return {};
+    return check_together(entry, words);
 }
 
 Failure unknown_handle() { return user_error("a handle that names no entry of this composer"); }

@@ -126,6 +126,28 @@ Result<void> append_with_includes(std::string& out, std::string_view text, const
     return {};
 }
 
+/// Lines that include a file of the effect's own folder, replaced by it.
+std::string with_own_files(const EffectInfo& info, std::string_view text, std::string_view shown_name) {
+    std::string out;
+    std::size_t line = 1;
+    for (std::size_t i = 0; i < text.size(); ++line) {
+        const std::size_t end = std::min(text.find('\n', i), text.size());
+        const std::string_view content = text.substr(i, end - i);
+        i = end + 1;
+        constexpr std::string_view directive = "#include \"";
+        const std::string_view name = content.starts_with(directive)
+                                          ? content.substr(directive.size(), content.rfind('"') - directive.size())
+                                          : std::string_view{};
+        const std::string_view included = file_text(info.files, name);
+        if (included.empty())
+            out.append(content).push_back('\n');
+        else
+            out += fmt::format("#line 1 \"effects/{}/{}\"\n{}\n#line {} \"effects/{}\"\n", info.name, name, included,
+                               line + 1, shown_name);
+    }
+    return out;
+}
+
 }  // namespace
 
 std::uint32_t block_words(const ParamTable& table) {
@@ -148,7 +170,27 @@ std::string entry_suffix(std::uint32_t entry) { return fmt::format("_e{}", entry
 
 std::string frame_members() {
     return "    layout(offset = 0) float frame_time;\n    float frame_delta_time;\n    uint frame_index;\n    uint "
-           "frame_view;\n";
+           "frame_view;\n    vec4 frame_projection_scale;\n    vec4 frame_projection_offset;\n"
+           "    vec4 frame_view_to_world_x;\n    vec4 frame_view_to_world_y;\n    vec4 frame_view_to_world_z;\n";
+}
+
+CameraBlock camera_block(const Camera& camera) {
+    const Matrix& p = camera.projection;
+    const Matrix& v = camera.view;
+    // The picture's v runs down, so where clip space has y up its row changes sign.
+    const float down = camera.is_y_down ? 1.0f : -1.0f;
+    CameraBlock out{p[0], p[5] * down, p[8], p[9] * down, p[12], p[13] * down, p[11], p[15]};
+    // The view matrix turns and moves, so its inverse is the transposed turn, and the eye is -R^T t.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        float eye = 0;
+        for (std::size_t row = 0; row < 3; ++row) {
+            const float entry = v[axis * 4 + row];
+            out[8 + axis * 4 + row] = entry;
+            eye -= entry * v[12 + row];
+        }
+        out[8 + axis * 4 + 3] = eye;
+    }
+    return out;
 }
 
 std::string entry_members(const EffectInfo& info, std::uint32_t entry, std::uint32_t first_word) {
@@ -217,6 +259,8 @@ Result<std::string> instance_text(const EffectInfo& info, std::string_view file,
     std::string_view own = file_text(info.files, file);
     if (own.empty()) own = file_text(shared_files(), file);
     const std::string shown = fmt::format("{}/{}", info.name, file);
+    const std::string expanded = with_own_files(info, own, shown);
+    own = expanded;
     if (own.empty()) return user_error(fmt::format("effects/{}: there is no such file", shown));
 
     // Names that the shared files define keep them, even where they begin with the effect's name.

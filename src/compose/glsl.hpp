@@ -3,11 +3,13 @@
 // The GLSL that the planner writes around the effects' own: parameter blocks, structs, one renamed copy of an effect's
 // text for every entry, and the body of a fused kernel. Pure text, no device.
 
+#include <array>
 #include <darkroom/effect.hpp>
 #include <darkroom/result.hpp>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace darkroom::compose {
@@ -24,7 +26,10 @@ void write_block(const ParamTable& table, std::span<const std::uint32_t> words, 
 
 /// Members of the constants block: scalars only, so C++ and std430 agree without padding; offsets are explicit.
 [[nodiscard]] std::string frame_members();
-inline constexpr std::uint32_t frame_words = 4;
+/// What effects/shared/camera.glsl is made of: five vectors.
+using CameraBlock = std::array<float, 20>;
+[[nodiscard]] CameraBlock camera_block(const Camera& camera);
+inline constexpr std::uint32_t frame_words = 4 + std::tuple_size_v<CameraBlock>;
 [[nodiscard]] std::string entry_members(const EffectInfo& info, std::uint32_t entry, std::uint32_t first_word);
 
 /// The struct that a curve is in GLSL.

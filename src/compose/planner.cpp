@@ -462,6 +462,7 @@ graph::Version Planner::import_constant(TableDesc table) {
 }
 
 gpu::KernelImage Planner::kernel_image(std::string name, const PassInput& input) const {
+    if (input.is_shadow_map) return {.name = std::move(name), .sampler_type = "sampler2DArrayShadow"};
     if (input.table == no_table) return {.name = std::move(name)};
     const TableDesc& desc = program_.constants[input.table].desc;
     return {.name = std::move(name),
@@ -491,6 +492,11 @@ VkFormat Planner::storage_format(graph::Version version) const {
     for (const graph::Version instead : facts.fall_backs)
         if (storage_format(instead) != facts.format) return VK_FORMAT_UNDEFINED;
     return facts.format;
+}
+
+std::string effect_pass_body(const ProgramPass& pass, std::span<const Baked> baked) {
+    return curve_struct() + parameter_struct(pass.info->parameters) + parameter_loader(*pass.info, pass.entry, baked) +
+           pass.text;
 }
 
 Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits) {

@@ -102,6 +102,7 @@ class Planner {
         graph::Version version, first_written;
         VkFormat format = VK_FORMAT_UNDEFINED;
         std::int32_t toggle = -1;
+        std::vector<std::int32_t> needs{};  ///< toggles of the shared images that it is made from
     };
     std::map<std::string, Shared, std::less<>> shared_;
 };
@@ -126,7 +127,11 @@ class Builder final : public PassBuilder {
     [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
     [[nodiscard]] History history(const PassImageDesc& desc) override;
     [[nodiscard]] PassImage frame_image(FrameImage which) override;
-    [[nodiscard]] PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&)) override;
+    [[nodiscard]] bool has_frame_image(FrameImage which) const override;
+    [[nodiscard]] bool is_depth_planar() const override { return planner_.desc_.is_depth_planar; }
+    [[nodiscard]] PassImage shadow_map(std::uint32_t number) override;
+    [[nodiscard]] PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&),
+                                   ConditionFunction condition) override;
     [[nodiscard]] PassImage table(const TableDesc& desc) override;
     PassImage add(const KernelPassDesc& desc) override;
     void side(std::string name, PassImage image, PassVector neutral) override;
@@ -142,6 +147,8 @@ class Builder final : public PassBuilder {
         graph::Version first_written;  ///< falls back to the neutral image, if it has one
         VkFormat format = VK_FORMAT_UNDEFINED;
         std::uint32_t table = no_table;
+        bool is_shadow_map = false;
+        std::int32_t shared_toggle = -1;
     };
     [[nodiscard]] graph::ImageDesc image_desc(const PassImageDesc& desc) const;
     [[nodiscard]] PassImage remember_new(graph::Version version, const graph::ImageDesc& desc);
@@ -153,8 +160,8 @@ class Builder final : public PassBuilder {
     std::uint32_t entry_ = 0;
     std::size_t input_ = 0;
     std::vector<Image> images_;
-    std::int32_t shared_toggle_ = -1;           ///< of the passes that `shared` is declaring
-    std::vector<std::int32_t> shared_toggles_;  ///< that this entry's passes rely on
+    std::int32_t shared_toggle_ = -1;         ///< of the passes that `shared` is declaring
+    std::vector<std::int32_t> shared_needs_;  ///< asked for since the innermost `shared` began
 };
 
 }  // namespace darkroom::compose

@@ -39,6 +39,7 @@ struct Toggle {
     std::vector<std::uint32_t> entries;
     ConditionFunction condition = nullptr;
     std::uint32_t argument = 0;
+    std::vector<ConditionFunction> conditions;  ///< of what is shared: one an entry, null: none
 };
 
 inline constexpr std::uint32_t no_table = ~0u;
@@ -47,6 +48,7 @@ struct PassInput {
     graph::Version version;
     std::uint32_t mip_level = 0;
     std::uint32_t table = no_table;  ///< index of Program::constants
+    bool is_shadow_map = false;
 };
 
 struct ProgramPass {
@@ -61,7 +63,9 @@ struct ProgramPass {
 
     // A pass of an effect:
     std::uint32_t entry = ~0u;
+    const EffectInfo* info = nullptr;
     ConstantsFunction constants = nullptr;
+    std::string text;  ///< the body without the parameter loader
     // A fused kernel:
     std::vector<FusedStep> steps;
     Finish finish = Finish::None;
@@ -75,7 +79,11 @@ struct Constant {
 };
 
 /// Which import of the graph is which image of the host.
-enum class HostImage : std::uint8_t { Color, Depth, Normals, Velocity, Ui, Target };
+enum class HostImage : std::uint8_t { Color, Depth, Normals, Velocity, Ui, Target, Shadow0, Shadow1, Shadow2, Shadow3 };
+/// The number of a shadow map; negative for what is none.
+[[nodiscard]] constexpr std::int32_t shadow_number(HostImage image) {
+    return static_cast<std::int32_t>(image) - static_cast<std::int32_t>(HostImage::Shadow0);
+}
 
 struct Program {
     graph::Graph graph;
@@ -103,6 +111,9 @@ struct PlannerTraits {
 /// Turns a stack into a program. Errors: a handle that names no earlier entry, a shader that is missing.
 [[nodiscard]] Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc,
                                            const PlannerTraits& traits);
+
+/// The body of an effect's pass, with choices as literals where they are known.
+[[nodiscard]] std::string effect_pass_body(const ProgramPass& pass, std::span<const Baked> baked);
 
 /// Made by the planner from entries; else by an effect's build.
 [[nodiscard]] inline bool is_fused(const ProgramPass& pass) { return pass.entry == ~0u; }

@@ -72,4 +72,36 @@ gpu::Binding Tables::binding(std::size_t index) const {
     return {.view = image.view, .region = {{}, size, size}};
 }
 
+Result<LitShadowMap> LitShadowMap::create(gpu::Context& context) {
+    // Two layers, because one would make its view no array.
+    auto image = gpu::Image::create(context, {.name = "no shadow",
+                                              .format = VK_FORMAT_D32_SFLOAT,
+                                              .array_layers = 2,
+                                              .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+    if (!image) return failure(std::move(image));
+    LitShadowMap out;
+    out.image_ = std::move(*image);
+    out.reference = {.image = out.image_.handle,
+                     .view = out.image_.view,
+                     .format = VK_FORMAT_D32_SFLOAT,
+                     .extent = {1, 1},
+                     .layer_count = 2,
+                     .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                     .last_access = VK_ACCESS_2_MEMORY_READ_BIT,
+                     .final_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    return out;
+}
+
+void LitShadowMap::upload(VkCommandBuffer commands) {
+    if (is_uploaded_ || image_.handle == VK_NULL_HANDLE) return;
+    is_uploaded_ = true;
+    gpu::transition(*image_.context, commands, image_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    constexpr VkClearDepthStencilValue lit{.depth = 1.0f};
+    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 2};
+    image_.context->vk.CmdClearDepthStencilImage(commands, image_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &lit, 1,
+                                                 &range);
+    gpu::transition(*image_.context, commands, image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+}
+
 }  // namespace darkroom::compose

@@ -29,4 +29,18 @@ class Tables {
     bool is_uploaded_ = false;
 };
 
+/// Stands in for the shadow map of a light that a frame does not have: lit everywhere.
+class LitShadowMap {
+  public:
+    LitShadowMap() = default;
+    [[nodiscard]] static Result<LitShadowMap> create(gpu::Context& context);
+    /// The first time, records its clearing. Does nothing for one that was not created.
+    void upload(VkCommandBuffer commands);
+    ImageRef reference;
+
+  private:
+    gpu::Image image_;
+    bool is_uploaded_ = false;
+};
+
 }  // namespace darkroom::compose

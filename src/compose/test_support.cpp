@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "gpu/test_run.hpp"
@@ -65,7 +66,79 @@ ImageRef image_ref(const gpu::test::Picture& picture) {
             .final_layout = picture.layout};
 }
 
+/// Its depth as a depth image, a layer a cascade.
+gpu::Image upload_shadow_map(gpu::Context& context, const ReferenceLight& light) {
+    const auto layers = static_cast<std::uint32_t>(light.cascades.size());
+    // A view of one layer would be no array.
+    gpu::Image image = gpu::test::must(
+        gpu::Image::create(context, {.name = "test shadow map",
+                                     .format = VK_FORMAT_D32_SFLOAT,
+                                     .extent = {light.resolution, light.resolution, 1},
+                                     .array_layers = std::max(layers, 2u),
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
+    const std::size_t bytes = std::size_t{light.resolution} * light.resolution * sizeof(float);
+    const gpu::Buffer staging = gpu::test::must(gpu::Buffer::create(
+        context, bytes * layers, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "test shadow map"));
+    for (std::uint32_t layer = 0; layer < layers; ++layer)
+        std::memcpy(staging.memory.mapped + layer * bytes, light.cascades[layer].data(), bytes);
+    gpu::test::must(gpu::submit_and_wait(context, "uploading a shadow map", [&](VkCommandBuffer commands) {
+        gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, layers},
+                                     .imageExtent = {light.resolution, light.resolution, 1}};
+        context.vk.CmdCopyBufferToImage(commands, staging.handle, image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                                        &copy);
+        gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    }));
+    return image;
+}
+
+ImageRef shadow_map_ref(const gpu::Image& image) {
+    return {.image = image.handle,
+            .view = image.view,
+            .format = image.info.format,
+            .extent = {image.info.extent.width, image.info.extent.height},
+            .layer_count = image.info.array_layers,
+            .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+            .final_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+}
+
 }  // namespace
+
+Camera look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target, double field_of_view_rad,
+               double aspect) {
+    using Vector = std::array<double, 3>;
+    const auto normalized = [](Vector v) {
+        const double length = std::hypot(v[0], v[1], v[2]);
+        return Vector{v[0] / length, v[1] / length, v[2] / length};
+    };
+    const auto cross = [](const Vector& a, const Vector& b) {
+        return Vector{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const Vector back = normalized({eye[0] - target[0], eye[1] - target[1], eye[2] - target[2]});
+    const Vector right = normalized(cross({0, 1, 0}, back)), up = cross(back, right);
+    Camera camera{.depth = DepthKind::Planar};
+    std::size_t row = 0;
+    for (const Vector& axis : {right, up, back}) {
+        double along = 0;
+        for (std::size_t column = 0; column < 3; ++column) {
+            camera.view[column * 4 + row] = static_cast<float>(axis[column]);
+            along -= axis[column] * eye[column];
+        }
+        camera.view[12 + row++] = static_cast<float>(along);
+    }
+    const double scale = 1 / std::tan(field_of_view_rad / 2);
+    const double near = double{camera.near_distance}, far = double{camera.far_distance};
+    camera.projection = {};
+    camera.projection[0] = static_cast<float>(scale / aspect);
+    camera.projection[5] = static_cast<float>(-scale);
+    camera.projection[10] = static_cast<float>(-far / (far - near));
+    camera.projection[11] = -1;
+    camera.projection[14] = static_cast<float>(-far * near / (far - near));
+    camera.previous_view = camera.view;
+    camera.previous_projection = camera.projection;
+    return camera;
+}
 
 ReferenceImage random_hdr(std::uint32_t width, std::uint32_t height, std::uint32_t number) {
     return filled(width, height, [&](std::uint32_t i) {
@@ -110,11 +183,30 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
 
     gpu::test::Picture color = gpu::test::upload(context, to_pixels(picture), options.color, VK_IMAGE_LAYOUT_GENERAL);
     gpu::test::Picture target = gpu::test::blank(context, extent, options.target);
+    std::optional<gpu::test::Picture> depth, normals;
+    if (options.depth != nullptr)
+        depth = gpu::test::upload(context, to_pixels(*options.depth), options.depth_format, VK_IMAGE_LAYOUT_GENERAL);
+    if (options.normals != nullptr)
+        normals = gpu::test::upload(context, to_pixels(*options.normals), VK_FORMAT_R32G32B32A32_SFLOAT,
+                                    VK_IMAGE_LAYOUT_GENERAL);
+    std::vector<gpu::Image> shadow_maps;
+    std::vector<Light> lights;
+    for (const ReferenceLight& light : options.lights) {
+        lights.push_back(light.light);
+        if (light.cascades.empty()) continue;
+        shadow_maps.push_back(upload_shadow_map(context, light));
+        lights.back().cascades = shadow_map_ref(shadow_maps.back());
+        lights.back().cascade_count = static_cast<std::uint32_t>(light.cascades.size());
+    }
 
     Composer composer(device, {.frames_in_flight = 1});
     fill(composer);
     const auto plan = composer.compile({.max_extent = extent,
                                         .color = options.color,
+                                        .depth = depth ? options.depth_format : VK_FORMAT_UNDEFINED,
+                                        .is_depth_planar = depth && options.is_depth_planar,
+                                        .normals = normals ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_UNDEFINED,
+                                        .has_shadows = !shadow_maps.empty(),
                                         .target = options.target,
                                         .color_usage = gpu::test::all_usage(context, options.color),
                                         .target_usage = gpu::test::all_usage(context, options.target),
@@ -128,9 +220,13 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
     Result<> recorded{};
     const auto submitted = gpu::submit_and_wait(context, "develop", [&](VkCommandBuffer commands) {
         Frame frame{.color = image_ref(color),
+                    .camera = options.camera,
+                    .lights = lights,
                     .time = options.time,
                     .frame_index = options.frame_index,
                     .target = image_ref(target)};
+        if (depth) frame.depth = image_ref(*depth);
+        if (normals) frame.normals = image_ref(*normals);
         recorded = composer.record(commands, frame);
     });
     if (!recorded) return fail("record", recorded.error().text);

@@ -3,9 +3,11 @@
 // What tests of effects and chains share: pictures to try, a whole develop on the test device, and the measure by which
 // GPU and reference are compared. Not part of the library.
 
+#include <array>
 #include <darkroom/composer.hpp>
 #include <darkroom/reference.hpp>
 #include <functional>
+#include <span>
 
 namespace darkroom::test {
 
@@ -26,6 +28,13 @@ struct RunOptions {
     double time = 0;
     std::uint64_t frame_index = 0;
     bool wait_for_lean_kernels = true;
+    // What scene-aware effects read; the pictures are of the size of the colour, red (or red, green, blue) counts.
+    const ReferenceImage* depth = nullptr;
+    VkFormat depth_format = VK_FORMAT_R32_SFLOAT;
+    bool is_depth_planar = true;
+    const ReferenceImage* normals = nullptr;
+    Camera camera{.depth = DepthKind::Planar};
+    std::span<const ReferenceLight> lights;
 };
 /// Builds a stack with `fill`, develops `picture` with it on the test device, under validation, and reads the target
 /// back. A failure, or a message of the validation layer, fails the test and returns an empty image. The input is
@@ -38,6 +47,25 @@ template <class Effect>
                                           const ReferenceImage* second = nullptr) {
     return effect_info(parameters).reference(&parameters, {.picture = &picture, .source = &picture, .second = second});
 }
+
+/// The reference of one effect with what RunOptions brings.
+template <class Effect>
+[[nodiscard]] ReferenceImage scene_reference_of(const Effect& parameters, const ReferenceImage& picture,
+                                                const RunOptions& options) {
+    return effect_info(parameters)
+        .reference(&parameters, {.picture = &picture,
+                                 .source = &picture,
+                                 .depth = options.depth,
+                                 .normals = options.normals,
+                                 .lights = options.lights,
+                                 .camera = options.camera,
+                                 .time = options.time,
+                                 .frame_index = options.frame_index});
+}
+
+/// A camera at `eye` looking at `target`, with planar depth: vertical field of view in radians, near 0.1, far 1000.
+[[nodiscard]] Camera look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target,
+                             double field_of_view_rad, double aspect);
 
 [[nodiscard]] ReferenceImage round_to_half(const ReferenceImage& image);
 [[nodiscard]] ReferenceImage round_to_float(const ReferenceImage& image);

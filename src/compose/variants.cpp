@@ -5,7 +5,10 @@ namespace darkroom::compose {
 
 Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps) {
     gpu::KernelSpec spec = pass.spec;
-    if (!is_fused(pass)) return spec;
+    if (!is_fused(pass)) {
+        spec.body = effect_pass_body(pass, steps.front().baked);
+        return spec;
+    }
     auto body = fused_body(steps, pass.finish, pass.is_resampled);
     if (!body) return failure(std::move(body));
     spec.body = std::move(*body);
@@ -28,6 +31,7 @@ Result<> Variants::build(gpu::Context& context, Shape shape) {
     if (count == capacity) return {};
 
     std::vector<FusedStep> steps = pass_->steps;
+    if (!is_fused(*pass_)) steps.resize(1);
     for_each_choice(*pass_, [&](std::size_t step, const ParamInfo& row, std::uint32_t bit, std::uint32_t bits) {
         steps[step].baked.push_back({&row, static_cast<std::uint32_t>(shape.choices >> bit) & ((1u << bits) - 1)});
     });
@@ -35,7 +39,7 @@ Result<> Variants::build(gpu::Context& context, Shape shape) {
         steps[i].is_certain = (shape.steps >> (2 * i) & 1) != 0;
         steps[i].is_plain = (shape.steps >> (2 * i) & 2) == 0;
     }
-    std::erase_if(steps, [](const FusedStep& step) { return !step.is_certain; });
+    if (is_fused(*pass_)) std::erase_if(steps, [](const FusedStep& step) { return !step.is_certain; });
     auto spec = lean_spec(*pass_, steps);
     if (!spec) return failure(std::move(spec));
     spec->is_whole = (shape.steps & Shape::is_whole) != 0;

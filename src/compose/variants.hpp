@@ -30,23 +30,26 @@ struct Shape {
 };
 inline constexpr std::size_t max_lean_steps = 31;
 
-/// Calls `visit(step, row, first_bit, bits)` for every choice and toggle that a shape of this pass holds.
+/// Calls `visit(step, row, first_bit, bits)` for every choice and toggle that a shape of this pass holds; a pass of an
+/// effect counts as one step.
 template <class Visit>
 void for_each_choice(const ProgramPass& pass, const Visit& visit) {
     std::uint32_t bit = 0;
-    for (std::size_t i = 0; i < pass.steps.size(); ++i) {
-        if (pass.steps[i].is_merge) continue;
-        for (const ParamInfo& row : pass.steps[i].info->parameters.rows) {
+    const auto visit_rows = [&](std::size_t step, const EffectInfo& info) {
+        for (const ParamInfo& row : info.parameters.rows) {
             const std::uint32_t bits = row.kind == Kind::Choice ? 5 : row.kind == Kind::Toggle ? 1 : 0;
             if (bits == 0 || bit + bits > 64) continue;
-            visit(i, row, bit, bits);
+            visit(step, row, bit, bits);
             bit += bits;
         }
-    }
+    };
+    if (!is_fused(pass)) visit_rows(0, *pass.info);
+    for (std::size_t i = 0; i < pass.steps.size(); ++i)
+        if (!pass.steps[i].is_merge) visit_rows(i, *pass.steps[i].info);
 }
 
 /// The kernel of a pass that holds only the steps that are on: same images and bindings, no branches. A pass of an
-/// effect has no steps and keeps its body.
+/// effect has one step, itself.
 [[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps);
 
 class Variants {

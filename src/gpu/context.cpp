@@ -73,6 +73,7 @@ Context::~Context() {
         vk.DestroyPipelineCache(device, pipeline_cache, nullptr);
         vk.DestroySampler(device, linear_sampler, nullptr);
         vk.DestroySampler(device, nearest_sampler, nullptr);
+        vk.DestroySampler(device, shadow_sampler, nullptr);
         if (is_owner) vk.DestroyDevice(device, nullptr);
     }
     if (!is_owner || instance == VK_NULL_HANDLE || vk.DestroyInstance == nullptr) return;
@@ -134,7 +135,13 @@ Result<> Context::create_samplers() {
     if (Result<> checked = check(linear, "creating the linear sampler"); !checked) return checked;
     create_info.magFilter = VK_FILTER_NEAREST;
     create_info.minFilter = VK_FILTER_NEAREST;
-    return check(vk.CreateSampler(device, &create_info, nullptr, &nearest_sampler), "creating the nearest sampler");
+    const VkResult nearest = vk.CreateSampler(device, &create_info, nullptr, &nearest_sampler);
+    if (Result<> checked = check(nearest, "creating the nearest sampler"); !checked) return checked;
+    create_info.addressModeU = create_info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+    create_info.borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
+    create_info.compareEnable = VK_TRUE;
+    create_info.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
+    return check(vk.CreateSampler(device, &create_info, nullptr, &shadow_sampler), "creating the shadow sampler");
 }
 
 std::filesystem::path Context::pipeline_cache_path() const {

@@ -54,6 +54,7 @@ class Context {
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
     VkSampler linear_sampler = VK_NULL_HANDLE, nearest_sampler = VK_NULL_HANDLE;
+    VkSampler shadow_sampler = VK_NULL_HANDLE;  ///< compares with LESS_OR_EQUAL, lit outside
     VkPhysicalDeviceMemoryProperties memory{};
     Traits traits{};
     DeviceInfo info{};

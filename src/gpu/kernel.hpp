@@ -6,6 +6,7 @@
 //     vec4 load(IMAGE, ivec2 texel)          one texel; the texel must lie inside the region
 //     vec4 load_clamped(IMAGE, ivec2 texel)  one texel, clamped to the region
 //     vec4 gather_red(IMAGE, vec2 uv)        textureGather of the red channel
+//     vec4 gather_green(IMAGE, vec2 uv)      textureGather of the green channel
 //     ivec2 size(IMAGE)                      extent of the image's region, in texels
 // where IMAGE is a name from KernelSpec::images, and defines
 //     vec4 shade(Pixel pixel)                with one output
@@ -17,7 +18,7 @@
 //     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
 // Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
 // The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where
-// a region ends inside its image, gather_red() does not leave it either, but gives the last whole 2x2 block there.
+// a region ends inside its image, a gather does not leave it either, but gives the last whole 2x2 block there.
 // kernel_source() writes the rest: preamble, bindings, region arithmetic, and main() of the stage.
 //
 // Set 0: binding 0 the constants (uniform buffer), binding 1 the pass block (uniform buffer), then the images in

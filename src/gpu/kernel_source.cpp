@@ -14,8 +14,8 @@ namespace darkroom::gpu {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> image_functions{"sample_linear", "load", "load_clamped", "gather_red",
-                                                          "size"};
+constexpr std::array<std::string_view, 6> image_functions{"sample_linear", "load",         "load_clamped",
+                                                          "gather_red",    "gather_green", "size"};
 constexpr std::uint32_t first_image_binding = 2;
 
 constexpr std::string_view preamble = R"(#version 460
@@ -99,7 +99,8 @@ void write_sampled_input(Text text, const KernelImage& image, std::uint32_t bind
         "{1}vec4 load_{0}(ivec2 texel) {{ return {2}; }}\n"
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n"
         "vec2 darkroom_place_{0}(vec2 uv) {{\n{3}}}\n"
-        "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 0); }}\n",
+        "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 0); }}\n"
+        "{1}vec4 gather_green_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 1); }}\n",
         image.name, prefix, load, place);
     // A view has one mip level, so the implicit level of detail changes no bit; some drivers filter much faster with
     // it.

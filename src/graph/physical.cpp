@@ -104,6 +104,7 @@ void Physical::bind(std::uint32_t import_index, const HostImage& image) {
     entry.handles[0] = image.handle;
     entry.base_mip_level = image.base_mip_level;
     entry.base_array_layer = image.base_array_layer;
+    entry.array_layers = image.array_layers;
     entry.views[0] = image.view;
     std::copy(image.mip_views.begin(), image.mip_views.end(), entry.mip_views.begin());
     if (image.mip_views.empty() && entry.mip_levels == 1) entry.mip_views[0] = image.view;

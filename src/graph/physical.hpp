@@ -17,6 +17,7 @@ struct HostImage {
     std::span<const VkImageView> mip_views;  ///< one a level; may be empty if there is only one
     std::uint32_t base_mip_level = 0;        ///< of the host's image, that level 0 here is
     std::uint32_t base_array_layer = 0;
+    std::uint32_t array_layers = 1;
 };
 
 /// Transients are shared by all views (the cameras that one graph is recorded for, one after the other); every view has

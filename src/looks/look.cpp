@@ -16,6 +16,12 @@ std::int32_t flat_rank(const EffectInfo& effect, LookOrder order) {
     return order == LookOrder::Documented ? effect.flat.documented : effect.flat.scene_linear;
 }
 
+std::string conflict_of(const LookEntry& entry) {
+    if (entry.effect->conflict == nullptr) return {};
+    const std::string text = entry.effect->conflict(entry.words.data());
+    return text.empty() ? text : fmt::format("{}: {}", entry.effect->name, text);
+}
+
 LookEntry entry_of(const EffectInfo& effect) {
     const std::span<const std::uint32_t> defaults = effect.parameters.defaults;
     return {.effect = &effect, .words = {defaults.begin(), defaults.end()}};

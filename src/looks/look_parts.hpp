@@ -31,6 +31,8 @@ using StateWords = std::array<std::uint32_t, sizeof(EntryState) / 4>;
 [[nodiscard]] std::int32_t flat_rank(const EffectInfo& effect, LookOrder order);
 /// The entries as they go into a Composer: the flat table in its order and without what that order lacks.
 [[nodiscard]] std::vector<const LookEntry*> ordered(const Look& look);
+/// What is wrong with the entry's values together, as "fog: ..."; empty: nothing.
+[[nodiscard]] std::string conflict_of(const LookEntry& entry);
 /// An entry with the effect's defaults.
 [[nodiscard]] LookEntry entry_of(const EffectInfo& effect);
 

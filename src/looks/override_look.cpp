@@ -34,6 +34,8 @@ class Overrider {
             if (Result<> done = set(one); !done) return done;
         // A toggle that was typed counts, whatever an amount implies.
         for (const auto& [entry, on] : toggles_) entry->state.enabled = on;
+        for (const LookEntry& entry : look_.entries)
+            if (const std::string conflict = conflict_of(entry); !conflict.empty()) return user_error(conflict);
         return {};
     }
 
@@ -47,7 +49,12 @@ class Overrider {
         if (!value) return user_error(fmt::format("{}: {}", shown, value.error().text));
         if (!is_state) {
             if (Result<> done = assign(*row, entry->words, *value, shown); !done) return done;
-            if (row->is_amount) entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) > 0;
+            const bool is_positive = std::bit_cast<float>(entry->words[row->word]) > 0;
+            if (row->is_amount) entry->state.enabled = is_positive;
+            if (row->switched_word < entry->words.size() && is_positive) {
+                entry->words[row->switched_word] = 1;
+                entry->state.enabled = true;
+            }
             return {};
         }
         StateWords words = state_words(entry->state);

@@ -32,6 +32,9 @@ class FlatReader {
             if (found != targets_.end() && found->second.row == &enabled_row)
                 reader_.take(entry_rows.rows[0], found->second.entry->state, node, key.str());
         }
+        for (const LookEntry& entry : look_.entries)
+            if (const std::string conflict = conflict_of(entry); !conflict.empty())
+                reader_.report(table, Weight::Wrong, conflict);
         return std::move(look_);
     }
 

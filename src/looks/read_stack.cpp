@@ -38,6 +38,7 @@ class StackReader {
         }
         check_names();
         check_wires();
+        check_values();
         return std::move(look_);
     }
 
@@ -139,6 +140,12 @@ class StackReader {
                 reader_.report(place, Weight::Wrong,
                                fmt::format("name '{}' of {} is that of another effect", entry.name, shown(i)));
         }
+    }
+
+    void check_values() {
+        for (std::size_t i = 0; i < look_.entries.size(); ++i)
+            if (const std::string conflict = conflict_of(look_.entries[i]); !conflict.empty())
+                reader_.report(*origins_[i].table, Weight::Wrong, fmt::format("{}: {}", shown(i), conflict));
     }
 
     void check_wires() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Writes the blue-noise tile of the dither: 64 x 64 ranks of 0 to 4095, each once, as text to be included by C++.
+// Writes the blue-noise tile: 64 x 64 ranks of 0 to 4095, each once, as text to be included by C++.
 // Ulichney, "The void-and-cluster method for dither array generation", 1993: wherever the ranks are cut, the pixels
 // below the cut are spread evenly. The tile repeats without a seam, and every run of the program writes the same one.
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Images that scene-aware effects share: made once a frame, however many effects read them. For `build` functions of
+// effects whose needs name depth. They are made while an effect that asked is on, and its `condition` holds.
+
+#include <darkroom/effect.hpp>
+
+namespace darkroom {
+
+/// Planar distance, R32F; 1e10 is sky.
+[[nodiscard]] PassImage linear_depth(PassBuilder& builder);
+/// The same of every second pixel of every second row: half the size, floored.
+[[nodiscard]] PassImage half_depth(PassBuilder& builder, ConditionFunction condition = nullptr);
+
+enum class NormalSource : std::uint8_t { Depth, Image };
+/// View-space normals, RGBA16F: from the distance, or from the frame's own image, which the effect must know to be
+/// there. Half: of the pixels of half_depth.
+[[nodiscard]] PassImage view_normals(PassBuilder& builder, NormalSource source, ConditionFunction condition = nullptr);
+[[nodiscard]] PassImage half_view_normals(PassBuilder& builder, NormalSource source,
+                                          ConditionFunction condition = nullptr);
+
+}  // namespace darkroom
