@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/chromatic_aberration.hpp>
+
+#include "chromatic_aberration/chromatic_aberration_reference.hpp"
+
+namespace darkroom {
+
+const EffectInfo& effect_info(const ChromaticAberration&) {
+    static const EffectInfo info{
+        .name = "chromatic_aberration",
+        .doc = "Parts red and blue toward the edges, as a simple lens does.",
+        .parameters = chromatic_aberration_rows.table(),
+        .files = embedded_files("chromatic_aberration"),
+        .touch = Touch::Warp,
+        .accepts = Domains::all(),
+        .flat = {.documented = 20, .scene_linear = 20, .starts_on = true},
+        .reference = chromatic_aberration_reference,
+        .is_identity =
+            [](const void* parameters) {
+                return static_cast<const ChromaticAberration*>(parameters)->chromatic_aberration <= 0.001f;
+            },
+    };
+    return info;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+#include <darkroom/effects/fog.hpp>
+
+#include <array>
+#include <darkroom/composer.hpp>
+
+#include "compose/test_support.hpp"
+#include "fog/fog_reference.hpp"
+
+namespace darkroom {
+namespace {
+
+/// A picture whose pixels lie at many distances: a few metres to the left, beyond the end and in the sky to the right.
+struct Case {
+    ReferenceImage picture = test::round_to_float(test::random_display(37, 23, 3));
+    ReferenceImage depth{37, 23};
+    Camera camera = test::look_at({1, 3, 2}, {4, 1, -9}, 1.1, 37.0 / 23);
+
+    Case() {
+        for (std::uint32_t y = 0; y < 23; ++y)
+            for (std::uint32_t x = 0; x < 37; ++x) {
+                const double distance = x > 33 ? 1e10 : std::exp2(x * 0.25) + y * 0.1;
+                depth.at(x, y).r = double{static_cast<float>(distance)};
+            }
+    }
+    [[nodiscard]] test::RunOptions options() const { return {.depth = &depth, .camera = camera}; }
+};
+
+TEST(EffectFog, HasTheDocumentedValues) {
+    const Fog fog{.density = 0.02f, .start = 5, .end = 100};
+    EXPECT_EQ(fog_amount(5, 0, fog), 0);
+    EXPECT_NEAR(fog_amount(10, 0, fog), 0.1119, 5e-5);
+    EXPECT_NEAR(fog_amount(50, 0, fog), 0.6978, 5e-5);
+    EXPECT_EQ(fog_amount(100, 0, fog), 1);
+    EXPECT_EQ(fog_amount(1000, 0, fog), 1);
+}
+
+TEST(EffectFog, WithoutAnEndItIsTheExponential) {
+    const Fog fog{.density = 0.02f, .start = 5, .end = 1e9f};
+    for (const auto& [distance, amount] :
+         {std::pair{5.0, 0.0}, {10.0, .0952}, {50.0, .5934}, {100.0, .8504}, {200.0, .9798}})
+        EXPECT_NEAR(fog_amount(distance, 0, fog), amount, 5e-5) << distance;
+}
+
+TEST(EffectFog, ThinsAboveTheOriginAndNotBelow) {
+    const Fog fog{.height_enabled = true, .height_falloff = 0.5f, .height_origin = 1};
+    EXPECT_EQ(fog_amount(40, -7, fog), fog_amount(40, 1, fog));
+    EXPECT_NEAR(fog_amount(40, 3, fog), fog_amount(40, 1, fog) * std::exp(-1.0), 1e-12);
+}
+
+TEST(EffectFog, RefusesAnEndThatDoesNotLieBeyondTheStart) {
+    for (const float end : {3.0f, 5.0f}) {
+        const Fog fog{.start = 5, .end = end};
+        const std::string text = effect_info(fog).conflict(&fog);
+        EXPECT_NE(text.find("must lie beyond start = 5"), std::string::npos) << text;
+    }
+    const Fog fine;
+    EXPECT_EQ(effect_info(fine).conflict(&fine), "");
+}
+
+TEST(EffectFog, GpuMatchesReference) {
+    const Case data;
+    for (const Fog& fog : {Fog{}, Fog{.density = 0}, Fog{.density = 1e-5f, .start = 0, .end = 400}, Fog{.density = 3},
+                           Fog{.density = 0.1f, .end = 20, .sky = true},
+                           Fog{.height_enabled = true, .height_falloff = 0.4f, .height_origin = -2, .sky = true}}) {
+        const ReferenceImage expected = test::scene_reference_of(fog, data.picture, data.options());
+        for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
+            test::RunOptions options = data.options();
+            options.kernels = stage;
+            const auto fill = [&](Composer& composer) { composer.add(fog); };
+            EXPECT_LE(test::worst_half_ulps(test::develop(fill, data.picture, options), expected), 2)
+                << fog.density << " " << fog.height_enabled.on;
+        }
+    }
+}
+
+// The same distances as device depth, near to far and reversed.
+TEST(EffectFog, GpuReadsEveryKindOfDepth) {
+    const Case data;
+    const Fog fog{.density = 0.05f};
+    const ReferenceImage expected = test::scene_reference_of(fog, data.picture, data.options());
+    for (const DepthKind kind : {DepthKind::Standard, DepthKind::Reversed}) {
+        test::RunOptions options = data.options();
+        options.camera.depth = kind;
+        options.is_depth_planar = false;
+        Matrix& p = options.camera.projection;
+        if (kind == DepthKind::Reversed) {
+            p[10] = -p[10] - 1;
+            p[14] = -p[14];
+        }
+        ReferenceImage device = data.depth;
+        for (Rgba& pixel : device.pixels) {
+            const double distance = pixel.r;
+            const double depth = (-distance * double{p[10]} + double{p[14]}) / distance;
+            pixel.r = distance >= 1e9 ? (kind == DepthKind::Reversed ? 0 : 1) : double{static_cast<float>(depth)};
+        }
+        options.depth = &device;
+        const auto fill = [&](Composer& composer) { composer.add(fog); };
+        // Standard device depth in 32 bits resolves some 1e-4 of the distance at a thousand times `near`.
+        EXPECT_LE(test::worst_difference(test::develop(fill, data.picture, options), expected), 2e-3)
+            << static_cast<int>(kind);
+    }
+}
+
+TEST(EffectFog, GpuWithoutDepthIsLeftOut) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(8, 8, 1));
+    const ReferenceImage out = test::develop([](Composer& composer) { composer.add(Fog{.density = 9}); }, picture);
+    EXPECT_EQ(test::worst_difference(out, picture), 0);
+}
+
+}  // namespace
+}  // namespace darkroom

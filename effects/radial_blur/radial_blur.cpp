@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/radial_blur.hpp>
+
+#include "radial_blur/radial_blur_reference.hpp"
+
+namespace darkroom {
+
+const EffectInfo& effect_info(const RadialBlur&) {
+    static const EffectInfo info{
+        .name = "radial_blur",
+        .doc = "Smears the picture away from its centre.",
+        .parameters = radial_blur_rows.table(),
+        .files = embedded_files("radial_blur"),
+        .touch = Touch::Warp,
+        .accepts = Domains::all(),
+        .flat = {.documented = 10, .scene_linear = 10, .starts_on = true},
+        .reference = radial_blur_reference,
+        .is_identity =
+            [](const void* parameters) { return static_cast<const RadialBlur*>(parameters)->radial_blur <= 0.001f; },
+    };
+    return info;
+}
+
+}  // namespace darkroom
