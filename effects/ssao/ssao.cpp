@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <darkroom/effects/ssao.hpp>
+#include <numbers>
+
+#include "shared/scene_images.hpp"
+#include "ssao/ssao_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+const Ssao& ssao_of(const void* parameters) { return *static_cast<const Ssao*>(parameters); }
+
+/// xorshift32 with the shifts 13, 17, 5 (Marsaglia, "Xorshift RNGs", 2003); [0, 1) from the low 24 bits.
+class Random {
+  public:
+    explicit Random(std::uint32_t seed) : state_(seed) {}
+    float next() {
+        state_ ^= state_ << 13;
+        state_ ^= state_ >> 17;
+        state_ ^= state_ << 5;
+        return static_cast<float>(state_ & 0xFFFFFFu) / 16777216.0f;
+    }
+
+  private:
+    std::uint32_t state_;
+};
+
+constexpr std::int32_t most_samples = 64, most_slices = 4;
+constexpr std::size_t kernel_place = 8, slice_place = kernel_place + 16;  // in the vectors of the passes
+
+/// Between texels of an image of `extent`, each the first of `step` pixels of the frame, and view space: see the
+/// shader.
+void camera_constants(const Camera& camera, VkExtent2D frame, VkExtent2D extent, float step,
+                      std::span<PassVector> out) {
+    const Matrix& p = camera.projection;
+    const float down = camera.is_y_down ? 1.0f : -1.0f;
+    const std::array<float, 2> scale{p[0], p[5] * down}, shear{p[8], p[9] * down}, offset{p[12], p[13] * down};
+    const std::array<std::uint32_t, 2> pixels{frame.width, frame.height}, texels{extent.width, extent.height};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        // x and y of clip space at texel 0, and from one to the next.
+        const float size = static_cast<float>(pixels[axis]);
+        const float first = 1.0f / size - 1.0f, next = 2.0f * step / size;
+        out[0][axis] = -p[11] * next / scale[axis];
+        out[0][axis + 2] = (shear[axis] - p[11] * first) / scale[axis];
+        out[1][axis] = p[15] * next / scale[axis];
+        out[1][axis + 2] = (p[15] * first - offset[axis]) / scale[axis];
+        const float half = 0.5f * size / step;
+        out[2][axis] = scale[axis] * half;
+        out[2][axis + 2] = shear[axis] * half;
+        out[3][axis] = offset[axis] * half;
+        out[4][axis] = half + 0.5f - 0.5f / step;
+        out[4][axis + 2] = static_cast<float>(texels[axis]) - 0.01f;
+    }
+    out[3][2] = p[11];
+    out[3][3] = p[15];
+}
+
+PassVector turn(double angle) { return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))}; }
+
+/// What the passes of both methods share.
+void common_constants(const Ssao& ssao, const PassContext& context, std::span<PassVector> out) {
+    camera_constants(*context.camera, context.frame_extent, context.output_extent,
+                     ssao.resolution == SsaoResolution::Half ? 2.0f : 1.0f, out);
+    out[5] = {0, 1.0f / ssao.radius, ssao.bias, ssao.intensity};
+    out[7] = {1, 1, 0, 0};
+    out[6] = {ssao.fade_start, 1.0f / std::max(ssao.fade_end - ssao.fade_start, 1e-6f), ssao.radius,
+              1.0f / (ssao.radius * ssao_fade)};
+}
+
+std::int32_t samples_of(const Ssao& ssao) { return std::clamp(ssao.samples, 1, most_samples); }
+
+void occlusion_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const Ssao& ssao = ssao_of(parameters);
+    common_constants(ssao, context, out);
+    if (ssao.method == SsaoMethod::GroundTruth) {
+        const auto [slices, steps] = ssao_slices(samples_of(ssao));
+        out[7] = {static_cast<float>(2 * slices), static_cast<float>(steps)};
+        const double between = std::numbers::pi / slices;
+        for (std::size_t i = 0; i < 16; ++i) out[kernel_place + i] = turn(between * static_cast<double>(i) / 16);
+        for (std::int32_t i = 0; i < 2 * slices; ++i)
+            out[slice_place + static_cast<std::size_t>(i)] = turn(between * i);
+        return;
+    }
+    const auto count = static_cast<std::size_t>(samples_of(ssao));
+    out[5][0] = static_cast<float>(count);
+    const auto kernel = ssao_kernel(count);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis) out[kernel_place + i][axis] = kernel[i][axis] * ssao.radius;
+}
+
+template <SsaoResolution resolution>
+bool is_size_used(const void* parameters, const PassContext&, std::uint32_t) {
+    return ssao_of(parameters).resolution == resolution;
+}
+
+template <SsaoResolution resolution>
+PassImage add_chain(PassBuilder& builder, PassImage noise) {
+    constexpr bool is_half = resolution == SsaoResolution::Half;
+    const NormalSource source =
+        builder.has_frame_image(FrameImage::Normals) ? NormalSource::Image : NormalSource::Depth;
+    const ConditionFunction condition = is_size_used<resolution>;
+    const PassImage distance = is_half ? half_depth(builder, condition) : linear_depth(builder);
+    const PassImage normals =
+        is_half ? half_view_normals(builder, source, condition) : view_normals(builder, source, condition);
+    const std::string suffix = is_half ? "" : " full size";
+    const auto create = [&](const char* name, VkFormat format) {
+        return builder.create({.name = name + suffix, .format = format, .denominator = is_half ? 2u : 1u});
+    };
+    const PassImage raw = builder.add({.name = "occlusion" + suffix,
+                                       .shader = "ssao_occlusion.glsl",
+                                       .inputs = {{.name = "ssao_distance", .image = distance, .is_loaded = true},
+                                                  {.name = "ssao_normals", .image = normals, .is_loaded = true},
+                                                  {.name = "ssao_noise", .image = noise}},
+                                       .output = create("raw", VK_FORMAT_R32_SFLOAT),
+                                       .custom_vectors = kernel_place + most_samples,
+                                       .constants = occlusion_constants,
+                                       .condition = condition});
+    const PassImage blurred = builder.add({.name = "blur" + suffix,
+                                           .shader = "ssao_blur.glsl",
+                                           .inputs = {{.name = "ssao_raw", .image = raw}},
+                                           .output = create("blurred", VK_FORMAT_R32_SFLOAT),
+                                           .condition = condition});
+    if (!is_half) return blurred;
+    return builder.add(
+        {.name = "upsample",
+         .shader = "ssao_upsample.glsl",
+         .inputs = {{.name = "ssao_blurred", .image = blurred}, {.name = "ssao_depth", .image = linear_depth(builder)}},
+         .output = create("upsampled", VK_FORMAT_R16G16B16A16_SFLOAT),
+         .condition = condition});
+}
+
+void build(PassBuilder& builder) {
+    const auto directions = ssao_noise();
+    TableDesc table{.name = "ssao noise",
+                    .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                    .extent = {4, 4, 1},
+                    .is_load_only = true,
+                    .data = std::vector<std::byte>(sizeof directions)};
+    std::memcpy(table.data.data(), directions.data(), sizeof directions);
+    const PassImage noise = builder.table(table);
+    builder.side("ssao_half", add_chain<SsaoResolution::Half>(builder, noise), {1, 1, 1, 1});
+    // All its last ten bits are set: visible.
+    builder.side("ssao_full", add_chain<SsaoResolution::Full>(builder, noise),
+                 {std::bit_cast<float>(0x3F8003FFu), 0, 0, 0});
+}
+
+std::string conflict(const void* parameters) {
+    const Ssao& ssao = ssao_of(parameters);
+    if (ssao.fade_end > ssao.fade_start) return {};
+    return fmt::format("fade_end = {}: must lie beyond fade_start = {} m", ssao.fade_end, ssao.fade_start);
+}
+
+}  // namespace
+
+std::array<std::array<float, 3>, 64> ssao_kernel(std::size_t count) {
+    std::array<std::array<float, 3>, 64> out{};
+    Random random(0xDEADBEEF);
+    for (std::size_t i = 0; i < std::min(count, out.size()); ++i) {
+        const float x = random.next() * 2 - 1, y = random.next() * 2 - 1, z = random.next();
+        const float share = static_cast<float>(i) / static_cast<float>(count);
+        const float length = random.next() * (0.1f + 0.9f * share * share) / std::max(std::hypot(x, y, z), 1e-6f);
+        out[i] = {x * length, y * length, z * length};
+    }
+    return out;
+}
+
+std::array<std::array<float, 4>, 16> ssao_noise() {
+    std::array<std::array<float, 4>, 16> out{};
+    for (std::uint32_t y = 0; y < 4; ++y) {
+        for (std::uint32_t x = 0; x < 4; ++x) {
+            const std::uint32_t number = ((x + y) % 4) * 4 + x;
+            const double angle = 2 * std::numbers::pi * number / 16;
+            out[y * 4 + x] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)),
+                              static_cast<float>(number), static_cast<float>((y + 4 - x) % 4) / 4 + 0.125f};
+        }
+    }
+    return out;
+}
+
+std::array<std::int32_t, 2> ssao_slices(std::int32_t samples) {
+    const auto slices = std::clamp(static_cast<std::int32_t>(std::lround(std::sqrt(samples / 4.0))), 1, most_slices);
+    return {slices, std::max(1, samples / (2 * slices))};
+}
+
+const EffectInfo& effect_info(const Ssao&) {
+    static const EffectInfo info{
+        .name = "ssao",
+        .doc = "Darkens corners and contacts, which light from all around reaches less.",
+        .parameters = ssao_rows.table(),
+        .files = embedded_files("ssao"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
+        .needs = {.depth = true},
+        .flat = {.documented = 30, .scene_linear = 30, .starts_on = true},
+        .build = build,
+        .reference = ssao_reference,
+        .conflict = conflict,
+        .is_identity = [](const void* parameters) { return ssao_of(parameters).intensity == 0.0f; },
+    };
+    return info;
+}
+
+}  // namespace darkroom

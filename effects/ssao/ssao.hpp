@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Ambient occlusion in screen space: corners and contacts darken, as light from all around reaches them less. It sees
+// what the depth buffer holds and no more: what lies off the screen or behind something does not occlude.
+
+#include <array>
+#include <darkroom/effect.hpp>
+#include <span>
+
+namespace darkroom {
+
+enum class SsaoMethod : std::uint32_t {
+    Hemisphere,   ///< points in a half ball over the surface, each behind the depth buffer or not
+    GroundTruth,  ///< horizons along slices, and the integral between them
+};
+enum class SsaoResolution : std::uint32_t { Half, Full };
+enum class SsaoMerge : std::uint32_t {
+    Multiply,   ///< the picture times the occlusion
+    Luminance,  ///< bright pixels, which are lit directly, darken less
+};
+
+struct Ssao {
+    float intensity = 1.0f;
+    float radius = 0.5f;
+    float bias = 0.025f;
+    std::int32_t samples = 16;
+    SsaoMethod method = SsaoMethod::Hemisphere;
+    SsaoResolution resolution = SsaoResolution::Half;
+    SsaoMerge merge = SsaoMerge::Multiply;
+    float fade_start = 200.0f;
+    float fade_end = 400.0f;
+};
+inline constexpr auto ssao_rows = describe(
+    field<&Ssao::intensity>("How much of the occlusion counts; 1 is all of it.", {0, 8}).as_amount(),
+    field<&Ssao::radius>("How far away surfaces occlude.", {0.001, 1000}, unit::metres),
+    field<&Ssao::bias>("What lies closer above a surface does not occlude it: hides the steps of the depth buffer.",
+                       {0, 100}, unit::metres),
+    field<&Ssao::samples>("Reads of the depth buffer for a pixel.", {1, 64}),
+    field<&Ssao::method>("How occlusion is estimated."),
+    field<&Ssao::resolution>("Of the occlusion; half is brought back to full along depth edges."),
+    field<&Ssao::merge>("How the picture takes the occlusion."),
+    field<&Ssao::fade_start>("Distance at which occlusion begins to fade.", {0, 1e9}, unit::metres),
+    field<&Ssao::fade_end>("Distance at which it is gone; must lie beyond `fade_start`.", {0.001, 1e9}, unit::metres));
+
+/// Points of the unit half ball around +z, denser toward its middle: point i of n lies on a random direction at a
+/// random share of 0.1 + 0.9 (i / n)^2 (John Chapman, "SSAO Tutorial", 2013). The same for every run.
+[[nodiscard]] std::array<std::array<float, 3>, 64> ssao_kernel(std::size_t count);
+/// What differs from pixel to pixel, a tile of 4 x 4, row by row: (cosine, sine of the angle that turns the kernel,
+/// number of the first slice's direction among 16, share of a step). Each angle once in the tile, and each share once
+/// in a row and once in a column (Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion",
+/// 2016).
+[[nodiscard]] std::array<std::array<float, 4>, 16> ssao_noise();
+/// Slices of the ground-truth method, and steps to a side of each, that take `samples` reads or fewer (at least two).
+[[nodiscard]] std::array<std::int32_t, 2> ssao_slices(std::int32_t samples);
+/// Share of the radius, at its end, over which occluders of the ground-truth method fade.
+inline constexpr float ssao_fade = 0.1f;
+
+[[nodiscard]] const EffectInfo& effect_info(const Ssao&);
+
+}  // namespace darkroom

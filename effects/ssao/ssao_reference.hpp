@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Ambient occlusion in double precision: both methods, both sizes, blur, upsampling and merge. It follows the shaders'
+// choice of pixels, and computes what they approximate: no packed bits, no polynomial for an arc cosine.
+
+#include <algorithm>
+#include <cmath>
+#include <darkroom/effects/ssao.hpp>
+#include <darkroom/reference.hpp>
+#include <numbers>
+
+#include "shared/camera_reference.hpp"
+
+namespace darkroom {
+
+/// The numbers of every pixel, or of every second pixel of every second row.
+class SsaoReference {
+  public:
+    SsaoReference(const Ssao& parameters, const ReferenceInput& input)
+        : ssao_(parameters),
+          input_(input),
+          camera_(input.camera),
+          step_(parameters.resolution == SsaoResolution::Half ? 2 : 1),
+          width_(std::max(1, static_cast<int>(input.depth->width) / step_)),
+          height_(std::max(1, static_cast<int>(input.depth->height) / step_)) {}
+
+    /// What each pixel of the picture is multiplied by.
+    [[nodiscard]] double visibility(std::uint32_t x, std::uint32_t y) const {
+        const auto [column, row] = std::array{static_cast<int>(x), static_cast<int>(y)};
+        return step_ == 1 ? blurred_[index(column, row)] : upsampled(column, row);
+    }
+
+    void compute() {
+        const auto count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+        std::vector<double> raw(count);
+        distance_.resize(count);
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x) {
+                const double planar = planar_at(x, y);
+                distance_[index(x, y)] = is_surface(planar) ? planar : 1e10;
+                raw[index(x, y)] = is_surface(planar) ? occlusion(x, y, planar) : 1;
+            }
+        blurred_.resize(count);
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x) blurred_[index(x, y)] = blur(raw, x, y);
+    }
+
+  private:
+    static constexpr double pi = std::numbers::pi;
+    static double dot(const Double3& a, const Double3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+    static Double3 cross(const Double3& a, const Double3& b) {
+        return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    }
+    static Double3 sum(const Double3& a, const Double3& b, double weight) {
+        return {a[0] + b[0] * weight, a[1] + b[1] * weight, a[2] + b[2] * weight};
+    }
+    static Double3 normalized(const Double3& v) {
+        const double squared = dot(v, v);
+        return squared > 0 && std::isfinite(squared) ? sum({}, v, 1 / std::sqrt(squared)) : Double3{0, 0, 1};
+    }
+    static bool is_surface(double planar) { return planar > 1e-6 && planar < 1e9; }
+    [[nodiscard]] std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(std::clamp(y, 0, height_ - 1)) * static_cast<std::size_t>(width_) +
+               static_cast<std::size_t>(std::clamp(x, 0, width_ - 1));
+    }
+    [[nodiscard]] double planar_at(int x, int y) const { return input_.depth->clamped(x * step_, y * step_).r; }
+
+    /// View position of a pixel of the frame at a distance.
+    [[nodiscard]] Double3 frame_position(int x, int y, double planar) const {
+        return camera_.view_position((x + 0.5) / input_.depth->width, (y + 0.5) / input_.depth->height, planar);
+    }
+    [[nodiscard]] Double3 position(int x, int y, double planar) const {
+        return frame_position(x * step_, y * step_, planar);
+    }
+    /// Where a point of view space is, in pixels of the occlusion; that of pixel i covers [i, i + 1).
+    [[nodiscard]] std::array<double, 2> place(const Double3& view) const {
+        const auto uv = camera_.uv(view);
+        return {(uv[0] * input_.depth->width - 0.5) / step_ + 0.5, (uv[1] * input_.depth->height - 0.5) / step_ + 0.5};
+    }
+    [[nodiscard]] bool is_inside(const std::array<double, 2>& at) const {
+        return at[0] >= 0 && at[1] >= 0 && at[0] <= width_ - 0.01 && at[1] <= height_ - 0.01;
+    }
+
+    [[nodiscard]] Double3 normal(int x, int y) const {
+        const int column = x * step_, row = y * step_;
+        if (input_.normals != nullptr) {
+            const Rgba& world = input_.normals->clamped(column, row);
+            return normalized(camera_.view_direction({world.r, world.g, world.b}));
+        }
+        const auto at = [&](int dx, int dy) {
+            return frame_position(column + dx, row + dy, input_.depth->clamped(column + dx, row + dy).r);
+        };
+        const Double3 here = at(0, 0);
+        const auto slope = [&](int dx, int dy, bool is_first, bool is_last) {
+            const Double3 before = sum(here, at(-dx, -dy), -1), after = sum(at(dx, dy), here, -1);
+            const bool takes_after = is_first || (!is_last && std::abs(after[2]) < std::abs(before[2]));
+            return takes_after ? after : before;
+        };
+        const auto last_column = static_cast<int>(input_.depth->width) - 1;
+        const auto last_row = static_cast<int>(input_.depth->height) - 1;
+        return normalized(
+            cross(slope(0, 1, row == 0, row == last_row), slope(1, 0, column == 0, column == last_column)));
+    }
+
+    [[nodiscard]] double occlusion(int x, int y, double planar) const {
+        const Double3 at = position(x, y, planar);
+        const double seen = ssao_.method == SsaoMethod::Hemisphere ? hemisphere(x, y, at) : horizons(x, y, at);
+        const double counted = std::clamp(1 - (1 - seen) * double{ssao_.intensity}, 0.0, 1.0);
+        const double start = double{ssao_.fade_start}, end = double{ssao_.fade_end};
+        const double fade = std::clamp((planar - start) / std::max(end - start, 1e-6), 0.0, 1.0);
+        return std::lerp(counted, 1.0, fade * fade * (3 - 2 * fade));
+    }
+
+    /// A point for every sample in the half ball: is it behind what the picture shows there?
+    [[nodiscard]] double hemisphere(int x, int y, const Double3& at) const {
+        const auto noise = ssao_noise()[static_cast<std::size_t>(y % 4 * 4 + x % 4)];
+        const Double3 up = normal(x, y), turn{double{noise[0]}, double{noise[1]}, 0};
+        const Double3 flat = sum(turn, up, -dot(turn, up));
+        const Double3 tangent = dot(flat, flat) > 1e-8 ? normalized(flat) : Double3{0, 0, 1};
+        const Double3 bitangent = cross(up, tangent);
+        const double bias = double{ssao_.bias}, radius = double{ssao_.radius};
+        const auto kernel = ssao_kernel(static_cast<std::size_t>(ssao_.samples));
+        double occlusion = 0;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(ssao_.samples); ++i) {
+            Double3 point = sum(at, tangent, double{kernel[i][0]} * radius);
+            point = sum(point, bitangent, double{kernel[i][1]} * radius);
+            point = sum(point, up, double{kernel[i][2]} * radius);
+            const auto there = place(point);
+            if (!is_inside(there)) continue;
+            const int column = static_cast<int>(there[0]), row = static_cast<int>(there[1]);
+            const double found = planar_at(column, row);
+            const double height = dot(up, sum(position(column, row, found), at, -1));
+            if (!(found < -point[2] - bias && height > bias)) continue;
+            const double near = std::clamp(2 - std::abs(at[2] + found) / radius, 0.0, 1.0);
+            occlusion += near * near * (3 - 2 * near);
+        }
+        return 1 - occlusion / ssao_.samples;
+    }
+
+    /// Equations 5 to 7 of the paper, a direction at a time, over what the open surface would see by the same ones.
+    [[nodiscard]] double horizons(int x, int y, const Double3& at) const {
+        const auto noise = ssao_noise()[static_cast<std::size_t>(y % 4 * 4 + x % 4)];
+        const Double3 up = normal(x, y);
+        const Double3 view = normalized(sum(position(x, y, 1), position(x, y, 2), -1));
+        const double a = 1 / (1 + view[2]), b = -view[0] * view[1] * a;
+        const Double3 right{1 - view[0] * view[0] * a, b, -view[0]};
+        const Double3 above{b, 1 - view[1] * view[1] * a, -view[1]};
+        const auto [slices, steps] = ssao_slices(ssao_.samples);
+        double visible = 0, open = 0;
+        for (int i = 0; i < 2 * slices; ++i) {
+            const double angle = (i + double{noise[2]} / 16) * pi / slices;
+            const Double3 across = sum(sum({}, right, std::cos(angle)), above, std::sin(angle));
+            const double facing = std::max(dot(up, view), 0.0), sideways = dot(up, across);
+            const double length = std::sqrt(std::max(facing * facing + sideways * sideways, 1e-12));
+            const double gamma = std::atan2(sideways, facing);
+            const double low = gamma + pi / 2;
+            const double cosine = horizon(x, y, at, up, view, across, double{noise[3]}, std::cos(low));
+            const auto arc = [&](double h) {
+                return length * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma));
+            };
+            visible += arc(std::acos(std::clamp(cosine, -1.0, 1.0)));
+            open += arc(low);
+        }
+        return visible / std::max(open, 1e-6);
+    }
+
+    [[nodiscard]] double horizon(int x, int y, const Double3& at, const Double3& up, const Double3& view,
+                                 const Double3& across, double share, double lowest) const {
+        // The place moves with a step across the view as it does with a very small one.
+        constexpr double small = 1e-6;
+        const double scale = small * std::abs(at[2]), radius = double{ssao_.radius};
+        const auto ahead = place(sum(at, across, scale)), behind = place(sum(at, across, -scale));
+        const double motion_x = (ahead[0] - behind[0]) / (2 * scale), motion_y = (ahead[1] - behind[1]) / (2 * scale);
+        const double per_metre = std::hypot(motion_x, motion_y);
+        const double reach = std::max(radius * per_metre - 1, 0.0);
+        const std::int32_t steps = ssao_slices(ssao_.samples)[1];
+        double best = lowest;
+        for (int i = 0; i < steps; ++i) {
+            const double along = (i + share) / steps;
+            const double far = (1 + along * along * reach) / std::max(per_metre, 1e-10);
+            const std::array<double, 2> there{x + 0.5 + motion_x * far, y + 0.5 + motion_y * far};
+            if (!is_inside(there)) continue;
+            const int column = static_cast<int>(there[0]), row = static_cast<int>(there[1]);
+            const double found = planar_at(column, row);
+            const Double3 offset = sum(position(column, row, found), at, -1);
+            if (!(dot(offset, up) > double{ssao_.bias})) continue;
+            const double distance = std::sqrt(dot(offset, offset));
+            const double near = std::clamp((radius - distance) / (radius * double{ssao_fade}), 0.0, 1.0);
+            best = std::max(best, std::lerp(lowest, dot(offset, view) / distance, near));
+        }
+        return best;
+    }
+
+    [[nodiscard]] double blur(const std::vector<double>& raw, int x, int y) const {
+        const auto distance = [&](int column, int row) { return distance_[index(column, row)]; };
+        const double own = distance(x, y);
+        const auto slope = [&](int dx, int dy) {
+            const double before = own - distance(x - dx, y - dy), after = distance(x + dx, y + dy) - own;
+            return std::max(std::min(before, after), 0.0) + std::min(std::max(before, after), 0.0);
+        };
+        const double slope_x = slope(1, 0), slope_y = slope(0, 1);
+        const double tolerance = 0.01 * own + 0.1 * (std::abs(slope_x) + std::abs(slope_y));
+        double seen = 0, weights = 0;
+        for (int j = -2; j <= 1; ++j)
+            for (int i = -2; i <= 1; ++i) {
+                const double unlike = std::abs(distance(x + i, y + j) - (own + slope_x * i + slope_y * j));
+                const double weight = std::clamp(2 - unlike / tolerance, 0.0, 1.0);
+                seen += raw[index(x + i, y + j)] * weight;
+                weights += weight;
+            }
+        return seen / weights;
+    }
+
+    [[nodiscard]] double upsampled(int x, int y) const {
+        // The last of an odd number of pixels takes its neighbour's.
+        const int base_x = std::min(x / 2, width_ - 1), base_y = std::min(y / 2, height_ - 1);
+        const int part_x = std::min(x - base_x * 2, 1), part_y = std::min(y - base_y * 2, 1);
+        const double planar = input_.depth->clamped(base_x * 2 + part_x, base_y * 2 + part_y).r;
+        if (!is_surface(planar)) return 1;
+        double seen = 0, weights = 0;
+        for (int j = 0; j < 2; ++j)
+            for (int i = 0; i < 2; ++i) {
+                const double across = part_x == 0 ? 0.5 : i, down = part_y == 0 ? 0.5 : j;
+                const double unlike = std::abs(distance_[index(base_x + i, base_y + j)] / planar - 1);
+                const double weight = (across * down + 0.05) * (std::clamp(2 - unlike * 40, 0.0, 1.0) + 1e-4);
+                seen += blurred_[index(base_x + i, base_y + j)] * weight;
+                weights += weight;
+            }
+        return seen / weights;
+    }
+
+    const Ssao& ssao_;
+    const ReferenceInput& input_;
+    ReferenceCamera camera_;
+    int step_, width_, height_;
+    std::vector<double> distance_, blurred_;
+};
+
+[[nodiscard]] inline ReferenceImage ssao_reference(const void* parameters, const ReferenceInput& input) {
+    const Ssao& ssao = *static_cast<const Ssao*>(parameters);
+    ReferenceImage out = *input.picture;
+    if (input.depth == nullptr || ssao.intensity == 0.0f) return out;
+    SsaoReference reference(ssao, input);
+    reference.compute();
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            Rgba& color = out.at(x, y);
+            double visibility = reference.visibility(x, y);
+            if (ssao.merge == SsaoMerge::Luminance) {
+                const double luma = std::clamp(0.299 * color.r + 0.587 * color.g + 0.114 * color.b, 0.0, 1.0);
+                visibility = std::lerp(visibility, 1.0, luma * 0.5);
+            }
+            color = {color.r * visibility, color.g * visibility, color.b * visibility, color.a};
+        }
+    return out;
+}
+
+}  // namespace darkroom
