@@ -133,7 +133,7 @@ class Develop {
                                                          ? develop_by_reference(*composer_, input, job_.develop.target)
                                                          : developer_->develop(*composer_, input);
         if (!picture) return failure(std::move(picture));
-        if (index == 0) warn_of_what_is_left_out(*composer_, developer_->plan());
+        if (index == 0) warn_of_what_is_left_out(job_.look, *composer_, developer_->plan());
         const VkExtent2D size = picture->extent;
         if (Result<> done = write(job_.outputs[index], std::move(*picture), job_.write); !done)
             return failure(std::move(done));

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "report.hpp"
 
 namespace app {
@@ -61,11 +64,15 @@ std::optional<darkroom::Plane<channels>> plane(VkExtent2D extent, std::vector<fl
 Camera as_stored(const Camera& camera) { return camera_of(stored_camera(camera)); }
 
 DevelopInput develop_input(const darkroom::FrameFile& frame) {
-    DevelopInput input{.extent = {frame.color.width, frame.color.height}, .color = frame.color.pixels};
+    const auto [width, height] = std::pair(frame.color.width, frame.color.height);
+    DevelopInput input{.extent = {width, height}, .color = frame.color.pixels};
     if (frame.depth) input.depth = frame.depth->values;
     if (frame.normals) input.normals = frame.normals->values;
     if (frame.velocity) input.velocity = frame.velocity->values;
-    input.camera = camera_of(frame.camera);
+    darkroom::FrameCamera camera = frame.camera;
+    if (!camera.projection)
+        camera.projection = darkroom::perspective(assumed_field_of_view, static_cast<double>(width) / height);
+    input.camera = camera_of(camera);
     if (frame.time) input.time = *frame.time;
     if (frame.delta_time) input.delta_time = *frame.delta_time;
     if (frame.frame_index) input.frame_index = *frame.frame_index;
@@ -92,11 +99,16 @@ darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLaye
 }
 
 // Linear targets skip the last steps by definition; that is no news.
-void warn_of_what_is_left_out(const darkroom::Composer& composer, const darkroom::Plan& plan) {
+void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
+                              const darkroom::Plan& plan) {
     for (const std::string& text : plan.left_out) {
         const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
-        const bool is_on = entry && composer.inputs(*entry).enabled && !composer.info(*entry).is_last_step;
-        if (is_on) warn(fmt::format("left out: {}", text));
+        if (!entry) continue;
+        const darkroom::EffectInfo& info = composer.info(*entry);
+        // What the flat table has on by itself, nobody asked for.
+        const bool is_usual =
+            look.is_flat && info.flat.starts_on && std::ranges::equal(composer.words(*entry), info.parameters.defaults);
+        if (composer.inputs(*entry).enabled && !info.is_last_step && !is_usual) warn(fmt::format("left out: {}", text));
     }
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 // Frames of files as the library's develop functions take them, and frames of a renderer as files.
 
+#include <darkroom/look.hpp>
+
 #include "compose/developer.hpp"
 #include "compose/reference_chain.hpp"
 #include "image/frame_file.hpp"
@@ -10,14 +12,17 @@
 
 namespace app {
 
+/// Of frames that do not say theirs: vertical, degrees.
+inline constexpr double assumed_field_of_view = 45;
 /// Refers to the frame's memory.
 [[nodiscard]] darkroom::DevelopInput develop_input(const darkroom::FrameFile& frame);
 /// What a file that is written from `layers` and read again gives develop_input. `frame` says camera and time.
 [[nodiscard]] darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLayers layers);
 /// The camera as develop_input would have it of a file with this one: what a file does not store is left behind.
 [[nodiscard]] darkroom::Camera as_stored(const darkroom::Camera& camera);
-/// One warning for each entry that is on and has no place in the plan.
-void warn_of_what_is_left_out(const darkroom::Composer& composer, const darkroom::Plan& plan);
+/// One warning for each entry that is on and has no place in the plan, but for those that are on by default.
+void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
+                              const darkroom::Plan& plan);
 /// The GPU milliseconds of every pass of the last recording.
 void print_timings(darkroom::Composer& composer);
 /// By the CPU references alone, in the form that the target asks for.

@@ -50,6 +50,13 @@ int run(int argc, char** argv) {
         "machine failed.");
     const std::array commands{app::add_render(program),  app::add_develop(program), app::add_plan(program),
                               app::add_effects(program), app::add_devices(program), app::add_compare(program)};
+    // CLI11 would take the next argument for the value.
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        if (argument.starts_with("--") && argument.ends_with('=') && argument.find('=') == argument.size() - 1)
+            return app::fail_user(
+                fmt::format("{}: one value is needed", darkroom::printable(argument.substr(0, argument.size() - 1))));
+    }
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& done) {

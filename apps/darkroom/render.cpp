@@ -11,6 +11,7 @@
 #include "compose/developer.hpp"
 #include "core/param_text.hpp"
 #include "frames.hpp"
+#include "outputs.hpp"
 #include "render_flags.hpp"
 #include "report.hpp"
 #include "scene/assets.hpp"
@@ -106,6 +107,12 @@ class Render {
         assets_ = scene::load_assets(scene_);
         if (Result<> done = check_model(); !done) return done;
         for (const std::string& warning : assets_.warnings) warn(warning);
+        std::vector<std::filesystem::path> inputs = assets_.files;
+        if (!flags_.look.file.empty()) inputs.emplace_back(flags_.look.file);
+        for (const Shot& shot : job_.shots)
+            for (const std::filesystem::path& path : {shot.picture, shot.frame})
+                if (!path.empty())
+                    if (Result<> done = check_output(path, inputs); !done) return done;
         fmt::print("Loaded scene {}\nEntities: {}\n", darkroom::printable(scene_.name), scene_.entities.size());
         std::fflush(stdout);
         return {};
@@ -202,7 +209,7 @@ class Render {
         if (way_ == Way::Developed) {
             Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
             if (!made) return failure(std::move(made));
-            if (&shot == &job_.shots.front()) warn_of_what_is_left_out(*composer_, developer_->plan());
+            if (&shot == &job_.shots.front()) warn_of_what_is_left_out(look_, *composer_, developer_->plan());
             picture = std::move(*made);
         } else {
             Result<darkroom::FrameLayers> read = darkroom::read_layers(*device_, input.frame, input.record_before);

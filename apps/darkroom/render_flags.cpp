@@ -128,6 +128,8 @@ void RenderFlags::add_to(CLI::App& command) {
     command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque");
     command.add_flag("--timings", has_timings, "Prints the GPU milliseconds of every pass of post-processing");
     command.add_option("--schemas", schemas_, "Taken for the sake of old command lines; there is nothing to check")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->type_name("DIR")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -38,6 +38,8 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame) 
     const bool is_float = frame.samples == SampleKind::Float;
     const OIIO::TypeDesc color_type = is_float ? OIIO::TypeFloat : OIIO::TypeHalf;
     OIIO::ImageSpec spec(static_cast<int>(frame.color.width), static_cast<int>(frame.color.height), 0, OIIO::TypeFloat);
+    // OpenImageIO would write the time of day, and no file would be the same twice.
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
     spec.channelnames.clear();
     std::vector<Source> sources;
     const auto add = [&](std::initializer_list<const char*> names, OIIO::TypeDesc type,

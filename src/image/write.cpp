@@ -81,6 +81,8 @@ Result<> check_size(const std::filesystem::path& path, FileKind kind, std::uint3
 OIIO::ImageSpec describe(FileKind kind, SampleKind samples, std::uint32_t width, std::uint32_t height,
                          const WriteOptions& options) {
     OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), options.alpha ? 4 : 3, type_of(samples));
+    // OpenImageIO would write the time of day, and no file would be the same twice.
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
     // Alpha is carried, never applied: without this, writers divide colour by it.
     spec.attribute("oiio:UnassociatedAlpha", 1);
     if (kind == FileKind::Jpeg) spec.attribute("Compression", fmt::format("jpeg:{}", options.jpeg_quality));

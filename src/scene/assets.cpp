@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 bool is_file(const fs::path& path) {
     std::error_code error;
-    return fs::exists(path, error) && !fs::is_directory(path, error);
+    return fs::is_regular_file(path, error);
 }
 
 fs::path first_file(std::span<const fs::path> places) {
@@ -78,7 +78,9 @@ struct Wanted {
 Wanted find_files(const Scene& scene, Assets& assets) {
     Wanted wanted;
     const auto warn_missing = [&](const std::string& asked_for, const std::string& by) {
-        assets.warnings.push_back(fmt::format("{}: not found (asked for by {})", one_printable_line(asked_for), by));
+        assets.warnings.push_back(fmt::format("{}: {} asks for '{}': there is no such file",
+                                              one_printable_line(scene.file.string()), by,
+                                              one_printable_line(asked_for)));
     };
     const auto texture = [&](const fs::path& name, const std::string& by) {
         if (name.empty()) return no_index;
@@ -119,6 +121,9 @@ void forget(std::vector<EntityAssets>& entities, std::uint32_t EntityAssets::*me
 Assets load_assets(const Scene& scene) {
     Assets assets;
     const Wanted wanted = find_files(scene, assets);
+    if (!wanted.skybox.empty()) assets.files.push_back(wanted.skybox);
+    for (const FileList* const list : {&wanted.models, &wanted.images})
+        assets.files.insert(assets.files.end(), list->files().begin(), list->files().end());
 
     // The skybox and the models are loaded side by side, the skybox first, since it is often the largest.
     const std::vector<fs::path>& model_files = wanted.models.files();

@@ -3,6 +3,7 @@
 // What a scene names, loaded: models, textures of materials, sprites and particles, and the skybox. A file that is
 // missing or broken is reported by name and the rest goes on; each file is loaded once, however many name it.
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,9 +25,10 @@ struct EntityAssets {
 struct Assets {
     std::vector<Model> models;
     std::vector<Image> images;
-    std::vector<EntityAssets> entities;  ///< one for each of the scene's
-    std::optional<Picture> skybox;       ///< linear Rec. 709, as the file has it
-    std::vector<std::string> warnings;   ///< one line each, naming the file and who asked for it
+    std::vector<EntityAssets> entities;        ///< one for each of the scene's
+    std::optional<Picture> skybox;             ///< linear Rec. 709, as the file has it
+    std::vector<std::filesystem::path> files;  ///< that were found, models and pictures
+    std::vector<std::string> warnings;         ///< one line each, naming the file and who asked for it
 };
 
 /// Never fails: what cannot be had is in `warnings`. Files are decoded on several threads.

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 // Enough to see what is wrong with a file, however much of it is.
-constexpr std::size_t most_warnings = 100;
+constexpr std::size_t most_warnings = 20;
 
 constexpr std::array<std::string_view, 5> read_extensions{"KHR_lights_punctual", "KHR_materials_emissive_strength",
                                                           "KHR_materials_unlit", "KHR_mesh_quantization",

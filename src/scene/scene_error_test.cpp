@@ -263,7 +263,7 @@ TEST(SceneError, FilesThatAreNoScenesGetALine) {
     EXPECT_EQ(error("picture.png"), "picture.png: expected a scene (.toml) or a model (.glb, .gltf)");
     EXPECT_EQ(error("missing.glb"), "missing.glb: is no file, expected a model");
     EXPECT_TRUE(contains(error("missing.toml"), "missing.toml"));
-    EXPECT_TRUE(contains(error("/dev/zero"), "is a device"));
+    EXPECT_TRUE(contains(error("/dev/zero"), "is no regular file"));
     EXPECT_TRUE(contains(error_of(std::string((16U << 20) + 1, '\n')), "a scene file has at most 16777216"));
 }
 

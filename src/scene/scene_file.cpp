@@ -14,9 +14,11 @@ Result<std::string> read_scene_text(const std::filesystem::path& path) {
     const std::string shown = printable(path.string());
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
-        return user_error(fmt::format("{}: is a device, expected a scene file", shown));
-    const std::uintmax_t size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
+    const bool is_regular = std::filesystem::is_regular_file(status);
+    // It is read twice, for the scene and for its look, which a pipe would not survive.
+    if (std::filesystem::exists(status) && !is_regular && !std::filesystem::is_directory(status))
+        return user_error(fmt::format("{}: is no regular file, expected a scene", shown));
+    const std::uintmax_t size = is_regular ? std::filesystem::file_size(path, error) : 0;
     if (!error && size > largest_file)
         return user_error(fmt::format("{}: {} bytes, a scene file has at most {}", shown, size, largest_file));
     const Result<std::vector<std::byte>> bytes = read_file(path);

@@ -51,6 +51,8 @@ BoxSurface box_surface(const Scene& scene, const Assets& assets, std::uint32_t e
     out.material.opacity = given.opacity;
     out.material.writes = given.writes;
     out.material.entity_texture = assets_of(assets, entity).material_texture;
+    // A side shows the whole texture once, and nothing of its other edge.
+    surface.base_color_texture.wrap_u = surface.base_color_texture.wrap_v = Wrap::Clamp;
     return out;
 }
 
