@@ -2,6 +2,11 @@
 // Any domain. fog_distance: planar distance.
 #include "shared/camera.glsl"
 
+// 1 - exp(-depth), to full precision for thin fog, too.
+float fog_coverage(float depth) {
+    return depth < 0.05 ? depth * (1.0 - depth * (0.5 - depth / 6.0)) : 1.0 - exp(-depth);
+}
+
 vec4 fog(vec4 color, Pixel pixel, Fog parameters) {
     float planar = load(fog_distance, pixel.texel).r;
     bool is_sky = planar >= sky_distance;
@@ -9,11 +14,10 @@ vec4 fog(vec4 color, Pixel pixel, Fog parameters) {
     float planar_to_true = length(ray);
     if (is_sky) ray *= parameters.end / planar_to_true;
     float distance = is_sky ? parameters.end : planar_to_true;
-    // Full at `end`: 1 - exp(-density x) over its value there, which tends to x over the whole length for thin fog.
+    // Full at `end`.
     float span = max(parameters.end - parameters.start, 1e-6);
     float x = clamp(distance - parameters.start, 0.0, span);
-    float whole = 1.0 - exp(-parameters.density * span);
-    float amount = whole > 1e-4 ? (1.0 - exp(-parameters.density * x)) / whole : x / span;
+    float amount = fog_coverage(parameters.density * x) / max(fog_coverage(parameters.density * span), 1e-30);
     if (parameters.height_enabled != 0u) {
         float above = max(camera_position().y + ray.y - parameters.height_origin, 0.0);
         amount *= exp(-parameters.height_falloff * above);

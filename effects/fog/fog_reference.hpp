@@ -17,6 +17,7 @@ inline double fog_amount(double distance, double height, const Fog& fog) {
     const double span = double{fog.end} - double{fog.start};
     const double x = std::clamp(distance - double{fog.start}, 0.0, span);
     const double density = double{fog.density};
+    if (density == 0) return 0;
     double amount = std::expm1(-density * x) / std::expm1(-density * span);
     if (fog.height_enabled.on != 0)
         amount *= std::exp(-double{fog.height_falloff} * std::max(height - double{fog.height_origin}, 0.0));

@@ -2,7 +2,11 @@
 #pragma once
 // Ambient occlusion of boxes by ray tracing (Embree), to judge the effect by. For tests only.
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 
 #include <memory>
 #include <numbers>
@@ -74,9 +78,13 @@ class OcclusionTruth {
                      .time = 0,
                      .tfar = static_cast<float>(radius),
                      .mask = ~0u};
+#if RTC_VERSION_MAJOR >= 4
+        rtcOccluded1(scene_.get(), &query);
+#else
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         rtcOccluded1(scene_.get(), &context, &query);
+#endif
         return query.tfar < 0;
     }
 

@@ -95,6 +95,7 @@ CompileDesc compile_desc_for(Device& device, VkExtent2D extent, const Layers& la
     out.color = layers[0].format;
     out.color_usage = shader_usage(device.context(), layers[0].format);
     out.depth = format(1);
+    out.is_depth_planar = out.depth != VK_FORMAT_UNDEFINED;
     out.normals = format(2);
     out.velocity = format(3);
     return out;
@@ -103,8 +104,9 @@ CompileDesc compile_desc_for(Device& device, VkExtent2D extent, const Layers& la
 /// Do two descriptions that one DevelopDesc made ask for the same?
 bool is_same(const CompileDesc& a, const CompileDesc& b) {
     return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
-           a.color == b.color && a.color_usage == b.color_usage && a.depth == b.depth && a.normals == b.normals &&
-           a.velocity == b.velocity && a.ui == b.ui && a.has_shadows == b.has_shadows;
+           a.color == b.color && a.color_usage == b.color_usage && a.depth == b.depth &&
+           a.is_depth_planar == b.is_depth_planar && a.normals == b.normals && a.velocity == b.velocity &&
+           a.ui == b.ui && a.has_shadows == b.has_shadows;
 }
 
 /// Images of one size for pictures from main memory, and the buffers that fill them.
@@ -140,6 +142,7 @@ CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const Dev
     out.color = frame.color.format;
     out.color_usage = input.color_usage;
     out.depth = frame.depth.format;
+    out.is_depth_planar = frame.depth.is_given() && frame.camera.depth == DepthKind::Planar;
     out.normals = frame.normals.format;
     out.velocity = frame.velocity.format;
     out.ui = frame.ui.format;
@@ -248,6 +251,7 @@ struct Developer::State {
                     .time = input.time,
                     .delta_time = input.delta_time,
                     .frame_index = input.frame_index};
+        frame.camera.depth = DepthKind::Planar;
         ImageRef* const slots[] = {&frame.color, &frame.depth, &frame.normals, &frame.velocity};
         for (std::size_t i = 0; i < uploads->images.size(); ++i)
             if (uploads->images[i])

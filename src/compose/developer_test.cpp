@@ -69,9 +69,12 @@ TEST(ComposeDeveloper, ImagesOfTheDeviceAndOfMainMemoryGiveTheSameBytes) {
         Composer composer(device, {.frames_in_flight = 1});
         fill(composer);
         Developer developer(device, {.target = target});
-        const DeviceFrame on_device{
-            .frame = {.color = reference_to(color), .depth = reference_to(planar), .time = 2, .frame_index = 3},
-            .color_usage = color.image.info.usage};
+        const DeviceFrame on_device{.frame = {.color = reference_to(color),
+                                              .depth = reference_to(planar),
+                                              .camera = {.depth = DepthKind::Planar},
+                                              .time = 2,
+                                              .frame_index = 3},
+                                    .color_usage = color.image.info.usage};
         FrameLayers layers;
         const Result<DevelopedPicture> first = developer.develop(composer, on_device, &layers);
         ASSERT_TRUE(first) << first.error().text;

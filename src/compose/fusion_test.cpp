@@ -43,6 +43,11 @@ void set_random(std::mt19937& random, Composer& composer, Handle handle) {
         }
         if (row.words <= 4) test::must(composer.set(handle, row.name, std::span(words).first(row.words)));
     }
+    // Values that contradict each other are refused: take the defaults then.
+    const EffectInfo& info = composer.info(handle);
+    if (info.conflict == nullptr || info.conflict(composer.words(handle).data()).empty()) return;
+    for (const ParamInfo& row : info.parameters.rows)
+        test::must(composer.set(handle, row.name, info.parameters.defaults.subspan(row.word, row.words)));
 }
 
 /// Any of the entries before, the scene, or (default) the entry before.

@@ -251,7 +251,10 @@ TEST_F(ComposePlan, BothShippedOrdersGiveNoRemark) {
         std::ranges::sort(flat, {}, rank);
         composer.clear();
         for (const EffectInfo* const info : flat) composer.add(*info, nullptr, {.source = scene_color});
-        const Plan made = plan();
+        CompileDesc desc = hd();
+        desc.depth = VK_FORMAT_D32_SFLOAT;
+        desc.has_shadows = true;
+        const Plan made = plan(desc);
         EXPECT_TRUE(made.remarks.empty())
             << (is_documented ? "documented: " : "scene_linear: ") << made.remarks.front();
         EXPECT_EQ(entries_of(made).size(), flat.size());

@@ -244,6 +244,7 @@ void Renderer::State::fill_frame() {
                           .view = image.view,
                           .format = image.info.format,
                           .extent = {image.info.extent.width, image.info.extent.height},
+                          .layer_count = image.info.array_layers,
                           .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                           .last_stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
                           .last_access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
