@@ -8,6 +8,7 @@
 #include "cli_support.hpp"
 #include "core/param_text.hpp"
 #include "image/frame_file.hpp"
+#include "image/write.hpp"
 
 namespace darkroom {
 namespace {
@@ -275,6 +276,12 @@ TEST_F(CliRender, AFrameHasEveryLayer) {
     EXPECT_NEAR(slower / fastest, 0.5F, 0.1F);
 }
 
+TEST_F(CliRender, FloatFilesHoldNoTimeOfDay) {
+    ASSERT_EQ(render({"--frame", path("frame.exr")}, "picture.exr").code, 0);
+    for (const char* const name : {"frame.exr", "picture.exr"})
+        EXPECT_NE(content(path(name)).find("1970:01:01 00:00:00"), std::string::npos) << name;
+}
+
 TEST_F(CliRender, FramesAreNumbered) {
     const Outcome outcome = render({"--frames", "3-5", "--fps", "2", "--frame", path("f.%03d.exr")}, "p.%04d.png");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -388,6 +395,27 @@ TEST_F(CliRenderRefused, WrongSizesAndFilesAreRefused) {
     expect_refused({"render", path("yard.scene.toml"), "-o", path("none/x.png")}, 1, "none");
     expect_refused({"render", path("yard.scene.toml"), "-o", path("x.exr"), "--frame", path("x.exr")}, 1,
                    "picture and frame");
+}
+
+TEST_F(CliRenderRefused, WhatTheSceneReadsIsNotOverwritten) {
+    Picture texture(2, 2);
+    ASSERT_TRUE(write_picture(path("leaf.png"), texture));
+    const std::string before = content(path("leaf.png"));
+    const std::string scene =
+        write("leaf.scene.toml", std::string(scene_text) + "[entities.leaf.sprite]\ntexture = \"leaf.png\"\n");
+    expect_refused({"render", scene, "--size", "8x8", "-o", path("leaf.png")}, 1, "leaf.png");
+    EXPECT_EQ(content(path("leaf.png")), before);
+}
+
+TEST_F(CliRenderRefused, DevicesAndEmptyValuesAreRefused) {
+    const std::string scene =
+        write("sky.scene.toml", std::string(scene_text) + "[environment]\nskybox = \"/dev/zero\"\n");
+    const Outcome outcome = run({"render", scene, "--size", "8x8", "-o", path("sky.png")});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find("asks for '/dev/zero': there is no such file"), std::string::npos) << outcome.err;
+    expect_refused({"render", path("yard.scene.toml"), "--size=", "-o", path("x.png")}, 1,
+                   "--size: one value is needed");
+    expect_refused({"develop", "/dev/zero", "-o", path("x.png")}, 1, "is a device");
 }
 
 TEST_F(CliRenderRefused, WrongValuesAreRefused) {

@@ -88,7 +88,7 @@ struct LookOverride {
 [[nodiscard]] Result<> override_look(Look& look, std::span<const LookOverride> overrides);
 
 /// Appends the look's entries to the Composer. The flat table wires `source` to the scene, as its documented order has
-/// it.
+/// it, and those of its effects that move coordinates have a place only where they are on.
 [[nodiscard]] Result<> apply(const Look& look, Composer& composer);
 
 }  // namespace darkroom

@@ -20,6 +20,14 @@ bool is_domain_change(const EffectInfo& effect) {
     return false;
 }
 
+// An effect of the flat table that moves coordinates would part the kernel even while it is off, and every frame would
+// pay for what nobody asked for.
+bool is_in_the_way(const Look& look, const LookEntry& entry) {
+    const EffectInfo& effect = *entry.effect;
+    if (!look.is_flat || effect.touch != Touch::Warp) return false;
+    return entry.state.enabled.on == 0 || (effect.is_identity != nullptr && effect.is_identity(entry.words.data()));
+}
+
 }  // namespace
 
 Result<> apply(const Look& look, Composer& composer) {
@@ -28,7 +36,7 @@ Result<> apply(const Look& look, Composer& composer) {
     for (const LookEntry* const entry : ordered(look)) {
         const std::size_t index = static_cast<std::size_t>(entry - look.entries.data());
         const bool is_kept = look.is_enabled || is_domain_change(*entry->effect);
-        if (look.is_flat && !is_kept) continue;
+        if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry)) continue;
         const auto wire = [&](const std::string& name) {
             const auto found = outputs.find(name);
             return found == outputs.end() ? Handle{} : found->second;
