@@ -17,7 +17,7 @@ int list() {
     for (const darkroom::EffectInfo* const effect : darkroom::all_effects()) {
         const bool is_flat = effect->flat.documented >= 0 || effect->flat.scene_linear >= 0;
         const char* const place = !is_flat ? "stack only" : effect->flat.starts_on ? "on" : "off";
-        fmt::print("{:<16} {:<10}  {}\n", effect->name, place, effect->doc);
+        fmt::print("{:<21} {:<10}  {}\n", effect->name, place, effect->doc);
     }
     return exit_ok;
 }
