@@ -83,6 +83,7 @@ struct ParamInfo {
     Unit unit;
     Range range;
     Kind kind = Kind::Float;
+    bool is_loop_count = false;                   ///< see field().as_loop_count()
     bool is_amount = false;                       ///< 0 switches the effect off: see field().as_amount()
     std::uint32_t switched_word = ~0u;            ///< of a toggle: see field().as_amount_of()
     std::uint32_t word = 0;                       ///< offset in the struct, in 4-byte words
@@ -258,6 +259,15 @@ struct Field {
         static_assert(std::is_same_v<typename detail::Member<Part>::Type, Toggle>);
         Field copy = *this;
         copy.info.switched_word = detail::word_of<Part>();
+        return copy;
+    }
+    /// How often a loop of a shader runs: kernels of the present values hold it as a literal, so that compilers can unroll
+    /// the loop and fold what follows from its number. For integers of at most 8 bits that are seldom animated.
+    [[nodiscard]] constexpr Field as_loop_count() const {
+        static_assert(std::is_same_v<typename detail::Member<M>::Type, std::int32_t>);
+        if (info.range.min < 0 || info.range.max > 255) throw "a loop count lies in [0, 255]";
+        Field copy = *this;
+        copy.info.is_loop_count = true;
         return copy;
     }
     [[nodiscard]] constexpr Field formerly(std::string_view name) const {

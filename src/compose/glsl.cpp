@@ -232,7 +232,7 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t entry, std::s
         if (row.kind == Kind::Resource) continue;
         if (!arguments.empty()) arguments += ", ";
         if (const auto found = std::ranges::find(baked, &row, &Baked::row); found != baked.end()) {
-            arguments += fmt::format("{}u", found->value);
+            arguments += fmt::format("{}({}u)", glsl_type(row.kind), found->value);
             continue;
         }
         if (row.kind == Kind::Curve) {

@@ -36,8 +36,8 @@ inline constexpr std::uint32_t frame_words = 4 + std::tuple_size_v<CameraBlock>;
 [[nodiscard]] std::string curve_struct();
 /// `struct Bloom { float intensity; ... };` and a constant for every choice: Bloom_mode_additive.
 [[nodiscard]] std::string parameter_struct(const ParamTable& table);
-/// A choice or toggle that a lean kernel holds as a literal: the compiler then drops the branches not taken, which some
-/// drivers would run on both sides.
+/// A choice, toggle or loop count that a lean kernel holds as a literal: the compiler then drops the branches not
+/// taken, which some drivers would run on both sides.
 struct Baked {
     const ParamInfo* row = nullptr;
     std::uint32_t value = 0;

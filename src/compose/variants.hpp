@@ -19,8 +19,8 @@
 namespace darkroom::compose {
 
 /// What a lean kernel is made for: how its regions lie, and for a fused kernel, in two bits a step, whether it is on
-/// and whether it has an opacity, a blend mode or a mask. `choices`: the values of its choices and toggles, as far as
-/// they fit.
+/// and whether it has an opacity, a blend mode or a mask. `choices`: the values of its choices, toggles and loop
+/// counts, as far as they fit.
 struct Shape {
     std::uint64_t steps = 0;
     std::uint64_t choices = 0;
@@ -30,14 +30,20 @@ struct Shape {
 };
 inline constexpr std::size_t max_lean_steps = 31;
 
-/// Calls `visit(step, row, first_bit, bits)` for every choice and toggle that a shape of this pass holds; a pass of an
-/// effect counts as one step.
+/// Bits of a shape that the value of a row takes; 0: it is no literal of lean kernels.
+[[nodiscard]] constexpr std::uint32_t literal_bits(const ParamInfo& row) {
+    if (row.is_loop_count) return 8;
+    return row.kind == Kind::Choice ? 5 : row.kind == Kind::Toggle ? 1 : 0;
+}
+
+/// Calls `visit(step, row, first_bit, bits)` for every choice, toggle and loop count that a shape of this pass holds; a
+/// pass of an effect counts as one step.
 template <class Visit>
 void for_each_choice(const ProgramPass& pass, const Visit& visit) {
     std::uint32_t bit = 0;
     const auto visit_rows = [&](std::size_t step, const EffectInfo& info) {
         for (const ParamInfo& row : info.parameters.rows) {
-            const std::uint32_t bits = row.kind == Kind::Choice ? 5 : row.kind == Kind::Toggle ? 1 : 0;
+            const std::uint32_t bits = literal_bits(row);
             if (bits == 0 || bit + bits > 64) continue;
             visit(step, row, bit, bits);
             bit += bits;

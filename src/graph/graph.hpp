@@ -70,7 +70,7 @@ struct ImageDesc {
 struct ImportDesc {
     ImageDesc image;
     VkImageUsageFlags usage = 0;  ///< what the host created it with: a use outside is an error
-    bool is_constant = false;     ///< never written, always in SHADER_READ_ONLY_OPTIMAL (neutral images, tables)
+    bool is_constant = false;     ///< never written, always in a layout that shaders read it in (neutral images)
 };
 
 /// One version of an image. A write makes a new version; the old one must not be read any more.
