@@ -32,7 +32,7 @@ const EffectInfo& effect_info(const Fog&) {
         .flat = {.documented = 80, .scene_linear = 55, .starts_on = false},
         .build =
             [](PassBuilder& builder) {
-                builder.side("fog_distance", linear_depth(builder), {1e10f, 0, 0, 0});
+                builder.loaded_side("fog_distance", linear_depth(builder), {1e10f, 0, 0, 0});
             },
         .reference = fog_reference,
         .conflict = conflict,

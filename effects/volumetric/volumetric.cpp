@@ -147,8 +147,8 @@ void build(PassBuilder& builder) {
                             .condition = is_lit});
     };
     const PassImage half_done = blur("blur across", "volumetric_blur_x.glsl", light);
-    builder.side("volumetric_depth", linear_depth(builder), {1e10f, 0, 0, 0});
-    builder.side("volumetric_shafts", blur("blur down", "volumetric_blur_y.glsl", half_done), {0, 0, 0, 0});
+    builder.loaded_side("volumetric_depth", linear_depth(builder), {1e10f, 0, 0, 0});
+    builder.loaded_side("volumetric_shafts", blur("blur down", "volumetric_blur_y.glsl", half_done), {0, 0, 0, 0});
 }
 
 }  // namespace

@@ -174,6 +174,10 @@ class PassBuilder {
     /// The pointwise end samples `image` under `name`. While the effect, or all that writes `image`, is off, a 1x1
     /// image of `neutral` stands in.
     virtual void side(std::string name, PassImage image, PassVector neutral) = 0;
+    /// The same for an image that the end reads by load() and load_clamped() alone, which is then cheaper.
+    virtual void loaded_side(std::string name, PassImage image, PassVector neutral) {
+        side(std::move(name), image, neutral);
+    }
     /// The effect's output, for effects without a pointwise end. While it is off, its input stands in.
     virtual void result(PassImage image) = 0;
 };

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "compose/planner_state.hpp"
 #include "core/assert.hpp"
@@ -207,22 +206,20 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     return remember(written);
 }
 
-void Builder::side(std::string name, PassImage image, PassVector neutral) {
+void Builder::add_side(std::string name, PassImage image, const PassVector& neutral, bool is_loaded) {
     const bool is_known = image.index < images_.size();
-    if (is_known && !images_[image.index].first_written.is_valid()) {  // a table, or a picture: always there
-        sides.push_back({std::move(name), input_of(images_[image.index], 0)});
-        return;
+    PassInput input = is_known ? input_of(images_[image.index], 0) : PassInput{};
+    const bool is_always_there = is_known && !images_[image.index].first_written.is_valid();  // a table, or a picture
+    if (!is_always_there) {
+        const VkFormat format = is_known ? images_[image.index].format : VK_FORMAT_R32G32B32A32_SFLOAT;
+        const graph::Version constant = planner_.import_neutral(format, neutral);
+        input.is_loaded = is_loaded && planner_.facts_.at(constant.index).format == format;
+        if (is_known)
+            planner_.fall_back(images_[image.index].first_written, constant);
+        else
+            input.version = constant;
     }
-    TableDesc desc{
-        .name = "neutral", .format = VK_FORMAT_R32G32B32A32_SFLOAT, .data = std::vector<std::byte>(sizeof neutral)};
-    std::memcpy(desc.data.data(), neutral.data(), sizeof neutral);
-    const graph::Version constant = planner_.import_constant(std::move(desc));
-    if (!is_known) {
-        sides.push_back({std::move(name), {.version = constant}});
-        return;
-    }
-    planner_.program_.graph.fall_back(images_[image.index].first_written, constant);
-    sides.push_back({std::move(name), {.version = images_[image.index].version}});
+    sides.push_back({std::move(name), input});
 }
 
 void Builder::result(PassImage image) {

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 
+#include "compose/half.hpp"
 #include "compose/planner_state.hpp"
 #include "gpu/formats.hpp"
 
@@ -200,8 +202,7 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
     auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].inputs.name));
     if (!picture) return failure(std::move(picture));
     const std::string why = fmt::format("{} has passes of its own", stack_[entry].inputs.name);
-    program_.graph.fall_back(builder.output, *picture);
-    facts_[builder.output.index].fall_backs.push_back(*picture);
+    fall_back(builder.output, *picture);
 
     const OutputScale& scale = stack_[entry].info->output_scale;
     const graph::Size size = scaled(values_[input].size, scale.numerator, scale.denominator);
@@ -356,6 +357,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     pass.inputs.push_back({.version = kernel.picture});
     for (const auto& [name, input] : kernel.images) {
         pass.spec.images.push_back(kernel_image(name, input));
+        if (is_storage_side(kernel, input)) pass.spec.images.back().storage_format = storage_format(input.version);
         pass.inputs.push_back(input);
     }
     auto body = fused_body(pass.steps, finish, pass.is_resampled);
@@ -367,8 +369,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     auto version = add_pass(std::move(pass), target, 0);
     if (!version) return version;
     if (has_toggle) {
-        program_.graph.fall_back(*version, kernel.picture);
-        facts_[version->index].fall_backs.push_back(kernel.picture);
+        fall_back(*version, kernel.picture);
     }
     return version;
 }
@@ -445,20 +446,37 @@ graph::Version Planner::import_host(HostImage image, const char* name, VkFormat 
     return version;
 }
 
-graph::Version Planner::import_constant(TableDesc table) {
+/// One texel, in the format of the images it stands in for where that holds the value.
+graph::Version Planner::import_neutral(VkFormat format, const PassVector& value) {
+    TableDesc desc{.name = "neutral", .format = VK_FORMAT_R32G32B32A32_SFLOAT};
+    const auto put = [&](const auto& texel) {
+        desc.data.resize(sizeof texel);
+        std::memcpy(desc.data.data(), &texel, sizeof texel);
+    };
+    put(value);
+    std::array<std::optional<std::uint16_t>, 4> halves;
+    std::ranges::transform(value, halves.begin(), exact_half);
+    if (format == VK_FORMAT_R32_SFLOAT) {
+        desc.format = format;
+        put(value[0]);
+    } else if (format == VK_FORMAT_R16G16B16A16_SFLOAT &&
+               std::ranges::all_of(halves, [](auto h) { return h.has_value(); })) {
+        desc.format = format;
+        put(std::array{*halves[0], *halves[1], *halves[2], *halves[3]});
+    }
+    constexpr VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    const graph::ImageDesc image{.name = desc.name, .format = desc.format, .size = {.width = 1, .height = 1}};
     program_.constants.push_back(
-        {.desc = std::move(table), .import_index = static_cast<std::uint32_t>(program_.imports.size())});
+        {.desc = std::move(desc), .import_index = static_cast<std::uint32_t>(program_.imports.size())});
     program_.imports.emplace_back(std::nullopt);
-    const TableDesc& desc = program_.constants.back().desc;
-    const graph::Version version =
-        program_.graph.import({.image = {.name = desc.name,
-                                         .format = desc.format,
-                                         .size = {.width = desc.extent.width, .height = desc.extent.height}},
-                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT,
-                               .is_constant = true});
-    facts_[version.index] = {
-        .root = version.index, .size = {}, .format = desc.format, .usage = VK_IMAGE_USAGE_SAMPLED_BIT};
+    const graph::Version version = program_.graph.import({.image = image, .usage = usage, .is_constant = true});
+    facts_[version.index] = {.root = version.index, .size = {}, .format = image.format, .usage = usage};
     return version;
+}
+
+void Planner::fall_back(graph::Version version, graph::Version instead) {
+    program_.graph.fall_back(version, instead);
+    facts_[version.index].fall_backs.push_back(instead);
 }
 
 gpu::KernelImage Planner::kernel_image(std::string name, const PassInput& input) const {
@@ -468,6 +486,17 @@ gpu::KernelImage Planner::kernel_image(std::string name, const PassInput& input)
     return {.name = std::move(name),
             .storage_format = desc.is_load_only ? desc.format : VK_FORMAT_UNDEFINED,
             .sampler_type = desc.extent.depth > 1 ? "sampler3D" : "sampler2D"};
+}
+
+bool Planner::is_storage_side(const OpenKernel& kernel, const PassInput& side) const {
+    const auto can_load = [&](const PassInput& input) {
+        return input.is_loaded && input.table == no_table && storage_format(input.version) != VK_FORMAT_UNDEFINED;
+    };
+    if (!traits_.loads_are_cheap || !can_load(side) || may_share(kernel.picture, side.version)) return false;
+    return std::ranges::none_of(kernel.images, [&](const auto& image) {
+        const PassInput& other = image.second;
+        return other.table == no_table && !can_load(other) && may_share(other.version, side.version);
+    });
 }
 
 /// The images that may stand behind a version, by the version they began as.

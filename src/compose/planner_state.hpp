@@ -77,9 +77,12 @@ class Planner {
     [[nodiscard]] graph::Version import_host(HostImage image, const char* name, VkFormat format,
                                              VkImageUsageFlags usage, graph::Size size);
     [[nodiscard]] graph::Version create_picture(std::string name, graph::Size size);
-    [[nodiscard]] graph::Version import_constant(TableDesc table);
+    void fall_back(graph::Version version, graph::Version instead);
+    [[nodiscard]] graph::Version import_neutral(VkFormat format, const PassVector& value);
     /// An input that is not the picture: sampled, but for tables that are only loaded.
     [[nodiscard]] gpu::KernelImage kernel_image(std::string name, const PassInput& input) const;
+    /// Can this side image of a kernel be read by imageLoad? One image is in one layout: all must read it so.
+    [[nodiscard]] bool is_storage_side(const OpenKernel& kernel, const PassInput& side) const;
     void collect_roots(graph::Version version, std::vector<std::uint32_t>& roots) const;
     [[nodiscard]] bool may_share(graph::Version a, graph::Version b) const;
     [[nodiscard]] VkFormat storage_format(graph::Version version) const;
@@ -134,7 +137,12 @@ class Builder final : public PassBuilder {
                                    ConditionFunction condition) override;
     [[nodiscard]] PassImage table(const TableDesc& desc) override;
     PassImage add(const KernelPassDesc& desc) override;
-    void side(std::string name, PassImage image, PassVector neutral) override;
+    void side(std::string name, PassImage image, PassVector neutral) override {
+        add_side(std::move(name), image, neutral, false);
+    }
+    void loaded_side(std::string name, PassImage image, PassVector neutral) override {
+        add_side(std::move(name), image, neutral, true);
+    }
     void result(PassImage image) override;
 
     std::vector<Side> sides;
@@ -150,6 +158,7 @@ class Builder final : public PassBuilder {
         bool is_shadow_map = false;
         std::int32_t shared_toggle = -1;
     };
+    void add_side(std::string name, PassImage image, const PassVector& neutral, bool is_loaded);
     [[nodiscard]] graph::ImageDesc image_desc(const PassImageDesc& desc) const;
     [[nodiscard]] PassImage remember_new(graph::Version version, const graph::ImageDesc& desc);
     [[nodiscard]] PassInput input_of(const Image& image, std::uint32_t mip_level) const;

@@ -49,6 +49,7 @@ struct PassInput {
     std::uint32_t mip_level = 0;
     std::uint32_t table = no_table;  ///< index of Program::constants
     bool is_shadow_map = false;
+    bool is_loaded = false;  ///< a side image that is read by load() alone
 };
 
 struct ProgramPass {
@@ -72,7 +73,8 @@ struct ProgramPass {
     bool is_resampled = false;
 };
 
-/// A table, or a neutral image that stands in for a version: uploaded once, constant after.
+/// A table, or a neutral image that stands in for a version: uploaded once, constant after. A neutral image may be
+/// sampled and loaded.
 struct Constant {
     TableDesc desc;
     std::uint32_t import_index = ~0u;  ///< in the graph; tables have none

@@ -10,14 +10,19 @@ Result<Tables> Tables::create(gpu::Context& context, std::span<const Constant> c
     VkDeviceSize size = 0;
     for (const Constant& constant : constants) {
         const TableDesc& desc = constant.desc;
-        const VkImageUsageFlags read = desc.is_load_only ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
+        const bool is_neutral = constant.import_index != ~0u;
+        VkImageUsageFlags read = desc.is_load_only ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
+        if (is_neutral) read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+        const VkImageLayout layout = (read & VK_IMAGE_USAGE_STORAGE_BIT) != 0
+                                         ? VK_IMAGE_LAYOUT_GENERAL
+                                         : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         auto image = gpu::Image::create(context, {.name = desc.name,
                                                   .format = desc.format,
                                                   .extent = desc.extent,
                                                   .usage = read | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                                                   .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
         if (!image) return failure(std::move(image));
-        out.tables_.push_back({std::move(*image), size, desc.is_load_only});
+        out.tables_.push_back({std::move(*image), size, layout});
         // Copies start at multiples of a texel's size; 16 is the largest.
         size += (desc.data.size() + 15) / 16 * 16;
     }
@@ -58,10 +63,9 @@ void Tables::upload(VkCommandBuffer commands) {
         barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
         barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
         barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-        barrier.dstAccessMask =
-            table.is_load_only ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        barrier.dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
         barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-        barrier.newLayout = table.is_load_only ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        barrier.newLayout = table.layout;
         vk.CmdPipelineBarrier2(commands, &dependency);
     }
 }
@@ -69,7 +73,7 @@ void Tables::upload(VkCommandBuffer commands) {
 gpu::Binding Tables::binding(std::size_t index) const {
     const gpu::Image& image = tables_[index].image;
     const VkExtent2D size{image.info.extent.width, image.info.extent.height};
-    return {.view = image.view, .region = {{}, size, size}};
+    return {.view = image.view, .region = {{}, size, size}, .layout = tables_[index].layout};
 }
 
 Result<LitShadowMap> LitShadowMap::create(gpu::Context& context) {

@@ -22,7 +22,7 @@ class Tables {
     struct Table {
         gpu::Image image;
         VkDeviceSize offset = 0;
-        bool is_load_only = false;
+        VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     };
     std::vector<Table> tables_;
     gpu::Buffer staging_;

@@ -90,7 +90,6 @@ class Checker {
     Checker(const Plan& plan, std::span<const ImportState> imports) : plan_(plan), imports_(imports) {
         for (const Slot& slot : plan_.slots) {
             Level level;
-            if (slot.kind == Slot::Kind::Constant) level.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
             if (slot.kind == Slot::Kind::Constant) level.content.kind = Content::Kind::Host;
             if (slot.kind == Slot::Kind::History) level.layout = slot.rest_layout;
             if (slot.kind == Slot::Kind::History) level.content.kind = Content::Kind::Reset;
@@ -230,7 +229,7 @@ class Checker {
     Result<> access(std::uint32_t slot, std::uint32_t mip, const std::string& who, VkPipelineStageFlags2 stages,
                     VkAccessFlags2 mask, VkImageLayout layout) const {
         const Level& level = levels_[slot][mip];
-        if (level.layout != layout) {
+        if (level.layout != layout && plan_.slots[slot].kind != Slot::Kind::Constant) {
             return user_error(fmt::format("{} uses {} in layout {}, but it is in {}", who, place(slot, mip),
                                           static_cast<int>(layout), static_cast<int>(level.layout)));
         }
