@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: MIT
 // View-space normals from planar distance: of each axis the neighbour that differs less, so that edges do not bend them.
-// custom[0].x: pixels of the distance image for one here.
-#include "shared/camera.glsl"
+// custom[0], custom[1].xy: RayConstants of the frame's pixels; custom[1].z: 1 where a pixel here is the first of 2 x 2.
 
-vec3 shared_position(ivec2 texel) {
-    return view_position((vec2(texel) + 0.5) / vec2(size(shared_linear_depth)),
-                         load_clamped(shared_linear_depth, texel).r);
-}
-
-// The difference along one axis, in its direction; at the picture's edge there is one neighbour only.
-vec3 shared_slope(vec3 here, vec3 before, vec3 after, bool is_first, bool is_last) {
-    bool takes_after = is_first || (!is_last && abs(after.z - here.z) < abs(here.z - before.z));
-    return takes_after ? after - here : here - before;
+// The difference to the neighbour taken, and that one's distance. At the picture's edge there is one neighbour only.
+vec2 shared_step(float before, float here, float after, bool is_first, bool is_last) {
+    bool takes_after = is_first || (!is_last && abs(after - here) < abs(here - before));
+    return takes_after ? vec2(after - here, after) : vec2(here - before, before);
 }
 
 vec4 shade(Pixel pixel) {
-    ivec2 texel = pixel.texel * int(custom[0].x), last = size(shared_linear_depth) - 1;
-    vec3 here = shared_position(texel);
-    vec3 along_x = shared_slope(here, shared_position(texel - ivec2(1, 0)), shared_position(texel + ivec2(1, 0)),
-                                texel.x == 0, texel.x == last.x);
-    vec3 along_y = shared_slope(here, shared_position(texel - ivec2(0, 1)), shared_position(texel + ivec2(0, 1)),
-                                texel.y == 0, texel.y == last.y);
+    ivec2 texel = pixel.texel << int(custom[1].z), last = size(shared_linear_depth) - 1;
+    ivec2 low = max(texel - 1, ivec2(0)), high = min(texel + 1, last);
+    float here = load(shared_linear_depth, texel).r;
+    vec2 x = shared_step(load(shared_linear_depth, ivec2(low.x, texel.y)).r, here,
+                         load(shared_linear_depth, ivec2(high.x, texel.y)).r, texel.x == 0, texel.x == last.x);
+    vec2 y = shared_step(load(shared_linear_depth, ivec2(texel.x, low.y)).r, here,
+                         load(shared_linear_depth, ivec2(texel.x, high.y)).r, texel.y == 0, texel.y == last.y);
+    // Of positions, each (ray * distance + flat, -distance), with ray and flat linear in the pixel.
+    vec2 ray = vec2(texel) * custom[0].xy + custom[0].zw;
+    vec3 along_x = vec3(ray.x * x.x + custom[0].x * x.y + custom[1].x, ray.y * x.x, -x.x);
+    vec3 along_y = vec3(ray.x * y.x, ray.y * y.x + custom[0].y * y.y + custom[1].y, -y.x);
     // v runs down, so this order faces the camera.
     vec3 normal = cross(along_y, along_x);
     float squared = dot(normal, normal);

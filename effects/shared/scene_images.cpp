@@ -32,8 +32,17 @@ PassImage make_half_depth(PassBuilder& builder) {
          .output = builder.create({.name = "half depth", .format = VK_FORMAT_R32_SFLOAT, .denominator = 2})});
 }
 
-void one(const void*, const PassContext&, std::span<PassVector> out) { out[0] = {1, 0, 0, 0}; }
-void two(const void*, const PassContext&, std::span<PassVector> out) { out[0] = {2, 0, 0, 0}; }
+template <NormalSource source, std::uint32_t step>
+void normal_constants(const void*, const PassContext& context, std::span<PassVector> out) {
+    constexpr float shift = step == 1 ? 0 : 1;
+    if (source == NormalSource::Image) {
+        out[0] = {shift, 0, 0, 0};
+        return;
+    }
+    const auto [ray, flat] = ray_constants(*context.camera, context.frame_extent, 1);
+    out[0] = ray;
+    out[1] = {flat[0], flat[1], shift, 0};
+}
 
 template <NormalSource source, std::uint32_t step>
 PassImage make_normals(PassBuilder& builder) {
@@ -45,11 +54,28 @@ PassImage make_normals(PassBuilder& builder) {
          .shader = is_given ? "shared/view_normals.glsl" : "shared/normals_from_depth.glsl",
          .inputs = {{.name = is_given ? "shared_normals" : "shared_linear_depth", .image = input, .is_loaded = true}},
          .output = builder.create({.name = name, .denominator = step}),
-         .custom_vectors = 1,
-         .constants = step == 1 ? one : two});
+         .custom_vectors = is_given ? 1u : 2u,
+         .constants = normal_constants<source, step>});
 }
 
 }  // namespace
+
+RayConstants ray_constants(const Camera& camera, VkExtent2D frame, float step) {
+    const Matrix& p = camera.projection;
+    const float down = camera.is_y_down ? 1.0f : -1.0f;
+    const std::array<float, 2> scale{p[0], p[5] * down}, shear{p[8], p[9] * down}, offset{p[12], p[13] * down};
+    const std::array<float, 2> pixels{static_cast<float>(frame.width), static_cast<float>(frame.height)};
+    RayConstants out;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        // x and y of clip space at texel 0, and from one to the next.
+        const float first = 1.0f / pixels[axis] - 1.0f, next = 2.0f * step / pixels[axis];
+        out.ray[axis] = -p[11] * next / scale[axis];
+        out.ray[axis + 2] = (shear[axis] - p[11] * first) / scale[axis];
+        out.flat[axis] = p[15] * next / scale[axis];
+        out.flat[axis + 2] = (p[15] * first - offset[axis]) / scale[axis];
+    }
+    return out;
+}
 
 PassImage linear_depth(PassBuilder& builder) {
     if (builder.is_depth_planar()) return builder.frame_image(FrameImage::Depth);

@@ -12,6 +12,13 @@ namespace darkroom {
 /// The same of every second pixel of every second row: half the size, floored.
 [[nodiscard]] PassImage half_depth(PassBuilder& builder, ConditionFunction condition = nullptr);
 
+/// View space of texels that are each the first of `step` x `step` pixels of the frame: at a planar distance, x and y
+/// are (texel * ray.xy + ray.zw) * distance + texel * flat.xy + flat.zw, and z is -distance.
+struct RayConstants {
+    PassVector ray{}, flat{};
+};
+[[nodiscard]] RayConstants ray_constants(const Camera& camera, VkExtent2D frame, float step);
+
 enum class NormalSource : std::uint8_t { Depth, Image };
 /// View-space normals, RGBA16F: from the distance, or from the frame's own image, which the effect must know to be
 /// there. Half: of the pixels of half_depth.

@@ -32,26 +32,21 @@ class Random {
     std::uint32_t state_;
 };
 
-constexpr std::int32_t most_samples = 64, most_slices = 4;
-constexpr std::size_t kernel_place = 8, slice_place = kernel_place + 16;  // in the vectors of the passes
+constexpr std::int32_t most_slices = 4;
 
 /// Between texels of an image of `extent`, each the first of `step` pixels of the frame, and view space: see the
 /// shader.
 void camera_constants(const Camera& camera, VkExtent2D frame, VkExtent2D extent, float step,
                       std::span<PassVector> out) {
     const Matrix& p = camera.projection;
+    const auto [ray, flat] = ray_constants(camera, frame, step);
+    out[0] = ray;
+    out[1] = flat;
     const float down = camera.is_y_down ? 1.0f : -1.0f;
     const std::array<float, 2> scale{p[0], p[5] * down}, shear{p[8], p[9] * down}, offset{p[12], p[13] * down};
     const std::array<std::uint32_t, 2> pixels{frame.width, frame.height}, texels{extent.width, extent.height};
     for (std::size_t axis = 0; axis < 2; ++axis) {
-        // x and y of clip space at texel 0, and from one to the next.
-        const float size = static_cast<float>(pixels[axis]);
-        const float first = 1.0f / size - 1.0f, next = 2.0f * step / size;
-        out[0][axis] = -p[11] * next / scale[axis];
-        out[0][axis + 2] = (shear[axis] - p[11] * first) / scale[axis];
-        out[1][axis] = p[15] * next / scale[axis];
-        out[1][axis + 2] = (p[15] * first - offset[axis]) / scale[axis];
-        const float half = 0.5f * size / step;
+        const float half = 0.5f * static_cast<float>(pixels[axis]) / step;
         out[2][axis] = scale[axis] * half;
         out[2][axis + 2] = shear[axis] * half;
         out[3][axis] = offset[axis] * half;
@@ -64,35 +59,13 @@ void camera_constants(const Camera& camera, VkExtent2D frame, VkExtent2D extent,
 
 PassVector turn(double angle) { return {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))}; }
 
-/// What the passes of both methods share.
-void common_constants(const Ssao& ssao, const PassContext& context, std::span<PassVector> out) {
-    camera_constants(*context.camera, context.frame_extent, context.output_extent,
-                     ssao.resolution == SsaoResolution::Half ? 2.0f : 1.0f, out);
-    out[5] = {0, 1.0f / ssao.radius, ssao.bias, ssao.intensity};
-    out[7] = {1, 1, 0, 0};
-    out[6] = {ssao.fade_start, 1.0f / std::max(ssao.fade_end - ssao.fade_start, 1e-6f), ssao.radius,
-              1.0f / (ssao.radius * ssao_fade)};
-}
-
-std::int32_t samples_of(const Ssao& ssao) { return std::clamp(ssao.samples, 1, most_samples); }
-
 void occlusion_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Ssao& ssao = ssao_of(parameters);
-    common_constants(ssao, context, out);
-    if (ssao.method == SsaoMethod::GroundTruth) {
-        const auto [slices, steps] = ssao_slices(samples_of(ssao));
-        out[7] = {static_cast<float>(2 * slices), static_cast<float>(steps)};
-        const double between = std::numbers::pi / slices;
-        for (std::size_t i = 0; i < 16; ++i) out[kernel_place + i] = turn(between * static_cast<double>(i) / 16);
-        for (std::int32_t i = 0; i < 2 * slices; ++i)
-            out[slice_place + static_cast<std::size_t>(i)] = turn(between * i);
-        return;
-    }
-    const auto count = static_cast<std::size_t>(samples_of(ssao));
-    out[5][0] = static_cast<float>(count);
-    const auto kernel = ssao_kernel(count);
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t axis = 0; axis < 3; ++axis) out[kernel_place + i][axis] = kernel[i][axis] * ssao.radius;
+    camera_constants(*context.camera, context.frame_extent, context.output_extent,
+                     ssao.resolution == SsaoResolution::Half ? 2.0f : 1.0f, out);
+    out[5] = {ssao.radius, 1.0f / ssao.radius, ssao.bias, ssao.intensity};
+    out[6] = {ssao.fade_start, 1.0f / std::max(ssao.fade_end - ssao.fade_start, 1e-6f),
+              1.0f / (ssao.radius * ssao_fade), 0};
 }
 
 template <SsaoResolution resolution>
@@ -101,7 +74,7 @@ bool is_size_used(const void* parameters, const PassContext&, std::uint32_t) {
 }
 
 template <SsaoResolution resolution>
-PassImage add_chain(PassBuilder& builder, PassImage noise) {
+PassImage add_chain(PassBuilder& builder, PassImage turns) {
     constexpr bool is_half = resolution == SsaoResolution::Half;
     const NormalSource source =
         builder.has_frame_image(FrameImage::Normals) ? NormalSource::Image : NormalSource::Depth;
@@ -117,9 +90,9 @@ PassImage add_chain(PassBuilder& builder, PassImage noise) {
                                        .shader = "ssao_occlusion.glsl",
                                        .inputs = {{.name = "ssao_distance", .image = distance, .is_loaded = true},
                                                   {.name = "ssao_normals", .image = normals, .is_loaded = true},
-                                                  {.name = "ssao_noise", .image = noise}},
+                                                  {.name = "ssao_turns", .image = turns}},
                                        .output = create("raw", VK_FORMAT_R32_SFLOAT),
-                                       .custom_vectors = kernel_place + most_samples,
+                                       .custom_vectors = 7,
                                        .constants = occlusion_constants,
                                        .condition = condition});
     const PassImage blurred = builder.add({.name = "blur" + suffix,
@@ -137,18 +110,23 @@ PassImage add_chain(PassBuilder& builder, PassImage noise) {
 }
 
 void build(PassBuilder& builder) {
-    const auto directions = ssao_noise();
-    TableDesc table{.name = "ssao noise",
+    // Rows 0 to 3: turns of the kernel; then, for one slice, two and so on, the first direction.
+    const auto noise = ssao_noise();
+    std::vector<PassVector> turns;
+    for (const auto& texel : noise) turns.push_back({texel[0], texel[1], 0, 0});
+    for (std::int32_t slices = 1; slices <= most_slices; ++slices)
+        for (const auto& texel : noise) turns.push_back(turn(std::numbers::pi / slices * double{texel[2]} / 16));
+    TableDesc table{.name = "ssao turns",
                     .format = VK_FORMAT_R32G32B32A32_SFLOAT,
-                    .extent = {4, 4, 1},
+                    .extent = {4, static_cast<std::uint32_t>(turns.size() / 4), 1},
                     .is_load_only = true,
-                    .data = std::vector<std::byte>(sizeof directions)};
-    std::memcpy(table.data.data(), directions.data(), sizeof directions);
-    const PassImage noise = builder.table(table);
-    builder.side("ssao_half", add_chain<SsaoResolution::Half>(builder, noise), {1, 1, 1, 1});
+                    .data = std::vector<std::byte>(turns.size() * sizeof turns[0])};
+    std::memcpy(table.data.data(), turns.data(), table.data.size());
+    const PassImage turns_table = builder.table(table);
+    builder.loaded_side("ssao_half", add_chain<SsaoResolution::Half>(builder, turns_table), {1, 1, 1, 1});
     // All its last ten bits are set: visible.
-    builder.side("ssao_full", add_chain<SsaoResolution::Full>(builder, noise),
-                 {std::bit_cast<float>(0x3F8003FFu), 0, 0, 0});
+    builder.loaded_side("ssao_full", add_chain<SsaoResolution::Full>(builder, turns_table),
+                        {std::bit_cast<float>(0x3F8003FFu), 0, 0, 0});
 }
 
 std::string conflict(const void* parameters) {

@@ -35,7 +35,7 @@ inline constexpr auto ssao_rows = describe(
     field<&Ssao::radius>("How far away surfaces occlude.", {0.001, 1000}, unit::metres),
     field<&Ssao::bias>("What lies closer above a surface does not occlude it: hides the steps of the depth buffer.",
                        {0, 100}, unit::metres),
-    field<&Ssao::samples>("Reads of the depth buffer for a pixel.", {1, 64}),
+    field<&Ssao::samples>("Reads of the depth buffer for a pixel.", {1, 64}).as_loop_count(),
     field<&Ssao::method>("How occlusion is estimated."),
     field<&Ssao::resolution>("Of the occlusion; half is brought back to full along depth edges."),
     field<&Ssao::merge>("How the picture takes the occlusion."),

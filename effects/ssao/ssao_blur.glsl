@@ -12,7 +12,7 @@ vec4 ssao_weight(vec4 distance, vec4 expected, float tolerance) {
 }
 
 vec4 ssao_visibility(vec4 packed) {
-    return vec4(floatBitsToUint(packed) & 1023u);
+    return vec4(floatBitsToInt(packed) & 1023);
 }
 
 vec4 shade(Pixel pixel) {
@@ -35,5 +35,5 @@ vec4 shade(Pixel pixel) {
                 dot(ssao_visibility(packed_01), weight_01) + dot(ssao_visibility(packed_11), weight_11);
     // Its own weight is one.
     float seen = sum / dot(weight_00 + weight_10 + weight_01 + weight_11, vec4(1.0));
-    return vec4(uintBitsToFloat((floatBitsToUint(own) & ~1023u) | uint(seen + 0.5)), 0.0, 0.0, 0.0);
+    return vec4(intBitsToFloat((floatBitsToInt(own) & ~1023) | int(seen + 0.5)), 0.0, 0.0, 0.0);
 }

@@ -2,7 +2,22 @@
 // Visibility by points in the half ball over the surface, each behind the depth buffer or not. After John Chapman, "SSAO
 // Tutorial", 2013; unlike there, what lies in the surface's own plane does not occlude it.
 
-float ssao_hemisphere(SsaoPoint point, vec2 turn) {
+// Of [0, 1): ssao_kernel() in ssao.cpp, bit for bit.
+float ssao_random(inout uint state) {
+    state ^= state << 13;
+    state ^= state >> 17;
+    state ^= state << 5;
+    return float(state & 0xFFFFFFu) / 16777216.0;
+}
+
+vec3 ssao_kernel(inout uint state, float share) {
+    float x = ssao_random(state) * 2.0 - 1.0, y = ssao_random(state) * 2.0 - 1.0, z = ssao_random(state);
+    float reach = ssao_random(state) * (0.1 + 0.9 * share * share);
+    return vec3(x, y, z) * (reach / max(length(vec3(x, y, z)), 1e-6));
+}
+
+float ssao_hemisphere(SsaoPoint point, int samples) {
+    vec2 turn = load(ssao_turns, point.texel & 3).xy;
     vec3 normal = point.normal;
     // The turned direction, brought into the tangent plane.
     vec3 tangent = vec3(turn, 0.0) - normal * dot(normal.xy, turn);
@@ -11,17 +26,18 @@ float ssao_hemisphere(SsaoPoint point, vec2 turn) {
     vec3 bitangent = cross(normal, tangent);
     // Texel, before its division, and distance are linear in the point of the kernel.
     vec3 start = vec3(custom[2].xy * point.position.xy - custom[2].zw * point.planar + custom[3].xy, point.planar);
-    vec3 along_x = vec3(custom[2].xy * tangent.xy + custom[2].zw * tangent.z, -tangent.z);
-    vec3 along_y = vec3(custom[2].xy * bitangent.xy + custom[2].zw * bitangent.z, -bitangent.z);
-    vec3 along_z = vec3(custom[2].xy * normal.xy + custom[2].zw * normal.z, -normal.z);
+    float radius = custom[5].x;
+    vec3 along_x = radius * vec3(custom[2].xy * tangent.xy + custom[2].zw * tangent.z, -tangent.z);
+    vec3 along_y = radius * vec3(custom[2].xy * bitangent.xy + custom[2].zw * bitangent.z, -bitangent.z);
+    vec3 along_z = radius * vec3(custom[2].xy * normal.xy + custom[2].zw * normal.z, -normal.z);
     // Height of a texel's point over the surface's plane, from the texel and its distance.
     vec2 per_metre = normal.xy * custom[0].xy, flat_per_texel = normal.xy * custom[1].xy;
     float at_metre = dot(normal.xy, custom[0].zw) - normal.z;
     float at_zero = dot(normal.xy, custom[1].zw) - dot(normal, point.position);
     float bias = custom[5].z, per_radius = custom[5].y, occlusion = 0.0;
-    int samples = int(custom[5].x), i = 0;
-    do {
-        vec3 kernel = custom[8 + i].xyz;
+    uint state = 0xDEADBEEFu;
+    [[unroll]] for (int i = 0; i < samples; ++i) {
+        vec3 kernel = ssao_kernel(state, float(i) / float(samples));
         vec3 clip = start + along_x * kernel.x + along_y * kernel.y + along_z * kernel.z;
         vec2 place = clip.xy * (1.0 / (custom[3].w - custom[3].z * clip.z)) + custom[4].xy;
         vec2 inside = clamp(place, vec2(0.0), custom[4].zw);
@@ -32,6 +48,6 @@ float ssao_hemisphere(SsaoPoint point, vec2 turn) {
         float near = clamp(2.0 - abs(point.planar - found) * per_radius, 0.0, 1.0);
         bool occludes = place == inside && found < clip.z - bias && height > bias;
         occlusion += occludes ? near * near * (3.0 - 2.0 * near) : 0.0;
-    } while (++i < samples);
-    return 1.0 - occlusion / max(custom[5].x, 1.0);
+    }
+    return 1.0 - occlusion / float(samples);
 }

@@ -11,12 +11,11 @@ float ssao_acos(float x) {
 }
 
 // Cosine of the horizon in one direction: at least `lowest`, that of the surface's own plane.
-float ssao_horizon(SsaoPoint point, vec3 view, vec2 direction, float reach, float share, float lowest) {
-    float horizon = lowest, per_step = 1.0 / custom[7].y;
-    int steps = int(custom[7].y), i = 0;
-    do {
+float ssao_horizon(SsaoPoint point, vec3 view, vec2 direction, float reach, float share, float lowest, int steps) {
+    float horizon = lowest;
+    [[unroll]] for (int i = 0; i < steps; ++i) {
         // Squared, so that near surfaces get more of the steps; and never the pixel itself.
-        float along = (float(i) + share) * per_step;
+        float along = (float(i) + share) * (1.0 / float(steps));
         vec2 place = vec2(point.texel) + 0.5 + direction * (1.0 + along * along * reach);
         vec2 inside = clamp(place, vec2(0.0), custom[4].zw);
         ivec2 texel = ivec2(inside);
@@ -24,10 +23,10 @@ float ssao_horizon(SsaoPoint point, vec3 view, vec2 direction, float reach, floa
         vec3 offset = vec3(ssao_place(vec2(texel), found) - point.position.xy, point.planar - found);
         float squared = dot(offset, offset);
         float inverse = inversesqrt(squared);
-        float near = clamp((custom[6].z - squared * inverse) * custom[6].w, 0.0, 1.0);
+        float near = clamp((custom[5].x - squared * inverse) * custom[6].z, 0.0, 1.0);
         bool occludes = place == inside && dot(offset, point.normal) > custom[5].z;
         horizon = max(horizon, occludes ? mix(lowest, dot(offset, view) * inverse, near) : lowest);
-    } while (++i < steps);
+    }
     return horizon;
 }
 
@@ -38,7 +37,11 @@ float ssao_arc(float cosine, float sine, vec2 normal) {
 }
 
 // Over what the open surface would see by the same directions: few of them do not add up to one.
-float ssao_horizons(SsaoPoint point, vec2 noise) {
+float ssao_horizons(SsaoPoint point, int samples) {
+    // ssao_slices() in ssao.cpp.
+    int slices = clamp(int(sqrt(float(samples) * 0.25) + 0.5), 1, 4), steps = max(samples / (2 * slices), 1);
+    vec2 first = load(ssao_turns, (point.texel & 3) + ivec2(0, 4 * slices)).xy;
+    float share = float((point.texel.y - point.texel.x) & 3) * 0.25 + 0.125;
     vec2 ray = vec2(point.texel) * custom[0].xy + custom[0].zw;
     vec3 view = normalize(vec3(-ray, 1.0));
     // Two directions across the view vector (Tom Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
@@ -47,25 +50,24 @@ float ssao_horizons(SsaoPoint point, vec2 noise) {
     vec3 up = vec3(b, 1.0 - view.y * view.y * a, -view.y);
     vec2 middle = vec2(point.texel) + 0.5 - custom[4].xy;
     float per_w = 1.0 / (custom[3].w - custom[3].z * point.planar);
-    vec2 first = custom[8 + int(noise.x)].xy;
     float facing = max(dot(point.normal, view), 0.0), visible = 0.0, open = 0.0;
-    int sides = int(custom[7].x), i = 0;
-    do {
-        vec2 turn = custom[24 + i].xy;
+    [[unroll]] for (int i = 0; i < 2 * slices; ++i) {
+        float next = float(i) * (3.14159265 / float(slices));
+        vec2 turn = vec2(cos(next), sin(next));
         vec2 angle = vec2(first.x * turn.x - first.y * turn.y, first.x * turn.y + first.y * turn.x);
         vec3 across = right * angle.x + up * angle.y;
         // How a step across the view moves the texel.
         vec2 motion = (custom[2].xy * across.xy + (custom[2].zw - middle * custom[3].z) * across.z) * per_w;
         float squared = dot(motion, motion);
         float inverse = inversesqrt(max(squared, 1e-20));
-        float reach = max(custom[6].z * squared * inverse - 1.0, 0.0);
+        float reach = max(custom[5].x * squared * inverse - 1.0, 0.0);
         // The normal in the slice: its length, and cosine and sine of its angle to the view vector.
         float sideways = dot(point.normal, across);
         float length_in_slice = sqrt(max(facing * facing + sideways * sideways, 1e-12));
         vec2 normal = vec2(facing, sideways) / length_in_slice;
-        float horizon = ssao_horizon(point, view, motion * inverse, reach, noise.y, -normal.y);
+        float horizon = ssao_horizon(point, view, motion * inverse, reach, share, -normal.y, steps);
         visible += length_in_slice * ssao_arc(horizon, sqrt(max(1.0 - horizon * horizon, 0.0)), normal);
         open += length_in_slice * ssao_arc(-normal.y, normal.x, normal);
-    } while (++i < sides);
+    }
     return visible / max(open, 1e-6);
 }

@@ -8,7 +8,7 @@ const float ssao_rest = 0.05;
 
 float ssao_mean(vec4 visibility, vec4 distance, float planar, vec4 bilinear) {
     // Where all are unlike, all count.
-    vec4 weight = (bilinear + ssao_rest) * (clamp(2.0 - abs(distance / planar - 1.0) * 40.0, 0.0, 1.0) + 1e-4);
+    vec4 weight = (bilinear + ssao_rest) * (clamp(2.0 - abs(distance * (40.0 / planar) - 40.0), 0.0, 1.0) + 1e-4);
     // The mean of ones shall be one, not what rounding leaves of it.
     float mean = min(dot(visibility, weight) / dot(weight, vec4(1022.998)), 1.0);
     return planar > 1e-6 && planar < 1e9 ? mean : 1.0;
@@ -18,7 +18,7 @@ float ssao_mean(vec4 visibility, vec4 distance, float planar, vec4 bilinear) {
 vec4 shade(Pixel pixel) {
     vec4 packed = gather_red(ssao_blurred, (vec2(pixel.texel) + 1.0) / vec2(pixel.size));
     vec4 planar = gather_red(ssao_depth, (vec2(pixel.texel) * 2.0 + 1.0) / vec2(size(ssao_depth)));
-    vec4 visibility = vec4(floatBitsToUint(packed) & 1023u);
+    vec4 visibility = vec4(floatBitsToInt(packed) & 1023);
     return vec4(ssao_mean(visibility, packed, planar.x, vec4(0.5, 0.5, 0.0, 0.0)),
                 ssao_mean(visibility, packed, planar.y, vec4(0.0, 1.0, 0.0, 0.0)),
                 ssao_mean(visibility, packed, planar.z, vec4(0.0, 0.5, 0.5, 0.0)),
