@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "measure.hpp"
+#include "upload.hpp"
 
 namespace darkroom::bench {
 
@@ -15,14 +14,6 @@ constexpr VkFormat target_format = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkImageUsageFlags every_use = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
                                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                                         VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-
-/// Of a number that is normal in half precision, rounded toward zero.
-std::uint16_t half_bits(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    const std::uint32_t magnitude = bits & 0x7fffffffu;
-    if (magnitude < 0x38800000u) return 0;
-    return static_cast<std::uint16_t>((bits >> 16 & 0x8000u) | ((magnitude - 0x38000000u) >> 13));
-}
 
 /// Light as a room has it: smooth gradients, edges, and small lamps that bloom.
 std::vector<std::uint16_t> make_scene(VkExtent2D extent) {
@@ -62,39 +53,58 @@ ImageRef ref_of(const gpu::Image& image, VkExtent2D extent) {
 Result<std::unique_ptr<Bed>> Bed::create(Device& device, VkExtent2D extent) {
     gpu::Context& context = device.context();
     const VkExtent3D size{extent.width, extent.height, 1};
-    auto scene =
-        gpu::Image::create(context, {.name = "scene", .format = scene_format, .extent = size, .usage = every_use});
+    const std::vector<std::uint16_t> pixels = make_scene(extent);
+    auto scene = upload(context, {.name = "scene", .format = scene_format, .extent = size, .usage = every_use},
+                        std::as_bytes(std::span(pixels)), VK_IMAGE_LAYOUT_GENERAL);
     if (!scene) return failure(std::move(scene));
     auto target =
         gpu::Image::create(context, {.name = "target", .format = target_format, .extent = size, .usage = every_use});
     if (!target) return failure(std::move(target));
-    const std::vector<std::uint16_t> pixels = make_scene(extent);
-    const std::size_t bytes = pixels.size() * sizeof(pixels[0]);
-    auto staging =
-        gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "scene");
-    if (!staging) return failure(std::move(staging));
-    std::memcpy(staging->memory.mapped, pixels.data(), bytes);
-    auto done = gpu::submit_and_wait(context, "uploading the scene", [&](VkCommandBuffer commands) {
-        const VkBufferImageCopy copy = whole(extent);
+    auto done = gpu::submit_and_wait(context, "preparing the target", [&](VkCommandBuffer commands) {
         gpu::transition(context, commands, *target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-        gpu::transition(context, commands, *scene, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        context.vk.CmdCopyBufferToImage(commands, staging->handle, scene->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                        1, &copy);
-        gpu::transition(context, commands, *scene, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
     });
     if (!done) return failure(std::move(done));
-    return std::unique_ptr<Bed>(new Bed{device, context, extent, std::move(*scene), std::move(*target)});
+    return std::unique_ptr<Bed>(new Bed{device, context, extent, std::move(*scene), std::move(*target), {}});
 }
 
-Frame Bed::frame() const { return {.color = ref_of(scene, extent), .target = ref_of(target, extent)}; }
+Result<> Bed::make_world() {
+    if (world != nullptr) return {};
+    auto made = World::create(context, extent);
+    if (!made) return failure(std::move(made));
+    world = std::make_unique<World>(std::move(*made));
+    return {};
+}
 
-CompileDesc Bed::compile_desc() const {
-    return {.max_extent = extent,
-            .color = scene_format,
-            .target = target_format,
-            .color_usage = every_use,
-            .target_usage = every_use,
-            .target_domain = Domain::Encoded};
+Frame Bed::frame(WorldUse use) const {
+    Frame out{.color = ref_of(scene, extent), .target = ref_of(target, extent)};
+    if (use == WorldUse::None) return out;
+    const auto read_only = [&](const gpu::Image& image) {
+        ImageRef ref = ref_of(image, extent);
+        ref.layout = ref.final_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        return ref;
+    };
+    out.depth = read_only(use == WorldUse::Planar ? world->distance : world->depth);
+    if (use != WorldUse::WithoutNormals) out.normals = read_only(world->normals);
+    out.camera = world->camera;
+    if (use == WorldUse::Planar) out.camera.depth = DepthKind::Planar;
+    out.lights = {&world->light, 1};
+    return out;
+}
+
+CompileDesc Bed::compile_desc(WorldUse use) const {
+    CompileDesc out{.max_extent = extent,
+                    .color = scene_format,
+                    .target = target_format,
+                    .color_usage = every_use,
+                    .target_usage = every_use,
+                    .target_domain = Domain::Encoded};
+    if (use == WorldUse::None) return out;
+    const Frame frame = this->frame(use);
+    out.depth = frame.depth.format;
+    out.is_depth_planar = use == WorldUse::Planar;
+    out.normals = frame.normals.format;
+    out.has_shadows = true;
+    return out;
 }
 
 Result<std::vector<std::byte>> Bed::read_target() const {

@@ -17,12 +17,22 @@ struct Value {
 struct NamedStep {
     std::string_view effect;
     std::vector<Value> values{};
+    bool joins_scene = false;
 };
 
 constexpr std::string_view noise_effect = "dither";
 
 Step step_of(const EffectInfo& effect) {
     return {.effect = &effect, .words = {effect.parameters.defaults.begin(), effect.parameters.defaults.end()}};
+}
+
+std::vector<NamedStep> tail_steps(const TailValues& values) {
+    return {{"exposure", {{"exposure", double{values.exposure}}}},
+            {"tonemap", {{"curve", std::string("aces_narkowicz")}}},
+            {"vignette",
+             {{"intensity", double{values.vignette_intensity}}, {"smoothness", double{values.vignette_smoothness}}}},
+            {"encode", {{"transfer", std::string("srgb")}}},
+            {noise_effect, {{"intensity", double{values.dither_intensity}}}}};
 }
 
 /// Empty where an effect or one of its parameters is not there.
@@ -32,6 +42,7 @@ Stack stack_of(const std::vector<NamedStep>& steps) {
         const EffectInfo* const effect = find_effect(named.effect);
         if (effect == nullptr) return {};
         stack.push_back(step_of(*effect));
+        stack.back().joins_scene = named.joins_scene;
         for (const Value& value : named.values) {
             const ParamInfo* const row = effect->parameters.find(value.parameter);
             if (row == nullptr || !assign(*row, stack.back().words, value.value)) return {};
@@ -56,28 +67,50 @@ void make_visible(Step& step) {
 
 }  // namespace
 
-Stack tail_stack(const TailValues& values) {
-    return stack_of(
-        {{"exposure", {{"exposure", double{values.exposure}}}},
-         {"tonemap", {{"curve", std::string("aces_narkowicz")}}},
-         {"vignette",
-          {{"intensity", double{values.vignette_intensity}}, {"smoothness", double{values.vignette_smoothness}}}},
-         {"encode", {{"transfer", std::string("srgb")}}},
-         {noise_effect, {{"intensity", double{values.dither_intensity}}}}});
+Stack tail_stack(const TailValues& values) { return stack_of(tail_steps(values)); }
+
+Stack foggy_tail_stack(const TailValues& values) {
+    std::vector<NamedStep> steps = tail_steps(values);
+    steps.insert(std::ranges::find(steps, "tonemap", &NamedStep::effect) + 1, {.effect = "fog"});
+    return stack_of(steps);
 }
 
 const EffectInfo* tail_noise_effect() { return find_effect(noise_effect); }
 
 Stack bloom_stack() { return stack_of({{"bloom", {{"levels", std::int64_t{5}}}}}); }
 
+Stack plain_bloom_stack() {
+    return stack_of({{"high_pass"},
+                     {"gaussian_blur", {{"radius", 24.0}}},
+                     {"blend", {{"mode", std::string("add")}, {"amount", 0.15}}, true},
+                     {"exposure"},
+                     {"tonemap"},
+                     {"encode"}});
+}
+
+Stack ssao_stack(const std::string& method, const std::string& resolution) {
+    return stack_of({{"ssao", {{"method", method}, {"resolution", resolution}}}});
+}
+
 Stack default_stack() {
     Stack stack;
     for (const EffectInfo* const effect : all_effects()) {
-        if (effect->flat.documented < 0) continue;
+        // As looks do: what moves coordinates takes part only while it is on, and at its defaults none does.
+        if (effect->flat.documented < 0 || effect->touch == Touch::Warp) continue;
         stack.push_back(step_of(*effect));
         stack.back().is_on = effect->flat.starts_on;
     }
     std::ranges::stable_sort(stack, {}, [](const Step& step) { return step.effect->flat.documented; });
+    return stack;
+}
+
+Stack documented_stack() {
+    Stack stack = default_stack();
+    for (Step& step : stack)
+        if (step.effect->name == "vignette") {
+            step.is_on = true;
+            make_visible(step);
+        }
     return stack;
 }
 
@@ -88,18 +121,23 @@ Stack single_stack(const EffectInfo& effect) {
 }
 
 void fill(Composer& composer, const Stack& stack) {
+    Handle before = scene_color;
     for (const Step& step : stack) {
         Inputs inputs{.source = scene_color, .enabled = step.is_on};
-        if (step.effect->has_second) inputs.second = scene_color;
-        composer.add(*step.effect, step.words.data(), inputs);
+        if (step.joins_scene) inputs.input = scene_color;
+        if (step.effect->has_second) inputs.second = step.joins_scene ? before : scene_color;
+        before = composer.add(*step.effect, step.words.data(), inputs);
     }
 }
 
 Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc) {
+    if (desc.world != WorldUse::None)
+        if (auto ok = bed.make_world(); !ok) return failure(std::move(ok));
     Chain chain{.composer = std::make_shared<Composer>(
-                    bed.device, ComposerDesc{.frames_in_flight = 1, .has_timers = desc.has_timers})};
+                    bed.device, ComposerDesc{.frames_in_flight = 1, .has_timers = desc.has_timers}),
+                .world = desc.world};
     fill(*chain.composer, stack);
-    CompileDesc compile_desc = bed.compile_desc();
+    CompileDesc compile_desc = bed.compile_desc(desc.world);
     compile_desc.kernels = desc.kernels;
     compile_desc.fuse = desc.fuse;
     auto plan = chain.composer->compile(compile_desc);
@@ -110,8 +148,9 @@ Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc)
 }
 
 Row chain_row(Bed& bed, std::string name, const Chain& chain) {
-    return {.name = std::move(name), .record = [&bed, composer = chain.composer](VkCommandBuffer commands) {
-                return composer->record(commands, bed.frame());
+    return {.name = std::move(name),
+            .record = [&bed, composer = chain.composer, world = chain.world](VkCommandBuffer commands) {
+                return composer->record(commands, bed.frame(world));
             }};
 }
 

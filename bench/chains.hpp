@@ -14,11 +14,12 @@
 
 namespace darkroom::bench {
 
-/// One entry of a stack; every entry's source and second picture is the scene.
+/// One entry of a stack; its source is the scene, and so is its second picture where nothing else is said.
 struct Step {
     const EffectInfo* effect = nullptr;
     std::vector<std::uint32_t> words;
     bool is_on = true;
+    bool joins_scene = false;  ///< its picture is the scene, and its second picture the step before
 };
 using Stack = std::vector<Step>;
 
@@ -26,10 +27,18 @@ using Stack = std::vector<Step>;
 [[nodiscard]] Stack tail_stack(const TailValues& values);
 /// The effect of the tail that brings the tile of noise.
 [[nodiscard]] const EffectInfo* tail_noise_effect();
+/// The same with fog at its place in the documented order, after the tone mapping.
+[[nodiscard]] Stack foggy_tail_stack(const TailValues& values);
 /// Bloom at five levels.
 [[nodiscard]] Stack bloom_stack();
+/// The shipped look of bloom in plain steps: high pass, blur, blend, then exposure, tone mapping, encoding.
+[[nodiscard]] Stack plain_bloom_stack();
+/// Ambient occlusion alone.
+[[nodiscard]] Stack ssao_stack(const std::string& method, const std::string& resolution);
 /// The flat table with nothing written in it, in its documented order.
 [[nodiscard]] Stack default_stack();
+/// The same with the vignette on: with the world, ambient occlusion, bloom, exposure, ACES, encode, vignette.
+[[nodiscard]] Stack documented_stack();
 /// One effect at its defaults; where these change nothing, at the next values that do.
 [[nodiscard]] Stack single_stack(const EffectInfo& effect);
 
@@ -37,11 +46,13 @@ struct ChainDesc {
     KernelStage kernels = KernelStage::Auto;
     bool fuse = true;
     bool has_timers = false;
+    WorldUse world = WorldUse::None;
 };
 /// A compiled stack, with its leaner kernels.
 struct Chain {
     std::shared_ptr<Composer> composer;
     Plan plan;
+    WorldUse world = WorldUse::None;
 };
 [[nodiscard]] Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc = {});
 [[nodiscard]] Row chain_row(Bed& bed, std::string name, const Chain& chain);

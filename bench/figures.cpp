@@ -16,10 +16,12 @@ const Row* find_row(const std::vector<Row>& rows, std::string_view name) {
     return found == rows.end() ? nullptr : &*found;
 }
 
-/// A ratio of two rows of the table and the most it should be.
+/// A ratio of two rows of the table and the most it should be; or, where a row is named to take off, of what the row
+/// costs more than that one.
 struct Target {
     std::string_view name, row, unit;
     std::optional<double> at_most{};
+    std::string_view less{};
 };
 constexpr std::string_view hand_written = "tail/hand-written/";
 constexpr std::array targets{
@@ -35,6 +37,21 @@ constexpr std::array targets{
     Target{"default stack / calibration", "default/fused/auto", calibration_name, 8.5},
     Target{"default stack / calibration, compute", "default/fused/compute", calibration_name},
     Target{"default stack / calibration, raster", "default/fused/raster", calibration_name},
+    Target{"ssao, hemisphere / calibration", "ssao/half/hemisphere", calibration_name, 5.0},
+    Target{"ssao, ground truth / calibration", "ssao/half/ground_truth", calibration_name, 5.0},
+    Target{"ssao, hemisphere, beyond encode", "ssao/half/hemisphere", calibration_name, {}, "effect/encode"},
+    Target{"ssao, ground truth, beyond encode", "ssao/half/ground_truth", calibration_name, {}, "effect/encode"},
+    Target{"ssao, full, hemisphere / calibration", "ssao/full/hemisphere", calibration_name},
+    Target{"ssao, full, ground truth / calibration", "ssao/full/ground_truth", calibration_name},
+    Target{"volumetric / calibration", "volumetric/auto", calibration_name, 5.5},
+    Target{"volumetric, beyond encode", "volumetric/auto", calibration_name, {}, "effect/encode"},
+    // What a stack pays for fog in which another effect needs the distance, too.
+    Target{"fog in the tail", "tail/fog/planar distance", calibration_name, 0.6, "tail/fused/auto"},
+    Target{"fog in the tail, with its distance", "tail/fog/device depth", calibration_name, {}, "tail/fused/auto"},
+    Target{"plain bloom / calibration", "plain bloom", calibration_name},
+    Target{"documented stack / calibration", "documented/fused/auto", calibration_name, 14.0},
+    Target{"documented stack / calibration, compute", "documented/fused/compute", calibration_name},
+    Target{"documented stack / calibration, raster", "documented/fused/raster", calibration_name},
 };
 
 /// Of a frame of the dungeon, how much is post-processing.
@@ -65,8 +82,10 @@ std::vector<Figure> ratio_figures(const Device& device, const std::vector<Row>& 
     for (const Target& target : targets) {
         const Row* const row = find_row(rows, target.row);
         const Row* const unit = find_row(rows, target.unit);
-        if (row == nullptr || unit == nullptr) continue;
-        figures.push_back({std::string(target.name), ratio(*row, *unit, cost),
+        const Row* const less = target.less.empty() ? nullptr : find_row(rows, target.less);
+        if (row == nullptr || unit == nullptr || (less == nullptr && !target.less.empty())) continue;
+        figures.push_back({std::string(target.name),
+                           less == nullptr ? ratio(*row, *unit, cost) : difference(*row, *less, *unit, cost),
                            target.unit == calibration_name ? "c" : "", target.at_most});
     }
     if (const std::optional<Figure> share = post_share(rows, cost)) figures.push_back(*share);

@@ -2,7 +2,8 @@
 #include "hand_written.hpp"
 
 #include <algorithm>
-#include <cstring>
+
+#include "upload.hpp"
 
 namespace darkroom::bench {
 
@@ -77,28 +78,6 @@ struct KernelRun {
     gpu::Binding output;
 };
 
-Result<gpu::Image> upload_table(gpu::Context& context, const TableDesc& table) {
-    auto image = gpu::Image::create(context, {.name = table.name,
-                                              .format = table.format,
-                                              .extent = table.extent,
-                                              .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-    if (!image) return image;
-    auto staging = gpu::Buffer::create(context, table.data.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                       gpu::Memory::Kind::Upload, table.name);
-    if (!staging) return failure(std::move(staging));
-    std::ranges::copy(table.data, staging->memory.mapped);
-    auto done = gpu::submit_and_wait(context, "uploading a table", [&](VkCommandBuffer commands) {
-        const VkBufferImageCopy copy{.imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT, .layerCount = 1},
-                                     .imageExtent = table.extent};
-        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        context.vk.CmdCopyBufferToImage(commands, staging->handle, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                        1, &copy);
-        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
-    });
-    if (!done) return failure(std::move(done));
-    return image;
-}
-
 Result<> fill(Bed& bed, KernelRun& run, const gpu::KernelSpec& spec, gpu::Stage stage,
               std::span<const std::byte> constants) {
     auto kernel = gpu::Kernel::create(bed.context, spec, stage);
@@ -163,7 +142,12 @@ Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, 
                        std::span<const std::byte> constants, const TableDesc* table) {
     const auto run = std::make_shared<KernelRun>();
     if (table != nullptr) {
-        auto image = upload_table(bed.context, *table);
+        auto image = upload(bed.context,
+                            {.name = table->name,
+                             .format = table->format,
+                             .extent = table->extent,
+                             .usage = VK_IMAGE_USAGE_STORAGE_BIT},
+                            table->data, VK_IMAGE_LAYOUT_GENERAL);
         if (!image) return failure(std::move(image));
         run->table = std::move(*image);
     }

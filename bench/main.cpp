@@ -22,7 +22,8 @@ constexpr int exit_user = 1, exit_machine = 2;
 struct Options {
     std::string size = "1920x1080";
     std::uint32_t rounds = 7;
-    std::string filter, device;
+    std::vector<std::string> filters;
+    std::string device;
     std::filesystem::path json, csv;
     bool lists = false, has_passes = false;
 };
@@ -51,7 +52,7 @@ Result<> append(std::vector<Figure>& figures, Result<std::vector<Figure>> more) 
 }
 
 Result<> measure_all(const Options& options, Bed& bed, Report& report) {
-    auto rows = make_rows(bed, options.filter);
+    auto rows = make_rows(bed, options.filters);
     if (!rows) return failure(std::move(rows));
     if (auto ok = measure(bed, *rows, options.rounds); !ok) return ok;
     report.figures = ratio_figures(bed.device, *rows);
@@ -62,7 +63,7 @@ Result<> measure_all(const Options& options, Bed& bed, Report& report) {
         if (!passes) return failure(std::move(passes));
         report.passes = std::move(*passes);
     }
-    if (!options.filter.empty()) return {};
+    if (!options.filters.empty()) return {};
     if (auto ok = append(report.figures, counted_figures(bed)); !ok) return ok;
     return append(report.figures, start_figures(options.device, bed.extent, options.rounds));
 }
@@ -106,7 +107,7 @@ int parse_and_run(int argc, char** argv) {
     program.add_option("--rounds", options.rounds, "Runs of every row.")
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
-    program.add_option("--filter", options.filter, "Only rows whose name holds this text.");
+    program.add_option("--filter", options.filters, "Only rows whose name holds this text, or one of these.");
     program.add_option("--device", options.device, "Name, part of a name, or index of the device.");
     program.add_option("--json", options.json, "Writes the results to this file.");
     program.add_option("--csv", options.csv, "Writes the rows to this file.");

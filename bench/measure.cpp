@@ -136,6 +136,14 @@ double ratio(const Row& row, const Row& unit, double Sample::*member) {
     return median(ratios);
 }
 
+double difference(const Row& row, const Row& less, const Row& unit, double Sample::*member) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min({row.samples.size(), less.samples.size(), unit.samples.size()}); ++i)
+        if (unit.samples[i].*member > 0)
+            ratios.push_back((row.samples[i].*member - less.samples[i].*member) / unit.samples[i].*member);
+    return median(ratios);
+}
+
 double Sample::*cost_of(const Device& device) { return device.info().is_software ? &Sample::cpu_ms : &Sample::gpu_ms; }
 
 }  // namespace darkroom::bench

@@ -10,15 +10,18 @@
 #include <vector>
 
 #include "gpu/resources.hpp"
+#include "world.hpp"
 
 namespace darkroom::bench {
 
 /// The pictures that all rows share. Both are left in VK_IMAGE_LAYOUT_GENERAL.
 struct Bed {
     [[nodiscard]] static Result<std::unique_ptr<Bed>> create(Device& device, VkExtent2D extent);
+    /// Where it was not made yet. It must be there before a use of it.
+    [[nodiscard]] Result<> make_world();
     /// What the host of a Composer says of them.
-    [[nodiscard]] Frame frame() const;
-    [[nodiscard]] CompileDesc compile_desc() const;
+    [[nodiscard]] Frame frame(WorldUse use = WorldUse::None) const;
+    [[nodiscard]] CompileDesc compile_desc(WorldUse use = WorldUse::None) const;
     /// The target's bytes, four a pixel.
     [[nodiscard]] Result<std::vector<std::byte>> read_target() const;
 
@@ -27,6 +30,7 @@ struct Bed {
     VkExtent2D extent{};
     gpu::Image scene;   ///< RGBA16F, procedural HDR
     gpu::Image target;  ///< RGBA8
+    std::unique_ptr<const World> world;
 };
 
 /// One run of a row.
@@ -75,6 +79,8 @@ class Submitter {
 [[nodiscard]] std::vector<double> column(const Row& row, double Sample::*member);
 /// Median over the rounds of `row` / `unit`, each pair measured in the same round. 0 where nothing was measured.
 [[nodiscard]] double ratio(const Row& row, const Row& unit, double Sample::*member);
+/// The same of `row` - `less`.
+[[nodiscard]] double difference(const Row& row, const Row& less, const Row& unit, double Sample::*member);
 /// What rows are compared by: process CPU time on a software driver, GPU time elsewhere.
 [[nodiscard]] double Sample::*cost_of(const Device& device);
 

@@ -45,10 +45,10 @@ std::string text(const Report& report) {
         fmt::format("{} ({}), {}x{}, {} rounds; c and ratios compare {}\n\n", report.device.name, report.device.driver,
                     report.extent.width, report.extent.height, report.rounds, unit_of(report));
     const auto to = std::back_inserter(out);
-    fmt::format_to(to, "{:<30} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "", "CPU ms", "min", "wall ms", "min",
+    fmt::format_to(to, "{:<42} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "", "CPU ms", "min", "wall ms", "min",
                    "GPU ms", "min", "c");
     for (const Row& row : report.rows) {
-        fmt::format_to(to, "{:<30}", row.name);
+        fmt::format_to(to, "{:<42}", row.name);
         for (const Clock& clock : clocks) {
             const std::vector<double> values = column(row, clock.member);
             fmt::format_to(to, " {:>9.3f} {:>9.3f}", median(values), minimum(values));

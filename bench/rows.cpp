@@ -57,18 +57,42 @@ Recipe hand_written_recipe(gpu::Stage stage) {
             }};
 }
 
-bool needs_scene_data(const EffectInfo& effect) {
-    const Needs& needs = effect.needs;
-    return needs.depth || needs.normals || needs.velocity || needs.shadows || needs.ui;
+bool needs_what_the_world_lacks(const EffectInfo& effect) { return effect.needs.velocity || effect.needs.ui; }
+
+Stack stack_of_one(std::string_view name) {
+    const EffectInfo* const effect = find_effect(name);
+    return effect == nullptr ? Stack{} : single_stack(*effect);
 }
 
-void add_chains(std::vector<Recipe>& recipes, const std::string& name, const Stack& stack) {
-    if (stack.empty()) return;
+/// An empty stack: this build lacks one of its effects.
+void add_chain(std::vector<Recipe>& recipes, std::string name, Stack stack, const ChainDesc& desc) {
+    if (!stack.empty()) recipes.push_back(chain_recipe(std::move(name), std::move(stack), desc));
+}
+
+void add_chains(std::vector<Recipe>& recipes, const std::string& name, const Stack& stack,
+                WorldUse world = WorldUse::None) {
     for (const KernelStage stage : stages)
-        recipes.push_back(chain_recipe(fmt::format("{}/fused/{}", name, stage_name(stage)), stack, {.kernels = stage}));
+        add_chain(recipes, fmt::format("{}/fused/{}", name, stage_name(stage)), stack,
+                  {.kernels = stage, .world = world});
     for (const KernelStage stage : stages)
-        recipes.push_back(chain_recipe(fmt::format("{}/unfused/{}", name, stage_name(stage)), stack,
-                                       {.kernels = stage, .fuse = false}));
+        add_chain(recipes, fmt::format("{}/unfused/{}", name, stage_name(stage)), stack,
+                  {.kernels = stage, .fuse = false, .world = world});
+}
+
+/// What reads more than the colour.
+void add_world_chains(std::vector<Recipe>& recipes) {
+    for (const char* const resolution : {"half", "full"})
+        for (const char* const method : {"hemisphere", "ground_truth"})
+            add_chain(recipes, fmt::format("ssao/{}/{}", resolution, method), ssao_stack(method, resolution),
+                      {.world = WorldUse::Full});
+    add_chain(recipes, "ssao/half/hemisphere, normals from depth", ssao_stack("hemisphere", "half"),
+              {.world = WorldUse::WithoutNormals});
+    for (const KernelStage stage : stages)
+        add_chain(recipes, fmt::format("volumetric/{}", stage_name(stage)), stack_of_one("volumetric"),
+                  {.kernels = stage, .world = WorldUse::Full});
+    add_chain(recipes, "tail/fog/planar distance", foggy_tail_stack({}), {.world = WorldUse::Planar});
+    add_chain(recipes, "tail/fog/device depth", foggy_tail_stack({}), {.world = WorldUse::Full});
+    add_chains(recipes, "documented", documented_stack(), WorldUse::Full);
 }
 
 Result<Row> memcpy_row(const Bed& bed, const std::string& name) {
@@ -87,8 +111,9 @@ std::vector<Recipe> recipes() {
                    }});
     out.push_back({.name = "memcpy of the scene (floor)", .make = memcpy_row});
     for (const EffectInfo* const effect : all_effects())
-        if (!needs_scene_data(*effect))
-            out.push_back(chain_recipe(fmt::format("effect/{}", effect->name), single_stack(*effect), {}));
+        if (!needs_what_the_world_lacks(*effect))
+            out.push_back(
+                chain_recipe(fmt::format("effect/{}", effect->name), single_stack(*effect), {.world = WorldUse::Full}));
     if (const Stack tail = tail_stack({}); !tail.empty()) {
         add_chains(out, "tail", tail);
         for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster})
@@ -97,7 +122,9 @@ std::vector<Recipe> recipes() {
     if (const Stack bloom = bloom_stack(); !bloom.empty())
         for (const KernelStage stage : stages)
             out.push_back(chain_recipe(fmt::format("bloom/{}", stage_name(stage)), bloom, {.kernels = stage}));
+    add_chain(out, "plain bloom", plain_bloom_stack(), {});
     add_chains(out, "default", default_stack());
+    add_world_chains(out);
     for (Recipe& recipe : scene_recipes()) out.push_back(std::move(recipe));
     return out;
 }
@@ -110,10 +137,14 @@ std::vector<std::string> row_names() {
     return names;
 }
 
-Result<std::vector<Row>> make_rows(Bed& bed, std::string_view filter) {
+Result<std::vector<Row>> make_rows(Bed& bed, std::span<const std::string> filters) {
+    const auto is_wanted = [&](const std::string& name) {
+        return filters.empty() || name == calibration_name ||
+               std::ranges::any_of(filters, [&](const auto& filter) { return name.find(filter) != std::string::npos; });
+    };
     std::vector<Row> rows;
     for (const Recipe& recipe : recipes()) {
-        if (recipe.name != calibration_name && recipe.name.find(filter) == std::string::npos) continue;
+        if (!is_wanted(recipe.name)) continue;
         auto row = recipe.make(bed, recipe.name);
         if (!row) return user_error(fmt::format("{}: {}", recipe.name, row.error().text));
         if (row->record || row->host) rows.push_back(std::move(*row));
@@ -122,14 +153,23 @@ Result<std::vector<Row>> make_rows(Bed& bed, std::string_view filter) {
 }
 
 Result<std::vector<PassRow>> measure_passes(Bed& bed, std::uint32_t rounds) {
-    const std::array<std::pair<std::string_view, Stack>, 3> stacks{
-        {{"tail", tail_stack({})}, {"bloom", bloom_stack()}, {"default", default_stack()}}};
+    struct Measured {
+        std::string_view name;
+        Stack stack;
+        WorldUse world = WorldUse::None;
+    };
+    const std::vector<Measured> stacks{{"tail", tail_stack({})},
+                                       {"bloom", bloom_stack()},
+                                       {"default", default_stack()},
+                                       {"ssao, ground_truth", ssao_stack("ground_truth", "half"), WorldUse::Full},
+                                       {"volumetric", stack_of_one("volumetric"), WorldUse::Full},
+                                       {"documented", documented_stack(), WorldUse::Full}};
     auto submitter = Submitter::create(bed.context);
     if (!submitter) return failure(std::move(submitter));
     std::vector<PassRow> out;
-    for (const auto& [name, stack] : stacks) {
+    for (const auto& [name, stack, world] : stacks) {
         if (stack.empty()) continue;
-        auto chain = compile_chain(bed, stack, {.has_timers = true});
+        auto chain = compile_chain(bed, stack, {.has_timers = true, .world = world});
         if (!chain) return failure(std::move(chain));
         const Row row = chain_row(bed, std::string(name), *chain);
         std::vector<std::string> passes;

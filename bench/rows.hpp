@@ -3,6 +3,7 @@
 // All rows of the benchmark, and the figures that are made of them, with the targets they are held against.
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,8 @@ struct PassRow {
 };
 
 [[nodiscard]] std::vector<std::string> row_names();
-/// Only rows whose name holds `filter`, and always the calibration pass, which comes first.
-[[nodiscard]] Result<std::vector<Row>> make_rows(Bed& bed, std::string_view filter);
+/// Only rows whose name holds one of `filters`, all without any; always the calibration pass, which comes first.
+[[nodiscard]] Result<std::vector<Row>> make_rows(Bed& bed, std::span<const std::string> filters);
 /// Of the rows that were measured.
 [[nodiscard]] std::vector<Figure> ratio_figures(const Device& device, const std::vector<Row>& rows);
 /// Transient memory, and the CPU time and allocations of `record`.

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What scene-aware effects read beside the colour: a street of columns that ends in a wall, under a low sun, as a
+// renderer would hand it over. It is traced on the CPU, once, and has nothing to do with the colours of the bed.
+
+#include <darkroom/frame.hpp>
+
+#include "gpu/resources.hpp"
+
+namespace darkroom::bench {
+
+struct World {
+    [[nodiscard]] static Result<World> create(gpu::Context& context, VkExtent2D extent);
+
+    gpu::Image depth;     ///< D32, reversed
+    gpu::Image distance;  ///< R32F, planar
+    gpu::Image normals;   ///< RGBA16F, of the world
+    gpu::Image cascades;  ///< D32, four layers of 2048 x 2048
+    Camera camera;        ///< of `depth`
+    Light light;
+};
+
+/// What a frame tells of it.
+enum class WorldUse : std::uint8_t {
+    None,
+    Full,            ///< device depth, normals, shadows
+    WithoutNormals,  ///< device depth, shadows
+    Planar,          ///< planar distance, normals, shadows
+};
+
+}  // namespace darkroom::bench
