@@ -71,6 +71,151 @@ TEST_F(ChainReference, TheDefaultOrders) {
     }
 }
 
+/// A floor that rises to a wall with sky above it, a post before them, and a light from above that half a roof hides.
+struct LitFloor {
+    LitFloor() {
+        for (std::uint32_t y = 0; y < extent.height; ++y)
+            for (std::uint32_t x = 0; x < extent.width; ++x) {
+                const double v = (y + 0.5) / extent.height;
+                const bool is_post = x > 30 && x < 42 && y > 16;
+                const double behind = v < 0.2 ? 1e10 : v < 0.45 ? 18.0 : 3.6 / (v - 0.25);
+                depth.at(x, y).r = double{static_cast<float>(is_post ? 4.5 : behind)};
+            }
+        // The cube of 40 m around the origin, from above: x and z go across, -y is the way of the light.
+        light.light.world_to_cascade[0] = {0.05F, 0, 0, 0, 0, 0, -0.025F, 0, 0, 0.05F, 0, 0, 0, 0, 0.5F, 1};
+        light.light.splits[0] = 1000;
+        light.cascades = {{0, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1}};
+    }
+    [[nodiscard]] test::RunOptions options() const {
+        return {.color = VK_FORMAT_R16G16B16A16_SFLOAT,
+                .time = 2.5,
+                .frame_index = 150,
+                .depth = &depth,
+                .camera = camera,
+                .lights = {&light, 1}};
+    }
+
+    VkExtent2D extent{97, 61};
+    ReferenceImage picture = scene(extent.width, extent.height), depth{extent.width, extent.height};
+    Camera camera = test::look_at({0, 2, 6}, {0, 1, -4}, 1.0, 97.0 / 61);
+    ReferenceLight light{.light = {.volumetric_intensity = 1}, .resolution = 4};
+};
+
+/// The references one after the other, each with all that the frame brings. `swapped`: this entry and the next change
+/// places.
+ReferenceImage references_in_turn(const Composer& composer, const LitFloor& floor, std::size_t swapped) {
+    ReferenceImage picture = floor.picture;
+    for (std::size_t i = 0; i < composer.size(); ++i) {
+        const std::size_t taken = i == swapped ? i + 1 : i == swapped + 1 ? i - 1 : i;
+        const Handle entry = composer.entry(taken);
+        picture = composer.info(entry).reference(composer.words(entry).data(), {.picture = &picture,
+                                                                                .source = &floor.picture,
+                                                                                .depth = &floor.depth,
+                                                                                .lights = {&floor.light, 1},
+                                                                                .camera = floor.camera,
+                                                                                .time = 2.5,
+                                                                                .frame_index = 150});
+    }
+    return picture;
+}
+
+/// Mean over the pixels of their most different channel, in codes of 8 bits.
+double mean_codes(const ReferenceImage& a, const ReferenceImage& b) {
+    if (a.pixels.size() != b.pixels.size() || a.pixels.empty()) return 1e9;
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const Rgba &p = a.pixels[i], &q = b.pixels[i];
+        sum += std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)});
+    }
+    return 255 * sum / static_cast<double>(a.pixels.size());
+}
+
+using Names = std::vector<std::string>;
+const Names documented_order{"radial_blur", "chromatic_aberration",
+                             "ssao",        "volumetric",
+                             "bloom",       "exposure",
+                             "tonemap",     "fog",
+                             "encode",      "dither",
+                             "vignette"};
+const Names scene_linear_order{"radial_blur", "chromatic_aberration",
+                               "ssao",        "volumetric",
+                               "bloom",       "fog",
+                               "exposure",    "tonemap",
+                               "vignette",    "encode",
+                               "dither"};
+
+/// The flat table with everything on at once, strong enough that each effect shows.
+void fill_with_everything(Composer& composer, bool is_documented) {
+    const std::string order = is_documented ? "documented" : "scene_linear";
+    const auto look = parse_look("[post_process]\norder = \"" + order + R"("
+radial_blur = 2
+chromatic_aberration = 6
+ssao_intensity = 4
+ssao_radius = 1.5
+volumetric_enabled = true
+volumetric_density = 40
+bloom_intensity = 1
+bloom_threshold = 0.1
+exposure = 1.3
+fog_enabled = true
+fog_density = 0.02
+fog_end = 40
+dither_enabled = true
+dither_intensity = 0.05
+vignette_enabled = true
+vignette_intensity = 0.6
+)",
+                                 "everything.toml", {.is_strict = true});
+    ASSERT_TRUE(look) << look.error().text;
+    test::must(apply(*look, composer));
+}
+
+class ChainEverything : public test::StackTest {
+  protected:
+    void SetUp() override {
+        for (const std::string& name : documented_order)
+            if (find_effect(name) == nullptr) GTEST_SKIP() << "this build has no effect " << name;
+    }
+};
+
+TEST_F(ChainEverything, IsPlannedInBothOrders) {
+    for (const bool is_documented : {true, false}) {
+        Composer composer(gpu::test::device());
+        fill_with_everything(composer, is_documented);
+        const auto plan = composer.plan({.max_extent = {320, 200}, .depth = VK_FORMAT_D32_SFLOAT, .has_shadows = true});
+        ASSERT_TRUE(plan) << plan.error().text;
+        Names planned;
+        for (const PlanPass& pass : plan->passes)
+            planned.insert(planned.end(), pass.entries.begin(), pass.entries.end());
+        EXPECT_EQ(planned, is_documented ? documented_order : scene_linear_order);
+        EXPECT_TRUE(plan->left_out.empty()) << plan->left_out.front();
+        EXPECT_TRUE(plan->remarks.empty()) << plan->remarks.front();
+    }
+}
+
+TEST_F(ChainEverything, IsItsReferencesInThatOrder) {
+    const LitFloor floor;
+    for (const bool is_documented : {true, false}) {
+        SCOPED_TRACE(is_documented);
+        Composer composer(gpu::test::device());
+        fill_with_everything(composer, is_documented);
+        const ReferenceImage made = test::develop([&](Composer& stack) { fill_with_everything(stack, is_documented); },
+                                                  floor.picture, floor.options());
+        // Occlusion chooses pixels to read, and may round to another one than its reference: few pixels then differ by
+        // more than the half floats between kernels explain.
+        const ReferenceImage expected = references_in_turn(composer, floor, composer.size());
+        const double error = mean_codes(made, expected);
+        EXPECT_LE(error, 0.04);
+        EXPECT_LE(255 * test::worst_difference(made, expected), 4);
+        // Only this order gives this picture. Volumetric light and the bloom of the scene are both added.
+        for (std::size_t i = 0; i + 1 < composer.size(); ++i) {
+            if (composer.inputs(composer.entry(i)).name == "volumetric") continue;
+            EXPECT_GT(mean_codes(made, references_in_turn(composer, floor, i)), 2 * error)
+                << composer.inputs(composer.entry(i)).name << " and what follows it";
+        }
+    }
+}
+
 TEST_F(ChainReference, WiresOpacityMasksAndModes) {
     Composer composer(gpu::test::device());
     const Handle exposed = add(composer, "exposure", {{"exposure", 1.5}});
