@@ -6,10 +6,7 @@
 const float sky_distance = 1e9;
 
 vec3 view_position(vec2 uv, float planar) {
-    vec2 ndc = uv * 2.0 - 1.0;
-    float w = frame_projection_offset.w - planar * frame_projection_offset.z;
-    vec2 moved = frame_projection_offset.xy - planar * frame_projection_scale.zw;
-    return vec3((ndc * w - moved) * (1.0 / frame_projection_scale.xy), -planar);
+    return vec3((uv * frame_ray.xy + frame_ray.zw) * planar + (uv * frame_ray_flat.xy + frame_ray_flat.zw), -planar);
 }
 
 /// Where a point of view space is in the picture.

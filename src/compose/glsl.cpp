@@ -171,7 +171,8 @@ std::string entry_suffix(std::uint32_t entry) { return fmt::format("_e{}", entry
 std::string frame_members() {
     return "    layout(offset = 0) float frame_time;\n    float frame_delta_time;\n    uint frame_index;\n    uint "
            "frame_view;\n    vec4 frame_projection_scale;\n    vec4 frame_projection_offset;\n"
-           "    vec4 frame_view_to_world_x;\n    vec4 frame_view_to_world_y;\n    vec4 frame_view_to_world_z;\n";
+           "    vec4 frame_view_to_world_x;\n    vec4 frame_view_to_world_y;\n    vec4 frame_view_to_world_z;\n"
+           "    vec4 frame_ray;\n    vec4 frame_ray_flat;\n";
 }
 
 CameraBlock camera_block(const Camera& camera) {
@@ -189,6 +190,14 @@ CameraBlock camera_block(const Camera& camera) {
             eye -= entry * v[12 + row];
         }
         out[8 + axis * 4 + 3] = eye;
+    }
+    // x and y of view space, solved from those of clip space: (uv * ray.xy + ray.zw) * planar + uv * flat.xy + flat.zw.
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const float scale = out[axis], shear = out[2 + axis], offset = out[4 + axis];
+        out[20 + axis] = -2 * p[11] / scale;
+        out[22 + axis] = (p[11] + shear) / scale;
+        out[24 + axis] = 2 * p[15] / scale;
+        out[26 + axis] = (-p[15] - offset) / scale;
     }
     return out;
 }

@@ -27,7 +27,7 @@ void write_block(const ParamTable& table, std::span<const std::uint32_t> words, 
 /// Members of the constants block: scalars only, so C++ and std430 agree without padding; offsets are explicit.
 [[nodiscard]] std::string frame_members();
 /// What effects/shared/camera.glsl is made of: five vectors.
-using CameraBlock = std::array<float, 20>;
+using CameraBlock = std::array<float, 28>;
 [[nodiscard]] CameraBlock camera_block(const Camera& camera);
 inline constexpr std::uint32_t frame_words = 4 + std::tuple_size_v<CameraBlock>;
 [[nodiscard]] std::string entry_members(const EffectInfo& info, std::uint32_t entry, std::uint32_t first_word);
