@@ -48,9 +48,22 @@ struct Layer {
     [[nodiscard]] bool is_plain() const { return prefix.empty(); }
 };
 
+// Is what follows the word a number, and nothing but that?
+bool is_numbered(std::string_view name, std::string_view word) {
+    return name.size() > word.size() && name.starts_with(word) &&
+           name.find_first_not_of("0123456789", word.size()) == std::string_view::npos;
+}
+
+// Shadows beside a frame change nothing of how its layers are found.
+std::size_t count_frame_parts(std::span<const FilePart> parts) {
+    return parts.size() - static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), is_shadow_part));
+}
+
 std::vector<Layer> layers_of(std::span<const FilePart> parts) {
     std::vector<Layer> layers;
+    const bool has_several = count_frame_parts(parts) > 1;
     for (std::size_t part = 0; part < parts.size(); ++part) {
+        if (is_shadow_part(parts[part])) continue;
         const std::size_t first = layers.size();
         for (std::size_t i = 0; i < parts[part].channels.size(); ++i) {
             const std::string& channel = parts[part].channels[i];
@@ -58,7 +71,7 @@ std::vector<Layer> layers_of(std::span<const FilePart> parts) {
             auto layer = std::find_if(layers.begin() + static_cast<std::ptrdiff_t>(first), layers.end(),
                                       [&](const Layer& known) { return known.prefix == prefix; });
             if (layer == layers.end()) {
-                const bool is_named_by_part = prefix.empty() && parts.size() > 1;
+                const bool is_named_by_part = prefix.empty() && has_several;
                 layers.push_back(Layer{part, prefix, is_named_by_part ? parts[part].name : prefix, {}});
                 layer = layers.end() - 1;
             }
@@ -96,7 +109,7 @@ std::string listed(const std::vector<std::string>& names) {
 class Finder {
   public:
     Finder(std::span<const FilePart> parts, const LayerNames& names)
-        : parts_(parts), names_(names), layers_(layers_of(parts)) {}
+        : parts_(parts), names_(names), part_count_(count_frame_parts(parts)), layers_(layers_of(parts)) {}
 
     Result<FrameChannels> find();
 
@@ -120,6 +133,7 @@ class Finder {
 
     std::span<const FilePart> parts_;
     const LayerNames& names_;
+    std::size_t part_count_ = 0;  // without shadows
     std::vector<Layer> layers_;
     ChannelSet color_;
 };
@@ -198,7 +212,7 @@ Result<> Finder::find_color(FrameChannels& found) const {
         return layer == layers_.end() ? nullptr : &*layer;
     };
     const Layer* layer = nullptr;
-    if (parts_.size() == 1) layer = first([](const Layer& l) { return l.is_plain() && l.has("rgb"); });
+    if (part_count_ == 1) layer = first([](const Layer& l) { return l.is_plain() && l.has("rgb"); });
     if (layer == nullptr)
         layer = first([](const Layer& l) { return last_component(l.name) == "combined" && l.has("rgb"); });
     if (layer == nullptr) layer = first([](const Layer& l) { return l.is_plain() && l.has("rgb"); });
@@ -207,9 +221,9 @@ Result<> Finder::find_color(FrameChannels& found) const {
         return {};
     }
     layer = first([](const Layer& l) { return l.is_plain() && l.has("y") && !l.has("x"); });
-    if (layer == nullptr && parts_.size() == 1)
+    if (layer == nullptr && part_count_ == 1)
         layer = first([&](const Layer& l) {
-            const std::size_t count = parts_[0].channels.size() - (l.has("a") ? 1 : 0);
+            const std::size_t count = parts_[l.part].channels.size() - (l.has("a") ? 1 : 0);
             return l.is_plain() && count == 1 && !l.has("z") && l.channel("depth") < 0;
         });
     if (layer == nullptr)
@@ -235,7 +249,7 @@ Result<> Finder::find_depth(FrameChannels& found) const {
     }
     const auto is_lone_z = [](const Layer& l) { return l.has("z") && !l.has("x"); };
     const Layer* layer = nullptr;
-    if (parts_.size() == 1) layer = best([&](const Layer& l) { return l.is_plain() && is_lone_z(l); });
+    if (part_count_ == 1) layer = best([&](const Layer& l) { return l.is_plain() && is_lone_z(l); });
     if (layer == nullptr)
         layer = best([&](const Layer& l) { return last_component(l.name) == "depth" && is_lone_z(l); });
     if (layer == nullptr)
@@ -299,6 +313,12 @@ Result<FrameChannels> Finder::find() {
 }
 
 }  // namespace
+
+bool is_shadow_part(const FilePart& part) {
+    return is_numbered(part.name, "shadow") &&
+           std::all_of(part.channels.begin(), part.channels.end(),
+                       [](const auto& name) { return is_numbered(name, "cascade"); });
+}
 
 std::vector<std::string> channel_names(std::span<const FilePart> parts) {
     std::vector<std::string> names;

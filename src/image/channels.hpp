@@ -35,10 +35,15 @@ struct FrameChannels {
 /// dot.
 using LayerNames = std::map<std::string, std::string, std::less<>>;
 
+/// Does the part hold the cascades of a light? It is shadow0, shadow1 and so on, with channels cascade0, cascade1 and
+/// so on alone, and is no layer of the frame.
+[[nodiscard]] bool is_shadow_part(const FilePart& part);
+
 /// Every channel of the file by its full name, part name first where the file has several parts.
 [[nodiscard]] std::vector<std::string> channel_names(std::span<const FilePart> parts);
 
-/// An error names the channels that were found and what was looked for, without the file name.
+/// Parts with shadows are passed over, unless a mapping names one of their channels. An error names the channels that
+/// were found and what was looked for, without the file name.
 [[nodiscard]] Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names);
 
 }  // namespace darkroom

@@ -19,7 +19,7 @@ float encoded(float linear, double steps) {
 }  // namespace
 
 Result<ComparablePicture> read_comparable(const std::filesystem::path& path) {
-    Result<FrameFile> frame = read_frame(path);
+    Result<FrameFile> frame = read_frame(path, {.has_shadow_depths = false});
     if (!frame) return failure(std::move(frame));
     ComparablePicture out{.picture = std::move(frame->color)};
     if (frame->samples == SampleKind::Half || frame->samples == SampleKind::Float) {

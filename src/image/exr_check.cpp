@@ -218,13 +218,6 @@ Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
             fmt::format("the data window is {} and needs {} bytes of pixels, which a file of {} bytes "
                         "cannot hold: truncated (unexpected end of file) or damaged",
                         part.data->text(), bytes, file_size));
-    // Pixels outside the data window cost no file but memory all the same: up to 8K is always fine, beyond that the
-    // display window may be 64 times the data window.
-    const Wide area = part.display->width() * part.display->height();
-    if (area > (Wide{1} << 25) && area / 64 > part.data->width() * part.data->height())
-        return user_error(fmt::format("the display window ({}) is out of proportion to the data window ({})",
-                                      part.display->text(), part.data->text()));
-
     if (!is_tiled) {
         part.chunk_count = divide_up(part.data->height(), compression.lines);
         return {};
@@ -235,6 +228,19 @@ Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
         return malformed(fmt::format("tiles of {}x{}, 1 to 8192 a side is allowed", tiles.width, tiles.height));
     if (tiles.level_mode > 2) return malformed(fmt::format("tile level mode {}, 0 to 2 is allowed", tiles.level_mode));
     part.chunk_count = count_tiles(*part.data, tiles);
+    return {};
+}
+
+// Pixels outside the data window cost no file but memory all the same: up to 8K is always fine, beyond that the display
+// window may be 64 times the largest data window. Parts share the display window and need not fill it.
+Result<> check_proportions(std::span<const Part> parts) {
+    const auto area = [](const Window& window) { return window.width() * window.height(); };
+    const auto data = std::max_element(parts.begin(), parts.end(),
+                                       [&](const Part& a, const Part& b) { return area(*a.data) < area(*b.data); });
+    for (const Part& part : parts)
+        if (area(*part.display) > (Wide{1} << 25) && area(*part.display) / 64 > area(*data->data))
+            return user_error(fmt::format("the display window ({}) is out of proportion to the data window ({})",
+                                          part.display->text(), data->data->text()));
     return {};
 }
 
@@ -298,6 +304,7 @@ Result<> check_exr(std::span<const std::byte> file) {
         if (auto checked = check_part(part, is_tiled.back(), file.size()); !checked) return checked;
         total += part.chunk_count;
     }
+    if (auto checked = check_proportions(parts); !checked) return checked;
     if (static_cast<Wide>(reader.left() / 8) < total)
         return user_error(fmt::format("truncated: unexpected end of file in the table of {} chunks", total));
     const std::size_t first_chunk = reader.position() + static_cast<std::size_t>(total) * 8;

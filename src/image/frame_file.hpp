@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A frame as a file: the picture a renderer made with, where the file has them, depth, normals, motion and camera. Any
-// image file is a frame with a picture alone. What is read is finite and in one convention whatever wrote it; tone
-// mapping, scaling and everything else that changes a picture is left to effects.
+// A frame as a file: the picture a renderer made with, where the file has them, depth, normals, motion, camera and the
+// lights with their shadows. Any image file is a frame with a picture alone. What is read is finite and in one
+// convention whatever wrote it; tone mapping, scaling and everything else that changes a picture is left to effects.
 
 #include <array>
 #include <cstddef>
@@ -37,12 +37,39 @@ struct FrameCamera {
     std::optional<float> near_distance, far_distance;  ///< far may be infinite
 };
 
+/// A square depth map that a light sees its shadows by, row-major, top row first.
+struct FrameCascade {
+    Matrix world_to_cascade{};  ///< to x, y in [-1, 1] (y down) and depth in [0, 1]
+    float split = 0;            ///< how far it reaches along the view axis of the camera
+    Plane<1> depth;             ///< 0 near the light .. 1: nothing there; empty: see FrameOptions::has_shadow_depths
+    [[nodiscard]] bool operator==(const FrameCascade&) const = default;
+};
+
+/// A directional light, numbered as darkroom::Light. Without cascades it casts no shadow.
+struct FrameLight {
+    static constexpr std::size_t max_cascades = 4;
+    std::array<float, 3> direction{0, 1, 0};
+    std::array<float, 3> color{1, 1, 1};
+    float volumetric_intensity = 0;
+    std::array<float, 3> volumetric_color{1, 1, 1};
+    std::vector<FrameCascade> cascades;  ///< of one size
+    [[nodiscard]] bool operator==(const FrameLight&) const = default;
+};
+
+/// What a file holds at most: lights, those with cascades, texels of a cascade's side, and of all cascades together
+/// (4 GiB here).
+inline constexpr std::size_t max_frame_lights = 16, max_frame_shadows = 4;
+inline constexpr std::uint32_t max_cascade_side = 16384;
+inline constexpr std::uint64_t max_cascade_texels = std::uint64_t{1} << 30;
+
 struct FrameOptions {
     LayerNames names;                              ///< go before the known names; see add_mapping
     std::optional<double> vertical_field_of_view;  ///< degrees; goes before the file's projection
     /// See read_camera; goes before what the frame's own file says. Of a camera that is not the file's, the previous
     /// place and the distances are not known either.
     std::filesystem::path camera_file;
+    /// False: the depths of cascades stay in the file, for those who need no shadows; they are most of it.
+    bool has_shadow_depths = true;
 };
 
 /// Pixels that were not finite, and are now: NaN became 0, an infinity +-65504 (the largest half); alpha 1.
@@ -51,7 +78,8 @@ struct PixelCounts {
     std::size_t infinite_color = 0;
     std::size_t nan_alpha = 0;
     std::size_t infinite_alpha = 0;
-    std::size_t not_finite_other = 0;  ///< normals and motion (became 0), depth that is NaN (became sky)
+    /// Normals and motion (became 0), depth that is NaN (became sky), depth of shadows (became 1, which is lit).
+    std::size_t not_finite_other = 0;
     [[nodiscard]] bool operator==(const PixelCounts&) const = default;
 };
 
@@ -64,6 +92,7 @@ struct FrameFile {
     std::optional<Plane<3>> normals;   ///< world space; 0 where there is no surface
     std::optional<Plane<2>> velocity;  ///< previous minus current position, pixels, y down
     FrameCamera camera;
+    std::vector<FrameLight> lights;
     std::optional<double> time, delta_time;    ///< seconds
     std::optional<std::uint64_t> frame_index;  ///< at most 2^53
     FileKind kind = FileKind::OpenExr;
@@ -80,7 +109,8 @@ struct FrameFile {
 /// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, worldToCamera,
 /// and as attributes of our own darkroom:projection, previousWorldToCamera, previousProjection, near, far, time,
 /// deltaTime and frameIndex, bit for bit. Colour is half, or float if `frame.samples` is; depth and motion are float,
-/// normals half.
+/// normals half. Lights are attributes as well, and their cascades parts of their own beside the frame's: see
+/// docs/conventions.md.
 [[nodiscard]] Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame);
 
 /// A camera in a TOML file: `world_to_camera` or `camera_to_world` (16 numbers, row by row as one writes a matrix for

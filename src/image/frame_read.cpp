@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "image/frame_file.hpp"
+#include "image/frame_lights.hpp"
 #include "image/primaries.hpp"
 
 namespace darkroom {
@@ -330,6 +331,7 @@ Result<FrameFile> FrameReader::read() {
     if (auto done = read_velocity(); !done) return failure(std::move(done));
     if (auto done = read_camera_of_file(); !done) return failure(std::move(done));
     read_time_of_file();
+    if (auto done = read_lights(decoder_, found_.color.part, options_, frame_); !done) return failure(std::move(done));
     const std::vector<float> aspect = decoder_.numbers(found_.color.part, "PixelAspectRatio");
     if (aspect.size() == 1 && std::abs(aspect[0] - 1) > 1e-3f)
         frame_.warnings.push_back(fmt::format("pixels are {:g} times as wide as high: taken as square", aspect[0]));

@@ -8,6 +8,7 @@
 #include "core/assert.hpp"
 #include "image/encoder.hpp"
 #include "image/frame_file.hpp"
+#include "image/frame_lights.hpp"
 #include "image/write.hpp"
 
 namespace darkroom {
@@ -32,6 +33,8 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame) 
     const std::size_t pixel_count = std::size_t{frame.color.width} * frame.color.height;
     if (pixel_count == 0) return user_error(fmt::format("{}: the frame is empty", path.string()));
     DARKROOM_ASSERT(frame.color.pixels.size() == pixel_count * 4);
+    if (const auto checked = check_lights(frame.lights); !checked)
+        return user_error(fmt::format("{}: {}", path.string(), checked.error().text));
 
     constexpr float largest_float = std::numeric_limits<float>::max();
     constexpr float largest_half = 65504.0f;
@@ -61,14 +64,17 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame) 
     spec.nchannels = static_cast<int>(spec.channelnames.size());
     spec.alpha_channel = frame.has_alpha ? 3 : -1;
 
-    std::vector<float> samples;
-    samples.reserve(pixel_count * spec.channelnames.size());
-    for (std::size_t pixel = 0; pixel < pixel_count; ++pixel)
-        for (const Source& source : sources)
-            for (std::size_t c = 0; c < source.count; ++c) {
-                const float value = source.values[pixel * source.stride + c];
-                samples.push_back(std::isnan(value) ? 0.0f : std::clamp(value, -source.largest, source.largest));
-            }
+    const auto samples = [&sources, pixel_count, channel_count = spec.channelnames.size()] {
+        std::vector<float> values;
+        values.reserve(pixel_count * channel_count);
+        for (std::size_t pixel = 0; pixel < pixel_count; ++pixel)
+            for (const Source& source : sources)
+                for (std::size_t c = 0; c < source.count; ++c) {
+                    const float value = source.values[pixel * source.stride + c];
+                    values.push_back(std::isnan(value) ? 0.0f : std::clamp(value, -source.largest, source.largest));
+                }
+        return values;
+    };
 
     spec.attribute("compression", "zip");
     constexpr std::array rec709{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
@@ -91,7 +97,12 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame) 
     add_number("darkroom:time", frame.time);
     add_number("darkroom:deltaTime", frame.delta_time);
     add_number("darkroom:frameIndex", frame.frame_index);
-    return encode_to_file(path, FileKind::OpenExr, spec, OIIO::TypeFloat, samples.data());
+    add_lights(spec, frame.lights);
+    std::vector<EncodedPart> parts = shadow_parts(spec, frame.lights);
+    if (parts.empty()) return encode_to_file(path, FileKind::OpenExr, spec, OIIO::TypeFloat, samples().data());
+    spec.attribute("oiio:subimagename", "frame");
+    parts.insert(parts.begin(), EncodedPart{spec, samples});
+    return encode_parts_to_file(path, parts);
 }
 
 }  // namespace darkroom

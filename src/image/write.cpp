@@ -16,6 +16,7 @@
 #include "core/assert.hpp"
 #include "core/files.hpp"
 #include "image/encoder.hpp"
+#include "image/exr_check.hpp"
 
 namespace darkroom {
 namespace {
@@ -148,13 +149,19 @@ Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOpt
         fmt::format("{}: {} samples in {}; allowed: {}", path.string(), name_of(samples), name_of(*kind), allowed));
 }
 
+namespace {
+
+Failure encode_error(const std::filesystem::path& path, FileKind kind, std::string_view why) {
+    return machine_error(fmt::format("{}: cannot be written as {}: {}", path.string(), name_of(kind),
+                                     why.empty() ? "unknown reason" : one_printable_line(why)));
+}
+
+}  // namespace
+
 Result<> encode_to_file(const std::filesystem::path& path, FileKind kind, const OIIO::ImageSpec& spec,
                         OIIO::TypeDesc type, const void* samples) {
     const char* writer = format_of(kind).writer;
-    const auto error = [&](std::string_view why) {
-        return machine_error(fmt::format("{}: cannot be written as {}: {}", path.string(), name_of(kind),
-                                         why.empty() ? "unknown reason" : one_printable_line(why)));
-    };
+    const auto error = [&](std::string_view why) { return encode_error(path, kind, why); };
     OIIO::Filesystem::IOVecOutput memory;
     try {
         auto output = OIIO::ImageOutput::create(writer);
@@ -167,6 +174,35 @@ Result<> encode_to_file(const std::filesystem::path& path, FileKind kind, const 
         return error(exception.what());
     }
     return write_file(path, std::as_bytes(std::span(memory.buffer())));
+}
+
+// OpenImageIO before 2.5.12 writes several parts to a path alone. OpenEXR swallows errors when it closes a file, and
+// leaves places of chunks unwritten then: the check finds them.
+Result<> encode_parts_to_file(const std::filesystem::path& path, std::span<const EncodedPart> parts) {
+    const auto error = [&](std::string_view why) { return encode_error(path, FileKind::OpenExr, why); };
+    auto temporary = AtomicPath::beside(path);
+    if (!temporary) return failure(std::move(temporary));
+    const std::string name = temporary->path().string();
+    std::vector<OIIO::ImageSpec> specs;
+    for (const EncodedPart& part : parts) specs.push_back(part.spec);
+    try {
+        auto output = OIIO::ImageOutput::create(format_of(FileKind::OpenExr).writer);
+        if (!output) return error("OpenImageIO was built without it");
+        if (!output->open(name, static_cast<int>(specs.size()), specs.data())) return error(output->geterror());
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            if (i > 0 && !output->open(name, specs[i], OIIO::ImageOutput::AppendSubimage))
+                return error(output->geterror());
+            const std::vector<float> samples = parts[i].samples();
+            if (!output->write_image(OIIO::TypeFloat, samples.data())) return error(output->geterror());
+        }
+        if (!output->close()) return error(output->geterror());
+    } catch (const std::exception& exception) {
+        return error(exception.what());
+    }
+    const auto written = read_file(temporary->path());
+    if (!written) return failure(written.error());
+    if (const auto checked = check_exr(*written); !checked) return error(checked.error().text);
+    return temporary->commit();
 }
 
 Result<> write_picture(const std::filesystem::path& path, const Picture& picture, const WriteOptions& options) {

@@ -133,7 +133,7 @@ Assets load_assets(const Scene& scene) {
         if (i > 0)
             models[i - 1] = read_model(model_files[i - 1]);
         else if (!wanted.skybox.empty())
-            sky = read_frame(wanted.skybox);
+            sky = read_frame(wanted.skybox, {.has_shadow_depths = false});
     });
     std::vector<EncodedImage> sources;
     for (const fs::path& file : wanted.images.files())
