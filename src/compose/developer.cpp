@@ -29,6 +29,8 @@ struct Layer {
 };
 using Layers = std::array<Layer, 4>;
 
+bool has_cascades(const ReferenceLight& light) { return !light.cascades.empty(); }
+
 bool is_all_half(std::span<const float> values) {
     return std::all_of(values.begin(), values.end(), [](float value) { return exact_half(value).has_value(); });
 }
@@ -69,6 +71,7 @@ ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayo
             .view = image.mip_views[0],
             .format = image.info.format,
             .extent = {image.info.extent.width, image.info.extent.height},
+            .layer_count = image.info.array_layers,
             .layout = before,
             .last_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
             .final_layout = after};
@@ -86,18 +89,19 @@ CompileDesc compile_desc_for(Device& device, const DevelopDesc& desc) {
             .fuse = desc.fuse};
 }
 
-CompileDesc compile_desc_for(Device& device, VkExtent2D extent, const Layers& layers, const DevelopDesc& desc) {
+CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const Layers& layers, const DevelopDesc& desc) {
     const auto format = [&](std::size_t i) {
         return layers[i].values.empty() ? VK_FORMAT_UNDEFINED : layers[i].format;
     };
     CompileDesc out = compile_desc_for(device, desc);
-    out.max_extent = extent;
+    out.max_extent = input.extent;
     out.color = layers[0].format;
     out.color_usage = shader_usage(device.context(), layers[0].format);
     out.depth = format(1);
     out.is_depth_planar = out.depth != VK_FORMAT_UNDEFINED;
     out.normals = format(2);
     out.velocity = format(3);
+    out.has_shadows = std::any_of(input.lights.begin(), input.lights.end(), has_cascades);
     return out;
 }
 
@@ -108,6 +112,13 @@ bool is_same(const CompileDesc& a, const CompileDesc& b) {
            a.is_depth_planar == b.is_depth_planar && a.normals == b.normals && a.velocity == b.velocity &&
            a.ui == b.ui && a.has_shadows == b.has_shadows;
 }
+
+/// The cascades of one light, an array, and the buffer that fills it.
+struct ShadowUpload {
+    gpu::Image image;
+    gpu::Buffer buffer;
+    std::uint32_t resolution = 0, count = 0;
+};
 
 /// Images of one size for pictures from main memory, and the buffers that fill them.
 struct Uploads {
@@ -132,7 +143,7 @@ void fill(const Layer& layer, std::byte* out) {
 }  // namespace
 
 CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const DevelopDesc& desc) {
-    return compile_desc_for(device, input.extent, layers_of(input), desc);
+    return compile_desc_for(device, input, layers_of(input), desc);
 }
 
 CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const DevelopDesc& desc) {
@@ -166,6 +177,8 @@ struct Developer::State {
     const Composer* compiled_composer = nullptr;
     Plan plan;
     std::optional<Uploads> uploads;
+    std::vector<ShadowUpload> shadows;  ///< of the lights that have some
+    std::vector<Light> lights;          ///< of the frame that is being developed
     gpu::Image target;
     std::optional<Readback> readback;
 
@@ -180,6 +193,25 @@ struct Developer::State {
             if (layer.values.size() != wanted && (is_required || !layer.values.empty()))
                 return user_error(fmt::format("{}: {} numbers, {}x{} pixels need {}", layer.name, layer.values.size(),
                                               width, height, wanted));
+        }
+        return {};
+    }
+
+    Result<> check(std::span<const ReferenceLight> given) const {
+        const std::uint32_t limit = device->context().traits.max_image_dimension;
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            const ReferenceLight& light = given[i];
+            if (light.cascades.size() > Light::max_cascades)
+                return user_error(fmt::format("light {}: {} cascades, at most {} are allowed", i, light.cascades.size(),
+                                              Light::max_cascades));
+            if (has_cascades(light) && (light.resolution < 1 || light.resolution > limit))
+                return user_error(fmt::format("light {}: cascades of {} texels a side: {} allows 1 to {}", i,
+                                              light.resolution, device->info().name, limit));
+            const std::size_t wanted = std::size_t{light.resolution} * light.resolution;
+            for (const std::vector<float>& cascade : light.cascades)
+                if (cascade.size() != wanted)
+                    return user_error(fmt::format("light {}: a cascade of {} numbers, {}x{} texels need {}", i,
+                                                  cascade.size(), light.resolution, light.resolution, wanted));
         }
         return {};
     }
@@ -233,6 +265,54 @@ struct Developer::State {
         return {};
     }
 
+    Result<ShadowUpload> make_shadow(const ReferenceLight& light) const {
+        ShadowUpload made{.resolution = light.resolution, .count = static_cast<std::uint32_t>(light.cascades.size())};
+        auto image =
+            gpu::Image::create(context(), {.name = "shadows",
+                                           .format = VK_FORMAT_D32_SFLOAT,
+                                           .extent = {light.resolution, light.resolution, 1},
+                                           .array_layers = std::max(made.count, 2U),  // a view of one would be no array
+                                           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+        if (!image) return failure(std::move(image));
+        const VkDeviceSize bytes = VkDeviceSize{light.resolution} * light.resolution * made.count * sizeof(float);
+        auto buffer = gpu::Buffer::create(context(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload,
+                                          "shadows");
+        if (!buffer) return failure(std::move(buffer));
+        made.image = std::move(*image);
+        made.buffer = std::move(*buffer);
+        return made;
+    }
+
+    /// Images and filled buffers for the cascades, and the lights that refer to them as record_uploads leaves them.
+    Result<> prepare_lights(std::span<const ReferenceLight> given) {
+        lights.clear();
+        std::size_t used = 0;
+        for (const ReferenceLight& source : given) {
+            Light& light = lights.emplace_back(source.light);
+            light.cascades = {};
+            light.cascade_count = static_cast<std::uint32_t>(source.cascades.size());
+            if (!has_cascades(source)) continue;
+            if (used == shadows.size()) shadows.emplace_back();
+            ShadowUpload& shadow = shadows[used++];
+            if (shadow.resolution != source.resolution || shadow.count != light.cascade_count) {
+                shadow = {};
+                Result<ShadowUpload> made = make_shadow(source);
+                if (!made) return failure(std::move(made));
+                shadow = std::move(*made);
+            }
+            std::byte* to = shadow.buffer.memory.mapped;
+            for (const std::vector<float>& cascade : source.cascades) {
+                std::memcpy(to, cascade.data(), cascade.size() * sizeof(float));
+                to += cascade.size() * sizeof(float);
+            }
+            light.cascades = reference_to(shadow.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+            light.cascades.view = shadow.image.view;
+        }
+        shadows.resize(used);
+        return {};
+    }
+
     void record_uploads(VkExtent2D extent, VkCommandBuffer commands) const {
         const VkBufferImageCopy copy = whole(extent);
         for (std::size_t i = 0; i < uploads->images.size(); ++i) {
@@ -243,11 +323,20 @@ struct Developer::State {
             context().vk.CmdCopyBufferToImage(commands, uploads->buffers[i]->handle, image.handle,
                                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
         }
+        for (const ShadowUpload& shadow : shadows) {
+            const VkBufferImageCopy copy_of_all{.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, shadow.count},
+                                                .imageExtent = {shadow.resolution, shadow.resolution, 1}};
+            gpu::transition(context(), commands, shadow.image, VK_IMAGE_LAYOUT_UNDEFINED,
+                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+            context().vk.CmdCopyBufferToImage(commands, shadow.buffer.handle, shadow.image.handle,
+                                              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy_of_all);
+        }
     }
 
     /// The frame's images as record_uploads leaves them.
     [[nodiscard]] Frame uploaded_frame(const DevelopInput& input) const {
         Frame frame{.camera = input.camera,
+                    .lights = lights,
                     .time = input.time,
                     .delta_time = input.delta_time,
                     .frame_index = input.frame_index};
@@ -295,9 +384,11 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DevelopInp
     State& state = *state_;
     const Layers layers = layers_of(input);
     if (Result<> done = state.check(input.extent, layers); !done) return failure(std::move(done));
-    const CompileDesc wanted = compile_desc_for(*state.device, input.extent, layers, state.desc);
+    if (Result<> done = state.check(input.lights); !done) return failure(std::move(done));
+    const CompileDesc wanted = compile_desc_for(*state.device, input, layers, state.desc);
     if (Result<> done = state.compile(composer, wanted); !done) return failure(std::move(done));
     if (Result<> done = state.make_uploads(input.extent, layers); !done) return failure(std::move(done));
+    if (Result<> done = state.prepare_lights(input.lights); !done) return failure(std::move(done));
     for (std::size_t i = 0; i < layers.size(); ++i)
         if (state.uploads->buffers[i]) fill(layers[i], state.uploads->buffers[i]->memory.mapped);
     Frame frame = state.uploaded_frame(input);
@@ -325,7 +416,11 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
         if (!made) return failure(std::move(made));
         readback = std::move(*made);
     }
-    for (ImageRef* const image : {&frame.color, &frame.depth, &frame.normals, &frame.velocity}) {
+    std::vector<ImageRef*> images{&frame.color, &frame.depth, &frame.normals, &frame.velocity};
+    state.lights.assign(frame.lights.begin(), frame.lights.end());
+    for (Light& light : state.lights) images.push_back(&light.cascades);
+    frame.lights = state.lights;
+    for (ImageRef* const image : images) {
         if (image->final_layout == VK_IMAGE_LAYOUT_UNDEFINED) image->final_layout = image->layout;
         if (!readback) continue;
         image->last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  // the read-back's

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <darkroom/composer.hpp>
+#include <darkroom/reference.hpp>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,6 +23,7 @@ struct DevelopInput {
     std::span<const float> depth;     ///< planar distance
     std::span<const float> normals;   ///< x, y, z
     std::span<const float> velocity;  ///< x, y
+    std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
     double delta_time = 1.0 / 60;

@@ -23,13 +23,22 @@ constexpr std::array layouts{
     Layout{VK_FORMAT_R8G8B8A8_UNORM, 4, 1},      Layout{VK_FORMAT_R16_SFLOAT, 1, 2},
     Layout{VK_FORMAT_R16G16_SFLOAT, 2, 2},       Layout{VK_FORMAT_R16G16B16A16_SFLOAT, 4, 2},
     Layout{VK_FORMAT_R32_SFLOAT, 1, 4},          Layout{VK_FORMAT_R32G32_SFLOAT, 2, 4},
-    Layout{VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4},
+    Layout{VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4}, Layout{VK_FORMAT_D32_SFLOAT, 1, 4},
 };
 
 const Layout* layout_of(VkFormat format) {
     for (const Layout& layout : layouts)
         if (layout.format == format) return &layout;
     return nullptr;
+}
+
+VkImageAspectFlags aspect_of(const ImageRef& image) {
+    return image.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
+std::size_t texel_count(const ImageRef& image) {
+    const VkExtent2D extent = image.used_region().extent;
+    return std::size_t{extent.width} * extent.height * image.layer_count;
 }
 
 void barrier(const gpu::Context& context, VkCommandBuffer commands, const ImageRef& image, VkImageLayout from,
@@ -45,7 +54,7 @@ void barrier(const gpu::Context& context, VkCommandBuffer commands, const ImageR
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = image.image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, image.mip_level, 1, image.array_layer, 1},
+        .subresourceRange = {aspect_of(image), image.mip_level, 1, image.array_layer, image.layer_count},
     };
     const VkDependencyInfo dependency{
         .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &of_image};
@@ -90,11 +99,10 @@ Result<> submit(gpu::Context& context, const RecordBefore& before, const std::fu
 Result<Readback> Readback::create(gpu::Context& context, const ImageRef& image) {
     const Layout* const layout = layout_of(image.format);
     if (layout == nullptr)
-        return user_error(
-            fmt::format("an image of VkFormat {} cannot be read back, only RGBA8 and floats of 16 or 32 bits",
-                        static_cast<int>(image.format)));
-    const VkExtent2D extent = image.used_region().extent;
-    const VkDeviceSize bytes = VkDeviceSize{extent.width} * extent.height * layout->channels * layout->bytes;
+        return user_error(fmt::format(
+            "an image of VkFormat {} cannot be read back, only RGBA8, floats of 16 or 32 bits, 32-bit depth",
+            static_cast<int>(image.format)));
+    const VkDeviceSize bytes = VkDeviceSize{texel_count(image)} * layout->channels * layout->bytes;
     Result<gpu::Buffer> buffer = gpu::Buffer::create(context, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                                      gpu::Memory::Kind::Readback, "read-back picture");
     if (!buffer) return failure(std::move(buffer));
@@ -108,7 +116,7 @@ Result<Readback> Readback::create(gpu::Context& context, const ImageRef& image) 
 void Readback::record(VkCommandBuffer commands) const {
     const VkRect2D region = image_.used_region();
     const VkBufferImageCopy copy{
-        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, image_.mip_level, image_.array_layer, 1},
+        .imageSubresource = {aspect_of(image_), image_.mip_level, image_.array_layer, image_.layer_count},
         .imageOffset = {region.offset.x, region.offset.y, 0},
         .imageExtent = {region.extent.width, region.extent.height, 1}};
     barrier(*context_, commands, image_, image_.layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
@@ -121,8 +129,7 @@ void Readback::record(VkCommandBuffer commands) const {
 std::vector<float> Readback::floats(std::uint32_t channels) const {
     const Layout& layout = *layout_of(image_.format);
     DARKROOM_ASSERT(channels <= layout.channels);
-    const VkExtent2D extent = image_.used_region().extent;
-    const std::size_t pixels = std::size_t{extent.width} * extent.height;
+    const std::size_t pixels = texel_count(image_);
     std::vector<float> out(pixels * channels);
     const std::byte* at = buffer_.memory.mapped;
     if (layout.bytes == sizeof(float) && layout.channels == channels) {
@@ -137,8 +144,7 @@ std::vector<float> Readback::floats(std::uint32_t channels) const {
 
 std::vector<std::uint8_t> Readback::bytes() const {
     DARKROOM_ASSERT(image_.format == VK_FORMAT_R8G8B8A8_UNORM);
-    const VkExtent2D extent = image_.used_region().extent;
-    std::vector<std::uint8_t> out(std::size_t{extent.width} * extent.height * 4);
+    std::vector<std::uint8_t> out(texel_count(image_) * 4);
     std::memcpy(out.data(), buffer_.memory.mapped, out.size());
     return out;
 }
@@ -157,12 +163,21 @@ Result<FrameReadback> FrameReadback::create(gpu::Context& context, const Frame& 
     if (Result<> done = add(frame.depth, out.depth_); !done) return failure(std::move(done));
     if (Result<> done = add(frame.normals, out.normals_); !done) return failure(std::move(done));
     if (Result<> done = add(frame.velocity, out.velocity_); !done) return failure(std::move(done));
+    for (const Light& light : frame.lights) {
+        out.lights_.push_back(light);
+        ImageRef cascades = light.cascades;
+        cascades.layer_count = light.cascade_count;
+        if (light.cascade_count == 0) cascades = {};
+        if (Result<> done = add(cascades, out.cascades_.emplace_back()); !done) return failure(std::move(done));
+    }
     return out;
 }
 
 void FrameReadback::record(VkCommandBuffer commands) const {
     for (const std::optional<Readback>* const layer : {&color_, &depth_, &normals_, &velocity_})
         if (*layer) (*layer)->record(commands);
+    for (const std::optional<Readback>& cascades : cascades_)
+        if (cascades) cascades->record(commands);
 }
 
 FrameLayers FrameReadback::layers() const {
@@ -171,6 +186,16 @@ FrameLayers FrameReadback::layers() const {
     if (depth_) out.depth = depth_->floats(1);
     if (normals_) out.normals = normals_->floats(3);
     if (velocity_) out.velocity = velocity_->floats(2);
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        ReferenceLight& light = out.lights.emplace_back(ReferenceLight{.light = lights_[i]});
+        light.light.cascades = {};  // the image is the host's
+        if (!cascades_[i]) continue;
+        light.resolution = lights_[i].cascades.used_region().extent.width;
+        const std::vector<float> depths = cascades_[i]->floats(1);
+        const auto texels = static_cast<std::ptrdiff_t>(depths.size() / lights_[i].cascade_count);
+        for (auto first = depths.begin(); first != depths.end(); first += texels)
+            light.cascades.emplace_back(first, first + texels);
+    }
     return out;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <darkroom/device.hpp>
 #include <darkroom/frame.hpp>
+#include <darkroom/reference.hpp>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -21,6 +22,7 @@ struct FrameLayers {
     std::vector<float> depth;     ///< one number a pixel
     std::vector<float> normals;   ///< x, y, z
     std::vector<float> velocity;  ///< x, y
+    std::vector<ReferenceLight> lights;
 };
 
 /// A finished picture: `bytes` or `pixels`, four a pixel.
@@ -30,7 +32,8 @@ struct DevelopedPicture {
     std::vector<float> pixels;
 };
 
-/// One image and the buffer it is copied to: RGBA8, or 16- and 32-bit floats.
+/// One image and the buffer it is copied to: RGBA8, 16- and 32-bit floats, or 32-bit depth. Of an array all layers that
+/// the reference has, one after the other.
 class Readback {
   public:
     [[nodiscard]] static Result<Readback> create(gpu::Context& context, const ImageRef& image);
@@ -47,7 +50,7 @@ class Readback {
     gpu::Buffer buffer_;
 };
 
-/// The layers of a frame, all of them.
+/// The layers of a frame, all of them, and its lights.
 class FrameReadback {
   public:
     [[nodiscard]] static Result<FrameReadback> create(gpu::Context& context, const Frame& frame);
@@ -57,6 +60,8 @@ class FrameReadback {
   private:
     VkExtent2D extent_{};
     std::optional<Readback> color_, depth_, normals_, velocity_;
+    std::vector<Light> lights_;
+    std::vector<std::optional<Readback>> cascades_;  ///< of each light
 };
 
 using RecordBefore = std::function<Result<>(VkCommandBuffer)>;

@@ -26,7 +26,9 @@ std::string missing_needs(const Needs& needs, const ReferenceChainInput& input) 
     say(needs.depth, input.depth != nullptr, "depth");
     say(needs.normals, input.normals != nullptr, "normals");
     say(needs.velocity, input.velocity != nullptr, "velocity");
-    say(needs.shadows, false, "shadows");
+    const bool has_shadows = std::any_of(input.lights.begin(), input.lights.end(),
+                                         [](const ReferenceLight& light) { return !light.cascades.empty(); });
+    say(needs.shadows, has_shadows, "shadows");
     say(needs.ui, false, "a UI image");
     return out;
 }
@@ -112,6 +114,7 @@ class Chain {
                            .depth = input_.depth,
                            .normals = input_.normals,
                            .velocity = input_.velocity,
+                           .lights = input_.lights,
                            .camera = input_.camera,
                            .time = input_.time,
                            .frame_index = input_.frame_index});

@@ -5,6 +5,7 @@
 
 #include <darkroom/composer.hpp>
 #include <darkroom/reference.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct ReferenceChainInput {
     const ReferenceImage* depth = nullptr;
     const ReferenceImage* normals = nullptr;
     const ReferenceImage* velocity = nullptr;
+    std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
     std::uint64_t frame_index = 0;

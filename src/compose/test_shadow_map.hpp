@@ -8,16 +8,17 @@
 
 namespace darkroom::test {
 
-/// A layer a cascade, left to be read by shaders.
+/// A layer a cascade, left to be read by shaders; it may be copied from.
 [[nodiscard]] inline gpu::Image upload_shadow_map(gpu::Context& context, const ReferenceLight& light) {
     const auto layers = static_cast<std::uint32_t>(light.cascades.size());
     // A view of one layer would be no array.
-    gpu::Image image = gpu::test::must(
-        gpu::Image::create(context, {.name = "test shadow map",
-                                     .format = VK_FORMAT_D32_SFLOAT,
-                                     .extent = {light.resolution, light.resolution, 1},
-                                     .array_layers = std::max(layers, 2u),
-                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
+    gpu::Image image = gpu::test::must(gpu::Image::create(
+        context,
+        {.name = "test shadow map",
+         .format = VK_FORMAT_D32_SFLOAT,
+         .extent = {light.resolution, light.resolution, 1},
+         .array_layers = std::max(layers, 2u),
+         .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
     const std::size_t bytes = std::size_t{light.resolution} * light.resolution * sizeof(float);
     const gpu::Buffer staging = gpu::test::must(gpu::Buffer::create(
         context, bytes * layers, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "test shadow map"));

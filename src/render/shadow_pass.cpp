@@ -314,8 +314,9 @@ Result<ShadowPass> ShadowPass::create(gpu::Context& context, VkDescriptorSetLayo
     state.material_layout = scene.material_layout.handle;
     state.desc = desc;
     for (std::uint32_t i = 0; i < lights; ++i) {
-        Result<gpu::Image> map = create_map(context, fmt::format("shadow map {}", i), desc.resolution, desc.count,
-                                            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
+        Result<gpu::Image> map =
+            create_map(context, fmt::format("shadow map {}", i), desc.resolution, desc.count,
+                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
         if (!map) return failure(std::move(map));
         state.maps.push_back(std::move(*map));
     }
