@@ -62,6 +62,8 @@ class CliRender : public test::CliFixture {
             return flag == "--size" || flag == "--width" || flag == "--height";
         });
         if (!has_size) flags.insert(flags.end(), {"--size", "48x32"});
+        const bool has_frame = std::ranges::find(flags, "--frame") != flags.end();
+        if (has_frame) flags.insert(flags.end(), {"--shadow-resolution", "256"});  // it holds them
         return run(flags);
     }
     /// Each list of flags gives another picture than all others.

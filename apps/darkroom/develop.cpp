@@ -82,6 +82,7 @@ Result<Job> job_of(const Options& options) {
     Result<darkroom::Look> look = options.look.look();
     if (!look) return failure(std::move(look));
     job.look = std::move(*look);
+    job.frame.has_shadow_depths = needs_shadows(job.look);
     return job;
 }
 
@@ -126,14 +127,17 @@ class Develop {
             return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown, done.error().text)});
         Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), extent.width, extent.height);
         if (!sized) return failure(std::move(sized));
-        darkroom::DevelopInput input = develop_input(*sized);
+        const std::vector<darkroom::ReferenceLight> lights = take_lights(*sized);
+        darkroom::DevelopInput input = develop_input(*sized, lights);
         if (options_.time) input.time = *options_.time;
         if (!sized->frame_index) input.frame_index = index;
-        Result<darkroom::DevelopedPicture> picture = options_.is_reference
-                                                         ? develop_by_reference(*composer_, input, job_.develop.target)
-                                                         : developer_->develop(*composer_, input);
+        std::vector<std::string> left_out;
+        Result<darkroom::DevelopedPicture> picture =
+            options_.is_reference ? develop_by_reference(*composer_, input, job_.develop.target, left_out)
+                                  : developer_->develop(*composer_, input);
         if (!picture) return failure(std::move(picture));
-        if (index == 0) warn_of_what_is_left_out(job_.look, *composer_, developer_->plan());
+        if (!options_.is_reference) left_out = developer_->plan().left_out;
+        if (index == 0) warn_of_what_is_left_out(job_.look, *composer_, left_out);
         const VkExtent2D size = picture->extent;
         if (Result<> done = write(job_.outputs[index], std::move(*picture), job_.write); !done)
             return failure(std::move(done));

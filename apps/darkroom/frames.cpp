@@ -15,6 +15,7 @@ using darkroom::DevelopedPicture;
 using darkroom::DevelopInput;
 using darkroom::DevelopTarget;
 using darkroom::ReferenceImage;
+using darkroom::ReferenceLight;
 using darkroom::Result;
 
 namespace {
@@ -49,6 +50,20 @@ darkroom::FrameCamera stored_camera(const Camera& camera) {
             .far_distance = camera.far_distance};
 }
 
+darkroom::FrameLight stored_light(ReferenceLight light) {
+    darkroom::FrameLight out{.direction = light.light.direction,
+                             .color = light.light.color,
+                             .volumetric_intensity = light.light.volumetric_intensity,
+                             .volumetric_color = light.light.volumetric_color};
+    for (std::size_t i = 0; i < light.cascades.size(); ++i) {
+        darkroom::FrameCascade& cascade = out.cascades.emplace_back(darkroom::FrameCascade{
+            .world_to_cascade = light.light.world_to_cascade[i], .split = light.light.splits[i]});
+        cascade.depth.width = cascade.depth.height = light.resolution;
+        cascade.depth.values = std::move(light.cascades[i]);
+    }
+    return out;
+}
+
 template <std::uint32_t channels>
 std::optional<darkroom::Plane<channels>> plane(VkExtent2D extent, std::vector<float> values) {
     if (values.empty()) return std::nullopt;
@@ -63,9 +78,30 @@ std::optional<darkroom::Plane<channels>> plane(VkExtent2D extent, std::vector<fl
 
 Camera as_stored(const Camera& camera) { return camera_of(stored_camera(camera)); }
 
-DevelopInput develop_input(const darkroom::FrameFile& frame) {
+std::vector<ReferenceLight> take_lights(darkroom::FrameFile& frame) {
+    std::vector<ReferenceLight> lights;
+    for (darkroom::FrameLight& stored : frame.lights) {
+        ReferenceLight& light =
+            lights.emplace_back(ReferenceLight{.light = {.direction = stored.direction,
+                                                         .color = stored.color,
+                                                         .volumetric_intensity = stored.volumetric_intensity,
+                                                         .volumetric_color = stored.volumetric_color}});
+        for (std::size_t i = 0; i < stored.cascades.size(); ++i) {
+            darkroom::FrameCascade& cascade = stored.cascades[i];
+            if (cascade.depth.empty()) break;
+            light.light.world_to_cascade[i] = cascade.world_to_cascade;
+            light.light.splits[i] = cascade.split;
+            light.light.cascade_count = static_cast<std::uint32_t>(i + 1);
+            light.resolution = cascade.depth.width;
+            light.cascades.push_back(std::move(cascade.depth.values));
+        }
+    }
+    return lights;
+}
+
+DevelopInput develop_input(const darkroom::FrameFile& frame, std::span<const ReferenceLight> lights) {
     const auto [width, height] = std::pair(frame.color.width, frame.color.height);
-    DevelopInput input{.extent = {width, height}, .color = frame.color.pixels};
+    DevelopInput input{.extent = {width, height}, .color = frame.color.pixels, .lights = lights};
     if (frame.depth) input.depth = frame.depth->values;
     if (frame.normals) input.normals = frame.normals->values;
     if (frame.velocity) input.velocity = frame.velocity->values;
@@ -89,6 +125,7 @@ darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLaye
     out.depth = plane<1>(layers.extent, std::move(layers.depth));
     out.normals = plane<3>(layers.extent, std::move(layers.normals));
     out.velocity = plane<2>(layers.extent, std::move(layers.velocity));
+    for (ReferenceLight& light : layers.lights) out.lights.push_back(stored_light(std::move(light)));
     out.camera = stored_camera(frame.camera);
     out.time = frame.time;
     out.delta_time = frame.delta_time;
@@ -98,10 +135,16 @@ darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLaye
     return out;
 }
 
+bool needs_shadows(const darkroom::Look& look) {
+    return std::ranges::any_of(look.entries, [&](const darkroom::LookEntry& entry) {
+        return entry.effect->needs.shadows && entry.state.enabled && (look.is_enabled || !look.is_flat);
+    });
+}
+
 // Linear targets skip the last steps by definition; that is no news.
 void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
-                              const darkroom::Plan& plan) {
-    for (const std::string& text : plan.left_out) {
+                              std::span<const std::string> left_out) {
+    for (const std::string& text : left_out) {
         const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
         if (!entry) continue;
         const darkroom::EffectInfo& info = composer.info(*entry);
@@ -125,7 +168,7 @@ void print_timings(darkroom::Composer& composer) {
 }
 
 Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer, const DevelopInput& input,
-                                              DevelopTarget target) {
+                                              DevelopTarget target, std::vector<std::string>& left_out) {
     const ReferenceImage color = reference_image(input.color, input.extent, 4);
     const auto layer = [&](std::span<const float> values, std::size_t channels) {
         return values.empty() ? ReferenceImage() : reference_image(values, input.extent, channels);
@@ -135,16 +178,17 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
     const auto given = [](const ReferenceImage& image) { return image.pixels.empty() ? nullptr : &image; };
     const darkroom::Domain domain =
         target == DevelopTarget::SceneLinear ? darkroom::Domain::SceneLinear : darkroom::Domain::Encoded;
-    const Result<darkroom::ReferenceChainOutput> made =
-        darkroom::run_reference(composer, {.color = &color,
-                                           .depth = given(depth),
-                                           .normals = given(normals),
-                                           .velocity = given(velocity),
-                                           .camera = input.camera,
-                                           .time = input.time,
-                                           .frame_index = input.frame_index,
-                                           .target_domain = domain});
+    Result<darkroom::ReferenceChainOutput> made = darkroom::run_reference(composer, {.color = &color,
+                                                                                     .depth = given(depth),
+                                                                                     .normals = given(normals),
+                                                                                     .velocity = given(velocity),
+                                                                                     .lights = input.lights,
+                                                                                     .camera = input.camera,
+                                                                                     .time = input.time,
+                                                                                     .frame_index = input.frame_index,
+                                                                                     .target_domain = domain});
     if (!made) return failure(made.error());
+    left_out = std::move(made->left_out);
     DevelopedPicture out{.extent = {made->picture.width, made->picture.height}};
     if (target == DevelopTarget::Encoded8) {
         out.bytes = darkroom::round_to_bytes(made->picture);

@@ -14,21 +14,29 @@ namespace app {
 
 /// Of frames that do not say theirs: vertical, degrees.
 inline constexpr double assumed_field_of_view = 45;
-/// Refers to the frame's memory.
-[[nodiscard]] darkroom::DevelopInput develop_input(const darkroom::FrameFile& frame);
-/// What a file that is written from `layers` and read again gives develop_input. `frame` says camera and time.
+/// The frame's lights, with the depths of their cascades moved out of it. Where those stayed in the file, a light casts
+/// no shadow.
+[[nodiscard]] std::vector<darkroom::ReferenceLight> take_lights(darkroom::FrameFile& frame);
+/// Refers to the memory of both.
+[[nodiscard]] darkroom::DevelopInput develop_input(const darkroom::FrameFile& frame,
+                                                   std::span<const darkroom::ReferenceLight> lights);
+/// What a file that is written from `layers` and read again gives take_lights and develop_input. `frame` says camera
+/// and time.
 [[nodiscard]] darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLayers layers);
 /// The camera as develop_input would have it of a file with this one: what a file does not store is left behind.
 [[nodiscard]] darkroom::Camera as_stored(const darkroom::Camera& camera);
+/// Is there an effect that is on and reads shadows?
+[[nodiscard]] bool needs_shadows(const darkroom::Look& look);
 /// One warning for each entry that is on and has no place in the plan, but for those that are on by default.
 void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
-                              const darkroom::Plan& plan);
+                              std::span<const std::string> left_out);
 /// The GPU milliseconds of every pass of the last recording.
 void print_timings(darkroom::Composer& composer);
-/// By the CPU references alone, in the form that the target asks for.
+/// By the CPU references alone, in the form that the target asks for. `left_out`: as in Plan.
 [[nodiscard]] darkroom::Result<darkroom::DevelopedPicture> develop_by_reference(const darkroom::Composer& composer,
                                                                                 const darkroom::DevelopInput& input,
-                                                                                darkroom::DevelopTarget target);
+                                                                                darkroom::DevelopTarget target,
+                                                                                std::vector<std::string>& left_out);
 [[nodiscard]] darkroom::Result<> write(const std::filesystem::path& path, darkroom::DevelopedPicture picture,
                                        const darkroom::WriteOptions& options);
 

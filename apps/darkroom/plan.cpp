@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -34,10 +35,10 @@ Result<std::string> text_of(const Options& options) {
     darkroom::FrameFile frame;
     darkroom::DevelopInput input{.extent = {1920, 1080}};
     if (!options.frame.empty()) {
-        Result<darkroom::FrameFile> read = darkroom::read_frame(options.frame);
+        Result<darkroom::FrameFile> read = darkroom::read_frame(options.frame, {.has_shadow_depths = false});
         if (!read) return failure(std::move(read));
         frame = std::move(*read);
-        input = develop_input(frame);
+        input = develop_input(frame, {});
     }
     if (!options.size.empty()) {
         const Result<VkExtent2D> size = parse_size(options.size);
@@ -53,6 +54,8 @@ Result<std::string> text_of(const Options& options) {
         .target = target_for(*samples), .kernels = *stage, .fuse = options.device.is_fused()};
     darkroom::CompileDesc compile = darkroom::compile_desc_for(*device, input, desc);
     if (options.frame.empty()) compile.color = VK_FORMAT_R16G16B16A16_SFLOAT;  // what engines hand over
+    compile.has_shadows =
+        std::ranges::any_of(frame.lights, [](const darkroom::FrameLight& light) { return !light.cascades.empty(); });
     const Result<darkroom::Plan> plan = composer.plan(compile);
     if (!plan) return failure(plan.error());
     return options.is_json ? plan->json() : plan->text();
@@ -75,7 +78,7 @@ Command add_plan(CLI::App& program) {
     command->add_flag("--json", options->is_json, "For programs");
     command->add_option("--size", options->size, "Size of the picture, default 1920x1080 or that of --input")
         ->type_name("WxH");
-    command->add_option("--input", options->frame, "A frame: its layers (depth, normals, motion) are there")
+    command->add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")
         ->type_name("FRAME");
     command->add_option("--bits", options->bits, "The target: 8, 16, half or float")->type_name("BITS");
     options->device.add_to(*command);

@@ -209,7 +209,7 @@ class Render {
         if (way_ == Way::Developed) {
             Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
             if (!made) return failure(std::move(made));
-            if (&shot == &job_.shots.front()) warn_of_what_is_left_out(look_, *composer_, developer_->plan());
+            if (&shot == &job_.shots.front()) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
             picture = std::move(*made);
         } else {
             Result<darkroom::FrameLayers> read = darkroom::read_layers(*device_, input.frame, input.record_before);
