@@ -106,7 +106,6 @@ TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     expect_refused({"develop", frame, "-o", out, "--device", "none such"}, 1, "none such");
     expect_refused({"develop", frame, "-o", out, "--kernels", "magic"}, 1, "auto, compute or raster");
     expect_refused({"develop", frame, "-o", out, "--bits", "12"}, 1, "--bits 12");
-    expect_refused({"develop", frame, "-o", out, "--fov", "180"}, 1, "--fov");
     expect_refused({"develop", frame, "-o", out, "--map", "depth=nothing"}, 1, "nothing");
     expect_refused({"develop", frame, "-o", out, "--look", path("none.toml")}, 1, "none.toml");
     expect_refused({"develop", frame, "-o", out, "--order", "sideways"}, 1, "documented or scene_linear");

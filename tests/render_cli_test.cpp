@@ -386,8 +386,6 @@ TEST_F(CliRenderRefused, WrongScenesAreRefused) {
 
 TEST_F(CliRenderRefused, WrongSizesAndFilesAreRefused) {
     for (const char* const size : {"0x0", "5x", "4294967297x1"}) expect_render_refused({"--size", size}, "--size");
-    expect_render_refused({"--width", "0"}, "--width = 0");
-    expect_render_refused({"--height", "-3"}, "--height = -3");
     expect_render_refused({"--size", "4x4", "--width", "5"}, "--size 4x4");
     expect_render_refused({"--size", "99999x2"}, "allows 1x1 to");
     expect_render_refused({"--bits", "12"}, "--bits 12");
@@ -425,16 +423,6 @@ TEST_F(CliRenderRefused, WrongValuesAreRefused) {
         expect_render_refused({std::string("--target=") + target}, "--target");
     expect_render_refused({"--debug-mode", "wirefrane"},
                           "wireframe, normals, depth, uv, unlit, metalrough, did you mean 'wireframe'?");
-    expect_render_refused({"--fov", "180"}, "--fov = 180");
-    expect_render_refused({"--fov", "nan"}, "--fov");
-    expect_render_refused({"--distance", "0"}, "--distance = 0");
-    expect_render_refused({"--pitch", "91"}, "[-90, 90]");
-    expect_render_refused({"--yaw", "inf"}, "--yaw");
-    expect_render_refused({"--shadow-resolution", "8"}, "[16, 16384]");
-    expect_render_refused({"--shadow-resolution", "16385"}, "[16, 16384]");
-    expect_render_refused({"--shadow-resolution", "many"}, "--shadow-resolution");
-    expect_render_refused({"--msaa", "0"}, "--msaa = 0");
-    expect_render_refused({"--seed", "-1"}, "--seed");
     expect_render_refused({"--no-such-flag"}, "--no-such-flag");
     expect_render_refused({"--device", "none such"}, "none such");
     expect_render_refused({"--kernels", "magic"}, "auto, compute or raster");
@@ -455,11 +443,6 @@ TEST_F(CliRenderRefused, WrongMomentsAreRefused) {
     expect_refused(
         {"render", path("yard.scene.toml"), "-o", path("p.%04d.png"), "--frames", "1-3", "--frame", path("f.exr")}, 1,
         "--frame");
-    expect_render_refused({"--fps", "0"}, "--fps = 0");
-    expect_render_refused({"--fps", "-24"}, "--fps = -24");
-    expect_render_refused({"--fps", "inf"}, "--fps");
-    expect_render_refused({"--time", "nan"}, "--time");
-    expect_render_refused({"--time", "-1"}, "--time = -1");
     expect_render_refused({"--time", "1", "--frames", "2"}, "--time");
 }
 

@@ -11,6 +11,7 @@
 #include "core/param_text.hpp"
 #include "image/display_picture.hpp"
 #include "image/write.hpp"
+#include "number_flag.hpp"
 #include "outputs.hpp"
 #include "report.hpp"
 
@@ -22,12 +23,12 @@ using darkroom::Result;
 
 struct Options {
     std::string a, b, diff;
-    std::optional<double> fail_above;
+    NumberFlag fail_above{"--fail-above", {.least = 0, .most = 1}};
 };
 
 int run(const Options& options) {
-    if (options.fail_above && !(*options.fail_above >= 0 && *options.fail_above <= 1))
-        return fail_user(fmt::format("--fail-above = {}: allowed is [0, 1]", *options.fail_above));
+    const Result<std::optional<double>> fail_above = options.fail_above.value();
+    if (!fail_above) return fail(fail_above.error());
     if (!options.diff.empty()) {
         const std::array<std::filesystem::path, 2> inputs{options.a, options.b};
         if (Result<> done = check_output(options.diff, inputs); !done) return fail(done.error());
@@ -55,9 +56,9 @@ int run(const Options& options) {
         result->max_error, result->mean_error, result->max_alpha_error, result->psnr, is_display ? "LDR" : "HDR",
         result->flip_mean, is_display ? "LDR" : "HDR", result->flip_weighted_median, is_display ? "LDR" : "HDR",
         result->flip_max);
-    if (!options.fail_above || !(result->flip_mean > *options.fail_above)) return exit_ok;
+    if (!*fail_above || !(result->flip_mean > **fail_above)) return exit_ok;
     return fail_user(fmt::format("{} and {}: mean FLIP {:.6f} is above {:g}", darkroom::printable(options.a),
-                                 darkroom::printable(options.b), result->flip_mean, *options.fail_above));
+                                 darkroom::printable(options.b), result->flip_mean, **fail_above));
 }
 
 }  // namespace
@@ -68,8 +69,7 @@ Command add_compare(CLI::App& program) {
     command->add_option("A", options->a, "The reference")->required();
     command->add_option("B", options->b, "The picture under test")->required();
     command->add_option("--diff", options->diff, "Writes the FLIP errors as a picture")->type_name("OUT.png");
-    command->add_option("--fail-above", options->fail_above, "Exit code 1 if the mean FLIP is above this")
-        ->type_name("X");
+    options->fail_above.add_to(*command, "Exit code 1 if the mean FLIP is above this")->type_name("X");
     return {command, [options] { return run(*options); }};
 }
 

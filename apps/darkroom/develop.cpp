@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "image/resize.hpp"
 #include "image/sequence.hpp"
 #include "look_flags.hpp"
+#include "number_flag.hpp"
 #include "outputs.hpp"
 #include "report.hpp"
 
@@ -28,7 +28,8 @@ struct Options {
     DeviceFlags device;
     std::vector<std::string> inputs, maps;
     std::string out, size, bits, camera;
-    std::optional<double> fov, time;
+    NumberFlag fov{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
+    NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     bool is_reference = false, has_timings = false, has_alpha = false;
 };
 
@@ -40,15 +41,15 @@ struct Job {
     darkroom::WriteOptions write;
     darkroom::DevelopDesc develop;
     std::optional<VkExtent2D> size;
+    std::optional<double> time;
 };
 
 Result<Job> job_of(const Options& options) {
     Job job;
     if (options.is_reference && options.has_timings)
         return user_error("--timings: the references do not run on the device");
-    if (options.time && !std::isfinite(*options.time)) return user_error("--time: expected a finite number of seconds");
-    if (options.fov && !(*options.fov > 0 && *options.fov < 180))
-        return user_error(fmt::format("--fov = {}: allowed is ]0, 180[ deg", *options.fov));
+    if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
+    if (Result<> done = options.fov.read_to(job.frame.vertical_field_of_view); !done) return failure(std::move(done));
     Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
     if (!inputs) return failure(std::move(inputs));
     job.inputs = std::move(*inputs);
@@ -73,7 +74,6 @@ Result<Job> job_of(const Options& options) {
     }
     for (const std::string& map : options.maps)
         if (Result<> added = darkroom::add_mapping(job.frame.names, map); !added) return failure(std::move(added));
-    job.frame.vertical_field_of_view = options.fov;
     job.frame.camera_file = options.camera;
     const Result<darkroom::KernelStage> stage = options.device.stage();
     if (!stage) return failure(stage.error());
@@ -129,7 +129,7 @@ class Develop {
         if (!sized) return failure(std::move(sized));
         const std::vector<darkroom::ReferenceLight> lights = take_lights(*sized);
         darkroom::DevelopInput input = develop_input(*sized, lights);
-        if (options_.time) input.time = *options_.time;
+        if (job_.time) input.time = *job_.time;
         if (!sized->frame_index) input.frame_index = index;
         std::vector<std::string> left_out;
         Result<darkroom::DevelopedPicture> picture =
@@ -181,8 +181,7 @@ Command add_develop(CLI::App& program) {
     command->add_flag("--alpha", options->has_alpha, "Keeps alpha; without it pictures are opaque");
     command->add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
     command->add_flag("--timings", options->has_timings, "Prints the GPU milliseconds of every pass");
-    command->add_option("--time", options->time, "Seconds, for effects that move; default: what the frame says, or 0")
-        ->type_name("S");
+    options->time.add_to(*command, "For effects that move; default: what the frame says, or 0")->type_name("S");
     const std::string frame_group = "The frame";
     command
         ->add_option("--map", options->maps,
@@ -191,7 +190,7 @@ Command add_develop(CLI::App& program) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group(frame_group);
-    command->add_option("--fov", options->fov, "Vertical field of view, where the file has no projection")
+    options->fov.add_to(*command, "Vertical field of view, where the file has no projection")
         ->type_name("DEGREES")
         ->group(frame_group);
     command->add_option("--camera", options->camera, "A camera file (TOML)")->type_name("FILE")->group(frame_group);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <exception>
 #include <new>
+#include <optional>
 
 #include "commands.hpp"
 #include "core/param_text.hpp"
@@ -37,6 +38,17 @@ std::string unknown_argument(const CLI::App& program) {
     if (rest.empty()) return fmt::format("a command is needed: {}", fmt::join(commands, ", "));
     return fmt::format("unknown command '{}': allowed is {}{}", darkroom::printable(rest.front()),
                        fmt::join(commands, ", "), darkroom::suggestion(rest.front(), known_names(program)));
+}
+
+// An option whose value is an empty text, which names nothing. Those without a type are values of the look, which say
+// themselves what they allow.
+std::optional<std::string> empty_option(const CLI::App& command) {
+    for (const CLI::Option* const option : command.get_options()) {
+        if (option->get_type_name().empty()) continue;
+        for (const std::string& value : option->results())
+            if (value.empty()) return option->get_name();
+    }
+    return std::nullopt;
 }
 
 int run(int argc, char** argv) {
@@ -75,6 +87,8 @@ int run(int argc, char** argv) {
     }
     const auto chosen = std::find_if(commands.begin(), commands.end(),
                                      [](const app::Command& command) { return command.app->parsed(); });
+    if (const std::optional<std::string> name = empty_option(*chosen->app))
+        return app::fail_user(fmt::format("{}: one value is needed", *name));
     return chosen->run();
 }
 

@@ -26,6 +26,7 @@ using darkroom::render::DebugView;
 namespace {
 
 constexpr VkExtent2D default_extent{1920, 1080};
+constexpr double default_frames_per_second = 24;
 
 struct DebugMode {
     const char* name;
@@ -95,21 +96,6 @@ Result<FrameRange> parse_frames(const std::string& text) {
     return range;
 }
 
-struct Interval {
-    double least = 0, most = 0;
-    bool is_open = false;
-};
-
-Result<std::optional<float>> in_range(std::string_view flag, std::optional<double> value, const Interval& allowed) {
-    if (!value) return std::optional<float>();
-    const auto& [least, most, is_open] = allowed;
-    const bool is_inside = is_open ? *value > least && *value < most : *value >= least && *value <= most;
-    if (!is_inside)
-        return user_error(fmt::format("{} = {}: allowed is {}{}, {}{}", flag, *value, is_open ? ']' : '[', least, most,
-                                      is_open ? '[' : ']'));
-    return std::optional<float>(static_cast<float>(*value));
-}
-
 }  // namespace
 
 void RenderFlags::add_to(CLI::App& command) {
@@ -121,8 +107,10 @@ void RenderFlags::add_to(CLI::App& command) {
         ->capture_default_str();
     command.add_option("--frame", frame_, "The raw frame, too: linear light, depth, normals, motion and camera (.exr)")
         ->type_name("OUT.exr");
-    command.add_option("--width", width_, "Of the picture, default 1920")->type_name("PIXELS");
-    command.add_option("--height", height_, "Of the picture, default 1080")->type_name("PIXELS");
+    width_.add_to(command, "Of the picture")->type_name("PIXELS")->default_str(fmt::format("{}", default_extent.width));
+    height_.add_to(command, "Of the picture")
+        ->type_name("PIXELS")
+        ->default_str(fmt::format("{}", default_extent.height));
     command.add_option("--size", size_, "Both at once")->type_name("WxH");
     command.add_option("--bits", bits_, "Samples of the file: 8, 16, half or float")->type_name("BITS");
     command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque");
@@ -142,26 +130,28 @@ void RenderFlags::add_to(CLI::App& command) {
 
 void RenderFlags::add_moments(CLI::App& command) {
     const std::string group = "The moment";
-    command.add_option("--time", time_, "Seconds, default 0")->type_name("S")->group(group);
+    time_.add_to(command, "Since the scene's beginning, default: what the scene says, or 0")
+        ->type_name("S")
+        ->group(group);
     command.add_option("--frames", frames_, "Several frames; the time of a frame is its number / fps")
         ->type_name("FIRST-LAST")
         ->group(group);
-    command.add_option("--fps", frames_per_second_, "Frames a second, for --frames and for motion")
+    frames_per_second_.add_to(command, "Frames a second, for --frames and for motion")
         ->type_name("N")
-        ->capture_default_str()
+        ->default_str(fmt::format("{}", default_frames_per_second))
         ->group(group);
-    command.add_option("--seed", seed_, "Of the particles")->type_name("N")->capture_default_str()->group(group);
+    seed_.add_to(command, "Of the particles")->type_name("N")->default_str("0")->group(group);
 }
 
 void RenderFlags::add_camera(CLI::App& command) {
     const std::string group = "The camera, each on top of the scene's own";
-    command.add_option("--distance", distance_, "From the target")->type_name("METRES")->group(group);
-    command.add_option("--yaw", yaw_, "Around the target")->type_name("DEGREES")->group(group);
-    command.add_option("--pitch", pitch_, "Above the target")->type_name("DEGREES")->group(group);
+    distance_.add_to(command, "From the target")->type_name("METRES")->group(group);
+    yaw_.add_to(command, "Around the target")->type_name("DEGREES")->group(group);
+    pitch_.add_to(command, "Above the target")->type_name("DEGREES")->group(group);
     command.add_option("--target", target_, "What is looked at; the camera moves with it")
         ->type_name("X,Y,Z")
         ->group(group);
-    command.add_option("--fov", field_of_view_, "Vertical field of view")->type_name("DEGREES")->group(group);
+    field_of_view_.add_to(command, "Vertical field of view")->type_name("DEGREES")->group(group);
 }
 
 void RenderFlags::add_drawing(CLI::App& command) {
@@ -176,50 +166,34 @@ void RenderFlags::add_drawing(CLI::App& command) {
     command.add_flag("--show-normals", has_normal_arrows_, "An arrow for the normal of every vertex")->group(group);
     command.add_flag("--no-tonemapping", has_no_tone_mapping_, "Light above 1 is cut off")->group(group);
     command.add_flag("--no-shadows", has_no_shadows_, "No light casts shadows")->group(group);
-    command.add_option("--shadow-resolution", shadow_resolution_, "Of each cascade of a shadow map, [16, 16384]")
+    shadow_resolution_.add_to(command, "Of each cascade of a shadow map")
         ->type_name("TEXELS")
-        ->capture_default_str()
+        ->default_str(fmt::format("{}", darkroom::render::RenderDesc().cascades.resolution))
         ->group(group);
-    command.add_option("--msaa", samples_, "Samples a pixel, of the counts that the device has")
+    samples_.add_to(command, "Samples a pixel, of the counts that the device has")
         ->type_name("N")
-        ->capture_default_str()
+        ->default_str(fmt::format("{}", darkroom::render::RenderDesc().samples))
         ->group(group);
 }
 
 Result<VkExtent2D> RenderFlags::extent() const {
     if (size_) {
-        if (width_ || height_)
+        if (width_.is_given() || height_.is_given())
             return user_error(fmt::format("--size {}: it says width and height, leave out --{}", printable(*size_),
-                                          width_ ? "width" : "height"));
+                                          width_.is_given() ? "width" : "height"));
         return parse_size(*size_);
     }
-    const auto check = [](std::string_view flag, std::int64_t value) -> Result<> {
-        constexpr std::int64_t most = std::numeric_limits<std::uint32_t>::max();
-        if (value >= 1 && value <= most) return {};
-        return user_error(fmt::format("{} = {}: expected pixels, at least 1", flag, value));
-    };
-    const std::int64_t width = width_.value_or(default_extent.width), height = height_.value_or(default_extent.height);
-    if (Result<> done = check("--width", width); !done) return failure(std::move(done));
-    if (Result<> done = check("--height", height); !done) return failure(std::move(done));
-    return VkExtent2D{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+    VkExtent2D extent = default_extent;
+    if (Result<> done = width_.read_to(extent.width); !done) return failure(std::move(done));
+    if (Result<> done = height_.read_to(extent.height); !done) return failure(std::move(done));
+    return extent;
 }
 
 Result<darkroom::scene::OrbitOverride> RenderFlags::orbit() const {
     darkroom::scene::OrbitOverride out;
-    const struct {
-        std::string_view flag;
-        std::optional<double> value;
-        Interval allowed;
-        std::optional<float>* to;
-    } numbers[] = {{"--distance", distance_, {0, 1e9, true}, &out.distance},
-                   {"--yaw", yaw_, {-1e6, 1e6}, &out.yaw},
-                   {"--pitch", pitch_, {-90, 90}, &out.pitch},
-                   {"--fov", field_of_view_, {0, 180, true}, &out.field_of_view}};
-    for (const auto& number : numbers) {
-        const Result<std::optional<float>> value = in_range(number.flag, number.value, number.allowed);
-        if (!value) return failure(value.error());
-        *number.to = *value;
-    }
+    for (const auto& [flag, to] : {std::pair(&distance_, &out.distance), std::pair(&yaw_, &out.yaw),
+                                   std::pair(&pitch_, &out.pitch), std::pair(&field_of_view_, &out.field_of_view)})
+        if (Result<> done = flag->read_to(*to); !done) return failure(std::move(done));
     if (target_) {
         const Result<darkroom::scene::vec3> target = parse_vec3("--target", *target_);
         if (!target) return failure(target.error());
@@ -233,20 +207,13 @@ Result<darkroom::render::RenderDesc> RenderFlags::desc() const {
     const Result<VkExtent2D> size = extent();
     if (!size) return failure(size.error());
     out.extent = *size;
-    constexpr std::int64_t least = 16, most = 16384;
-    if (shadow_resolution_ < least || shadow_resolution_ > most)
-        return user_error(
-            fmt::format("--shadow-resolution = {}: allowed is [{}, {}] texels", shadow_resolution_, least, most));
-    if (samples_ < 1 || samples_ > 64)
-        return user_error(
-            fmt::format("--msaa = {}: allowed is 1, 2, 4, 8 and so on, as the device has them", samples_));
+    if (Result<> done = shadow_resolution_.read_to(out.cascades.resolution); !done) return failure(std::move(done));
+    if (Result<> done = samples_.read_to(out.samples); !done) return failure(std::move(done));
     if (debug_mode_) {
         const Result<DebugView> view = parse_debug_mode(*debug_mode_);
         if (!view) return failure(view.error());
         out.debug = *view;
     }
-    out.samples = static_cast<std::uint32_t>(samples_);
-    out.cascades.resolution = static_cast<std::uint32_t>(shadow_resolution_);
     out.is_tone_mapped = !has_no_tone_mapping_;
     out.has_shadows = !has_no_shadows_;
     out.has_grid = !has_no_grid_;
@@ -256,26 +223,26 @@ Result<darkroom::render::RenderDesc> RenderFlags::desc() const {
 }
 
 Result<std::vector<Shot>> RenderFlags::shots() const {
-    if (!(frames_per_second_ > 0 && std::isfinite(frames_per_second_)))
-        return user_error(fmt::format("--fps = {}: expected a number above 0", frames_per_second_));
-    if (time_ && !(*time_ >= 0 && std::isfinite(*time_)))
-        return user_error(fmt::format("--time = {}: expected seconds, at least 0", *time_));
-    if (time_ && frames_) return user_error("--time: --frames says the time of every frame, leave out one of them");
-    const double step = 1 / frames_per_second_;
-    const auto shot = [&](std::uint64_t number, double time) {
+    double frames_per_second = default_frames_per_second, time = 0;
+    if (Result<> done = frames_per_second_.read_to(frames_per_second); !done) return failure(std::move(done));
+    if (Result<> done = time_.read_to(time); !done) return failure(std::move(done));
+    if (time_.is_given() && frames_)
+        return user_error("--time: --frames says the time of every frame, leave out one of them");
+    const double step = 1 / frames_per_second;
+    const auto shot = [&](std::uint64_t number, double at) {
         return Shot{.number = number,
-                    .time = time,
-                    .previous_time = std::max(0.0, time - step),
+                    .time = at,
+                    .previous_time = std::max(0.0, at - step),
                     .delta_time = step,
                     .picture = darkroom::numbered(out_, static_cast<long long>(number)),
                     .frame = darkroom::numbered(frame_.value_or(""), static_cast<long long>(number))};
     };
-    if (!frames_) return std::vector{shot(0, time_.value_or(0))};
+    if (!frames_) return std::vector{shot(0, time)};
     const Result<FrameRange> range = parse_frames(*frames_);
     if (!range) return failure(range.error());
     std::vector<Shot> out;
     for (std::uint64_t number = range->first; number <= range->last; ++number)
-        out.push_back(shot(number, static_cast<double>(number) / frames_per_second_));
+        out.push_back(shot(number, static_cast<double>(number) / frames_per_second));
     return out;
 }
 
@@ -306,8 +273,7 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
 
 Result<RenderJob> RenderFlags::job() const {
     RenderJob job;
-    if (seed_ < 0) return user_error(fmt::format("--seed = {}: expected a whole number, at least 0", seed_));
-    job.seed = static_cast<std::uint64_t>(seed_);
+    if (Result<> done = seed_.read_to(job.seed); !done) return failure(std::move(done));
     Result<darkroom::render::RenderDesc> desc = this->desc();
     if (!desc) return failure(std::move(desc));
     job.desc = *desc;

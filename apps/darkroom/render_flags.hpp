@@ -13,6 +13,7 @@
 #include "device_flags.hpp"
 #include "image/write.hpp"
 #include "look_flags.hpp"
+#include "number_flag.hpp"
 #include "render/renderer.hpp"
 #include "scene/snapshot.hpp"
 
@@ -48,7 +49,7 @@ class RenderFlags {
     bool has_timings = false;
     bool is_tone_mapped() const { return !has_no_tone_mapping_; }
     /// Do the flags say a time? Else it is the scene's.
-    bool has_time() const { return time_ || frames_; }
+    bool has_time() const { return time_.is_given() || frames_; }
 
   private:
     void add_camera(CLI::App& command);
@@ -64,10 +65,20 @@ class RenderFlags {
     std::string out_ = "render.png";
     std::optional<std::string> frame_, size_, target_, debug_mode_, frames_, bits_;
     std::vector<std::string> schemas_;
-    std::optional<std::int64_t> width_, height_;
-    std::optional<double> distance_, yaw_, pitch_, field_of_view_, time_;
-    double frames_per_second_ = 24;
-    std::int64_t shadow_resolution_ = 2048, samples_ = 1, seed_ = 0;
+    // More pixels than any device takes. Its own limit is said once it is known.
+    NumberFlag width_{"--width", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
+    NumberFlag height_{"--height", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
+    NumberFlag time_{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
+    NumberFlag frames_per_second_{"--fps", {.least = 0.001, .most = 1e6}};
+    // The whole numbers that a double holds.
+    NumberFlag seed_{"--seed", {.least = 0, .most = 9007199254740991, .is_whole = true}};
+    NumberFlag distance_{"--distance", {.least = 0, .most = 1e9, .is_open = true, .unit = "m"}};
+    NumberFlag yaw_{"--yaw", {.least = -1e6, .most = 1e6, .unit = "deg"}};
+    NumberFlag pitch_{"--pitch", {.least = -90, .most = 90, .unit = "deg"}};
+    NumberFlag field_of_view_{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
+    NumberFlag shadow_resolution_{"--shadow-resolution",
+                                  {.least = 16, .most = 16384, .is_whole = true, .unit = "texels"}};
+    NumberFlag samples_{"--msaa", {.least = 1, .most = 64, .is_whole = true}};
     bool has_no_grid_ = false, has_wireframe_overlay_ = false, has_normal_arrows_ = false;
     bool has_no_tone_mapping_ = false, has_no_shadows_ = false, has_alpha_ = false;
 };
