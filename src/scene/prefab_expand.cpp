@@ -33,6 +33,7 @@ Level level_of(const toml::table& table, std::uint32_t file, fs::path folder) {
 }
 
 std::vector<RawEntity> PrefabExpander::expand(const Level& scene) {
+    check_tables(scene);
     expand_level(scene, nullptr);
     return std::move(entities_);
 }
@@ -43,6 +44,19 @@ const toml::table* PrefabExpander::table_of(const Level& level, std::string_view
     report_.error(place_of(node->source(), level.file),
                   [&] { return fmt::format("{} = {}: expected a table", key, darkroom::show(*node)); });
     return nullptr;
+}
+
+void PrefabExpander::check_tables(const Level& level) {
+    for (const std::string_view key : {"templates", "archetypes"}) {
+        const toml::table* const table = table_of(level, key);
+        if (table == nullptr) continue;
+        for (const auto& [name, node] : *table)
+            if (!node.is_table())
+                report_.error(place_of(node.source(), level.file), [&, &shown = name, &value = node] {
+                    return fmt::format("{}.{} = {}: expected a table", key, printable(shown.str()),
+                                       darkroom::show(value));
+                });
+    }
 }
 
 // Tables are sorted by name, files are not: the place of the key that first names an entity gives its rank.
@@ -113,12 +127,13 @@ std::optional<PrefabExpander::Instance> PrefabExpander::read_instance(const Leve
     const Value own = trees_.build(node, level.file);
     const Where up{.name = "prefabs"}, where{.up = &up, .name = out.name};
     TableReader table(reader, own, where);
-    table.text("template", out.template_name);
+    const bool is_named = table.text("template", out.template_name) || !table.has("template");
     out.prefix = out.name;
     table.text("prefix", out.prefix);
     if (prefix != nullptr) out.prefix = qualified(out.prefix, *prefix);
     table.pass_over("overrides");
     table.finish();
+    if (!is_named) return std::nullopt;  // a value of another kind has been reported
     if (out.template_name.empty()) {
         report_.error(place, [&] { return fmt::format("{}.template is missing: the name of a template", shown); });
         return std::nullopt;
@@ -198,15 +213,10 @@ std::optional<PrefabExpander::Template> PrefabExpander::find_template(const Leve
     const std::string& name = instance.template_name;
     const toml::node* const own = level.templates == nullptr ? nullptr : level.templates->get(name);
     if (own != nullptr) {
-        if (const toml::table* const table = own->as_table()) {
-            Level inner = level;
-            inner.table = table;
-            return Template{.identity = fmt::format("{}:{}", level.file, name), .shown = name, .level = inner};
-        }
-        report_.error(place_of(own->source(), level.file), [&] {
-            return fmt::format("templates.{} = {}: expected a table", printable(name), darkroom::show(*own));
-        });
-        return std::nullopt;
+        if (!own->is_table()) return std::nullopt;  // check_tables has said so
+        Level inner = level;
+        inner.table = own->as_table();
+        return Template{.identity = fmt::format("{}:{}", level.file, name), .shown = name, .level = inner};
     }
     std::vector<fs::path> places;
     if (name.ends_with(".toml")) {
@@ -253,6 +263,7 @@ LoadedFile* PrefabExpander::load(const fs::path& path, const Instance& instance)
     }
     file.table = std::move(*table);
     file.level = level_of(file.table, report_.add_file(shown), path.parent_path());
+    check_tables(file.level);
     return &file;
 }
 

@@ -81,6 +81,8 @@ class PrefabExpander {
     [[nodiscard]] std::optional<Template> find_template(const Level& level, const Instance& instance);
     [[nodiscard]] LoadedFile* load(const std::filesystem::path& path, const Instance& instance);
     [[nodiscard]] const toml::table* table_of(const Level& level, std::string_view key);
+    /// Templates and archetypes are tables of tables, used or not.
+    void check_tables(const Level& level);
 
     Report& report_;
     TreeBuilder& trees_;

@@ -49,9 +49,6 @@ void SceneReader::read_top() {
             return fmt::format("unknown key '{}'{}", printable(name.str()), report_.suggestion(name.str(), names));
         });
     }
-    for (const std::string_view key : {"templates", "archetypes"})
-        if (const toml::node* const node = file_.get(key); node != nullptr && !node->is_table())
-            expect_table(key, *node);
     if (const Value value = table_at("scene"); value.is_table()) read_scene_table(value);
     const auto read_table = [&](std::string_view key, auto read_values, auto& out) {
         const Value value = table_at(key);

@@ -64,11 +64,13 @@ std::string TableReader::used(std::string_view what) const {
 }
 
 void TableReader::wrong_kind(std::string_view key, const Value& value, std::string_view expected) {
+    is_wrong_ = true;
     report().error(value.place,
                    [&] { return fmt::format("{} = {}: expected {}", name(key), reading::show(value), expected); });
 }
 
 void TableReader::slip(std::string_view key, std::string_view text) {
+    if (is_wrong_) return;
     report().slip(place_of_value(key), [&] {
         const Value* const value = find(table_, key);
         return fmt::format("{} = {}: {}", name(key), value == nullptr ? "nothing" : reading::show(*value), text);
@@ -79,6 +81,7 @@ std::optional<double> TableReader::number_of(const toml::node& node, Place place
                                              Interval allowed, std::string_view used_text) {
     const std::optional<double> number = node.is_number() ? node.value<double>() : std::nullopt;
     if (!number || !std::isfinite(*number)) {
+        is_wrong_ = true;
         report().error(place, [&] {
             return fmt::format("{} = {}: expected a {}number, allowed is {}", name(key), darkroom::show(node),
                                number ? "finite " : "", show(allowed));
@@ -190,6 +193,7 @@ unsigned TableReader::numbers_of_table(const Value& value, std::string_view key,
     for (std::size_t i = 0; i < letters.size(); ++i)
         if (table.number(letters.substr(i, 1), out[i], allowed)) given |= 1U << i;
     table.finish();
+    is_wrong_ = is_wrong_ || table.is_wrong_ || given == 0;
     return given;
 }
 

@@ -92,7 +92,8 @@ class TableReader {
 
     /// A key that is known and means nothing here.
     void pass_over(std::string_view key) { static_cast<void>(take(key)); }
-    /// A slip about one key's value, which the text follows as "name = value: text".
+    /// A slip about one key's value, which the text follows as "name = value: text". Nothing once a value of the table
+    /// was of the wrong kind: what is compared then is not what the file says.
     void slip(std::string_view key, std::string_view text);
     /// Reports the keys that nobody asked for.
     void finish();
@@ -119,6 +120,7 @@ class TableReader {
     const Where& where_;
     std::vector<std::string_view> known_;
     std::size_t taken_ = 0;
+    bool is_wrong_ = false;  ///< a value was of the wrong kind
 };
 
 template <class Choice, std::size_t Count>
