@@ -109,7 +109,7 @@ Value SceneReader::with_archetype(const RawEntity& raw, const std::string& arche
 
 void SceneReader::read_entity(const RawEntity& raw) {
     const Where up{.name = "entities"}, where{.up = &up, .name = raw.name};
-    EntityDraft draft{.entity = {.name = raw.name}};
+    EntityDraft draft{.entity = {.name = raw.name, .place = report_.show(raw.place)}};
     ParentName parent;
     if (!raw.table.is_table()) {
         report_.error(raw.place,

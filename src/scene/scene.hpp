@@ -144,6 +144,7 @@ struct Entity {
     std::optional<Light> light;
     std::optional<Sprite> sprite;
     std::optional<ParticleEmitter> emitter;
+    std::string place;  ///< "file:line:column" where a file first names it, for messages
 };
 
 struct Scene {

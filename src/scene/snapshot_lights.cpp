@@ -69,6 +69,14 @@ float reach(const LightState& state) {
                                                       : state.light.intensity * state.light.range;
 }
 
+/// The entity that a light is of, by its name: "entity", or "entity/node" of a model.
+const Entity* owner_of(const LightState& light, const Scene& scene) {
+    for (const std::string& name : {light.name, light.name.substr(0, light.name.rfind('/'))})
+        for (const Entity& entity : scene.entities)
+            if (entity.name == name) return &entity;
+    return nullptr;
+}
+
 /// Takes out what is beyond the limit of a type and keeps the order of the rest.
 void limit(std::vector<LightState>& lights, const Limit& limit, const Scene& scene,
            std::vector<std::string>& warnings) {
@@ -78,9 +86,12 @@ void limit(std::vector<LightState>& lights, const Limit& limit, const Scene& sce
     if (order.size() <= limit.most) return;
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return reach(lights[a]) > reach(lights[b]); });
-    warnings.push_back(fmt::format("{}: {} {} lights, of which {} are left out; at most {} are drawn",
-                                   scene.file.string(), order.size(), limit.name, order.size() - limit.most,
-                                   limit.most));
+    const LightState& first = lights[order[limit.most]];
+    const Entity* const owner = owner_of(first, scene);
+    warnings.push_back(
+        fmt::format("{}: {} {} lights, of which {} are left out, entities.{} first; at most {} are drawn",
+                    owner == nullptr ? scene.file.string() : place_of(scene, *owner), order.size(), limit.name,
+                    order.size() - limit.most, first.name, limit.most));
     std::vector<std::size_t> left_out(order.begin() + static_cast<std::ptrdiff_t>(limit.most), order.end());
     std::sort(left_out.rbegin(), left_out.rend());
     for (const std::size_t i : left_out) lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(i));

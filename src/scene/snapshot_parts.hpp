@@ -12,6 +12,8 @@ namespace darkroom::scene {
 
 /// World matrices of all entities at a time, keys of paths included. A cycle of parents ends at its first member.
 [[nodiscard]] std::vector<mat4> entity_worlds(const Scene& scene, double time);
+/// Where messages say that an entity is: its place, or the scene's file where it has none.
+[[nodiscard]] std::string place_of(const Scene& scene, const Entity& entity);
 /// Of one entity; the same matrix, to the bit.
 [[nodiscard]] mat4 entity_world(const Scene& scene, std::uint32_t entity, double time);
 /// Whether it or what it hangs from has a path.

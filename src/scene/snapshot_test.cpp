@@ -328,6 +328,44 @@ TEST(SceneLights, KeepTheStrongestInOrder) {
     EXPECT_NE(found.warnings[1].find("18 point lights, of which 2 are left out"), std::string::npos);
 }
 
+TEST(SceneLights, WarningsSayWhichIsLeftOutAndWhere) {
+    std::string text;
+    for (int i = 0; i < 9; ++i)
+        text += fmt::format("[entities.lamp{}.light]\ntype = \"spot\"\nintensity = {}\n", i, i == 5 ? 1 : 2);
+    Result<Scene> scene = parse_scene(text, "a.toml");
+    ASSERT_TRUE(scene) << scene.error().text;
+    EXPECT_EQ(snapshot(*scene, {}, {}).warnings,
+              std::vector<std::string>{"a.toml:16:11: 9 spot lights, of which 1 are left out, entities.lamp5 first; at "
+                                       "most 8 are drawn"});
+    Assets assets;
+    assets.models.emplace_back().lights = {lamp(LightType::Spot, 1)};
+    assets.models[0].nodes = {{.name = "bulb", .light = 0}};
+    assets.entities = {{.model = 0}};
+    scene->entities.resize(8);
+    scene->entities[5].light->intensity = 3;
+    const Snapshot found = snapshot(*scene, assets, {});
+    ASSERT_EQ(found.warnings.size(), 1U);
+    EXPECT_TRUE(found.warnings[0].starts_with("a.toml:1:11: 9 spot lights")) << found.warnings[0];
+    EXPECT_NE(found.warnings[0].find("entities.lamp0/bulb first"), std::string::npos) << found.warnings[0];
+}
+
+TEST(SceneSnapshot, AnUnknownClipIsNamedWithItsPlace) {
+    const Result<Scene> scene =
+        parse_scene("[entities.a]\n[entities.fox.model]\nasset = \"fox.glb\"\nanimation = \"fly\"\n", "a.toml");
+    ASSERT_TRUE(scene) << scene.error().text;
+    Assets assets;
+    Model& model = assets.models.emplace_back();
+    model.meshes.resize(1);
+    model.meshes[0].primitives.resize(1);
+    model.nodes = {{.mesh = 0}};
+    model.animations = {{.name = "walk"}};
+    assets.entities = {{}, {.model = 0}};
+    const Snapshot found = snapshot(*scene, assets, {});
+    ASSERT_EQ(found.warnings.size(), 1U);
+    EXPECT_TRUE(found.warnings[0].starts_with("a.toml:2:11: entities.fox.model: animation \"fly\""))
+        << found.warnings[0];
+}
+
 TEST(SceneSnapshot, SpritesShowTheirFrame) {
     Entity entity{.name = "tree", .sprite = Sprite{.width = 2, .height = 3, .frame = 6, .frames_x = 4, .frames_y = 2}};
     entity.transform = {.position = {1, 2, 3}, .scale = {2, 1, 1}};

@@ -97,6 +97,10 @@ EntityAssets assets_of(const Assets& assets, std::uint32_t entity) {
     return out;
 }
 
+std::string place_of(const Scene& scene, const Entity& entity) {
+    return entity.place.empty() ? scene.file.string() : entity.place;
+}
+
 std::uint32_t clip_of(const Scene& scene, std::uint32_t entity, const Model& model,
                       std::vector<std::string>* warnings) {
     const std::optional<ModelReference>& reference = scene.entities[entity].model;
@@ -113,7 +117,8 @@ std::uint32_t clip_of(const Scene& scene, std::uint32_t entity, const Model& mod
         for (const Animation& animation : model.animations) names += fmt::format(", \"{}\"", animation.name);
         warnings->push_back(fmt::format(
             "{}: entities.{}.model: animation \"{}\" is not in the model, the first is played; it has 0 to {}{}",
-            scene.file.string(), scene.entities[entity].name, wanted, model.animations.size() - 1, names));
+            place_of(scene, scene.entities[entity]), scene.entities[entity].name, wanted, model.animations.size() - 1,
+            names));
     }
     return 0;
 }
