@@ -28,6 +28,7 @@ exposure = 0.6
 [entities.sun.light]
 direction = [-1, 0.8, 0.5]
 intensity = 4
+volumetric_intensity = 2
 [entities.floor]
 archetype = "floor"
 bounds = { min = [-2, -0.1, -2], max = [2, 0, 2] }
@@ -332,6 +333,44 @@ TEST_F(CliRender, PostProcessingOffIsTheShadersOwnCurve) {
               std::string(scene_text).replace(std::string(scene_text).find("exposure = 0.6"), 14, "enabled = false"));
     ASSERT_EQ(run({"render", off, "-o", path("by_scene.png"), "--size", "48x32", "--no-grid"}).code, 0);
     EXPECT_EQ(content(path("by_scene.png")), content(path("off.png")));
+}
+
+TEST_F(CliRender, VolumetricLightNeedsShadows) {
+    if (find_effect("volumetric") == nullptr) GTEST_SKIP() << "the effect volumetric is not in this build";
+    ASSERT_EQ(render({"--no-shadows"}, "plain.png").code, 0);
+    const Outcome outcome = render({"--no-shadows", "--volumetric-density", "20"}, "haze.png");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find("left out: volumetric: needs shadows"), std::string::npos) << outcome.err;
+    EXPECT_EQ(content(path("plain.png")), content(path("haze.png")));
+    expect_all_differ({{}, {"--volumetric-density", "20"}});
+}
+
+TEST_F(CliRender, WithoutPostProcessingNoEffectIsSeen) {
+    ASSERT_EQ(render({"--no-postprocess"}, "plain.png").code, 0);
+    std::vector<std::string> flags{"--no-postprocess"};
+    for (const EffectInfo* const effect : all_effects())
+        if (effect->flat.documented >= 0)
+            flags.insert(flags.end(), {flag_name(flat_key(effect->name, "enabled")), "on"});
+    ASSERT_EQ(render(flags, "on.png").code, 0);
+    EXPECT_EQ(content(path("plain.png")), content(path("on.png")));
+}
+
+TEST_F(CliRender, EffectsThatAreOffRunNoPass) {
+    if (find_effect("ssao") == nullptr) GTEST_SKIP() << "the effect ssao is not in this build";
+    const auto passes = [&](std::string_view state) {
+        std::vector<std::string> flags{"--timings"};
+        for (const EffectInfo* const effect : all_effects())
+            if (effect->flat.documented >= 0)
+                flags.insert(flags.end(), {flag_name(flat_key(effect->name, "enabled")), std::string(state)});
+        const Outcome outcome = render(flags);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        std::size_t count = 0;
+        for (std::size_t at = 0; (at = outcome.out.find(" ms  ", at)) != std::string::npos; ++at) ++count;
+        EXPECT_NE(outcome.out.find(" ms  together"), std::string::npos) << outcome.out;
+        return count - 1;
+    };
+    EXPECT_GT(passes("on"), 5U);
+    EXPECT_EQ(passes("off"), 1U) << "the one that writes the picture";
 }
 
 TEST_F(CliRender, RendersAModelAlone) {
