@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The command line as its users meet it: the built program is run, and its exit code, its standard error and its files
 // are looked at.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -199,6 +200,25 @@ TEST_F(Cli, TellsPlansEffectsAndDevices) {
         for (const ParamInfo& row : effect->parameters.rows)
             EXPECT_NE(page.out.find("| `" + flat_key(effect->name, row.name) + "`"), std::string::npos) << effect->name;
     }
+}
+
+TEST_F(Cli, EffectsAreListedForPrograms) {
+    const Outcome all = run({"effects", "--json"});
+    ASSERT_EQ(all.code, 0) << all.err;
+    for (const EffectInfo* const effect : all_effects()) {
+        EXPECT_NE(all.out.find(fmt::format("\"name\": \"{}\"", effect->name)), std::string::npos) << effect->name;
+        for (const ParamInfo& row : effect->parameters.rows) {
+            const std::string key = flat_key(effect->name, row.name);
+            const std::string line = fmt::format("\"key\": \"{}\",\n        \"flag\": \"{}\"", key, flag_name(key));
+            EXPECT_NE(all.out.find(line), std::string::npos) << key;
+        }
+    }
+    if (find_effect("fog") == nullptr) return;
+    const std::string fog = run({"effects", "fog", "--json"}).out;
+    for (const char* const part : {"\"type\": \"rgb\"", "\"default\": 0.02", "\"unit\": \"1/m\"", "\"min\": 0.001",
+                                   "\"max\": 1000000000.0", "\"depth\"", "\"switches_effect\": true"})
+        EXPECT_NE(fog.find(part), std::string::npos) << part << " is not in " << fog;
+    EXPECT_EQ(fog.find("\"vignette\""), std::string::npos);
 }
 
 TEST_F(Cli, HostileFilesDevelopOrAreRefusedWhole) {
