@@ -6,6 +6,8 @@
 
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "scene/scene_test_text.hpp"
 
@@ -311,6 +313,20 @@ TEST(Scene, TenThousandEntitiesParseInASecond) {
     EXPECT_EQ(scene.entities.back().name, "box9999");
     RecordProperty("milliseconds", static_cast<int>(seconds * 1000));
     EXPECT_LT(seconds, 10) << "a tenth of it on an idle machine, sanitizers aside";
+}
+
+// What the documentation shows is a scene.
+TEST(Scene, TheExamplesOfTheDocumentationAreStrict) {
+    std::ifstream file(std::filesystem::path(DARKROOM_SOURCE_FOLDER) / "docs" / "scenes.md");
+    const std::string page{std::istreambuf_iterator<char>(file), {}};
+    constexpr std::string_view begin = "```toml\n", end = "```";
+    std::size_t entities = 0, examples = 0;
+    for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at), ++examples) {
+        at += begin.size();
+        entities += scene_of(page.substr(at, page.find(end, at) - at)).entities.size();
+    }
+    EXPECT_GE(examples, 2U);
+    EXPECT_GE(entities, 4U);
 }
 
 }  // namespace
