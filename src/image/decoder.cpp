@@ -1,72 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "image/decoder.hpp"
 
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <exception>
 #include <optional>
 #include <tuple>
 
 #include "core/files.hpp"
 #include "image/exr_check.hpp"
-#include "image/jpeg_check.hpp"
-#include "image/png_check.hpp"
+#include "image/memory_input.hpp"
 
 namespace darkroom {
 namespace {
-
-// OpenImageIO 2.4 subtracts without asking whether the position is past the end, and its JPEG reader wants this very
-// class, so the bounds are checked in a class derived from it.
-class MemoryReader final : public OIIO::Filesystem::IOMemReader {
-  public:
-    explicit MemoryReader(std::span<const std::byte> bytes) : IOMemReader(bytes.data(), bytes.size()) {}
-
-    size_t pread(void* buffer, size_t size, int64_t offset) override {
-        const std::size_t available = m_buf.size();
-        if (offset < 0 || static_cast<std::size_t>(offset) >= available) return 0;
-        const std::size_t count = std::min(size, available - static_cast<std::size_t>(offset));
-        std::memcpy(buffer, m_buf.data() + offset, count);
-        return count;
-    }
-    size_t read(void* buffer, size_t size) override {
-        const std::size_t count = pread(buffer, size, m_pos);
-        m_pos += static_cast<int64_t>(count);
-        return count;
-    }
-};
-
-std::optional<FileKind> kind_of(std::span<const std::byte> bytes) {
-    const std::string_view start(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 16));
-    if (start.starts_with("\x76\x2f\x31\x01")) return FileKind::OpenExr;
-    if (start.starts_with("\x89PNG\r\n\x1a\n")) return FileKind::Png;
-    if (start.starts_with("\xff\xd8\xff")) return FileKind::Jpeg;
-    if (start.starts_with("#?")) return FileKind::Radiance;
-    const std::string_view tiff = start.substr(0, 4);
-    if (tiff == std::string_view("II*\0", 4) || tiff == std::string_view("MM\0*", 4) ||
-        tiff == std::string_view("II+\0", 4) || tiff == std::string_view("MM\0+", 4))
-        return FileKind::Tiff;
-    return std::nullopt;
-}
-
-const char* reader_of(FileKind kind) {
-    switch (kind) {
-        case FileKind::OpenExr:
-            return "openexr";
-        case FileKind::Png:
-            return "png";
-        case FileKind::Jpeg:
-            return "jpeg";
-        case FileKind::Tiff:
-            return "tiff";
-        case FileKind::Radiance:
-            return "hdr";
-    }
-    return "";
-}
 
 std::optional<SampleKind> sample_kind_of(OIIO::TypeDesc type) {
     switch (type.basetype) {
@@ -151,44 +99,25 @@ std::string one_printable_line(std::string_view text) {
 
 struct Decoder::State {
     std::string path;
-    FileKind kind = FileKind::OpenExr;
     std::vector<std::byte> bytes;
-    std::unique_ptr<MemoryReader> memory;
-    OIIO::ImageInput::unique_ptr input;  // after `memory`, which it reads from until it is destroyed
+    std::optional<MemoryInput> memory;  // after `bytes`
     std::vector<FilePart> parts;
     std::vector<OIIO::ImageSpec> specs;
 
-    // What the reader says, without the name under which it knows the file.
-    [[nodiscard]] std::string reason() const {
-        std::string message = one_printable_line(input->geterror());
-        for (const std::string_view name : {" from image file \"memory.openexr\"", "\"memory.openexr\": "})
-            if (const std::size_t place = message.find(name); place != std::string::npos)
-                message.erase(place, name.size());
-        return message.empty() ? "damaged" : message;
-    }
     [[nodiscard]] Failure error(std::string_view what) const {
         return user_error(fmt::format("{}: {}", path, one_printable_line(what)));
     }
-    [[nodiscard]] Result<> open();
+    [[nodiscard]] Result<> add_parts();
     [[nodiscard]] Result<> add_part(const OIIO::ImageSpec& spec);
 };
 
-Result<> Decoder::State::open() {
-    memory = std::make_unique<MemoryReader>(bytes);
-    input = OIIO::ImageInput::create(reader_of(kind));
-    if (!input) return error(fmt::format("OpenImageIO was built without {}", name_of(kind)));
-    input->set_ioproxy(memory.get());
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    OIIO::ImageSpec spec;
-    // The extension keeps readers content that also look at the name.
-    if (!input->open(fmt::format("memory.{}", reader_of(kind)), spec, config))
-        return error(fmt::format("cannot be read as {}: {}", name_of(kind), reason()));
+Result<> Decoder::State::add_parts() {
+    OIIO::ImageInput& input = memory->input();
     do {
-        if (auto added = add_part(input->spec()); !added) return added;
-    } while (kind == FileKind::OpenExr && parts.size() < 256 &&
-             input->seek_subimage(static_cast<int>(parts.size()), 0));
-    std::ignore = input->geterror();
+        if (auto added = add_part(input.spec()); !added) return added;
+    } while (memory->kind() == FileKind::OpenExr && parts.size() < 256 &&
+             input.seek_subimage(static_cast<int>(parts.size()), 0));
+    std::ignore = input.geterror();
     return {};
 }
 
@@ -202,7 +131,7 @@ Result<> Decoder::State::add_part(const OIIO::ImageSpec& spec) {
     // Only what would take much memory is refused unread: the decoder knows better what is wrong with a small file.
     constexpr double large = 1 << 22;
     if (static_cast<double>(spec.width) * spec.height > large &&
-        static_cast<double>(bytes.size()) < smallest_size(kind, spec))
+        static_cast<double>(bytes.size()) < smallest_size(memory->kind(), spec))
         return error(fmt::format("a picture of {}x{} cannot be in a file of {} bytes: truncated, or a damaged header",
                                  spec.width, spec.height, bytes.size()));
     FilePart part;
@@ -219,7 +148,7 @@ Result<> Decoder::State::add_part(const OIIO::ImageSpec& spec) {
     }
     part.width = static_cast<std::uint32_t>(spec.width);
     part.height = static_cast<std::uint32_t>(spec.height);
-    if (kind == FileKind::OpenExr) {
+    if (memory->kind() == FileKind::OpenExr) {
         part.x = spec.x - spec.full_x;
         part.y = spec.y - spec.full_y;
         part.display_width = static_cast<std::uint32_t>(spec.full_width);
@@ -249,25 +178,18 @@ Result<Decoder> Decoder::open(const std::filesystem::path& path) {
     auto state = std::make_unique<State>();
     state->path = path.string();
     state->bytes = std::move(*bytes);
-    if (state->bytes.empty()) return state->error("is empty");
-    const auto kind = kind_of(state->bytes);
-    if (!kind) return state->error("is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)");
-    state->kind = *kind;
-    if (state->kind == FileKind::OpenExr)
-        if (auto checked = check_exr(state->bytes); !checked) return state->error(checked.error().text);
-    if (state->kind == FileKind::Png)
-        if (auto checked = check_png(state->bytes); !checked) return state->error(checked.error().text);
-    if (state->kind == FileKind::Jpeg)
-        if (auto checked = check_jpeg(state->bytes); !checked) return state->error(checked.error().text);
+    auto memory = MemoryInput::open(state->bytes);
+    if (!memory) return state->error(memory.error().text);
+    state->memory = std::move(*memory);
     try {
-        if (auto opened = state->open(); !opened) return failure(std::move(opened).error());
+        if (auto added = state->add_parts(); !added) return failure(std::move(added).error());
     } catch (const std::exception& exception) {
-        return state->error(fmt::format("cannot be read as {}: {}", name_of(*kind), exception.what()));
+        return state->error(fmt::format("cannot be read as {}: {}", name_of(state->memory->kind()), exception.what()));
     }
     return Decoder(std::move(state));
 }
 
-FileKind Decoder::kind() const { return state_->kind; }
+FileKind Decoder::kind() const { return state_->memory->kind(); }
 std::span<const FilePart> Decoder::parts() const { return state_->parts; }
 
 std::vector<float> Decoder::numbers(std::size_t part, const std::string& attribute) const {
@@ -322,11 +244,11 @@ Result<> Decoder::read(std::size_t part, std::uint32_t first, std::uint32_t coun
             const int top = spec.y + row;
             const bool is_read =
                 spec.tile_width > 0
-                    ? state_->input->read_tiles(subimage, 0, spec.x, spec.x + spec.width, top, top + height, 0, 1,
-                                                begin, end, OIIO::TypeFloat, samples.data())
-                    : state_->input->read_scanlines(subimage, 0, top, top + height, 0, begin, end, OIIO::TypeFloat,
-                                                    samples.data());
-            if (!is_read) return state_->error(fmt::format("damaged or truncated: {}", state_->reason()));
+                    ? state_->memory->input().read_tiles(subimage, 0, spec.x, spec.x + spec.width, top, top + height, 0,
+                                                         1, begin, end, OIIO::TypeFloat, samples.data())
+                    : state_->memory->input().read_scanlines(subimage, 0, top, top + height, 0, begin, end,
+                                                             OIIO::TypeFloat, samples.data());
+            if (!is_read) return state_->error(fmt::format("damaged or truncated: {}", state_->memory->reason()));
             sink(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(height), samples);
         }
     } catch (const std::exception& exception) {

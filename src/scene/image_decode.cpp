@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <exception>
-#include <memory>
 #include <optional>
 
 #include "core/files.hpp"
-#include "image/decoder.hpp"
-#include "image/exr_check.hpp"
-#include "image/jpeg_check.hpp"
-#include "image/png_check.hpp"
+#include "image/memory_input.hpp"
 #include "scene/assets.hpp"
 #include "scene/image_batch.hpp"
 
@@ -27,47 +19,6 @@ constexpr int most_texture_side = 16384;
 // What a batch may become, in pixels: a few bytes of a damaged file must not ask for gigabytes.
 constexpr std::size_t free_pixels = std::size_t{1} << 27;
 constexpr std::size_t pixels_per_byte = 64;
-
-// OpenImageIO 2.4 does not ask whether a position is past the end.
-class MemoryReader final : public OIIO::Filesystem::IOMemReader {
-  public:
-    explicit MemoryReader(std::span<const std::byte> bytes) : IOMemReader(bytes.data(), bytes.size()) {}
-
-    size_t pread(void* buffer, size_t size, int64_t offset) override {
-        const std::size_t available = m_buf.size();
-        if (offset < 0 || static_cast<std::size_t>(offset) >= available) return 0;
-        const std::size_t count = std::min(size, available - static_cast<std::size_t>(offset));
-        std::memcpy(buffer, m_buf.data() + offset, count);
-        return count;
-    }
-    size_t read(void* buffer, size_t size) override {
-        const std::size_t count = pread(buffer, size, m_pos);
-        m_pos += static_cast<int64_t>(count);
-        return count;
-    }
-};
-
-struct Format {
-    const char* reader;
-    std::string_view shown;
-    Result<> (*check)(std::span<const std::byte>) = nullptr;
-};
-
-const Format* format_of(std::span<const std::byte> bytes) {
-    static constexpr Format png{"png", "PNG", &check_png};
-    static constexpr Format jpeg{"jpeg", "JPEG", &check_jpeg};
-    static constexpr Format exr{"openexr", "OpenEXR", &check_exr};
-    static constexpr Format tiff{"tiff", "TIFF"};
-    static constexpr Format radiance{"hdr", "Radiance HDR"};
-    const std::string_view start(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 8));
-    if (start.starts_with("\x89PNG\r\n\x1a\n")) return &png;
-    if (start.starts_with("\xff\xd8\xff")) return &jpeg;
-    if (start.starts_with("\x76\x2f\x31\x01")) return &exr;
-    if (start.starts_with("#?")) return &radiance;
-    if (start.starts_with(std::string_view("II*\0", 4)) || start.starts_with(std::string_view("MM\0*", 4)))
-        return &tiff;
-    return nullptr;
-}
 
 // IEC 61966-2-1: colour textures are decoded as sRGB where they are used.
 std::uint8_t encoded(float linear) {
@@ -84,46 +35,28 @@ std::uint8_t unencoded(float value) {
 class OpenedImage {
   public:
     [[nodiscard]] static Result<OpenedImage> open(std::span<const std::byte> bytes) {
-        if (bytes.empty()) return user_error("is empty");
-        const Format* format = format_of(bytes);
-        if (format == nullptr) return user_error("is no image that is read here (PNG, JPEG, TIFF, OpenEXR, Radiance)");
-        if (format->check != nullptr)
-            if (auto checked = format->check(bytes); !checked) return failure(std::move(checked));
-        OpenedImage image;
-        image.memory_ = std::make_unique<MemoryReader>(bytes);
-        image.byte_count_ = bytes.size();
-        try {
-            image.input_ = OIIO::ImageInput::create(format->reader);
-            if (!image.input_) return user_error(fmt::format("OpenImageIO was built without {}", format->shown));
-            image.input_->set_ioproxy(image.memory_.get());
-            OIIO::ImageSpec config;
-            config.attribute("oiio:UnassociatedAlpha", 1);
-            OIIO::ImageSpec spec;
-            if (!image.input_->open(fmt::format("memory.{}", format->reader), spec, config))
-                return user_error(fmt::format("cannot be read as {}: {}", format->shown, image.reason()));
-        } catch (const std::exception& exception) {
-            return user_error(fmt::format("cannot be read as {}: {}", format->shown, exception.what()));
-        }
-        const OIIO::ImageSpec& spec = image.input_->spec();
+        auto memory = MemoryInput::open(bytes);
+        if (!memory) return failure(std::move(memory));
+        const OIIO::ImageSpec& spec = memory->input().spec();
         if (spec.deep || spec.nchannels < 1 || spec.depth > 1) return user_error("is no flat picture");
         if (spec.width < 1 || spec.height < 1 || spec.width > most_texture_side || spec.height > most_texture_side)
             return user_error(fmt::format("the picture is {}x{}, 1 to {} a side is allowed", spec.width, spec.height,
                                           most_texture_side));
-        return image;
+        return OpenedImage(std::move(*memory), bytes.size());
     }
 
     [[nodiscard]] std::size_t pixel_count() const {
-        return static_cast<std::size_t>(input_->spec().width) * static_cast<std::size_t>(input_->spec().height);
+        return static_cast<std::size_t>(input().spec().width) * static_cast<std::size_t>(input().spec().height);
     }
     [[nodiscard]] std::size_t byte_count() const { return byte_count_; }
 
     [[nodiscard]] Result<Image> decode() {
-        const OIIO::ImageSpec& spec = input_->spec();
+        const OIIO::ImageSpec& spec = input().spec();
         Image image{.width = static_cast<std::uint32_t>(spec.width), .height = static_cast<std::uint32_t>(spec.height)};
         try {
             const bool is_float = spec.format.is_floating_point();
             const bool is_read = is_float ? read_floats(image) : read_integers(image);
-            if (!is_read) return user_error(fmt::format("damaged or truncated: {}", reason()));
+            if (!is_read) return user_error(fmt::format("damaged or truncated: {}", memory_.reason()));
         } catch (const std::exception& exception) {
             return user_error(fmt::format("cannot be decoded: {}", exception.what()));
         }
@@ -131,11 +64,9 @@ class OpenedImage {
     }
 
   private:
-    [[nodiscard]] std::string reason() const {
-        std::string message = one_printable_line(input_->geterror());
-        return message.empty() ? "damaged" : message;
-    }
-    [[nodiscard]] int channel_count() const { return std::min(input_->spec().nchannels, 4); }
+    OpenedImage(MemoryInput memory, std::size_t byte_count) : memory_(std::move(memory)), byte_count_(byte_count) {}
+    [[nodiscard]] OIIO::ImageInput& input() const { return memory_.input(); }
+    [[nodiscard]] int channel_count() const { return std::min(input().spec().nchannels, 4); }
 
     // One channel is grey, two are grey and alpha.
     template <class T, class ToColor, class ToAlpha>
@@ -154,7 +85,7 @@ class OpenedImage {
     [[nodiscard]] bool read_integers(Image& image) {
         const int channels = channel_count();
         std::vector<std::uint8_t> samples(pixel_count() * static_cast<std::size_t>(channels));
-        if (!input_->read_image(0, 0, 0, channels, OIIO::TypeUInt8, samples.data())) return false;
+        if (!input().read_image(0, 0, 0, channels, OIIO::TypeUInt8, samples.data())) return false;
         const auto same = [](std::uint8_t value) { return value; };
         if (channels == 4)
             image.rgba = std::move(samples);
@@ -166,13 +97,12 @@ class OpenedImage {
     [[nodiscard]] bool read_floats(Image& image) {
         const int channels = channel_count();
         std::vector<float> samples(pixel_count() * static_cast<std::size_t>(channels));
-        if (!input_->read_image(0, 0, 0, channels, OIIO::TypeFloat, samples.data())) return false;
+        if (!input().read_image(0, 0, 0, channels, OIIO::TypeFloat, samples.data())) return false;
         spread<float>(samples, static_cast<std::size_t>(channels), encoded, unencoded, image.rgba);
         return true;
     }
 
-    std::unique_ptr<MemoryReader> memory_;
-    OIIO::ImageInput::unique_ptr input_;  // after `memory_`, which it reads from until it is destroyed
+    MemoryInput memory_;
     std::size_t byte_count_ = 0;
 };
 
