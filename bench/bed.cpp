@@ -103,6 +103,7 @@ CompileDesc Bed::compile_desc(WorldUse use) const {
     out.depth = frame.depth.format;
     out.is_depth_planar = use == WorldUse::Planar;
     out.normals = frame.normals.format;
+    out.layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
     out.has_shadows = true;
     return out;
 }

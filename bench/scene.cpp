@@ -88,9 +88,12 @@ Result<Row> dungeon_post_row(Bed& bed, const std::string& name) {
     post->frame = post->drawing->renderer->frame();
     for (ImageRef* const image : {&post->frame.color, &post->frame.depth, &post->frame.normals, &post->frame.velocity})
         image->final_layout = image->layout;
-    const CompileDesc desc = compile_desc_for(
-        bed.device,
-        DeviceFrame{.frame = post->frame, .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT}, {});
+    const CompileDesc desc =
+        compile_desc_for(bed.device,
+                         DeviceFrame{.frame = post->frame,
+                                     .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+                                     .layer_usage = post->drawing->renderer->layer_usage()},
+                         {});
     if (auto plan = post->composer->compile(desc); !plan) return failure(std::move(plan));
     post->composer->wait_for_kernels();
     auto target = gpu::Image::create(bed.context, {.name = "target",

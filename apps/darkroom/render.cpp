@@ -199,6 +199,7 @@ class Render {
         if (Result<> done = hdr_->prepare(snapshot); !done) return done;
         darkroom::DeviceFrame input{.frame = hdr_->frame(),
                                     .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+                                    .layer_usage = hdr_->layer_usage(),
                                     .record_before = recorder(*hdr_)};
         input.frame.camera = as_stored(input.frame.camera);
         input.frame.time = shot.time;

@@ -74,6 +74,7 @@ struct CompileDesc {
     bool has_shadows = false;  ///< frames have lights with cascades in D32_SFLOAT
     VkFormat target = VK_FORMAT_R8G8B8A8_UNORM;
     VkImageUsageFlags color_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< with STORAGE, own pixels are read cheaper
+    VkImageUsageFlags layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of depth, normals and velocity alike
     VkImageUsageFlags target_usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
     /// What the target takes: Encoded for pictures that are shown, SceneLinear for float files (encode and dither are
     /// then skipped). Unset: Encoded for UNORM and SRGB formats, SceneLinear for float formats.

@@ -86,8 +86,10 @@ PassImage Builder::frame_image(FrameImage which) {
                             planner_.stack_[entry_].info->name, row.name);
         return {};
     }
-    return remember({.version = planner_.import_host(row.image, row.name, row.format, VK_IMAGE_USAGE_SAMPLED_BIT, {}),
-                     .format = row.format});
+    const VkImageUsageFlags usage =
+        which == FrameImage::Ui ? VkImageUsageFlags{VK_IMAGE_USAGE_SAMPLED_BIT} : planner_.desc_.layer_usage;
+    return remember(
+        {.version = planner_.import_host(row.image, row.name, row.format, usage, {}), .format = row.format});
 }
 
 PassImage Builder::shadow_map(std::uint32_t number) {

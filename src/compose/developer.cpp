@@ -101,6 +101,9 @@ CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const La
     out.is_depth_planar = out.depth != VK_FORMAT_UNDEFINED;
     out.normals = format(2);
     out.velocity = format(3);
+    out.layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    for (const VkFormat given : {out.depth, out.normals, out.velocity})
+        if (given != VK_FORMAT_UNDEFINED) out.layer_usage &= shader_usage(device.context(), given);
     out.has_shadows = std::any_of(input.lights.begin(), input.lights.end(), has_cascades);
     return out;
 }
@@ -108,9 +111,9 @@ CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const La
 /// Do two descriptions that one DevelopDesc made ask for the same?
 bool is_same(const CompileDesc& a, const CompileDesc& b) {
     return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
-           a.color == b.color && a.color_usage == b.color_usage && a.depth == b.depth &&
-           a.is_depth_planar == b.is_depth_planar && a.normals == b.normals && a.velocity == b.velocity &&
-           a.ui == b.ui && a.has_shadows == b.has_shadows;
+           a.color == b.color && a.color_usage == b.color_usage && a.layer_usage == b.layer_usage &&
+           a.depth == b.depth && a.is_depth_planar == b.is_depth_planar && a.normals == b.normals &&
+           a.velocity == b.velocity && a.ui == b.ui && a.has_shadows == b.has_shadows;
 }
 
 /// The cascades of one light, an array, and the buffer that fills it.
@@ -152,6 +155,7 @@ CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const Dev
     out.max_extent = frame.color.used_region().extent;
     out.color = frame.color.format;
     out.color_usage = input.color_usage;
+    out.layer_usage = input.layer_usage;
     out.depth = frame.depth.format;
     out.is_depth_planar = frame.depth.is_given() && frame.camera.depth == DepthKind::Planar;
     out.normals = frame.normals.format;

@@ -34,6 +34,7 @@ struct DevelopInput {
 struct DeviceFrame {
     Frame frame;                                                 ///< without target
     VkImageUsageFlags color_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of the colour image
+    VkImageUsageFlags layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of depth, normals and velocity alike
     RecordBefore record_before;                                  ///< goes first, in the same submission
 };
 

@@ -324,6 +324,10 @@ Result<Renderer> Renderer::create(Device& device, const scene::Scene& scene, con
 Result<> Renderer::prepare(const scene::Snapshot& snapshot) { return state_->prepare(snapshot); }
 Result<> Renderer::record(VkCommandBuffer commands) { return state_->record(commands); }
 Frame Renderer::frame() const { return state_->frame; }
+VkImageUsageFlags Renderer::layer_usage() const {
+    const Targets& targets = state_->targets;
+    return targets.planar_depth.info.usage & targets.normals.info.usage & targets.velocity.info.usage;
+}
 const ImageRef& Renderer::picture() const { return state_->picture; }
 const RenderCounters& Renderer::counters() const { return state_->counters; }
 const RenderDesc& Renderer::desc() const { return state_->desc; }

@@ -62,6 +62,8 @@ class Renderer {
     /// R32F (1e10 where there is no surface). Lights refer to memory of the renderer. Target, frame_index and view are
     /// the caller's. Only for Output::Hdr.
     [[nodiscard]] Frame frame() const;
+    /// What all of the frame's layers beside the colour were created for.
+    [[nodiscard]] VkImageUsageFlags layer_usage() const;
     /// The picture of either output, as record() leaves it: TRANSFER_SRC_OPTIMAL for Display.
     [[nodiscard]] const ImageRef& picture() const;
 
