@@ -7,18 +7,18 @@ vec4 volumetric(vec4 color, Pixel pixel, Volumetric parameters) {
     // NaN counts as sky, which lies where half precision ends.
     planar = planar < 60000.0 ? max(planar, 1e-3) : 60000.0;
     float inverse = 1.0 / planar;
-    ivec2 base = pixel.texel / 2, last = max(pixel.size / 2, ivec2(1)) - 1;
+    ivec2 base = pixel.texel >> 1, last = max(pixel.size >> 1, ivec2(1)) - 1;
     vec2 part = vec2(pixel.texel & 1) * 0.5;
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int i = 0; i < 4; ++i) {
         vec2 bilinear = mix(1.0 - part, part, vec2(i & 1, i >> 1));
         vec4 tap = load(volumetric_shafts, min(base + ivec2(i & 1, i >> 1), last));
-        float weight = (bilinear.x * bilinear.y + 1e-3) / (0.01 + abs(tap.a * inverse - 1.0));
+        float unlike = 0.01 + abs(tap.a * inverse - 1.0), reach = max(min(tap.a, parameters.max_distance), 1e-3);
+        float weight = (bilinear.x * bilinear.y + 1e-3) / (unlike * reach);
         // What is thinner than a half-size pixel has nobody like it; the light before it is then estimated by length.
-        float before = min(planar / max(min(tap.a, parameters.max_distance), 1e-3), 1.0);
-        sum += tap.rgb * (weight * before);
-        weights += weight;
+        sum += tap.rgb * (weight * min(planar, reach));
+        weights += weight * reach;
     }
     return vec4(color.rgb + sum / weights, color.a);
 }
