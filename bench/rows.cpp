@@ -84,12 +84,15 @@ void add_world_chains(std::vector<Recipe>& recipes) {
     for (const char* const resolution : {"half", "full"})
         for (const char* const method : {"hemisphere", "ground_truth"})
             add_chain(recipes, fmt::format("ssao/{}/{}", resolution, method), ssao_stack(method, resolution),
-                      {.world = WorldUse::Full});
+                      {.world = WorldUse::Planar});
+    add_chain(recipes, "ssao/half/hemisphere, device depth", ssao_stack("hemisphere", "half"),
+              {.world = WorldUse::Full});
     add_chain(recipes, "ssao/half/hemisphere, normals from depth", ssao_stack("hemisphere", "half"),
               {.world = WorldUse::WithoutNormals});
     for (const KernelStage stage : stages)
         add_chain(recipes, fmt::format("volumetric/{}", stage_name(stage)), stack_of_one("volumetric"),
-                  {.kernels = stage, .world = WorldUse::Full});
+                  {.kernels = stage, .world = WorldUse::Planar});
+    add_chain(recipes, "volumetric/device depth", stack_of_one("volumetric"), {.world = WorldUse::Full});
     add_chain(recipes, "tail/fog/planar distance", foggy_tail_stack({}), {.world = WorldUse::Planar});
     add_chain(recipes, "tail/fog/device depth", foggy_tail_stack({}), {.world = WorldUse::Full});
     add_chains(recipes, "documented", documented_stack(), WorldUse::Full);
