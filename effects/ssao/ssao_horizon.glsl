@@ -63,11 +63,13 @@ float ssao_horizons(SsaoPoint point, int samples) {
         float reach = max(custom[5].x * squared * inverse - 1.0, 0.0);
         // The normal in the slice: its length, and cosine and sine of its angle to the view vector.
         float sideways = dot(point.normal, across);
-        float length_in_slice = sqrt(max(facing * facing + sideways * sideways, 1e-12));
-        vec2 normal = vec2(facing, sideways) / length_in_slice;
+        float in_slice = max(facing * facing + sideways * sideways, 1e-12), per_length = inversesqrt(in_slice);
+        float length_in_slice = in_slice * per_length;
+        vec2 normal = vec2(facing, sideways) * per_length;
         float horizon = ssao_horizon(point, view, motion * inverse, reach, share, -normal.y, steps);
         visible += length_in_slice * ssao_arc(horizon, sqrt(max(1.0 - horizon * horizon, 0.0)), normal);
-        open += length_in_slice * ssao_arc(-normal.y, normal.x, normal);
+        // The arc of the lowest horizon, whose cosine is -normal.y and sine normal.x.
+        open += length_in_slice * 2.0 * (normal.x + ssao_acos(-normal.y) * normal.y);
     }
     return visible / max(open, 1e-6);
 }
