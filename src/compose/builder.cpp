@@ -211,11 +211,12 @@ PassImage Builder::add(const KernelPassDesc& desc) {
 void Builder::add_side(std::string name, PassImage image, const PassVector& neutral, bool is_loaded) {
     const bool is_known = image.index < images_.size();
     PassInput input = is_known ? input_of(images_[image.index], 0) : PassInput{};
+    input.is_loaded = is_loaded;
     const bool is_always_there = is_known && !images_[image.index].first_written.is_valid();  // a table, or a picture
     if (!is_always_there) {
         const VkFormat format = is_known ? images_[image.index].format : VK_FORMAT_R32G32B32A32_SFLOAT;
         const graph::Version constant = planner_.import_neutral(format, neutral);
-        input.is_loaded = is_loaded && planner_.facts_.at(constant.index).format == format;
+        input.is_loaded = is_loaded && is_known && planner_.facts_.at(constant.index).format == format;
         if (is_known)
             planner_.fall_back(images_[image.index].first_written, constant);
         else
