@@ -153,6 +153,22 @@ TEST_F(Cli, PostProcessingOffIsTheDefaultCurveAlone) {
     EXPECT_LE(result->max_error, 2.001 / 255);
 }
 
+TEST_F(Cli, WhatIsOffTakesNoPassAndNoMemory) {
+    std::vector<std::string> arguments{"plan", "--input", path("frame.exr")};
+    const Outcome usual = run(arguments);
+    for (const EffectInfo* const effect : all_effects())
+        if (effect->flat.documented >= 0 && effect->makes == nullptr)
+            arguments.insert(arguments.end(), {flag_name(flat_key(effect->name, "enabled")), "off"});
+    const Outcome bare = run(arguments);
+    EXPECT_EQ(bare.code, 0) << bare.err;
+    EXPECT_NE(bare.out.find("transient memory: 0.00 MiB"), std::string::npos) << bare.out;
+    for (const EffectInfo* const effect : all_effects()) {
+        if (effect->flat.documented < 0 || effect->makes != nullptr) continue;
+        EXPECT_EQ(bare.out.find(effect->name), std::string::npos) << bare.out;
+        if (!effect->flat.starts_on) EXPECT_EQ(usual.out.find(effect->name), std::string::npos) << usual.out;
+    }
+}
+
 TEST_F(Cli, LooksWarnOrStrictlyRefuse) {
     const std::string look = write("a.toml", "[post_process]\nbogus_key = 1\n");
     const Outcome lenient = develop({"--look", look});

@@ -20,6 +20,17 @@ namespace {
 // Scenes hold a look beside other tables; what has another name is a look alone, and unknown tables are slips.
 bool is_scene_name(const std::filesystem::path& path) { return path.filename().string().ends_with(".scene.toml"); }
 
+// The values of a command stay as they are, so what is off needs no place among the passes, no images and no kernels.
+// What changes the domain stays: an encoding that is off is not the same as none.
+void drop_what_is_off(Look& look) {
+    if (!look.is_flat || !look.is_enabled) return;
+    std::erase_if(look.entries, [](const darkroom::LookEntry& entry) {
+        const darkroom::EffectInfo& effect = *entry.effect;
+        const bool is_identity = effect.is_identity != nullptr && effect.is_identity(entry.words.data());
+        return effect.makes == nullptr && (entry.state.enabled.on == 0 || is_identity);
+    });
+}
+
 }  // namespace
 
 void LookFlags::add_value(CLI::App& command, const std::string& key, const std::string& help,
@@ -104,6 +115,7 @@ Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
         *look = darkroom::default_look();
         look->is_enabled = false;
     }
+    drop_what_is_off(*look);
     return look;
 }
 
