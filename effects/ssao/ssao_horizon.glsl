@@ -51,10 +51,12 @@ float ssao_horizons(SsaoPoint point, int samples) {
     vec2 middle = vec2(point.texel) + 0.5 - custom[4].xy;
     float per_w = 1.0 / (custom[3].w - custom[3].z * point.planar);
     float facing = max(dot(point.normal, view), 0.0), visible = 0.0, open = 0.0;
+    // From one direction to the next, by a whole turn over 2, 4, 6 or 8.
+    vec2 turn = slices == 1 ? vec2(-1.0, 0.0) : slices == 2 ? vec2(0.0, 1.0) : slices == 3 ? vec2(0.5, 0.866025404)
+                                                                                           : vec2(0.707106781);
     [[unroll]] for (int i = 0; i < 2 * slices; ++i) {
-        float next = float(i) * (3.14159265 / float(slices));
-        vec2 turn = vec2(cos(next), sin(next));
-        vec2 angle = vec2(first.x * turn.x - first.y * turn.y, first.x * turn.y + first.y * turn.x);
+        vec2 angle = first;
+        first = vec2(angle.x * turn.x - angle.y * turn.y, angle.x * turn.y + angle.y * turn.x);
         vec3 across = right * angle.x + up * angle.y;
         // How a step across the view moves the texel.
         vec2 motion = (custom[2].xy * across.xy + (custom[2].zw - middle * custom[3].z) * across.z) * per_w;

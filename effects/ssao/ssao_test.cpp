@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "compose/test_host.hpp"
 #include "ssao/ssao_reference.hpp"
 #include "ssao/ssao_scenes.hpp"
 
@@ -323,6 +324,37 @@ TEST(EffectSsao, GpuMatchesReference) {
                 has_normals = !has_normals;
             }
         }
+}
+
+// The kernel of a new count, whose loops hold it as a literal, is made after the first frame with it.
+TEST(EffectSsao, GpuHasTheSameBitsWithAnyKernel) {
+    const BoxView view = test::view_of(test::stairs_scene(), 64, 48);
+    const test::Host host(test::uniform(64, 48, {1, 1, 1, 1}));
+    const gpu::test::Picture depth = gpu::test::upload(host.device.context(), test::pixels_of(view.depth),
+                                                       VK_FORMAT_R32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
+    CompileDesc desc = host.compile_desc();
+    desc.depth = VK_FORMAT_R32_SFLOAT;
+    desc.is_depth_planar = true;
+    Frame frame = host.frame();
+    frame.depth = test::image_ref(depth);
+    frame.camera = view.camera;
+    frame.camera.depth = DepthKind::Planar;
+    for (const SsaoMethod method : methods) {
+        Composer composer(host.device);
+        const Handle ssao = composer.add(Ssao{.method = method});
+        test::must(composer.compile(desc));
+        ReferenceImage before;
+        for (const double samples : {16.0, 5.0, 33.0}) {
+            test::must(composer.set(ssao, "samples", samples));
+            test::must(host.record(composer, frame));
+            const ReferenceImage complete = host.read_target();
+            composer.wait_for_kernels();
+            test::must(host.record(composer, frame));
+            EXPECT_EQ(test::worst_difference(host.read_target(), complete), 0) << int(method) << ", " << samples;
+            if (!before.pixels.empty()) EXPECT_GT(test::worst_difference(before, complete), 1e-3);
+            before = complete;
+        }
+    }
 }
 
 // Orthographic, and with y up in clip space.
