@@ -351,7 +351,9 @@ TEST(EffectSsao, GpuHasTheSameBitsWithAnyKernel) {
             composer.wait_for_kernels();
             test::must(host.record(composer, frame));
             EXPECT_EQ(test::worst_difference(host.read_target(), complete), 0) << int(method) << ", " << samples;
-            if (!before.pixels.empty()) EXPECT_GT(test::worst_difference(before, complete), 1e-3);
+            if (!before.pixels.empty()) {
+                EXPECT_GT(test::worst_difference(before, complete), 1e-3);
+            }
             before = complete;
         }
     }
