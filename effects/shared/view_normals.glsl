@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The frame's world-space normals in view space. custom[0].x: 1 where a pixel here is the
-// first of 2 x 2.
+// The frame's world-space normals in view space. custom[0].x: 1 where a pixel here is the first of 2 x 2.
 #include "shared/camera.glsl"
 
 vec4 shade(Pixel pixel) {

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <thread>
 
 #include "core/assert.hpp"
 #include "gpu/formats.hpp"
@@ -74,38 +72,6 @@ VkFormat expected_format(const CompileDesc& desc, HostImage image) {
     }
 }
 
-/// Runs `work(i)` for i in [0, count) on a few threads; the first error wins.
-template <class Work>
-Result<> for_all(std::size_t count, const Work& work) {
-    std::atomic<std::size_t> next{0};
-    std::mutex lock;
-    Result<> first{};
-    const auto run = [&] {
-        for (std::size_t i = next++; i < count; i = next++) {
-            if (auto ok = work(i); !ok) {
-                const std::scoped_lock guard(lock);
-                if (first) first = failure(std::move(ok));
-            }
-        }
-    };
-    std::vector<std::thread> threads;
-    const std::size_t helpers = std::min<std::size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
-    for (std::size_t i = 1; i < helpers; ++i) threads.emplace_back(run);
-    run();
-    for (std::thread& thread : threads) thread.join();
-    return first;
-}
-
-bool is_whole(const gpu::Region& region) {
-    return region.offset.x == 0 && region.offset.y == 0 && region.extent.width == region.image.width &&
-           region.extent.height == region.image.height;
-}
-
-bool is_effective(const Entry& entry, float opacity, const std::uint32_t* words) {
-    return entry.inputs.enabled && opacity > 0 &&
-           (entry.info->is_identity == nullptr || !entry.info->is_identity(words));
-}
-
 }  // namespace
 
 Chain::Chain(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots)
@@ -132,41 +98,6 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program prog
     if (auto ok = chain->make_resources(has_timers); !ok) return failure(std::move(ok));
     chain->builders_ = std::make_unique<Builders>(context, chain->variants_);
     return chain;
-}
-
-Result<> Chain::make_kernels(std::span<const Entry> stack) {
-    declared_pass_.assign(compiled_->passes().size(), 0);
-    std::vector<std::uint32_t> kept;
-    for (std::uint32_t i = 0; i < program_.passes.size(); ++i) {
-        variants_.push_back(nullptr);
-        const std::uint32_t pass = compiled_->kept_pass_of({i});
-        if (pass == ~0u) continue;
-        declared_pass_[pass] = i;
-        kept.push_back(i);
-        variants_[i] = std::make_unique<Variants>(program_.passes[i]);
-    }
-
-    words_at_.clear();
-    std::uint32_t words = 0;
-    for (const Entry& entry : stack) {
-        words_at_.push_back(words);
-        words += static_cast<std::uint32_t>(entry.info->parameters.words());
-    }
-    words_.resize(words + 1);
-    is_on_ = std::make_unique<bool[]>(stack.size() + 1);
-    toggles_ = std::make_unique<bool[]>(program_.toggles.size() + 1);
-    evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
-    import_states_.resize(program_.imports.size());
-    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, 0);
-    last_shapes_.resize(program_.passes.size());
-    for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(program_.passes[i], stack);
-
-    // The complete kernel and the one of the expected shape, for every pass.
-    return for_all(kept.size() * 2, [&](std::size_t i) -> Result<> {
-        Variants& variants = *variants_[kept[i / 2]];
-        if (i % 2 == 0) return variants.build_complete(context_);
-        return variants.build(context_, last_shapes_[kept[i / 2]]);
-    });
 }
 
 Result<> Chain::make_resources(bool has_timers) {
@@ -265,82 +196,6 @@ Result<> Chain::check_frame(const Frame& frame) const {
     if (frame.view >= desc_.views)
         return user_error(
             fmt::format("record: view {} does not exist; allowed is [0, {}]", frame.view, desc_.views - 1));
-    return {};
-}
-
-void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
-    for (std::size_t i = 0; i < stack.size(); ++i) {
-        std::uint32_t* const words = words_.data() + words_at_[i];
-        stack[i].evaluate({words, stack[i].info->parameters.words()});
-        is_on_[i] = !program_.is_left_out[i] && is_effective(stack[i], stack[i].inputs.opacity, words);
-    }
-    for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
-        const Toggle& toggle = program_.toggles[i];
-        const auto holds = [&](std::uint32_t entry, ConditionFunction condition) {
-            if (condition == nullptr) return true;
-            PassContext own = context;
-            own.frame_extent = program_.entry_sizes[entry].of(context.frame_extent);
-            return condition(words_of(entry), own, toggle.argument);
-        };
-        bool is_on = false;
-        for (std::size_t e = 0; e < toggle.entries.size(); ++e) {
-            const std::uint32_t entry = toggle.entries[e];
-            is_on = is_on || (is_on_[entry] && (toggle.conditions.empty() || holds(entry, toggle.conditions[e])));
-        }
-        is_on = is_on && holds(toggle.entries.front(), toggle.condition);
-        toggles_[i] = is_on;
-    }
-}
-
-Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack, const gpu::Region& output,
-                      std::span<const gpu::Binding> inputs) const {
-    Shape shape;
-    if (pass.steps.size() > max_lean_steps) return shape;
-    if (is_whole(output) && std::ranges::all_of(inputs, [](const gpu::Binding& b) { return is_whole(b.region); }))
-        shape.steps |= Shape::is_whole;
-    if (!inputs.empty() && inputs[0].region.extent.width == 2 * output.extent.width &&
-        inputs[0].region.extent.height == 2 * output.extent.height)
-        shape.steps |= Shape::input_is_twice;
-    for (std::size_t i = 0; i < pass.steps.size(); ++i) {
-        const std::uint32_t entry = pass.steps[i].entry;
-        if (is_on_[entry]) shape.steps |= (stack[entry].is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);
-    }
-    for_each_choice(pass, [&](std::size_t step, const ParamInfo& row, std::uint32_t bit, std::uint32_t bits) {
-        const std::uint32_t entry = is_fused(pass) ? pass.steps[step].entry : pass.entry;
-        if (is_on_[entry]) shape.choices |= std::uint64_t{words_of(entry)[row.word] & ((1u << bits) - 1)} << bit;
-    });
-    return shape;
-}
-
-/// The shape that a frame of the largest extent will have, in whole images: what most frames are.
-Shape Chain::expected_shape(const ProgramPass& pass, std::span<const Entry> stack) const {
-    const auto region = [&](std::uint32_t slot, std::uint32_t mip_level) {
-        // A pass that is off has no slot: any region does.
-        if (slot >= compiled_->slots().size()) return gpu::Region{{}, desc_.max_extent, desc_.max_extent};
-        const graph::ImageDesc& desc = compiled_->slots()[slot].desc;
-        const VkExtent2D extent =
-            graph::mip_extent(desc.size.of(desc_.max_extent), std::min(mip_level, desc.mip_levels - 1));
-        return gpu::Region{{}, extent, extent};
-    };
-    std::array<gpu::Binding, most_images> inputs;
-    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
-        const PassInput& input = pass.inputs[i];
-        inputs[i] = input.table != no_table
-                        ? tables_.binding(input.table)
-                        : gpu::Binding{.region = region(schedule_->slot_of(input.version), input.mip_level)};
-    }
-    return shape_of(pass, stack, region(schedule_->slot_of(pass.output), pass.output_mip_level),
-                    {inputs.data(), pass.inputs.size()});
-}
-
-Result<> Chain::build_lean(std::span<const Entry> stack) {
-    evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
-    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, 0);
-    for (std::size_t i = 0; i < program_.passes.size(); ++i) {
-        if (!variants_[i]) continue;
-        if (auto ok = variants_[i]->build(context_, expected_shape(program_.passes[i], stack)); !ok) return ok;
-        if (auto ok = variants_[i]->build(context_, last_shapes_[i]); !ok) return ok;
-    }
     return {};
 }
 
