@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The planner's working state, for planner.cpp and builder.cpp only.
+// The planner's working state, for planner*.cpp and builder.cpp only.
 
 #include <darkroom/effect.hpp>
 #include <map>
