@@ -261,8 +261,8 @@ struct Field {
         copy.info.switched_word = detail::word_of<Part>();
         return copy;
     }
-    /// How often a loop of a shader runs: kernels of the present values hold it as a literal, so that compilers can unroll
-    /// the loop and fold what follows from its number. For integers of at most 8 bits that are seldom animated.
+    /// How often a loop of a shader runs: kernels of the present values hold it as a literal, so that compilers can
+    /// unroll the loop and fold what follows from its number. For integers of at most 8 bits that are seldom animated.
     [[nodiscard]] constexpr Field as_loop_count() const {
         static_assert(std::is_same_v<typename detail::Member<M>::Type, std::int32_t>);
         if (info.range.min < 0 || info.range.max > 255) throw "a loop count lies in [0, 255]";
