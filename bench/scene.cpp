@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "compose/developer.hpp"
+#include "develop/developer.hpp"
 #include "render/renderer.hpp"
 #include "scene/assets.hpp"
 #include "scene/scene.hpp"

@@ -12,7 +12,7 @@ function(darkroom_shared_library name)
   foreach(part ${library_PARTS})
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
     target_link_libraries(${name} PRIVATE
-      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|compose|effects|toml|looks)$>")
+      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|plan|compose|effects|toml|looks)$>")
   endforeach()
   set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
     LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -26,7 +26,7 @@ function(darkroom_shared_library name)
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
-darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS core gpu graph compose effects)
+darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS core gpu graph plan compose effects)
 # The headers name Vulkan types; a host calls Vulkan through whatever loader it has.
 target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)
 if(TARGET darkroom_looks)

@@ -16,16 +16,16 @@ namespace {
 
 using namespace darkroom;
 
-compose::Entry entry_of(const EffectInfo& info) {
-    compose::Entry entry{.info = &info};
+plan::Entry entry_of(const EffectInfo& info) {
+    plan::Entry entry{.info = &info};
     entry.inputs.name = info.name;
     if (info.has_second) entry.inputs.second = scene_color;
     entry.base.assign(info.parameters.defaults.begin(), info.parameters.defaults.end());
     return entry;
 }
 
-std::vector<std::vector<compose::Entry>> stacks() {
-    std::vector<std::vector<compose::Entry>> out;
+std::vector<std::vector<plan::Entry>> stacks() {
+    std::vector<std::vector<plan::Entry>> out;
     for (const EffectInfo* const info : all_effects()) out.push_back({entry_of(*info)});
     for (const auto rank : {&FlatPlace::documented, &FlatPlace::scene_linear}) {
         std::vector<const EffectInfo*> chain;
@@ -38,13 +38,13 @@ std::vector<std::vector<compose::Entry>> stacks() {
     return out;
 }
 
-Result<> append_sources(const compose::Program& program, gpu::Stage stage, std::vector<gpu::ShaderSource>& out) {
+Result<> append_sources(const plan::Program& program, gpu::Stage stage, std::vector<gpu::ShaderSource>& out) {
     const bool is_compute = stage == gpu::Stage::Compute;
-    for (const compose::ProgramPass& pass : program.passes) {
+    for (const plan::ProgramPass& pass : program.passes) {
         std::vector<gpu::KernelSpec> specs{pass.spec};
         if (!pass.steps.empty()) {
-            std::vector<compose::FusedStep> steps = pass.steps;
-            for (compose::FusedStep& step : steps) step.is_certain = step.is_plain = true;
+            std::vector<plan::FusedStep> steps = pass.steps;
+            for (plan::FusedStep& step : steps) step.is_certain = step.is_plain = true;
             auto lean = compose::lean_spec(pass, steps);
             if (!lean) return failure(std::move(lean));
             specs.push_back(std::move(*lean));
@@ -70,7 +70,7 @@ int main() {
                                    .ui = VK_FORMAT_R8G8B8A8_UNORM,
                                    .has_shadows = true,
                                    .target_domain = Domain::Encoded};
-            auto program = compose::plan_program(
+            auto program = plan::plan_program(
                 stack, desc, {.stage_of = [&](const gpu::KernelSpec&) { return Result<gpu::Stage>(stage); }});
             Result<> ok = program ? append_sources(*program, stage, sources) : Result<>(failure(std::move(program)));
             if (!ok) {

@@ -7,7 +7,7 @@
 #include <darkroom/look.hpp>
 #include <filesystem>
 
-#include "compose/reference_chain.hpp"
+#include "develop/reference_chain.hpp"
 #include "compose/test_host.hpp"
 
 namespace darkroom {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "compose/developer.hpp"
+#include "develop/developer.hpp"
 #include "core/param_text.hpp"
 #include "device_flags.hpp"
 #include "frames.hpp"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "compose/developer.hpp"
+#include "develop/developer.hpp"
 #include "image/write.hpp"
 
 namespace app {

@@ -4,8 +4,8 @@
 
 #include <darkroom/look.hpp>
 
-#include "compose/developer.hpp"
-#include "compose/reference_chain.hpp"
+#include "develop/developer.hpp"
+#include "develop/reference_chain.hpp"
 #include "image/frame_file.hpp"
 #include "image/picture.hpp"
 #include "image/write.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "commands.hpp"
-#include "compose/developer.hpp"
+#include "develop/developer.hpp"
 #include "device_flags.hpp"
 #include "frames.hpp"
 #include "look_flags.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "compose/developer.hpp"
+#include "develop/developer.hpp"
 #include "core/param_text.hpp"
 #include "frames.hpp"
 #include "outputs.hpp"

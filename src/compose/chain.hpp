@@ -9,13 +9,15 @@
 #include <span>
 #include <vector>
 
-#include "compose/program.hpp"
+#include "plan/program.hpp"
 #include "compose/tables.hpp"
 #include "compose/variants.hpp"
 #include "gpu/resources.hpp"
 #include "graph/physical.hpp"
 
 namespace darkroom::compose {
+
+using namespace plan;
 
 class Chain {
   public:

@@ -89,7 +89,7 @@ void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
         is_on_[i] = !program_.is_left_out[i] && is_effective(stack[i], stack[i].inputs.opacity, words);
     }
     for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
-        const Toggle& toggle = program_.toggles[i];
+        const Gate& toggle = program_.toggles[i];
         const auto holds = [&](std::uint32_t entry, ConditionFunction condition) {
             if (condition == nullptr) return true;
             PassContext own = context;

@@ -28,7 +28,7 @@ Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& 
     return failure(std::move(ok));
 }
 
-std::string shown(const compose::Entry& entry, const ParamInfo& row) {
+std::string shown(const plan::Entry& entry, const ParamInfo& row) {
     return fmt::format("{}.{}", entry.inputs.name, row.name);
 }
 
@@ -67,18 +67,18 @@ bool is_surely_allowed(const ParamInfo& row, std::span<const std::uint32_t> word
 }
 
 /// Allocates nothing where the value is allowed, but for curves.
-Result<> check_value(const compose::Entry& entry, const ParamInfo& row, std::span<const std::uint32_t> words) {
+Result<> check_value(const plan::Entry& entry, const ParamInfo& row, std::span<const std::uint32_t> words) {
     return is_surely_allowed(row, words) ? Result<>{} : check_words(row, words, shown(entry, row));
 }
 
-Result<> check_together(const compose::Entry& entry, std::span<const std::uint32_t> words) {
+Result<> check_together(const plan::Entry& entry, std::span<const std::uint32_t> words) {
     if (entry.info->conflict == nullptr) return {};
     const std::string conflict = entry.info->conflict(words.data());
     return conflict.empty() ? Result<>{} : user_error(fmt::format("{}: {}", entry.inputs.name, conflict));
 }
 
 /// All values of an entry: a struct that a host filled may hold anything.
-Result<> check_values(const compose::Entry& entry, std::span<const std::uint32_t> words) {
+Result<> check_values(const plan::Entry& entry, std::span<const std::uint32_t> words) {
     for (const ParamInfo& row : entry.info->parameters.rows)
         if (auto ok = check_value(entry, row, words.subspan(row.word, row.words)); !ok) return ok;
     return check_together(entry, words);
@@ -88,19 +88,19 @@ Failure unknown_handle() { return user_error("a handle that names no entry of th
 
 }  // namespace
 
-namespace compose {
+namespace plan {
 
 void Entry::evaluate(std::span<std::uint32_t> out) const {
     std::copy(base.begin(), base.end(), out.begin());
     for (const Override& o : overrides) std::copy_n(o.value.begin(), o.words, out.begin() + o.word);
 }
 
-}  // namespace compose
+}  // namespace plan
 
 struct Composer::State {
     Device* device = nullptr;
     ComposerDesc desc;
-    std::vector<compose::Entry> stack;
+    std::vector<plan::Entry> stack;
     std::optional<CompileDesc> compiled_for;
     std::unique_ptr<compose::Chain> chain;
     /// Chains that unfinished recordings may still use, and how many recordings each has to outlive.
@@ -116,22 +116,22 @@ struct Composer::State {
         return desc.frames_in_flight * (compiled_for ? compiled_for->views : 1);
     }
     [[nodiscard]] bool has(Handle handle) const { return handle.id >= 1 && handle.id <= stack.size(); }
-    compose::Entry& at(Handle handle) {
+    plan::Entry& at(Handle handle) {
         DARKROOM_ASSERT(has(handle));
         return stack[handle.id - 1];
     }
-    [[nodiscard]] Result<compose::Program> program(const CompileDesc& compile_desc) const {
+    [[nodiscard]] Result<plan::Program> program(const CompileDesc& compile_desc) const {
         const gpu::Context& context = device->context();
         const bool is_software = context.traits.is_software;
-        const compose::PlannerTraits traits{
+        const plan::PlannerTraits traits{
             .stage_of = [&](const gpu::KernelSpec& spec) { return stage_of(context, spec, compile_desc.kernels); },
             .loads_are_cheap = is_software,
             .workgroup = is_software ? std::array{64u, 4u} : std::array{16u, 16u}};
-        return compose::plan_program(stack, compile_desc, traits);
+        return plan::plan_program(stack, compile_desc, traits);
     }
     Result<const ParamInfo*> row(Handle handle, std::string_view parameter) {
         if (!has(handle)) return unknown_handle();
-        const compose::Entry& entry = at(handle);
+        const plan::Entry& entry = at(handle);
         if (const ParamInfo* const found = entry.info->parameters.find(parameter)) return found;
         std::vector<std::string> names;
         for (const ParamInfo& info : entry.info->parameters.rows) names.emplace_back(info.name);
@@ -150,12 +150,12 @@ Composer& Composer::operator=(Composer&&) noexcept = default;
 Composer::~Composer() = default;
 
 Handle Composer::add(const EffectInfo& info, const void* parameters, const Inputs& inputs) {
-    compose::Entry entry{.info = &info, .inputs = inputs};
+    plan::Entry entry{.info = &info, .inputs = inputs};
     entry.base.assign(info.parameters.defaults.begin(), info.parameters.defaults.end());
     if (parameters != nullptr) std::memcpy(entry.base.data(), parameters, entry.base.size() * 4);
     if (entry.inputs.name.empty()) {
         const auto same = std::count_if(state_->stack.begin(), state_->stack.end(),
-                                        [&](const compose::Entry& other) { return other.info->name == info.name; });
+                                        [&](const plan::Entry& other) { return other.info->name == info.name; });
         entry.inputs.name = same == 0 ? std::string(info.name) : fmt::format("{}#{}", info.name, same + 1);
     }
     state_->stack.push_back(std::move(entry));
@@ -187,7 +187,7 @@ Result<> Composer::set_enabled(Handle handle, bool enabled) {
 
 Result<> Composer::set_opacity(Handle handle, float opacity) {
     if (!state_->has(handle)) return unknown_handle();
-    compose::Entry& entry = state_->at(handle);
+    plan::Entry& entry = state_->at(handle);
     if (!(opacity >= 0 && opacity <= 1))
         return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.inputs.name, opacity));
     // An entry with passes of its own is laid over its input by the next kernel, if that was planned so.
@@ -206,7 +206,7 @@ Result<> Composer::set_opacity(Handle handle, float opacity) {
 Result<> Composer::set(Handle handle, std::string_view parameter, std::span<const std::uint32_t> words) {
     const auto row = state_->row(handle, parameter);
     if (!row) return failure(row.error());
-    compose::Entry& entry = state_->at(handle);
+    plan::Entry& entry = state_->at(handle);
     if (auto ok = check_value(entry, **row, words); !ok) return ok;
     std::copy(words.begin(), words.end(), entry.base.begin() + (*row)->word);
     return {};
@@ -215,7 +215,7 @@ Result<> Composer::set(Handle handle, std::string_view parameter, std::span<cons
 Result<> Composer::set(Handle handle, std::string_view parameter, double value) {
     const auto row = state_->row(handle, parameter);
     if (!row) return failure(row.error());
-    compose::Entry& entry = state_->at(handle);
+    plan::Entry& entry = state_->at(handle);
     const ParamInfo& info = **row;
     const bool is_allowed = value >= info.range.min && value <= info.range.max;
     if (is_allowed && info.kind == Kind::Float) {
@@ -231,7 +231,7 @@ Result<> Composer::set(Handle handle, std::string_view parameter, double value) 
 
 Result<> Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) {
     if (!state_->has(handle)) return unknown_handle();
-    compose::Entry& entry = state_->at(handle);
+    plan::Entry& entry = state_->at(handle);
     if (entry.info != &info) return user_error(fmt::format("{} is no {}", entry.inputs.name, info.name));
     const std::span words(static_cast<const std::uint32_t*>(parameters), entry.base.size());
     if (auto ok = check_values(entry, words); !ok) return ok;
@@ -243,7 +243,7 @@ Result<> Composer::set_override(Handle handle, std::string_view parameter, std::
                                 std::span<const std::uint32_t> words) {
     const auto row = state_->row(handle, parameter);
     if (!row) return failure(row.error());
-    compose::Entry& entry = state_->at(handle);
+    plan::Entry& entry = state_->at(handle);
     if (auto ok = check_value(entry, **row, words); !ok) return ok;
     const auto found = std::find_if(entry.overrides.begin(), entry.overrides.end(),
                                     [&](const auto& o) { return o.owner == owner && o.word == (*row)->word; });
@@ -257,12 +257,12 @@ Result<> Composer::set_override(Handle handle, std::string_view parameter, std::
 }
 
 void Composer::drop_overrides(std::string_view owner) {
-    for (compose::Entry& entry : state_->stack)
+    for (plan::Entry& entry : state_->stack)
         std::erase_if(entry.overrides, [&](const auto& o) { return o.owner == owner; });
 }
 
 std::vector<std::uint32_t> Composer::current(Handle handle) const {
-    const compose::Entry& entry = state_->at(handle);
+    const plan::Entry& entry = state_->at(handle);
     std::vector<std::uint32_t> out(entry.base.size());
     entry.evaluate(out);
     return out;
@@ -273,7 +273,7 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const {
     if (!program) return failure(std::move(program));
     auto compiled = program->graph.compile(desc.max_extent, graph::measure_on(state_->device->context()));
     if (!compiled) return failure(std::move(compiled));
-    return compose::describe_program(*program, *compiled, desc);
+    return plan::describe_program(*program, *compiled, desc);
 }
 
 Result<Plan> Composer::compile(const CompileDesc& desc) {
@@ -283,7 +283,7 @@ Result<Plan> Composer::compile(const CompileDesc& desc) {
         return user_error(fmt::format("size {}x{}: this device allows 1x1 to {}x{}", desc.max_extent.width,
                                       desc.max_extent.height, limit, limit));
     if (desc.views == 0) return user_error("views = 0: allowed is 1 and more");
-    for (const compose::Entry& entry : state_->stack)
+    for (const plan::Entry& entry : state_->stack)
         if (auto ok = check_values(entry, entry.base); !ok) return failure(std::move(ok));
     auto program = state_->program(desc);
     if (!program) return failure(std::move(program));

@@ -4,10 +4,10 @@
 
 #include <random>
 
-#include "compose/program.hpp"
+#include "plan/program.hpp"
 #include "compose/test_host.hpp"
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 namespace {
 
 class ComposeSchedule : public test::StackTest {};
@@ -88,7 +88,7 @@ std::vector<std::uint8_t> random_toggles(std::mt19937& random, const Program& pr
     for (std::size_t i = 0; i < entries; ++i) is_on[i] = random() % 4 != 0;
     const auto limit = static_cast<std::uint32_t>(random() % 7);
     std::vector<std::uint8_t> out;
-    for (const Toggle& toggle : program.toggles) {
+    for (const Gate& toggle : program.toggles) {
         bool on = false;
         for (const std::uint32_t entry : toggle.entries) on = on || is_on[entry];
         out.push_back(on && (toggle.condition == nullptr || toggle.argument < limit) ? 1 : 0);
@@ -169,4 +169,4 @@ TEST_F(ComposeSchedule, TheDefaultStackHasOneTransientImage) {
 }
 
 }  // namespace
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

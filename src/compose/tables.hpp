@@ -6,10 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "compose/program.hpp"
+#include "plan/program.hpp"
 #include "gpu/resources.hpp"
 
 namespace darkroom::compose {
+
+using namespace plan;
 
 class Tables {
   public:

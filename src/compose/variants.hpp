@@ -13,10 +13,12 @@
 #include <thread>
 #include <vector>
 
-#include "compose/program.hpp"
+#include "plan/program.hpp"
 #include "gpu/context.hpp"
 
 namespace darkroom::compose {
+
+using namespace plan;
 
 /// What a lean kernel is made for: how its regions lie, and for a fused kernel, in two bits a step, whether it is on
 /// and whether it has an opacity, a blend mode or a mask. `choices`: the values of its choices, toggles and loop

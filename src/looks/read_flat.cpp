@@ -6,7 +6,6 @@
 #include <map>
 
 #include "core/param_text.hpp"
-#include "looks/later_effects.hpp"
 #include "looks/look_parts.hpp"
 #include "looks/look_reader.hpp"
 
@@ -89,21 +88,13 @@ class FlatReader {
     }
 
     void read_unknown(const toml::key& key, const toml::node& node) {
-        const std::string_view later = documented_effect_of(key.str());
-        if (later.empty())
-            return reader_.report_unknown(key, node, names_, [&](const std::string& near) { return allowed(near); });
-        if (std::find(later_.begin(), later_.end(), later) != later_.end()) return;
-        later_.push_back(later);
-        reader_.report(
-            key.source().begin, Weight::Note,
-            fmt::format("{}: this build has no effect '{}', its keys are passed over", printable(key.str()), later));
+        reader_.report_unknown(key, node, names_, [&](const std::string& near) { return allowed(near); });
     }
 
     LookReader& reader_;
     Look look_ = default_look();
     std::map<std::string, Target, std::less<>> targets_;
     std::vector<std::string> names_{"enabled", "order"};  // of all keys, for suggestions
-    std::vector<std::string_view> later_;
 };
 
 }  // namespace

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "compose/glsl_names.hpp"
+#include "plan/glsl_names.hpp"
 
 #include <algorithm>
 #include <array>
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 namespace {
 
@@ -72,4 +72,4 @@ bool calls_name(std::string_view text, std::string_view name) {
     return false;
 }
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

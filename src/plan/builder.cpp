@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "compose/planner_state.hpp"
+#include "plan/planner_state.hpp"
 #include "core/assert.hpp"
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 PassImage Builder::remember(Image image) {
     images_.push_back(image);
@@ -130,7 +130,7 @@ PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&)
     }
     const Planner::Shared& image = found->second;
     const auto join = [&](std::int32_t index) {
-        Toggle& toggle = planner_.program_.toggles[static_cast<std::size_t>(index)];
+        Gate& toggle = planner_.program_.toggles[static_cast<std::size_t>(index)];
         toggle.entries.push_back(entry_);
         toggle.conditions.push_back(condition);
         shared_needs_.push_back(index);
@@ -230,4 +230,4 @@ void Builder::result(PassImage image) {
     if (image.index < images_.size()) output = images_[image.index].version;
 }
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

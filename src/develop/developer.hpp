@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "compose/readback.hpp"
+#include "develop/readback.hpp"
 
 namespace darkroom {
 

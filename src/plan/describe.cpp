@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "compose/program.hpp"
+#include "plan/program.hpp"
 #include "gpu/formats.hpp"
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 namespace {
 
@@ -52,4 +52,4 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
     return plan;
 }
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "compose/glsl_names.hpp"
+#include "plan/glsl_names.hpp"
 #include "compose/test_support.hpp"
 #include "core/files.hpp"
 
@@ -176,13 +176,13 @@ TEST(CustomEffect, AFileIsNamedInItsErrors) {
 }
 
 TEST(CustomEffect, NamesAreJudgedAsGlslAndLooksDo) {
-    for (const char* const good : {"a", "gaussian_blur", "pass2"}) EXPECT_TRUE(compose::is_snake_name(good)) << good;
+    for (const char* const good : {"a", "gaussian_blur", "pass2"}) EXPECT_TRUE(plan::is_snake_name(good)) << good;
     for (const char* const bad : {"", "_a", "a_", "2a", "a__b", "A", "a-b", "gl_a"})
-        EXPECT_FALSE(compose::is_snake_name(bad)) << bad;
-    EXPECT_TRUE(compose::is_glsl_keyword("uniform"));
-    EXPECT_FALSE(compose::is_glsl_keyword("radius"));
-    EXPECT_TRUE(compose::calls_name("a\n (b)", "a"));
-    EXPECT_FALSE(compose::calls_name("aa(b) /* a( */ // a(", "a"));
+        EXPECT_FALSE(plan::is_snake_name(bad)) << bad;
+    EXPECT_TRUE(plan::is_glsl_keyword("uniform"));
+    EXPECT_FALSE(plan::is_glsl_keyword("radius"));
+    EXPECT_TRUE(plan::calls_name("a\n (b)", "a"));
+    EXPECT_FALSE(plan::calls_name("aa(b) /* a( */ // a(", "a"));
 }
 
 TEST(ComposeCustomEffect, FusesWithOthersAndObeysItsParameters) {

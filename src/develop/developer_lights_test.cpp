@@ -6,8 +6,8 @@
 
 #include <darkroom/effects.hpp>
 
-#include "compose/developer.hpp"
-#include "compose/reference_chain.hpp"
+#include "develop/developer.hpp"
+#include "develop/reference_chain.hpp"
 #include "compose/test_host.hpp"
 #include "compose/test_shadow_map.hpp"
 

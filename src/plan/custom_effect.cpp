@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "compose/glsl_names.hpp"
+#include "plan/glsl_names.hpp"
 #include "core/files.hpp"
 #include "core/param_text.hpp"
 
@@ -144,7 +144,7 @@ class Parser {
         line_ = 1;
         if (parts_.info.name.empty()) return error("no line `// @effect NAME: SENTENCE.` before the code");
         const std::string parameters = pascal_name(parts_.info.name);
-        if (!compose::calls_name(kept, parts_.info.name))
+        if (!plan::calls_name(kept, parts_.info.name))
             return error(fmt::format("no function {}: expected `vec4 {}({}Pixel pixel, {} parameters)`",
                                      parts_.info.name, parts_.info.name,
                                      parts_.info.touch == Touch::Warp ? "" : "vec4 color, ", parameters));
@@ -202,12 +202,12 @@ class Parser {
     }
 
     Result<> checked_name(std::string_view name) const {
-        if (!compose::is_snake_name(name))
+        if (!plan::is_snake_name(name))
             return error(
                 fmt::format("{}: a name is made of lower-case letters, digits and single underscores, and begins with "
                             "a letter",
                             printable(name)));
-        if (compose::is_glsl_keyword(name)) return error(fmt::format("{}: a keyword of GLSL", name));
+        if (plan::is_glsl_keyword(name)) return error(fmt::format("{}: a keyword of GLSL", name));
         return {};
     }
 
@@ -216,7 +216,7 @@ class Parser {
         auto halves = with_sentence(rest);
         if (!halves) return failure(std::move(halves));
         if (auto ok = checked_name(halves->first); !ok) return ok;
-        if (compose::is_function_name(halves->first))
+        if (plan::is_function_name(halves->first))
             return error(fmt::format("{}: a function of GLSL or of the kernels", halves->first));
         parts_.info.name = parts_.keep(halves->first);
         parts_.info.doc = parts_.keep(halves->second);
@@ -266,7 +266,7 @@ class Parser {
     Result<std::string_view> choices(ParamInfo& row, std::string_view text) {
         std::vector<std::string_view>& names = parts_.choices.emplace_back();
         for (const std::string_view choice : split(text, '|')) {
-            if (!compose::is_snake_name(choice))
+            if (!plan::is_snake_name(choice))
                 return error(fmt::format("{} = {}: a choice is lower-case letters, digits and single underscores",
                                          row.name, printable(choice)));
             if (std::ranges::find(names, choice) != names.end())

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 /// Lower-case letters, digits and single underscores, beginning with a letter and not ending with an underscore: a name
 /// in looks, flags and GLSL alike (which keeps two underscores in a row for itself).
@@ -17,4 +17,4 @@ namespace darkroom::compose {
 /// Is `name` followed by a parenthesis anywhere outside comments? True of any text that defines the function.
 [[nodiscard]] bool calls_name(std::string_view text, std::string_view name);
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "compose/glsl.hpp"
+#include "plan/glsl.hpp"
 #include "gpu/kernel.hpp"
 #include "graph/graph.hpp"
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 /// A stack entry as the Composer keeps it.
 struct Entry {
@@ -35,7 +35,7 @@ struct Entry {
 
 /// Whether passes run in a frame: an entry is on, and its condition holds; or, for a fused kernel between others, any
 /// of its entries is on.
-struct Toggle {
+struct Gate {
     std::vector<std::uint32_t> entries;
     ConditionFunction condition = nullptr;
     std::uint32_t argument = 0;
@@ -90,7 +90,7 @@ enum class HostImage : std::uint8_t { Color, Depth, Normals, Velocity, Ui, Targe
 struct Program {
     graph::Graph graph;
     std::vector<ProgramPass> passes;  ///< in the order they were added to the graph
-    std::vector<Toggle> toggles;
+    std::vector<Gate> toggles;
     std::vector<Constant> constants;
     std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a constant
     std::vector<std::uint32_t> block_words;         ///< per entry: first word of its block in the constants
@@ -123,4 +123,4 @@ struct PlannerTraits {
 /// The program as users read it.
 [[nodiscard]] Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc);
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

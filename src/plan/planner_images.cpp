@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include "compose/half.hpp"
-#include "compose/planner_state.hpp"
+#include "plan/half.hpp"
+#include "plan/planner_state.hpp"
 #include "gpu/formats.hpp"
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 graph::Version Planner::import_host(HostImage image, const char* name, VkFormat format, VkImageUsageFlags usage,
                                     graph::Size size) {
@@ -98,4 +98,4 @@ VkFormat Planner::storage_format(graph::Version version) const {
     return facts.format;
 }
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compose/developer.hpp"
+#include "develop/developer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <darkroom/effects.hpp>
 #include <limits>
 
-#include "compose/half.hpp"
+#include "plan/half.hpp"
 #include "gpu/test_run.hpp"
 
 namespace darkroom {

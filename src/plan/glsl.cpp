@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "compose/glsl.hpp"
+#include "plan/glsl.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 namespace {
 
@@ -347,4 +347,4 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
         curve_struct(), helpers, declarations, read, code);
 }
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

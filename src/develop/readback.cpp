@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compose/readback.hpp"
+#include "develop/readback.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "compose/half.hpp"
+#include "plan/half.hpp"
 #include "core/assert.hpp"
 
 namespace darkroom {

@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 /// Words of an entry's block on the GPU: three of the entry itself (enabled, opacity, blend), then the parameters in
 /// order without resources.
@@ -69,4 +69,4 @@ enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb };
 /// picture may have another extent than the output.
 [[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, bool is_resampled);
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "compose/program.hpp"
+#include "plan/program.hpp"
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 class Builder;
 
@@ -73,7 +73,7 @@ class Planner {
                                                       Finish finish, bool is_always_on);
     [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
     [[nodiscard]] bool is_shared_toggle(std::size_t index) const;
-    [[nodiscard]] std::int32_t toggle_index(Toggle toggle);
+    [[nodiscard]] std::int32_t toggle_index(Gate toggle);
     [[nodiscard]] graph::Version import_host(HostImage image, const char* name, VkFormat format,
                                              VkImageUsageFlags usage, graph::Size size);
     [[nodiscard]] graph::Version create_picture(std::string name, graph::Size size);
@@ -173,4 +173,4 @@ class Builder final : public PassBuilder {
     std::vector<std::int32_t> shared_needs_;  ///< asked for since the innermost `shared` began
 };
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <map>
 
-#include "compose/planner_state.hpp"
+#include "plan/planner_state.hpp"
 #include "gpu/formats.hpp"
 
-namespace darkroom::compose {
+namespace darkroom::plan {
 
 namespace {
 
@@ -333,7 +333,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     const bool is_warp =
         !kernel.steps.empty() && kernel.steps.front().info->touch == Touch::Warp && !kernel.steps.front().is_merge;
 
-    Toggle toggle;
+    Gate toggle;
     for (const FusedStep& step : kernel.steps) {
         const std::string& name = stack_[step.entry].inputs.name;
         pass.name += (pass.name.empty() ? "" : "+") + name;
@@ -410,16 +410,16 @@ bool Planner::is_shared_toggle(std::size_t index) const {
                                [&](const auto& row) { return row.second.toggle == static_cast<std::int32_t>(index); });
 }
 
-std::int32_t Planner::toggle_index(Toggle toggle) {
+std::int32_t Planner::toggle_index(Gate toggle) {
     for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
-        const Toggle& other = program_.toggles[i];
+        const Gate& other = program_.toggles[i];
         if (!is_shared_toggle(i) && other.entries == toggle.entries && other.condition == toggle.condition &&
             other.argument == toggle.argument)
             return static_cast<std::int32_t>(i);
     }
     const auto index = static_cast<std::int32_t>(program_.toggles.size());
     for (std::int32_t i = 0; i < index; ++i) {
-        const Toggle& other = program_.toggles[static_cast<std::size_t>(i)];
+        const Gate& other = program_.toggles[static_cast<std::size_t>(i)];
         if (is_shared_toggle(static_cast<std::size_t>(i)) || other.entries != toggle.entries ||
             other.condition != toggle.condition)
             continue;
@@ -442,4 +442,4 @@ Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& de
     return Planner(stack, desc, traits).run();
 }
 
-}  // namespace darkroom::compose
+}  // namespace darkroom::plan

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compose/developer.hpp"
+#include "develop/developer.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <optional>
 
-#include "compose/half.hpp"
+#include "plan/half.hpp"
 #include "core/assert.hpp"
 #include "gpu/context.hpp"
 #include "gpu/resources.hpp"

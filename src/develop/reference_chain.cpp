@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "compose/reference_chain.hpp"
+#include "develop/reference_chain.hpp"
 
 #include <fmt/format.h>
 
