@@ -8,7 +8,13 @@ namespace {
 
 using test::add;
 
-class ComposeFusion : public test::StackTest {};
+class ComposeFusion : public test::StackTest {
+  protected:
+    void SetUp() override {
+        StackTest::SetUp();
+        if (find_effect("fog") == nullptr) GTEST_SKIP() << "this build has no effect fog";
+    }
+};
 
 constexpr std::uint32_t stack_count = 10;
 
@@ -53,6 +59,36 @@ TEST_F(ComposeFusion, FusedAndUnfusedGiveTheSamePicture) {
         EXPECT_LE(test::worst_codes(host.run(composer), fused), 1) << "unfused differs";
     }
     EXPECT_LT(fused_kernels + 10, unfused_kernels) << "nothing was fused";
+}
+
+// A left-out entry hands on what it gets, and its readers with it.
+TEST_F(ComposeFusion, ALeftOutEntryPassesItsReadersOn) {
+    const test::Host host(picture_of(0));
+    const auto picture = [&](bool is_fused, bool has_fog) {
+        Composer composer(host.device);
+        const Handle exposure = add(composer, "exposure", {{"exposure", 0.5}});
+        const Handle read = has_fog ? add(composer, "fog") : exposure;
+        add(composer, "tonemap");
+        add(composer, "negative", {}, {.input = read});
+        CompileDesc desc = host.compile_desc();
+        desc.fuse = is_fused;
+        test::must(composer.compile(desc));
+        return host.run(composer);
+    };
+    EXPECT_LE(test::worst_difference(picture(true, true), picture(false, true)), 1e-6);
+    EXPECT_EQ(test::worst_difference(picture(true, true), picture(true, false)), 0);
+}
+
+TEST_F(ComposeFusion, TheTargetReadsWhatALeftOutEntryHandsOn) {
+    const ReferenceImage picture = picture_of(0);
+    const test::Host host(picture);
+    Composer composer(host.device);
+    const Handle exposure = add(composer, "exposure", {{"exposure", 0.5}});
+    add(composer, "negative", {}, {.input = exposure});
+    add(composer, "fog", {}, {.input = exposure});
+    test::must(composer.compile(host.compile_desc()));
+    const ReferenceImage out = host.run(composer);
+    for (std::size_t i = 0; i < out.pixels.size(); ++i) ASSERT_EQ(out.pixels[i].g, picture.pixels[i].g * 0.5);
 }
 
 TEST_F(ComposeFusion, FiniteInputStaysFinite) {

@@ -69,12 +69,14 @@ Result<Program> Planner::run() {
     const graph::Version color = import_host(HostImage::Color, "color", desc_.color, desc_.color_usage, {});
     values_.push_back({.image = color, .domain = Domain::SceneLinear, .why = "the scene colour starts here"});
     entry_values_.assign(stack_.size(), 0);
+    leave_out();
+    resolve_inputs();
     count_readers();
 
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const std::size_t input = input_of(i);
         program_.entry_sizes.push_back(values_[input].size);
-        if (is_left_out(i)) {
+        if (program_.is_left_out[i]) {
             entry_values_[i] = input;
             continue;
         }
@@ -117,17 +119,30 @@ void Planner::lay_out_constants() {
     program_.is_mixable.assign(stack_.size(), true);
 }
 
-bool Planner::is_left_out(std::uint32_t entry) {
-    const EffectInfo& info = *stack_[entry].info;
-    std::string why;
-    if (const std::string missing = missing_needs(info.needs, desc_); !missing.empty())
-        why = fmt::format("needs {}, which the frame does not have", missing);
-    else if (info.is_last_step && target_domain_ == Domain::SceneLinear)
-        why = "the target takes scene-linear floats";
-    if (why.empty()) return false;
-    program_.left_out.push_back(fmt::format("{}: {}", stack_[entry].inputs.name, why));
-    program_.is_left_out[entry] = true;
-    return true;
+void Planner::leave_out() {
+    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
+        const EffectInfo& info = *stack_[i].info;
+        std::string why;
+        if (const std::string missing = missing_needs(info.needs, desc_); !missing.empty())
+            why = fmt::format("needs {}, which the frame does not have", missing);
+        else if (info.is_last_step && target_domain_ == Domain::SceneLinear)
+            why = "the target takes scene-linear floats";
+        if (why.empty()) continue;
+        program_.left_out.push_back(fmt::format("{}: {}", stack_[i].inputs.name, why));
+        program_.is_left_out[i] = true;
+    }
+}
+
+std::uint32_t Planner::resolved(Handle handle, std::uint32_t entry) const {
+    if (handle == scene_color || (entry == 0 && !handle.is_given())) return no_entry;
+    const std::uint32_t from = handle.is_given() ? handle.id - 1 : entry - 1;
+    return program_.is_left_out[from] ? program_.entry_inputs[from] : from;
+}
+
+void Planner::resolve_inputs() {
+    for (std::uint32_t i = 0; i < stack_.size(); ++i)
+        program_.entry_inputs.push_back(resolved(stack_[i].inputs.input, i));
+    program_.last_entry = resolved({}, static_cast<std::uint32_t>(stack_.size()));
 }
 
 void Planner::remark_domain(std::uint32_t entry, Domain domain) {
@@ -151,18 +166,19 @@ std::size_t Planner::input_of(std::uint32_t entry) const { return value_of(stack
 void Planner::count_readers() {
     image_reader_.assign(stack_.size(), {});
     std::vector<std::uint32_t> inputs(stack_.size(), 0);
+    const auto read_picture = [&](std::uint32_t from, const std::string& reader) {
+        if (from != no_entry && inputs[from]++ > 0) image_reader_[from] = reader;
+    };
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
+        if (program_.is_left_out[i]) continue;
         const Inputs& wiring = stack_[i].inputs;
-        const auto note = [&](Handle handle) {
-            if (handle.is_given() && handle != scene_color) image_reader_[handle.id - 1] = wiring.name;
-        };
-        note(wiring.source);
-        note(wiring.second);
-        note(wiring.mask);
-        if (wiring.input == scene_color || (i == 0 && !wiring.input.is_given())) continue;
-        const std::uint32_t from = wiring.input.is_given() ? wiring.input.id - 1 : i - 1;
-        if (inputs[from]++ > 0) image_reader_[from] = wiring.name;
+        for (const Handle handle : {wiring.source, wiring.second, wiring.mask}) {
+            const std::uint32_t from = handle.is_given() ? resolved(handle, i) : no_entry;
+            if (from != no_entry) image_reader_[from] = wiring.name;
+        }
+        read_picture(program_.entry_inputs[i], wiring.name);
     }
+    read_picture(program_.last_entry, "the target");
 }
 
 Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {

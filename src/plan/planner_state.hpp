@@ -53,7 +53,10 @@ class Planner {
 
     [[nodiscard]] Result<> check_handles() const;
     void lay_out_constants();
-    [[nodiscard]] bool is_left_out(std::uint32_t entry);
+    void leave_out();
+    /// Who gets what from whom, past the entries that are left out.
+    void resolve_inputs();
+    [[nodiscard]] std::uint32_t resolved(Handle handle, std::uint32_t entry) const;
     void remark_domain(std::uint32_t entry, Domain domain);
     [[nodiscard]] std::size_t value_of(Handle handle, std::uint32_t entry) const;
     [[nodiscard]] std::size_t input_of(std::uint32_t entry) const;

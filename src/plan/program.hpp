@@ -87,6 +87,9 @@ enum class HostImage : std::uint8_t { Color, Depth, Normals, Velocity, Ui, Targe
     return static_cast<std::int32_t>(image) - static_cast<std::int32_t>(HostImage::Shadow0);
 }
 
+/// In place of an entry: the scene.
+inline constexpr std::uint32_t no_entry = ~0u;
+
 struct Program {
     graph::Graph graph;
     std::vector<ProgramPass> passes;  ///< in the order they were added to the graph
@@ -95,7 +98,9 @@ struct Program {
     std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a constant
     std::vector<std::uint32_t> block_words;         ///< per entry: first word of its block in the constants
     std::uint32_t constants_words = 0;
-    std::vector<graph::Size> entry_sizes;  ///< per entry: of the picture that it gets
+    std::vector<std::uint32_t> entry_inputs;  ///< per entry: whose output it gets, past what is left out
+    std::uint32_t last_entry = no_entry;      ///< whose output the target gets
+    std::vector<graph::Size> entry_sizes;     ///< per entry: of the picture that it gets
     graph::Size target_size;
     std::vector<std::uint32_t> history_entries;  ///< entries with histories
     std::vector<bool> is_left_out;               ///< per entry
