@@ -232,6 +232,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
         words[2] = static_cast<std::uint32_t>(stack[i].inputs.blend);
         write_block(table, {words_of(static_cast<std::uint32_t>(i)), table.words()}, words);
     }
+    block[program_.finish_word] = static_cast<std::uint32_t>(finish_);
 
     for (std::size_t i = 0; i < program_.imports.size(); ++i) {
         if (!program_.imports[i]) continue;

@@ -44,6 +44,9 @@ class Chain {
     [[nodiscard]] Result<> check_frame(const Frame& frame) const;
     [[nodiscard]] const ImageRef& image_of(const Frame& frame, HostImage which) const;
     void reset_histories(VkCommandBuffer commands, const Frame& frame);
+    [[nodiscard]] Domain domain_behind(std::uint32_t entry) const {
+        return entry == no_entry ? Domain::SceneLinear : domains_[entry];
+    }
     void evaluate(std::span<const Entry> stack, const PassContext& context);
     [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack, const gpu::Region& output,
                                  std::span<const gpu::Binding> inputs) const;
@@ -80,6 +83,8 @@ class Chain {
     // Scratch of a recording, sized at compile.
     std::vector<std::uint32_t> words_, words_at_;
     std::unique_ptr<bool[]> is_on_, toggles_;
+    std::vector<Domain> domains_;  ///< behind each entry
+    Finish finish_ = Finish::None;
     std::vector<graph::ImportState> import_states_;
     std::vector<PassVector> custom_;
     std::uint32_t slot_ = 0;

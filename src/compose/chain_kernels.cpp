@@ -40,11 +40,6 @@ bool is_whole(const gpu::Region& region) {
            region.extent.height == region.image.height;
 }
 
-bool is_effective(const Entry& entry, float opacity, const std::uint32_t* words) {
-    return entry.inputs.enabled && opacity > 0 &&
-           (entry.info->is_identity == nullptr || !entry.info->is_identity(words));
-}
-
 }  // namespace
 
 Result<> Chain::make_kernels(std::span<const Entry> stack) {
@@ -66,6 +61,7 @@ Result<> Chain::make_kernels(std::span<const Entry> stack) {
         words += static_cast<std::uint32_t>(entry.info->parameters.words());
     }
     words_.resize(words + 1);
+    domains_.resize(stack.size());
     is_on_ = std::make_unique<bool[]>(stack.size() + 1);
     toggles_ = std::make_unique<bool[]>(program_.toggles.size() + 1);
     evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
@@ -86,8 +82,10 @@ void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
     for (std::size_t i = 0; i < stack.size(); ++i) {
         std::uint32_t* const words = words_.data() + words_at_[i];
         stack[i].evaluate({words, stack[i].info->parameters.words()});
-        is_on_[i] = !program_.is_left_out[i] && is_effective(stack[i], stack[i].inputs.opacity, words);
+        is_on_[i] = !program_.is_left_out[i] && stack[i].is_on(words);
+        domains_[i] = stack[i].domain_after(domain_behind(program_.entry_inputs[i]), words, is_on_[i]);
     }
+    finish_ = finish_of(domain_behind(program_.last_entry), desc_);
     for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
         const Gate& toggle = program_.toggles[i];
         const auto holds = [&](std::uint32_t entry, ConditionFunction condition) {
@@ -115,6 +113,7 @@ Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack, con
     if (!inputs.empty() && inputs[0].region.extent.width == 2 * output.extent.width &&
         inputs[0].region.extent.height == 2 * output.extent.height)
         shape.steps |= Shape::input_is_twice;
+    if (pass.finish == Finish::OfFrame) shape.steps |= static_cast<std::uint64_t>(finish_) << Shape::finish_bit;
     for (std::size_t i = 0; i < pass.steps.size(); ++i) {
         const std::uint32_t entry = pass.steps[i].entry;
         if (is_on_[entry]) shape.steps |= (stack[entry].is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);

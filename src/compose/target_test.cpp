@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Targets of every kind: encoded exactly once, whatever format the host's target has and whatever it was made for.
 
+#include <fmt/format.h>
+
 #include <bit>
 
 #include "compose/test_host.hpp"
@@ -62,6 +64,50 @@ TEST_F(ComposeTarget, EncodeIsDoneOnce) {
     const ReferenceImage out = developed(VK_FORMAT_R8G8B8A8_UNORM, encode_only, 0, &plan);
     EXPECT_LE(test::worst_codes(out, encoded(ramp())), 1);
     EXPECT_TRUE(plan.remarks.empty());
+}
+
+void set_transfer(Composer& composer, std::string_view name) {
+    const Handle encode = *composer.find("encode");
+    const auto& choices = composer.info(encode).parameters.find("transfer")->choices;
+    const auto number = static_cast<std::uint32_t>(std::ranges::find(choices, name) - choices.begin());
+    test::set_word(composer, encode, "transfer", number);
+}
+TEST_F(ComposeTarget, EncodedOnceWhateverChangesAfterCompile) {
+    const std::array<std::function<void(Composer&)>, 5> edits{
+        [](Composer& composer) { set_transfer(composer, "none"); },
+        [](Composer& composer) { set_transfer(composer, "srgb"); },
+        [](Composer& composer) { test::must(composer.set_enabled(*composer.find("encode"), false)); },
+        [](Composer& composer) { test::must(composer.set_enabled(*composer.find("encode"), true)); },
+        [](Composer& composer) { test::must(composer.set_opacity(*composer.find("encode"), 0)); },
+    };
+    for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB}) {
+        for (const bool is_fused : {true, false}) {
+            const test::Host host(ramp(), VK_FORMAT_R32G32B32A32_SFLOAT, format);
+            Composer composer(host.device);
+            add(composer, "exposure");
+            add(composer, "encode");
+            CompileDesc desc = host.compile_desc();
+            desc.fuse = is_fused;
+            test::must(composer.compile(desc));
+            for (std::size_t i = 0; i < edits.size(); ++i) {
+                SCOPED_TRACE(fmt::format("format {}, fused {}, edit {}", static_cast<int>(format), is_fused, i));
+                edits[i](composer);
+                EXPECT_LE(test::worst_codes(host.run(composer), encoded(ramp())), 1) << "by the complete kernel";
+                composer.wait_for_kernels();
+                EXPECT_LE(test::worst_codes(host.run(composer), encoded(ramp())), 1) << "by the lean kernel";
+            }
+        }
+    }
+}
+
+TEST_F(ComposeTarget, AnSrgbTargetIsNotEncodedTwiceOnDemand) {
+    const test::Host host(ramp(), VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R8G8B8A8_SRGB);
+    Composer composer(host.device);
+    add(composer, "exposure");
+    CompileDesc desc = host.compile_desc();
+    desc.encodes_target = true;
+    test::must(composer.compile(desc));
+    EXPECT_LE(test::worst_codes(host.run(composer), encoded(ramp())), 1);
 }
 
 TEST_F(ComposeTarget, BlueFirstFormatsKeepTheirChannels) {

@@ -3,13 +3,13 @@
 
 namespace darkroom::compose {
 
-Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps) {
+Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps, Finish finish) {
     gpu::KernelSpec spec = pass.spec;
     if (!is_fused(pass)) {
         spec.body = effect_pass_body(pass, steps.front().baked);
         return spec;
     }
-    auto body = fused_body(steps, pass.finish, pass.is_resampled);
+    auto body = fused_body(steps, finish, pass.is_resampled);
     if (!body) return failure(std::move(body));
     spec.body = std::move(*body);
     return spec;
@@ -40,7 +40,9 @@ Result<> Variants::build(gpu::Context& context, Shape shape) {
         steps[i].is_plain = (shape.steps >> (2 * i) & 2) == 0;
     }
     if (is_fused(*pass_)) std::erase_if(steps, [](const FusedStep& step) { return !step.is_certain; });
-    auto spec = lean_spec(*pass_, steps);
+    const Finish finish =
+        pass_->finish == Finish::OfFrame ? static_cast<Finish>(shape.steps >> Shape::finish_bit & 3) : pass_->finish;
+    auto spec = lean_spec(*pass_, steps, finish);
     if (!spec) return failure(std::move(spec));
     spec->is_whole = (shape.steps & Shape::is_whole) != 0;
     spec->input_is_twice = (shape.steps & Shape::input_is_twice) != 0;

@@ -21,16 +21,17 @@ namespace darkroom::compose {
 using namespace plan;
 
 /// What a lean kernel is made for: how its regions lie, and for a fused kernel, in two bits a step, whether it is on
-/// and whether it has an opacity, a blend mode or a mask. `choices`: the values of its choices, toggles and loop
-/// counts, as far as they fit.
+/// and whether it has an opacity, a blend mode or a mask; then what it does for the target. `choices`: the values of
+/// its choices, toggles and loop counts, as far as they fit.
 struct Shape {
     std::uint64_t steps = 0;
     std::uint64_t choices = 0;
+    static constexpr std::uint32_t finish_bit = 60;  ///< in steps, two bits: a Finish, for kernels of Finish::OfFrame
     static constexpr std::uint64_t is_whole = std::uint64_t{1} << 62;        ///< in steps: all regions are whole images
     static constexpr std::uint64_t input_is_twice = std::uint64_t{1} << 63;  ///< in steps
     friend bool operator==(const Shape&, const Shape&) = default;
 };
-inline constexpr std::size_t max_lean_steps = 31;
+inline constexpr std::size_t max_lean_steps = 30;
 
 /// Bits of a shape that the value of a row takes; 0: it is no literal of lean kernels.
 [[nodiscard]] constexpr std::uint32_t literal_bits(const ParamInfo& row) {
@@ -58,7 +59,8 @@ void for_each_choice(const ProgramPass& pass, const Visit& visit) {
 
 /// The kernel of a pass that holds only the steps that are on: same images and bindings, no branches. A pass of an
 /// effect has one step, itself.
-[[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps);
+[[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const FusedStep> steps,
+                                                Finish finish);
 
 class Variants {
   public:

@@ -58,7 +58,7 @@ class Chain {
         ReferenceChainOutput out{.picture = pictures_[values_.empty() ? 0 : values_.back()],
                                  .left_out = std::move(left_out_)};
         const Domain domain = domains_[values_.empty() ? 0 : values_.back()];
-        if (input_.target_domain == Domain::Encoded && domain != Domain::Encoded)
+        if (input_.target_domain == Domain::Encoded && domain != Domain::Encoded && input_.encodes_target)
             for (Rgba& pixel : out.picture.pixels)
                 pixel = {srgb_curve(pixel.r), srgb_curve(pixel.g), srgb_curve(pixel.b), pixel.a};
         return out;
@@ -93,13 +93,12 @@ class Chain {
                                           inputs.name, info.name));
         const std::vector<std::uint32_t> words = composer_.current(handle);
         const Domain before = domains_[from];
-        const Domain domain = info.makes == nullptr ? before : info.makes(before, words.data());
         const bool is_off =
             !inputs.enabled || inputs.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
         if (!is_off && info.reference == nullptr)
             return user_error(fmt::format("stack entry '{}': {} has no reference", inputs.name, info.name));
         pictures_.push_back(is_off ? pictures_[from] : result(info, inputs, words, index, from));
-        domains_.push_back(domain);
+        domains_.push_back(is_off || info.makes == nullptr ? before : info.makes(before, words.data()));
         values_.back() = pictures_.size() - 1;
         return {};
     }

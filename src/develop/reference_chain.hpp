@@ -21,6 +21,9 @@ struct ReferenceChainInput {
     double time = 0;
     std::uint64_t frame_index = 0;
     Domain target_domain = Domain::Encoded;  ///< SceneLinear: encode and dither are skipped
+    /// Whether a picture that the stack leaves unencoded is sRGB-encoded for an Encoded target: by a kernel or, for an
+    /// SRGB format, by the format. The output is what such a target holds.
+    bool encodes_target = true;
 };
 
 struct ReferenceChainOutput {

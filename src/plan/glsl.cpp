@@ -202,6 +202,10 @@ CameraBlock camera_block(const Camera& camera) {
     return out;
 }
 
+std::string finish_member(std::uint32_t word) {
+    return fmt::format("    layout(offset = {}) uint finish_;\n", word * 4);
+}
+
 std::string entry_members(const EffectInfo& info, std::uint32_t entry, std::uint32_t first_word) {
     const std::string prefix = block_prefix(info, entry);
     std::string out =
@@ -335,8 +339,13 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                 append_with_includes(helpers, file_text(shared_files(), "shared/srgb.glsl"), "shared/srgb.glsl", 0);
             !ok)
             return failure(std::move(ok));
-        code += finish == Finish::EncodeSrgb ? "    color.rgb = srgb_encode(color.rgb);\n"
-                                             : "    color.rgb = srgb_decode(color.rgb);\n";
+        for (const auto& [kind, call] : {std::pair{Finish::EncodeSrgb, "color.rgb = srgb_encode(color.rgb);"},
+                                         std::pair{Finish::DecodeSrgb, "color.rgb = srgb_decode(color.rgb);"}}) {
+            if (finish == Finish::OfFrame)
+                code += fmt::format("    if (finish_ == {}u) {}\n", static_cast<unsigned>(kind), call);
+            else if (finish == kind)
+                code += fmt::format("    {}\n", call);
+        }
     }
     const bool is_warp = !steps.empty() && steps.front().info->touch == Touch::Warp && !steps.front().is_merge;
     const std::string_view read = is_resampled ? "sample_linear(picture, pixel.uv)"

@@ -64,7 +64,10 @@ struct FusedStep {
     bool is_plain = false;    ///< opacity 1, no blending, no mask
     std::vector<Baked> baked;
 };
-enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb };
+/// What the target's kernel does last. OfFrame: the block's member finish_ says which of the others.
+enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb, OfFrame };
+/// The member of the block that Finish::OfFrame reads.
+[[nodiscard]] std::string finish_member(std::uint32_t word);
 /// The body of a fused kernel: reads image `picture`, applies the steps in order, finishes for the target. A resampled
 /// picture may have another extent than the output.
 [[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, bool is_resampled);

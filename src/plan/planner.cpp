@@ -58,9 +58,7 @@ std::string missing_needs(const Needs& needs, const CompileDesc& desc) {
 }  // namespace
 
 Planner::Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits)
-    : stack_(stack), desc_(desc), traits_(traits) {
-    target_domain_ = desc.target_domain.value_or(is_float(desc.target) ? Domain::SceneLinear : Domain::Encoded);
-}
+    : stack_(stack), desc_(desc), traits_(traits), target_domain_(target_domain(desc)) {}
 
 Result<Program> Planner::run() {
     if (auto ok = check_handles(); !ok) return failure(std::move(ok));
@@ -114,6 +112,7 @@ void Planner::lay_out_constants() {
         program_.block_words.push_back(word);
         word += block_words(entry.info->parameters);
     }
+    program_.finish_word = word++;
     program_.constants_words = word;
     program_.is_left_out.assign(stack_.size(), false);
     program_.is_mixable.assign(stack_.size(), true);
@@ -143,6 +142,12 @@ void Planner::resolve_inputs() {
     for (std::uint32_t i = 0; i < stack_.size(); ++i)
         program_.entry_inputs.push_back(resolved(stack_[i].inputs.input, i));
     program_.last_entry = resolved({}, static_cast<std::uint32_t>(stack_.size()));
+}
+
+Domain Planner::present_domain(std::uint32_t entry, Domain before) const {
+    std::vector<std::uint32_t> words(stack_[entry].info->parameters.words());
+    stack_[entry].evaluate(words);
+    return stack_[entry].domain_after(before, words.data(), stack_[entry].is_on(words.data()));
 }
 
 void Planner::remark_domain(std::uint32_t entry, Domain domain) {
@@ -183,8 +188,7 @@ void Planner::count_readers() {
 
 Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
     const EffectInfo& info = *stack_[entry].info;
-    const Domain domain =
-        info.makes != nullptr ? info.makes(values_[input].domain, stack_[entry].base.data()) : values_[input].domain;
+    const Domain domain = present_domain(entry, values_[input].domain);
 
     Builder builder(*this, entry, input);
     if (info.build != nullptr) {
@@ -316,17 +320,15 @@ Result<graph::Version> Planner::at_size(graph::Version version, graph::Size size
 Result<> Planner::finish() {
     std::size_t last = stack_.empty() ? 0 : entry_values_.back();
     const Domain domain = values_[last].domain;
-    Finish finish = Finish::None;
-    if (target_domain_ == Domain::Encoded) {
-        if (domain == Domain::Encoded) {
-            if (is_srgb(desc_.target)) finish = Finish::DecodeSrgb;
-        } else if (desc_.encodes_target.value_or(!is_srgb(desc_.target) && !is_float(desc_.target))) {
-            finish = Finish::EncodeSrgb;
-            program_.remarks.push_back(fmt::format(
-                "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
-                name_of(domain)));
-        }
-    }
+    Finish finish = finish_of(domain, desc_);
+    if (finish == Finish::EncodeSrgb)
+        program_.remarks.push_back(fmt::format(
+            "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
+            name_of(domain)));
+    // Values change after compile, and with them the domain.
+    const bool is_open = finish_of(Domain::Encoded, desc_) != finish_of(Domain::SceneLinear, desc_);
+    for (std::uint32_t i = program_.last_entry; is_open && i != no_entry; i = program_.entry_inputs[i])
+        if (stack_[i].info->makes != nullptr) finish = Finish::OfFrame;
     std::size_t kernel = values_[last].kernel;
     if (kernel == no_kernel || !values_[last].reader.empty()) {
         const std::string why = fmt::format("{} reads the picture before the target, too", values_[last].reader);
@@ -358,6 +360,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     }
     if (pass.name.empty()) pass.name = "copy";
     pass.spec.name = pass.name;
+    if (finish == Finish::OfFrame) pass.spec.constants += finish_member(program_.finish_word);
     pass.spec.constants = frame_members() + pass.spec.constants;
     pass.spec.outputs = {format};
     // imageLoad needs GENERAL, sampling the other layout: one image can be in one of them.
@@ -447,6 +450,17 @@ std::int32_t Planner::toggle_index(Gate toggle) {
     }
     program_.toggles.push_back(std::move(toggle));
     return index;
+}
+
+Domain target_domain(const CompileDesc& desc) {
+    return desc.target_domain.value_or(is_float(desc.target) ? Domain::SceneLinear : Domain::Encoded);
+}
+
+Finish finish_of(Domain domain, const CompileDesc& desc) {
+    if (target_domain(desc) != Domain::Encoded) return Finish::None;
+    if (domain == Domain::Encoded) return is_srgb(desc.target) ? Finish::DecodeSrgb : Finish::None;
+    const bool is_encoded_here = !is_srgb(desc.target) && desc.encodes_target.value_or(!is_float(desc.target));
+    return is_encoded_here ? Finish::EncodeSrgb : Finish::None;
 }
 
 std::string effect_pass_body(const ProgramPass& pass, std::span<const Baked> baked) {

@@ -57,6 +57,7 @@ class Planner {
     /// Who gets what from whom, past the entries that are left out.
     void resolve_inputs();
     [[nodiscard]] std::uint32_t resolved(Handle handle, std::uint32_t entry) const;
+    [[nodiscard]] Domain present_domain(std::uint32_t entry, Domain before) const;
     void remark_domain(std::uint32_t entry, Domain domain);
     [[nodiscard]] std::size_t value_of(Handle handle, std::uint32_t entry) const;
     [[nodiscard]] std::size_t input_of(std::uint32_t entry) const;

@@ -28,6 +28,14 @@ struct Entry {
 
     /// Base values under the overrides, in the order they were set. `out` holds info->parameters.words() words.
     void evaluate(std::span<std::uint32_t> out) const;
+    /// Whether it changes anything in a frame with these values; what the plan leaves out never does.
+    [[nodiscard]] bool is_on(const std::uint32_t* words) const {
+        return inputs.enabled && inputs.opacity > 0 && (info->is_identity == nullptr || !info->is_identity(words));
+    }
+    /// What the picture is behind it, in a frame with these values.
+    [[nodiscard]] Domain domain_after(Domain before, const std::uint32_t* words, bool is_on) const {
+        return is_on && info->makes != nullptr ? info->makes(before, words) : before;
+    }
     [[nodiscard]] bool is_plain() const {
         return inputs.opacity == 1.0f && inputs.blend == BlendMode{} && !inputs.mask.is_given();
     }
@@ -98,6 +106,7 @@ struct Program {
     std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a constant
     std::vector<std::uint32_t> block_words;         ///< per entry: first word of its block in the constants
     std::uint32_t constants_words = 0;
+    std::uint32_t finish_word = 0;            ///< of finish_ in the constants
     std::vector<std::uint32_t> entry_inputs;  ///< per entry: whose output it gets, past what is left out
     std::uint32_t last_entry = no_entry;      ///< whose output the target gets
     std::vector<graph::Size> entry_sizes;     ///< per entry: of the picture that it gets
@@ -118,6 +127,10 @@ struct PlannerTraits {
 /// Turns a stack into a program. Errors: a handle that names no earlier entry, a shader that is missing.
 [[nodiscard]] Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc,
                                            const PlannerTraits& traits);
+
+/// What the target needs of a picture in this domain: it is encoded exactly once, by a kernel or by the format.
+[[nodiscard]] Finish finish_of(Domain domain, const CompileDesc& desc);
+[[nodiscard]] Domain target_domain(const CompileDesc& desc);
 
 /// The body of an effect's pass, with choices as literals where they are known.
 [[nodiscard]] std::string effect_pass_body(const ProgramPass& pass, std::span<const Baked> baked);
