@@ -61,7 +61,7 @@ struct Copy {
           frame(of.frame) {}
     [[nodiscard]] graph::Recording recording() const {
         return {
-            .steps = steps, .barriers = barriers, .final_barriers = final_barriers, .toggles = toggles, .frame = frame};
+            .steps = steps, .barriers = barriers, .final_barriers = final_barriers, .gates = toggles, .frame = frame};
     }
     std::vector<graph::Step> steps;
     std::vector<graph::Barrier> barriers, final_barriers;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "graph/plan.hpp"
+#include "graph/solution.hpp"
 
 namespace darkroom::graph {
 namespace {
@@ -87,8 +87,8 @@ struct Level {
 
 class Checker {
   public:
-    Checker(const Plan& plan, std::span<const ImportState> imports) : plan_(plan), imports_(imports) {
-        for (const Slot& slot : plan_.slots) {
+    Checker(const Solution& solution, std::span<const ImportState> imports) : solution_(solution), imports_(imports) {
+        for (const Slot& slot : solution_.slots) {
             Level level;
             if (slot.kind == Slot::Kind::Constant) level.content.kind = Content::Kind::Host;
             if (slot.kind == Slot::Kind::History) level.layout = slot.rest_layout;
@@ -99,7 +99,7 @@ class Checker {
 
     Result<> play(const Recording& recording) {
         recording_ = recording;
-        ran_.assign(plan_.passes.size(), false);
+        ran_.assign(solution_.passes.size(), false);
         take_from_host();
         for (const Step& step : recording.steps) {
             if (auto result = play_step(step); !result) return result;
@@ -112,22 +112,22 @@ class Checker {
     }
 
   private:
-    const std::string& name(std::uint32_t slot) const { return plan_.slots[slot].desc.name; }
+    const std::string& name(std::uint32_t slot) const { return solution_.slots[slot].desc.name; }
     std::string place(std::uint32_t slot, std::uint32_t mip) const {
-        return plan_.slots[slot].desc.mip_levels > 1 ? fmt::format("'{}' mip {}", name(slot), mip)
-                                                     : fmt::format("'{}'", name(slot));
+        return solution_.slots[slot].desc.mip_levels > 1 ? fmt::format("'{}' mip {}", name(slot), mip)
+                                                         : fmt::format("'{}'", name(slot));
     }
     ImportState host_state(const Slot& slot) const {
         return slot.import_index < imports_.size() ? imports_[slot.import_index] : ImportState{};
     }
-    bool is_off(std::int32_t toggle) const {
-        return toggle >= 0 && static_cast<std::size_t>(toggle) < recording_.toggles.size() &&
-               recording_.toggles[static_cast<std::size_t>(toggle)] == 0;
+    bool is_off(std::int32_t gate) const {
+        return gate >= 0 && static_cast<std::size_t>(gate) < recording_.gates.size() &&
+               recording_.gates[static_cast<std::size_t>(gate)] == 0;
     }
 
     void take_from_host() {
-        for (std::uint32_t index = 0; index < plan_.slots.size(); ++index) {
-            const Slot& slot = plan_.slots[index];
+        for (std::uint32_t index = 0; index < solution_.slots.size(); ++index) {
+            const Slot& slot = solution_.slots[index];
             if (slot.kind != Slot::Kind::Import) continue;
             const ImportState host = host_state(slot);
             Level level;
@@ -176,7 +176,7 @@ class Checker {
     }
 
     Result<> apply(const Barrier& barrier, const std::string& who) {
-        const Slot& slot = plan_.slots[barrier.slot];
+        const Slot& slot = solution_.slots[barrier.slot];
         for (std::uint32_t mip = barrier.mips.first; mip < barrier.mips.first + barrier.mips.count; ++mip) {
             if (mip >= slot.desc.mip_levels)
                 return user_error(fmt::format("before {}: '{}' has no mip {}", who, slot.desc.name, mip));
@@ -211,10 +211,10 @@ class Checker {
 
     /// A transient image begins: whatever else lies in its bytes must be done with, and is lost.
     Result<> take_memory(const Barrier& barrier, const std::string& where, const std::string& who) {
-        const Slot& slot = plan_.slots[barrier.slot];
+        const Slot& slot = solution_.slots[barrier.slot];
         if (slot.kind != Slot::Kind::Transient) return {};
-        for (std::uint32_t other = 0; other < plan_.slots.size(); ++other) {
-            const Slot& rival = plan_.slots[other];
+        for (std::uint32_t other = 0; other < solution_.slots.size(); ++other) {
+            const Slot& rival = solution_.slots[other];
             if (other == barrier.slot || rival.kind != Slot::Kind::Transient) continue;
             if (rival.offset >= slot.offset + slot.size || slot.offset >= rival.offset + rival.size) continue;
             for (Level& level : levels_[other]) {
@@ -229,7 +229,7 @@ class Checker {
     Result<> access(std::uint32_t slot, std::uint32_t mip, const std::string& who, VkPipelineStageFlags2 stages,
                     VkAccessFlags2 mask, VkImageLayout layout) const {
         const Level& level = levels_[slot][mip];
-        if (level.layout != layout && plan_.slots[slot].kind != Slot::Kind::Constant) {
+        if (level.layout != layout && solution_.slots[slot].kind != Slot::Kind::Constant) {
             return user_error(fmt::format("{} uses {} in layout {}, but it is in {}", who, place(slot, mip),
                                           static_cast<int>(layout), static_cast<int>(level.layout)));
         }
@@ -252,8 +252,8 @@ class Checker {
 
     /// What a reader of `version` is to get in this frame, found by trying one fall-back after the other.
     std::uint32_t version_for_reader(std::uint32_t version) const {
-        while (version != none && is_off(plan_.versions[version].toggle)) {
-            const VersionRecord& record = plan_.versions[version];
+        while (version != none && is_off(solution_.versions[version].gate)) {
+            const VersionRecord& record = solution_.versions[version];
             if (record.instead != none) {
                 version = record.instead;
             } else {
@@ -267,26 +267,27 @@ class Checker {
     Result<> check_content(std::uint32_t version, std::uint32_t slot, std::uint32_t mip, const std::string& who) const {
         if (version == none) return user_error(fmt::format("{} reads an image whose producer is off", who));
         const Content& content = levels_[slot][mip].content;
-        while (plan_.versions[version].replaced != none) {
-            const VersionRecord& record = plan_.versions[version];
-            const bool writes = (record.mips >> mip & 1u) != 0 && !is_off(record.toggle);
+        while (solution_.versions[version].replaced != none) {
+            const VersionRecord& record = solution_.versions[version];
+            const bool writes = (record.mips >> mip & 1u) != 0 && !is_off(record.gate);
             if (writes && record.producer == none) {
                 return user_error(fmt::format("{} needs {} from a pass that was culled", who, place(slot, mip)));
             }
             if (writes && !ran_[record.producer]) {
                 return user_error(fmt::format("{} needs {} from pass '{}', which did not run", who, place(slot, mip),
-                                              plan_.passes[record.producer].name));
+                                              solution_.passes[record.producer].name));
             }
             if (writes) {
                 if (content == Content{Content::Kind::Pass, recording_.frame, record.producer}) return {};
                 return user_error(fmt::format("{} does not find in {} what pass '{}' wrote", who, place(slot, mip),
-                                              plan_.passes[record.producer].name));
+                                              solution_.passes[record.producer].name));
             }
             version = record.replaced;
         }
-        const bool is_current = plan_.slots[slot].kind == Slot::Kind::History && !plan_.image_of(version).is_previous;
-        const bool is_transient = plan_.slots[slot].kind == Slot::Kind::Transient;
-        const bool is_import = plan_.slots[slot].kind == Slot::Kind::Import;
+        const bool is_current =
+            solution_.slots[slot].kind == Slot::Kind::History && !solution_.image_of(version).is_previous;
+        const bool is_transient = solution_.slots[slot].kind == Slot::Kind::Transient;
+        const bool is_import = solution_.slots[slot].kind == Slot::Kind::Import;
         const bool is_overwritten = is_import && content.kind == Content::Kind::Pass;
         if (is_current || is_transient || is_overwritten || content.kind == Content::Kind::Nothing) {
             return user_error(fmt::format("{} reads {}, which holds nothing it may read", who, place(slot, mip)));
@@ -304,9 +305,9 @@ class Checker {
     }
 
     Result<> play_step(const Step& step) {
-        const PassDesc& pass = plan_.passes[step.pass];
+        const PassDesc& pass = solution_.passes[step.pass];
         const std::string who = fmt::format("pass '{}'", pass.name);
-        if (is_off(pass.toggle)) return user_error(who + " is recorded although its toggle is off");
+        if (is_off(pass.gate)) return user_error(who + " is recorded although its gate is off");
         for (std::uint32_t i = 0; i < step.barrier_count; ++i) {
             if (auto result = apply(recording_.barriers[step.first_barrier + i], who); !result) return result;
         }
@@ -314,7 +315,7 @@ class Checker {
             if (auto result = play_read(read, who); !result) return result;
         }
         for (std::size_t i = 0; i < pass.writes.size(); ++i) {
-            const std::uint32_t made = plan_.made[step.pass][i].index;
+            const std::uint32_t made = solution_.made[step.pass][i].index;
             if (auto result = play_write(pass.writes[i], made, step.pass, who); !result) return result;
         }
         ran_[step.pass] = true;
@@ -324,9 +325,9 @@ class Checker {
     Result<> play_read(const Read& read, const std::string& who) {
         const std::uint32_t version = version_for_reader(read.version.index);
         if (version == none) return user_error(who + " reads an image whose producer is off");
-        const std::uint32_t slot = plan_.image_of(version).slots[recording_.frame % 2];
-        const MipMask mips = levels_of(read.mips, plan_.slots[slot].desc.mip_levels);
-        for (std::uint32_t mip = 0; mip < plan_.slots[slot].desc.mip_levels; ++mip) {
+        const std::uint32_t slot = solution_.image_of(version).slots[recording_.frame % 2];
+        const MipMask mips = levels_of(read.mips, solution_.slots[slot].desc.mip_levels);
+        for (std::uint32_t mip = 0; mip < solution_.slots[slot].desc.mip_levels; ++mip) {
             if ((mips >> mip & 1u) == 0) continue;
             if (auto result = check_content(version, slot, mip, who); !result) return result;
             if (auto result = access(slot, mip, who, stages_of(read.use), access_of(read.use), layout_of(read.use));
@@ -339,9 +340,9 @@ class Checker {
     }
 
     Result<> play_write(const Write& write, std::uint32_t made, std::uint32_t pass, const std::string& who) {
-        const VersionRecord& record = plan_.versions[made];
-        const std::uint32_t slot = plan_.images[record.image].slots[recording_.frame % 2];
-        for (std::uint32_t mip = 0; mip < plan_.slots[slot].desc.mip_levels; ++mip) {
+        const VersionRecord& record = solution_.versions[made];
+        const std::uint32_t slot = solution_.images[record.image].slots[recording_.frame % 2];
+        for (std::uint32_t mip = 0; mip < solution_.slots[slot].desc.mip_levels; ++mip) {
             if ((record.mips >> mip & 1u) == 0) continue;
             Level& level = levels_[slot][mip];
             if (record.keeps_content) {
@@ -360,12 +361,12 @@ class Checker {
     }
 
     Result<> check_kept() const {
-        for (std::uint32_t index = 0; index < plan_.versions.size(); ++index) {
-            if (!plan_.versions[index].is_kept) continue;
+        for (std::uint32_t index = 0; index < solution_.versions.size(); ++index) {
+            if (!solution_.versions[index].is_kept) continue;
             const std::uint32_t version = version_for_reader(index);
-            if (version == none || plan_.image_of(version).kind == Slot::Kind::History) continue;
-            const std::uint32_t slot = plan_.image_of(version).slots[recording_.frame % 2];
-            for (std::uint32_t mip = 0; mip < plan_.slots[slot].desc.mip_levels; ++mip) {
+            if (version == none || solution_.image_of(version).kind == Slot::Kind::History) continue;
+            const std::uint32_t slot = solution_.image_of(version).slots[recording_.frame % 2];
+            for (std::uint32_t mip = 0; mip < solution_.slots[slot].desc.mip_levels; ++mip) {
                 if (auto result = check_content(version, slot, mip, "after the frame, the host"); !result)
                     return result;
             }
@@ -377,9 +378,9 @@ class Checker {
     Result<> check_rest(std::uint32_t slot, std::uint32_t mip) const {
         for (std::uint32_t index = 0; index <= static_cast<std::uint32_t>(Use::HostRead); ++index) {
             const Use use{static_cast<std::uint8_t>(index)};
-            if ((plan_.past[slot].reads >> index & 1u) == 0) continue;
-            if (auto result =
-                    access(slot, mip, "the next frame", stages_of(use), access_of(use), plan_.slots[slot].rest_layout);
+            if ((solution_.past[slot].reads >> index & 1u) == 0) continue;
+            if (auto result = access(slot, mip, "the next frame", stages_of(use), access_of(use),
+                                     solution_.slots[slot].rest_layout);
                 !result) {
                 return result;
             }
@@ -388,8 +389,8 @@ class Checker {
     }
 
     Result<> give_to_host() const {
-        for (std::uint32_t index = 0; index < plan_.slots.size(); ++index) {
-            const Slot& slot = plan_.slots[index];
+        for (std::uint32_t index = 0; index < solution_.slots.size(); ++index) {
+            const Slot& slot = solution_.slots[index];
             const ImportState host = host_state(slot);
             for (std::uint32_t mip = 0; mip < slot.desc.mip_levels; ++mip) {
                 const Level& level = levels_[index][mip];
@@ -422,7 +423,7 @@ class Checker {
         return {};
     }
 
-    const Plan& plan_;
+    const Solution& solution_;
     std::span<const ImportState> imports_;
     Recording recording_;
     std::vector<std::vector<Level>> levels_;  ///< slot, mip
@@ -433,7 +434,7 @@ class Checker {
 
 Result<> check_frames(const Compiled& compiled, std::span<const Recording> frames,
                       std::span<const ImportState> imports) {
-    Checker checker(compiled.plan(), imports);
+    Checker checker(compiled.solution(), imports);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (auto result = checker.play(frames[i]); !result) {
             return frames.size() == 1 ? result : user_error(fmt::format("frame {}: {}", i, result.error().text));

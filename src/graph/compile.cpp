@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// From a declaration to a plan: what can ever be needed, which physical images that takes, where they lie.
+// From a declaration to a solution: what can ever be needed, which physical images that takes, where they lie.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "graph/plan.hpp"
+#include "graph/solution.hpp"
 
 namespace darkroom::graph {
 namespace {
@@ -32,9 +32,9 @@ std::string usage_names(VkImageUsageFlags usage) {
 class Compiler {
   public:
     Compiler(const Declaration& declaration, VkExtent2D max_extent)
-        : declaration_(declaration), max_extent_(max_extent), plan_(std::make_unique<Plan>()) {}
+        : declaration_(declaration), max_extent_(max_extent), solution_(std::make_unique<Solution>()) {}
 
-    Result<std::unique_ptr<const Plan>> run(const Measure& measure) {
+    Result<std::unique_ptr<const Solution>> run(const Measure& measure) {
         if (auto result = find_final_history(); !result) return failure(std::move(result));
         cull();
         take_over();
@@ -42,7 +42,7 @@ class Compiler {
         if (auto result = use_slots(); !result) return failure(std::move(result));
         if (auto result = place(measure); !result) return failure(std::move(result));
         find_past();
-        return std::unique_ptr<const Plan>(std::move(plan_));
+        return std::unique_ptr<const Solution>(std::move(solution_));
     }
 
   private:
@@ -53,16 +53,17 @@ class Compiler {
 
     /// A history that is read must be written, else "previous" never holds anything.
     Result<> find_final_history() {
-        plan_->final_history_version.assign(declaration_.history_count, none);
+        solution_->final_history_version.assign(declaration_.history_count, none);
         for (const Image& image : declaration_.images) {
             if (image.kind != Slot::Kind::History || image.is_previous) continue;
-            plan_->final_history_version[image.history_index] = image.versions.back();
+            solution_->final_history_version[image.history_index] = image.versions.back();
         }
         for (const PassRecord& pass : declaration_.passes) {
             for (const Read& read : pass.desc.reads) {
                 const Image& image = declaration_.image_of(read.version.index);
                 if (!image.is_previous) continue;
-                if (declaration_.versions[plan_->final_history_version[image.history_index]].producer != none) continue;
+                if (declaration_.versions[solution_->final_history_version[image.history_index]].producer != none)
+                    continue;
                 return user_error(fmt::format("pass '{}' reads the previous '{}', but no pass writes the current one",
                                               pass.desc.name, image.desc.name));
             }
@@ -70,8 +71,8 @@ class Compiler {
         return {};
     }
 
-    void need(Needs& needs, std::uint32_t version, std::int32_t toggle, MipRange mips) const {
-        for (const Alternative& found : alternatives(declaration_, version, toggle)) {
+    void need(Needs& needs, std::uint32_t version, std::int32_t gate, MipRange mips) const {
+        for (const Alternative& found : alternatives(declaration_, version, gate)) {
             if (found.version == none) continue;
             needs.mips[found.version] |= mip_mask(mips, declaration_.image_of(found.version).desc.mip_levels);
         }
@@ -105,24 +106,24 @@ class Compiler {
             const VersionRecord& version = declaration_.versions[made.index];
             MipMask rest = needs_.mips[made.index] & ~version.mips;
             if (is_needed && version.keeps_content) rest |= version.mips;
-            for (const Alternative& found : alternatives(declaration_, version.replaced, record.desc.toggle)) {
+            for (const Alternative& found : alternatives(declaration_, version.replaced, record.desc.gate)) {
                 if (found.version == none || declaration_.versions[found.version].image != version.image) continue;
                 needs_.mips[found.version] |= rest;
             }
         }
         if (!is_needed) return;
-        for (const Read& read : record.desc.reads) need(needs_, read.version.index, record.desc.toggle, read.mips);
+        for (const Read& read : record.desc.reads) need(needs_, read.version.index, record.desc.gate, read.mips);
     }
 
     bool mark_histories(const PassDesc& pass, std::vector<bool>& is_read) {
         bool is_changed = false;
         for (const Read& read : pass.reads) {
-            for (const Alternative& found : alternatives(declaration_, read.version.index, pass.toggle)) {
+            for (const Alternative& found : alternatives(declaration_, read.version.index, pass.gate)) {
                 if (found.version == none) continue;
                 const Image& image = declaration_.image_of(found.version);
                 if (!image.is_previous || is_read[image.history_index]) continue;
                 is_read[image.history_index] = is_changed = true;
-                need(needs_, plan_->final_history_version[image.history_index], -1, {});
+                need(needs_, solution_->final_history_version[image.history_index], -1, {});
             }
         }
         return is_changed;
@@ -130,25 +131,25 @@ class Compiler {
 
     /// Copies the declaration, with passes numbered anew.
     void take_over() {
-        Plan& plan = *plan_;
-        plan.images = declaration_.images;
-        plan.versions = declaration_.versions;
-        plan.import_count = declaration_.import_count;
-        plan.history_count = declaration_.history_count;
+        Solution& solution = *solution_;
+        solution.images = declaration_.images;
+        solution.versions = declaration_.versions;
+        solution.import_count = declaration_.import_count;
+        solution.history_count = declaration_.history_count;
         for (std::size_t pass = 0; pass < declaration_.passes.size(); ++pass) {
             const PassRecord& record = declaration_.passes[pass];
             if (!needs_.passes[pass]) {
-                plan.kept_pass.push_back(none);
-                plan.culled.push_back(record.desc.name);
+                solution.kept_pass.push_back(none);
+                solution.culled.push_back(record.desc.name);
                 continue;
             }
-            plan.kept_pass.push_back(static_cast<std::uint32_t>(plan.passes.size()));
-            plan.passes.push_back(record.desc);
-            plan.made.push_back(record.made);
+            solution.kept_pass.push_back(static_cast<std::uint32_t>(solution.passes.size()));
+            solution.passes.push_back(record.desc);
+            solution.made.push_back(record.made);
         }
-        for (VersionRecord& record : plan.versions) {
-            if (record.producer != none) record.producer = plan.kept_pass[record.producer];
-            if (record.killer != none) record.killer = plan.kept_pass[record.killer];
+        for (VersionRecord& record : solution.versions) {
+            if (record.producer != none) record.producer = solution.kept_pass[record.producer];
+            if (record.killer != none) record.killer = solution.kept_pass[record.killer];
         }
     }
 
@@ -160,19 +161,19 @@ class Compiler {
                   .history_parity = parity,
                   .first_pass = none,
                   .extent = image.desc.size.of(max_extent_)};
-        plan_->slots.push_back(std::move(slot));
-        return static_cast<std::uint32_t>(plan_->slots.size() - 1);
+        solution_->slots.push_back(std::move(slot));
+        return static_cast<std::uint32_t>(solution_->slots.size() - 1);
     }
 
     /// Calls function(pass, use, image) for everything a kept pass may touch, fall-backs included.
     template <class Function>
     void for_each_use(const Function& function) const {
         for (std::size_t declared = 0; declared < declaration_.passes.size(); ++declared) {
-            const std::uint32_t pass = plan_->kept_pass[declared];
+            const std::uint32_t pass = solution_->kept_pass[declared];
             if (pass == none) continue;
             const PassDesc& desc = declaration_.passes[declared].desc;
             for (const Read& read : desc.reads) {
-                for (const Alternative& found : alternatives(declaration_, read.version.index, desc.toggle)) {
+                for (const Alternative& found : alternatives(declaration_, read.version.index, desc.gate)) {
                     if (found.version != none) function(pass, read.use, declaration_.versions[found.version].image);
                 }
             }
@@ -183,39 +184,39 @@ class Compiler {
     }
 
     void make_slots() {
-        std::vector<bool> is_used(plan_->images.size());
+        std::vector<bool> is_used(solution_->images.size());
         for_each_use([&](std::uint32_t, Use, std::uint32_t image) { is_used[image] = true; });
-        std::vector<bool> is_history_used(plan_->history_count);
-        for (std::size_t i = 0; i < plan_->images.size(); ++i) {
-            const Image& image = plan_->images[i];
+        std::vector<bool> is_history_used(solution_->history_count);
+        for (std::size_t i = 0; i < solution_->images.size(); ++i) {
+            const Image& image = solution_->images[i];
             if (is_used[i] && image.kind == Slot::Kind::History) is_history_used[image.history_index] = true;
         }
-        for (Image& image : plan_->images) {
+        for (Image& image : solution_->images) {
             if (image.import_index != none) image.slots.fill(add_slot(image, 0));
         }
-        for (std::size_t i = 0; i < plan_->images.size(); ++i) {
-            Image& image = plan_->images[i];
+        for (std::size_t i = 0; i < solution_->images.size(); ++i) {
+            Image& image = solution_->images[i];
             if (image.kind == Slot::Kind::Transient && is_used[i]) image.slots.fill(add_slot(image, 0));
             if (image.kind != Slot::Kind::History || image.is_previous || !is_history_used[image.history_index])
                 continue;
             image.slots = {add_slot(image, 0), add_slot(image, 1)};
-            for (Image& other : plan_->images) {
+            for (Image& other : solution_->images) {
                 if (!other.is_previous || other.history_index != image.history_index) continue;
                 other.slots = {image.slots[1], image.slots[0]};
             }
         }
-        for (const Slot& slot : plan_->slots) {
-            plan_->first_mip.push_back(plan_->mip_count);
-            plan_->mip_count += slot.desc.mip_levels;
+        for (const Slot& slot : solution_->slots) {
+            solution_->first_mip.push_back(solution_->mip_count);
+            solution_->mip_count += slot.desc.mip_levels;
         }
     }
 
     /// Usage flags, lifetimes, and what passes do to each slot.
     Result<> use_slots() {
-        own_past_.resize(plan_->slots.size());
+        own_past_.resize(solution_->slots.size());
         for_each_use([&](std::uint32_t pass, Use use, std::uint32_t image) {
-            for (const std::uint32_t index : plan_->images[image].slots) {
-                Slot& slot = plan_->slots[index];
+            for (const std::uint32_t index : solution_->images[image].slots) {
+                Slot& slot = solution_->slots[index];
                 slot.usage |= usage_of(use);
                 slot.first_pass = std::min(slot.first_pass, pass);
                 slot.last_pass = std::max(slot.last_pass, pass);
@@ -225,7 +226,7 @@ class Compiler {
             }
         });
         extend_kept();
-        for (Slot& slot : plan_->slots) {
+        for (Slot& slot : solution_->slots) {
             if (slot.first_pass == none) slot.first_pass = 0;
             if (slot.kind != Slot::Kind::History) continue;
             // A reset clears. SHADER_READ_ONLY_OPTIMAL is what most readers want, but needs an image made for sampling.
@@ -238,14 +239,14 @@ class Compiler {
 
     /// A kept transient is wanted after the frame, by somebody whose stage nobody knows.
     void extend_kept() {
-        if (plan_->passes.empty()) return;
+        if (solution_->passes.empty()) return;
         for (std::uint32_t version = 0; version < declaration_.versions.size(); ++version) {
             if (!declaration_.versions[version].is_kept) continue;
             for (const Alternative& found : alternatives(declaration_, version, -1)) {
                 if (found.version == none) continue;
-                const Image& image = plan_->images[declaration_.versions[found.version].image];
+                const Image& image = solution_->images[declaration_.versions[found.version].image];
                 if (image.kind != Slot::Kind::Transient || image.slots[0] == none) continue;
-                plan_->slots[image.slots[0]].last_pass = static_cast<std::uint32_t>(plan_->passes.size() - 1);
+                solution_->slots[image.slots[0]].last_pass = static_cast<std::uint32_t>(solution_->passes.size() - 1);
                 own_past_[image.slots[0]].stages |= VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
             }
         }
@@ -254,11 +255,11 @@ class Compiler {
     Result<> check_imports() const {
         Result<> result;
         for_each_use([&](std::uint32_t pass, Use use, std::uint32_t index) {
-            const Image& image = plan_->images[index];
+            const Image& image = solution_->images[index];
             const VkImageUsageFlags missing = usage_of(use) & ~image.allowed_usage;
             if (!result || image.import_index == none || missing == 0) return;
             result = user_error(fmt::format("pass '{}' uses the host's image '{}' as {}, but it was created for {}",
-                                            plan_->passes[pass].name, image.desc.name, usage_names(missing),
+                                            solution_->passes[pass].name, image.desc.name, usage_names(missing),
                                             usage_names(image.allowed_usage)));
         });
         return result;
@@ -267,49 +268,49 @@ class Compiler {
     Result<> place(const Measure& measure) {
         std::vector<Interval> intervals;
         std::vector<std::uint32_t> owners;
-        for (std::uint32_t index = 0; index < plan_->slots.size(); ++index) {
-            Slot& slot = plan_->slots[index];
+        for (std::uint32_t index = 0; index < solution_->slots.size(); ++index) {
+            Slot& slot = solution_->slots[index];
             if (slot.kind != Slot::Kind::Transient) continue;
             auto measured = measure(slot.desc, slot.usage, max_extent_);
             if (!measured) return failure(std::move(measured));
-            plan_->memory_type_bits &= measured->memory_type_bits;
-            if (plan_->memory_type_bits == 0) {
+            solution_->memory_type_bits &= measured->memory_type_bits;
+            if (solution_->memory_type_bits == 0) {
                 return machine_error(
                     fmt::format("image '{}' accepts the memory types {:#x}: none of them suits the other "
                                 "transient images as well",
                                 slot.desc.name, measured->memory_type_bits));
             }
             slot.size = measured->size;
-            plan_->transient_bytes_unaliased += measured->size;
+            solution_->transient_bytes_unaliased += measured->size;
             intervals.push_back({.size = measured->size,
                                  .alignment = std::max<VkDeviceSize>(measured->alignment, 1),
                                  .first = slot.first_pass,
                                  .last = slot.last_pass});
             owners.push_back(index);
         }
-        plan_->transient_bytes = pack(intervals);
-        for (std::size_t i = 0; i < owners.size(); ++i) plan_->slots[owners[i]].offset = intervals[i].offset;
+        solution_->transient_bytes = pack(intervals);
+        for (std::size_t i = 0; i < owners.size(); ++i) solution_->slots[owners[i]].offset = intervals[i].offset;
         return {};
     }
 
     void find_past() {
-        plan_->past.resize(plan_->slots.size());
-        for (std::size_t i = 0; i < plan_->slots.size(); ++i) {
-            for (std::size_t j = 0; j < plan_->slots.size(); ++j) {
-                const Slot &a = plan_->slots[i], &b = plan_->slots[j];
+        solution_->past.resize(solution_->slots.size());
+        for (std::size_t i = 0; i < solution_->slots.size(); ++i) {
+            for (std::size_t j = 0; j < solution_->slots.size(); ++j) {
+                const Slot &a = solution_->slots[i], &b = solution_->slots[j];
                 const bool is_aliased = a.kind == Slot::Kind::Transient && b.kind == Slot::Kind::Transient &&
                                         a.offset < b.offset + b.size && b.offset < a.offset + a.size;
                 if (i != j && !is_aliased) continue;
-                plan_->past[i].stages |= own_past_[j].stages;
-                plan_->past[i].access |= own_past_[j].access;
-                plan_->past[i].reads |= own_past_[j].reads;
+                solution_->past[i].stages |= own_past_[j].stages;
+                solution_->past[i].access |= own_past_[j].access;
+                solution_->past[i].reads |= own_past_[j].reads;
             }
         }
     }
 
     const Declaration& declaration_;
     VkExtent2D max_extent_;
-    std::unique_ptr<Plan> plan_;
+    std::unique_ptr<Solution> solution_;
     Needs needs_;
     std::vector<Past> own_past_;
 };
@@ -318,25 +319,25 @@ class Compiler {
 
 Result<Compiled> Graph::compile(VkExtent2D max_extent, const Measure& measure) const {
     if (auto result = validate(*declaration_, max_extent); !result) return failure(std::move(result));
-    auto plan = Compiler(*declaration_, max_extent).run(measure);
-    if (!plan) return failure(std::move(plan));
-    return Compiled(std::move(*plan));
+    auto solution = Compiler(*declaration_, max_extent).run(measure);
+    if (!solution) return failure(std::move(solution));
+    return Compiled(std::move(*solution));
 }
 
-Compiled::Compiled(std::unique_ptr<const Plan> plan) : plan_(std::move(plan)) {}
+Compiled::Compiled(std::unique_ptr<const Solution> solution) : solution_(std::move(solution)) {}
 Compiled::~Compiled() = default;
 Compiled::Compiled(Compiled&&) noexcept = default;
 Compiled& Compiled::operator=(Compiled&&) noexcept = default;
 
-std::span<const PassDesc> Compiled::passes() const { return plan_->passes; }
-std::span<const std::string> Compiled::culled() const { return plan_->culled; }
-std::span<const Slot> Compiled::slots() const { return plan_->slots; }
-VkDeviceSize Compiled::transient_bytes() const { return plan_->transient_bytes; }
-VkDeviceSize Compiled::transient_bytes_unaliased() const { return plan_->transient_bytes_unaliased; }
-std::uint32_t Compiled::memory_type_bits() const { return plan_->memory_type_bits; }
+std::span<const PassDesc> Compiled::passes() const { return solution_->passes; }
+std::span<const std::string> Compiled::culled() const { return solution_->culled; }
+std::span<const Slot> Compiled::slots() const { return solution_->slots; }
+VkDeviceSize Compiled::transient_bytes() const { return solution_->transient_bytes; }
+VkDeviceSize Compiled::transient_bytes_unaliased() const { return solution_->transient_bytes_unaliased; }
+std::uint32_t Compiled::memory_type_bits() const { return solution_->memory_type_bits; }
 std::uint32_t Compiled::kept_pass_of(PassId declared) const {
-    return declared.index < plan_->kept_pass.size() ? plan_->kept_pass[declared.index] : none;
+    return declared.index < solution_->kept_pass.size() ? solution_->kept_pass[declared.index] : none;
 }
-std::span<const Version> Compiled::made(std::uint32_t pass) const { return plan_->made[pass]; }
+std::span<const Version> Compiled::made(std::uint32_t pass) const { return solution_->made[pass]; }
 
 }  // namespace darkroom::graph

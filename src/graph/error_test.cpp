@@ -12,8 +12,8 @@ std::string error_of(const Graph& graph, VkExtent2D extent = full_hd, const Meas
     return compiled ? "no error" : compiled.error().text;
 }
 
-Version write(Graph& graph, std::string name, Version version, Use use = Use::StorageWrite, std::int32_t toggle = -1) {
-    return graph.add({.name = std::move(name), .writes = {{version, use}}, .toggle = toggle})[0];
+Version write(Graph& graph, std::string name, Version version, Use use = Use::StorageWrite, std::int32_t gate = -1) {
+    return graph.add({.name = std::move(name), .writes = {{version, use}}, .gate = gate})[0];
 }
 void read(Graph& graph, std::string name, Version version, Use use = Use::SampledCompute, MipRange mips = {}) {
     graph.add({.name = std::move(name), .reads = {{version, use, mips}}, .has_side_effect = true});
@@ -85,12 +85,12 @@ TEST(GraphError, WriteToPreviousHistoryOrConstant) {
     EXPECT_EQ(error_of(other), "pass 'b' writes 'black', which is constant: reading is allowed");
 }
 
-TEST(GraphError, ToggleWithoutFallBack) {
+TEST(GraphError, GateWithoutFallBack) {
     Graph graph;
     const Version made = write(graph, "a", graph.create(image("x")), Use::StorageWrite, 0);
     read(graph, "b", made);
     EXPECT_EQ(error_of(graph),
-              "pass 'b' reads 'x', but pass 'a' that writes it may be off: it needs a fall-back, or the same toggle");
+              "pass 'b' reads 'x', but pass 'a' that writes it may be off: it needs a fall-back, or the same gate");
 }
 
 TEST(GraphError, FallBackThatMayBeOffItself) {
@@ -100,7 +100,7 @@ TEST(GraphError, FallBackThatMayBeOffItself) {
     graph.fall_back(made, other);
     read(graph, "b", made);
     EXPECT_EQ(error_of(graph),
-              "pass 'b' reads 'y', but pass 'z' that writes it may be off: it needs a fall-back, or the same toggle");
+              "pass 'b' reads 'y', but pass 'z' that writes it may be off: it needs a fall-back, or the same gate");
 }
 
 TEST(GraphError, FallBackThatIsOffAtTheSameTime) {
@@ -110,13 +110,13 @@ TEST(GraphError, FallBackThatIsOffAtTheSameTime) {
     graph.fall_back(made, other);
     read(graph, "b", made);
     EXPECT_EQ(error_of(graph),
-              "pass 'b' reads 'y', but pass 'z' that writes it may be off: it needs a fall-back, or the same toggle");
+              "pass 'b' reads 'y', but pass 'z' that writes it may be off: it needs a fall-back, or the same gate");
 }
 
-TEST(GraphError, FallBackIsNeededOnlyByOtherToggles) {
+TEST(GraphError, FallBackIsNeededOnlyByOtherGates) {
     Graph graph;
     const Version made = write(graph, "a", graph.create(image("x")), Use::StorageWrite, 0);
-    graph.add({.name = "b", .reads = {{made, Use::SampledCompute}}, .has_side_effect = true, .toggle = 0});
+    graph.add({.name = "b", .reads = {{made, Use::SampledCompute}}, .has_side_effect = true, .gate = 0});
     EXPECT_EQ(error_of(graph), "no error");
 }
 
@@ -135,7 +135,7 @@ TEST(GraphError, FallBackOverwrittenBeforeTheReader) {
     const Version made = graph.add({.name = "a",
                                     .reads = {{color, Use::SampledCompute}},
                                     .writes = {{graph.create(image("x")), Use::StorageWrite}},
-                                    .toggle = 0})[0];
+                                    .gate = 0})[0];
     graph.fall_back(made, color);
     write(graph, "c", color);
     read(graph, "b", made);

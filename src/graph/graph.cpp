@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "graph/plan.hpp"
+#include "graph/solution.hpp"
 
 namespace darkroom::graph {
 namespace {
@@ -85,7 +85,7 @@ Version add_write(Declaration& declaration, const PassDesc& desc, const Write& w
     declaration.versions[write.version.index].killer = pass;
     return add_version(declaration, {.image = declaration.versions[write.version.index].image,
                                      .producer = pass,
-                                     .toggle = desc.toggle,
+                                     .gate = desc.gate,
                                      .replaced = write.version.index,
                                      .mips = mips,
                                      .keeps_content = keeps_content(write.use),
@@ -153,9 +153,7 @@ void Graph::fall_back(Version version, Version instead) {
     record.instead = instead.index;
 }
 
-void Graph::imply(std::int32_t toggle, std::int32_t implied) {
-    declaration_->implications.push_back({toggle, implied});
-}
+void Graph::imply(std::int32_t gate, std::int32_t implied) { declaration_->implications.push_back({gate, implied}); }
 
 void Graph::keep(Version version) {
     Declaration& declaration = *declaration_;

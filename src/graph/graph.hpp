@@ -100,8 +100,8 @@ struct PassDesc {
     std::vector<Read> reads;
     std::vector<Write> writes;
     bool has_side_effect = false;  ///< never culled
-    /// Index of the toggle that switches this pass, or -1: always on.
-    std::int32_t toggle = -1;
+    /// Index of the gate, a switch of passes, that lets this one run; -1: always on.
+    std::int32_t gate = -1;
 };
 struct PassId {
     std::uint32_t index = ~0u;
@@ -117,7 +117,7 @@ using Measure = std::function<Result<Requirements>(const ImageDesc&, VkImageUsag
 
 class Compiled;
 struct Declaration;
-struct Plan;
+struct Solution;
 
 class Graph {
   public:
@@ -144,13 +144,13 @@ class Graph {
     /// Mip levels that `instead` lacks become its last one. Without a fall-back, a write that keeps content falls back
     /// to the version it replaces.
     void fall_back(Version version, Version instead);
-    /// A promise of the caller: whenever `toggle` is on, `implied` is on, too. No cycles.
-    void imply(std::int32_t toggle, std::int32_t implied);
+    /// A promise of the caller: whenever `gate` is on, `implied` is on, too. No cycles.
+    void imply(std::int32_t gate, std::int32_t implied);
     /// `version` is wanted after the frame: passes that lead to it are kept.
     void keep(Version version);
 
     /// Checks, culls, computes lifetimes and packs. Errors: use after overwrite, a version nobody writes, a cycle of
-    /// fall-backs, a toggled pass whose output is read without a fall-back, a use the host's image was not made for.
+    /// fall-backs, a gated pass whose output is read without a fall-back, a use the host's image was not made for.
     [[nodiscard]] Result<Compiled> compile(VkExtent2D max_extent, const Measure& measure) const;
 
   private:
@@ -195,7 +195,7 @@ struct Barrier {
 /// What compile() made. Moving it leaves the schedules made from it valid; destroying it does not.
 class Compiled {
   public:
-    explicit Compiled(std::unique_ptr<const Plan> plan);
+    explicit Compiled(std::unique_ptr<const Solution> solution);
     ~Compiled();
     Compiled(Compiled&&) noexcept;
     Compiled& operator=(Compiled&&) noexcept;
@@ -209,10 +209,10 @@ class Compiled {
     [[nodiscard]] std::uint32_t kept_pass_of(PassId declared) const;  ///< ~0u if culled
     /// The versions that a kept pass makes, one for each of its writes.
     [[nodiscard]] std::span<const Version> made(std::uint32_t pass) const;
-    [[nodiscard]] const Plan& plan() const { return *plan_; }  ///< for schedule, checker and trace
+    [[nodiscard]] const Solution& solution() const { return *solution_; }  ///< for schedule, checker and trace
 
   private:
-    std::unique_ptr<const Plan> plan_;
+    std::unique_ptr<const Solution> solution_;
 };
 
 struct Step {
@@ -224,7 +224,7 @@ struct Step {
 struct Recording {
     std::span<const Step> steps;
     std::span<const Barrier> barriers, final_barriers;
-    std::span<const std::uint8_t> toggles;  ///< 0: off; toggles beyond the span are on
+    std::span<const std::uint8_t> gates;  ///< 0: off; gates beyond the span are on
     std::uint64_t frame = 0;
 };
 
@@ -241,11 +241,11 @@ class Schedule {
     Schedule(Schedule&&) noexcept;
     Schedule& operator=(Schedule&&) noexcept;
 
-    /// Works out which passes run, what every version resolves to, and all barriers. `toggles[i]` switches the passes
-    /// that name toggle i; those beyond the span are on. `imports` holds one state per import, in the order they were
+    /// Works out which passes run, what every version resolves to, and all barriers. `gates[i]` switches the passes
+    /// that name gate i; those beyond the span are on. `imports` holds one state per import, in the order they were
     /// imported; those beyond the span have the default state. `frame` tells the parity of histories. Barriers against
     /// the previous frame on the same queue are included: on aliased memory, too.
-    void derive(std::span<const bool> toggles, std::span<const ImportState> imports, std::uint64_t frame);
+    void derive(std::span<const bool> gates, std::span<const ImportState> imports, std::uint64_t frame);
 
     [[nodiscard]] std::span<const Step> steps() const;
     [[nodiscard]] std::span<const Barrier> barriers() const;        ///< of all steps

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "graph/plan.hpp"
+#include "graph/solution.hpp"
 #include "graph/test_graphs.hpp"
 
 namespace darkroom::graph::test {
@@ -112,12 +112,12 @@ TEST(GraphCompile, FallBackLivesAsLongAsItMayBeRead) {
     const Version graded = graph.add({.name = "b",
                                       .reads = {{color, Use::SampledCompute}},
                                       .writes = {{graph.create(image("y")), Use::StorageWrite}},
-                                      .toggle = 0})[0];
+                                      .gate = 0})[0];
     graph.fall_back(graded, color);
     const Version sharp = graph.add({.name = "c",
                                      .reads = {{graded, Use::SampledCompute}},
                                      .writes = {{graph.create(image("z")), Use::StorageWrite}},
-                                     .toggle = 1})[0];
+                                     .gate = 1})[0];
     graph.fall_back(sharp, graded);
     graph.add({.name = "end", .reads = {{sharp, Use::SampledFragment}}, .has_side_effect = true});
     const auto compiled = graph.compile(full_hd, measure);
@@ -184,9 +184,9 @@ TEST(GraphCheck, FindsImagesThatShareMemoryWhileBothLive) {
     graph.add({.name = "end", .reads = {{a, Use::SampledCompute}, {b, Use::SampledCompute}}, .has_side_effect = true});
     const auto compiled = graph.compile(full_hd, measure);
     ASSERT_TRUE(compiled);
-    auto plan = std::make_unique<Plan>(compiled->plan());
-    plan->slots[1].offset = plan->slots[0].offset;
-    const Compiled broken(std::move(plan));
+    auto solution = std::make_unique<Solution>(compiled->solution());
+    solution->slots[1].offset = solution->slots[0].offset;
+    const Compiled broken(std::move(solution));
     Schedule schedule(broken);
     schedule.derive({}, {}, 0);
     const auto result = check(broken, schedule, {});

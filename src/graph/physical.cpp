@@ -96,7 +96,7 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
     return physical;
 }
 
-void Physical::bind(std::uint32_t import_index, const HostImage& image) {
+void Physical::bind(std::uint32_t import_index, const LentImage& image) {
     // The imports are the first slots, in their order.
     DARKROOM_ASSERT(import_index < entries_.size() && entries_[import_index].import_index == import_index);
     Entry& entry = entries_[import_index];

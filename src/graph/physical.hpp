@@ -11,7 +11,8 @@ namespace darkroom::graph {
 /// Asks the device for the requirements of images. The context must outlive it.
 [[nodiscard]] Measure measure_on(gpu::Context& context);
 
-struct HostImage {
+/// An image of the host, as it is lent for a frame.
+struct LentImage {
     VkImage handle = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;       ///< of all mip levels
     std::span<const VkImageView> mip_views;  ///< one a level; may be empty if there is only one
@@ -29,7 +30,7 @@ class Physical {
                                                  std::uint32_t views = 1);
 
     /// Lends a host's image until the next call. Copies the handles, allocates nothing.
-    void bind(std::uint32_t import_index, const HostImage& image);
+    void bind(std::uint32_t import_index, const LentImage& image);
 
     [[nodiscard]] VkImage handle(std::uint32_t slot, std::uint32_t view_index = 0) const;
     /// All mip levels.

@@ -34,26 +34,26 @@ void for_each_case(std::uint32_t count, const std::function<void(Case&)>& body) 
     ASSERT_EQ(found, count) << "of " << seed << " graphs too few compile";
 }
 
-std::array<bool, toggle_count> random_toggles(std::mt19937& random) {
-    std::array<bool, toggle_count> toggles{};
-    for (bool& toggle : toggles) toggle = random() % 2 == 0;
-    return toggles;
+std::array<bool, gate_count> random_gates(std::mt19937& random) {
+    std::array<bool, gate_count> gates{};
+    for (bool& gate : gates) gate = random() % 2 == 0;
+    return gates;
 }
 
 /// A recording that can be changed.
 struct Copy {
     std::vector<Step> steps;
     std::vector<Barrier> barriers, final_barriers;
-    std::vector<std::uint8_t> toggles;
+    std::vector<std::uint8_t> gates;
     std::uint64_t frame = 0;
 
     explicit Copy(const Recording& from)
         : steps(from.steps.begin(), from.steps.end()),
           barriers(from.barriers.begin(), from.barriers.end()),
           final_barriers(from.final_barriers.begin(), from.final_barriers.end()),
-          toggles(from.toggles.begin(), from.toggles.end()),
+          gates(from.gates.begin(), from.gates.end()),
           frame(from.frame) {}
-    Recording recording() const { return {steps, barriers, final_barriers, toggles, frame}; }
+    Recording recording() const { return {steps, barriers, final_barriers, gates, frame}; }
     Barrier& barrier(std::size_t index) {
         return index < barriers.size() ? barriers[index] : final_barriers[index - barriers.size()];
     }
@@ -82,7 +82,7 @@ TEST(GraphRandom, CheckerAcceptsWhatScheduleDerives) {
         Schedule schedule(item.compiled);
         std::vector<Copy> copies;
         for (std::uint64_t frame = 0; frame < 6; ++frame) {
-            schedule.derive(random_toggles(random), item.imports, frame);
+            schedule.derive(random_gates(random), item.imports, frame);
             copies.emplace_back(schedule.recording());
             barrier_count += schedule.barriers().size();
             culled_in_frame += item.compiled.passes().size() - schedule.steps().size();
@@ -102,11 +102,11 @@ TEST(GraphRandom, CheckerAcceptsWhatScheduleDerives) {
 TEST(GraphRandom, CheckerMissesNoMissingBarrier) {
     for_each_case(graph_count, [&](Case& item) {
         std::mt19937 random(item.seed + 77);
-        const auto toggles = random_toggles(random);
+        const auto gates = random_gates(random);
         Schedule schedule(item.compiled);
         std::vector<Copy> copies;
         for (std::uint64_t frame = 0; frame < 5; ++frame) {
-            schedule.derive(toggles, item.imports, frame);
+            schedule.derive(gates, item.imports, frame);
             copies.emplace_back(schedule.recording());
         }
         Copy& last = copies[2];
@@ -157,9 +157,9 @@ TEST(GraphRandom, DeriveAllocatesNothing) {
         std::mt19937 random(item.seed);
         Schedule schedule(item.compiled);
         for (std::uint64_t frame = 0; frame < 8; ++frame) {
-            const auto toggles = random_toggles(random);
+            const auto gates = random_gates(random);
             const std::uint64_t before = darkroom::test::allocation_count();
-            schedule.derive(toggles, item.imports, frame);
+            schedule.derive(gates, item.imports, frame);
             ASSERT_EQ(darkroom::test::allocation_count(), before) << "seed " << item.seed;
         }
     });

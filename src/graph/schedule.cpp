@@ -3,7 +3,7 @@
 // difference is a barrier.
 #include <algorithm>
 
-#include "graph/plan.hpp"
+#include "graph/solution.hpp"
 
 namespace darkroom::graph {
 namespace {
@@ -89,8 +89,8 @@ bool advance(MipState& state, const Wanted& wanted, Barrier& barrier) {
 }  // namespace
 
 struct Schedule::State {
-    const Plan* plan = nullptr;
-    std::vector<std::uint8_t> toggles;
+    const Solution* solution = nullptr;
+    std::vector<std::uint8_t> gates;
     std::uint64_t frame = 0;
     std::vector<std::uint32_t> resolved;  ///< per version
     std::vector<MipMask> needed;          ///< per version
@@ -102,8 +102,8 @@ struct Schedule::State {
     std::vector<Step> steps;
     std::vector<Barrier> barriers, final_barriers;
 
-    explicit State(const Plan& compiled);
-    bool is_on(std::int32_t toggle) const { return toggle < 0 || toggles[static_cast<std::size_t>(toggle)] != 0; }
+    explicit State(const Solution& compiled);
+    bool is_on(std::int32_t gate) const { return gate < 0 || gates[static_cast<std::size_t>(gate)] != 0; }
     std::uint32_t slot_of(std::uint32_t version) const;
     std::uint32_t resolve(std::uint32_t version) const;
     void need(std::uint32_t version, MipRange range);
@@ -116,40 +116,40 @@ struct Schedule::State {
     void finish(std::span<const ImportState> imports);
 };
 
-Schedule::State::State(const Plan& compiled) : plan(&compiled) {
-    std::int32_t last_toggle = -1;
+Schedule::State::State(const Solution& compiled) : solution(&compiled) {
+    std::int32_t last_gate = -1;
     std::size_t barrier_bound = 0, access_bound = 0;
     std::uint32_t most_mips = 1;
-    for (const Slot& slot : plan->slots) most_mips = std::max(most_mips, slot.desc.mip_levels);
-    for (const PassDesc& pass : plan->passes) {
-        last_toggle = std::max(last_toggle, pass.toggle);
+    for (const Slot& slot : solution->slots) most_mips = std::max(most_mips, slot.desc.mip_levels);
+    for (const PassDesc& pass : solution->passes) {
+        last_gate = std::max(last_gate, pass.gate);
         const std::size_t accesses = pass.reads.size() + pass.writes.size();
         access_bound = std::max(access_bound, accesses);
         barrier_bound += accesses * most_mips;
     }
-    for (const VersionRecord& record : plan->versions) last_toggle = std::max(last_toggle, record.toggle);
-    toggles.resize(static_cast<std::size_t>(last_toggle + 1), 1);
-    resolved.resize(plan->versions.size(), none);
-    needed.resize(plan->versions.size());
-    is_live.resize(plan->passes.size());
-    is_history_read.resize(plan->history_count);
-    mips.resize(plan->mip_count);
-    wanted.resize(plan->mip_count);
+    for (const VersionRecord& record : solution->versions) last_gate = std::max(last_gate, record.gate);
+    gates.resize(static_cast<std::size_t>(last_gate + 1), 1);
+    resolved.resize(solution->versions.size(), none);
+    needed.resize(solution->versions.size());
+    is_live.resize(solution->passes.size());
+    is_history_read.resize(solution->history_count);
+    mips.resize(solution->mip_count);
+    wanted.resize(solution->mip_count);
     touched.reserve(access_bound);
-    steps.reserve(plan->passes.size());
+    steps.reserve(solution->passes.size());
     barriers.reserve(barrier_bound);
-    final_barriers.reserve(plan->mip_count);
+    final_barriers.reserve(solution->mip_count);
 }
 
 std::uint32_t Schedule::State::slot_of(std::uint32_t version) const {
     const std::uint32_t found = version < resolved.size() ? resolved[version] : none;
-    return found == none ? none : plan->image_of(found).slots[frame & 1];
+    return found == none ? none : solution->image_of(found).slots[frame & 1];
 }
 
 std::uint32_t Schedule::State::resolve(std::uint32_t version) const {
     while (version != none) {
-        const VersionRecord& record = plan->versions[version];
-        if (!is_on(record.toggle)) {
+        const VersionRecord& record = solution->versions[version];
+        if (!is_on(record.gate)) {
             version = record.next();
         } else if (record.is_culled()) {
             version = record.replaced;  // Nobody needs what the culled pass would have written over it.
@@ -162,22 +162,22 @@ std::uint32_t Schedule::State::resolve(std::uint32_t version) const {
 
 void Schedule::State::need(std::uint32_t version, MipRange range) {
     const std::uint32_t found = resolved[version];
-    if (found != none) needed[found] |= mip_mask(range, plan->image_of(found).desc.mip_levels);
+    if (found != none) needed[found] |= mip_mask(range, solution->image_of(found).desc.mip_levels);
 }
 
 void Schedule::State::walk(std::uint32_t pass) {
-    const PassDesc& desc = plan->passes[pass];
+    const PassDesc& desc = solution->passes[pass];
     bool is_needed = desc.has_side_effect;
-    for (const Version made : plan->made[pass]) {
-        is_needed |= (needed[made.index] & plan->versions[made.index].mips) != 0;
+    for (const Version made : solution->made[pass]) {
+        is_needed |= (needed[made.index] & solution->versions[made.index].mips) != 0;
     }
     is_live[pass] = is_needed;
-    for (const Version made : plan->made[pass]) {
-        const VersionRecord& record = plan->versions[made.index];
+    for (const Version made : solution->made[pass]) {
+        const VersionRecord& record = solution->versions[made.index];
         const MipMask rest =
             (needed[made.index] & ~record.mips) | (is_needed && record.keeps_content ? record.mips : 0);
         const std::uint32_t before = resolved[record.replaced];
-        if (rest != 0 && before != none && plan->versions[before].image == record.image) needed[before] |= rest;
+        if (rest != 0 && before != none && solution->versions[before].image == record.image) needed[before] |= rest;
     }
     if (!is_needed) return;
     for (const Read& read : desc.reads) need(read.version.index, read.mips);
@@ -186,24 +186,24 @@ void Schedule::State::walk(std::uint32_t pass) {
 /// A history whose previous image is read needs its current one written. True if that is news.
 bool Schedule::State::mark_histories() {
     bool is_changed = false;
-    for (std::uint32_t pass = 0; pass < plan->passes.size(); ++pass) {
+    for (std::uint32_t pass = 0; pass < solution->passes.size(); ++pass) {
         if (!is_live[pass]) continue;
-        for (const Read& read : plan->passes[pass].reads) {
+        for (const Read& read : solution->passes[pass].reads) {
             const std::uint32_t found = resolved[read.version.index];
-            if (found == none || !plan->image_of(found).is_previous) continue;
-            const std::uint32_t history = plan->image_of(found).history_index;
+            if (found == none || !solution->image_of(found).is_previous) continue;
+            const std::uint32_t history = solution->image_of(found).history_index;
             if (is_history_read[history] != 0) continue;
             is_history_read[history] = 1;
             is_changed = true;
             // What stands in for an image that is not written belongs to its readers in this frame, not to the next.
-            std::uint32_t final_version = plan->final_history_version[history];
+            std::uint32_t final_version = solution->final_history_version[history];
             while (final_version != none) {
-                const VersionRecord& record = plan->versions[final_version];
-                if (is_on(record.toggle) && !record.is_culled()) break;
-                const bool leaves_older = is_on(record.toggle) || record.keeps_content || record.is_partial;
+                const VersionRecord& record = solution->versions[final_version];
+                if (is_on(record.gate) && !record.is_culled()) break;
+                const bool leaves_older = is_on(record.gate) || record.keeps_content || record.is_partial;
                 final_version = leaves_older ? record.replaced : none;
             }
-            if (final_version != none) needed[final_version] |= all_mips(plan->image_of(found).desc.mip_levels);
+            if (final_version != none) needed[final_version] |= all_mips(solution->image_of(found).desc.mip_levels);
         }
     }
     return is_changed;
@@ -214,11 +214,11 @@ void Schedule::State::find_live() {
     std::fill(needed.begin(), needed.end(), MipMask{0});
     std::fill(is_history_read.begin(), is_history_read.end(), std::uint8_t{0});
     for (std::uint32_t version = 0; version < resolved.size(); ++version) {
-        if (plan->versions[version].is_kept) need(version, {});
+        if (solution->versions[version].is_kept) need(version, {});
     }
     do {
-        for (auto pass = static_cast<std::uint32_t>(plan->passes.size()); pass-- > 0;) {
-            if (is_on(plan->passes[pass].toggle)) {
+        for (auto pass = static_cast<std::uint32_t>(solution->passes.size()); pass-- > 0;) {
+            if (is_on(solution->passes[pass].gate)) {
                 walk(pass);
             } else {
                 is_live[pass] = 0;
@@ -228,9 +228,10 @@ void Schedule::State::find_live() {
 }
 
 void Schedule::State::start(std::span<const ImportState> imports) {
-    for (std::uint32_t index = 0; index < plan->slots.size(); ++index) {
-        const Slot& slot = plan->slots[index];
-        MipState state{.write_stages = plan->past[index].stages, .write_access = plan->past[index].access & all_writes};
+    for (std::uint32_t index = 0; index < solution->slots.size(); ++index) {
+        const Slot& slot = solution->slots[index];
+        MipState state{.write_stages = solution->past[index].stages,
+                       .write_access = solution->past[index].access & all_writes};
         if (slot.kind == Slot::Kind::Import) {
             const ImportState host = slot.import_index < imports.size() ? imports[slot.import_index] : ImportState{};
             state = {.layout = host.layout, .write_stages = host.stages, .write_access = host.access & all_writes};
@@ -240,16 +241,16 @@ void Schedule::State::start(std::span<const ImportState> imports) {
             state.layout = slot.rest_layout;
             state.seen_by = none;  // finish() saw to that.
         }
-        std::fill_n(mips.begin() + plan->first_mip[index], slot.desc.mip_levels, state);
+        std::fill_n(mips.begin() + solution->first_mip[index], slot.desc.mip_levels, state);
     }
 }
 
 void Schedule::State::want(std::uint32_t slot, MipMask mask, Use use) {
-    if (slot == none || plan->slots[slot].kind == Slot::Kind::Constant) return;
+    if (slot == none || solution->slots[slot].kind == Slot::Kind::Constant) return;
     if (std::find(touched.begin(), touched.end(), slot) == touched.end()) touched.push_back(slot);
-    for (std::uint32_t level = 0; level < plan->slots[slot].desc.mip_levels; ++level) {
+    for (std::uint32_t level = 0; level < solution->slots[slot].desc.mip_levels; ++level) {
         if (!has_mip(mask, level)) continue;
-        Wanted& all = wanted[plan->first_mip[slot] + level];
+        Wanted& all = wanted[solution->first_mip[slot] + level];
         all.uses |= 1u << static_cast<std::uint32_t>(use);
         all.stages |= stages_of(use);
         all.access |= access_of(use);
@@ -259,20 +260,20 @@ void Schedule::State::want(std::uint32_t slot, MipMask mask, Use use) {
 }
 
 void Schedule::State::add_step(std::uint32_t pass) {
-    const PassDesc& desc = plan->passes[pass];
+    const PassDesc& desc = solution->passes[pass];
     const std::size_t first = barriers.size();
     touched.clear();
     for (const Read& read : desc.reads) {
         const std::uint32_t slot = slot_of(read.version.index);
-        if (slot != none) want(slot, mip_mask(read.mips, plan->slots[slot].desc.mip_levels), read.use);
+        if (slot != none) want(slot, mip_mask(read.mips, solution->slots[slot].desc.mip_levels), read.use);
     }
     for (std::size_t i = 0; i < desc.writes.size(); ++i) {
-        const VersionRecord& record = plan->versions[plan->made[pass][i].index];
-        want(plan->images[record.image].slots[frame & 1], record.mips, desc.writes[i].use);
+        const VersionRecord& record = solution->versions[solution->made[pass][i].index];
+        want(solution->images[record.image].slots[frame & 1], record.mips, desc.writes[i].use);
     }
     for (const std::uint32_t slot : touched) {
-        for (std::uint32_t level = 0; level < plan->slots[slot].desc.mip_levels; ++level) {
-            const std::uint32_t index = plan->first_mip[slot] + level;
+        for (std::uint32_t level = 0; level < solution->slots[slot].desc.mip_levels; ++level) {
+            const std::uint32_t index = solution->first_mip[slot] + level;
             if (wanted[index].uses == 0) continue;
             Barrier barrier{.slot = slot, .mips = {level, 1}};
             if (advance(mips[index], wanted[index], barrier)) append(barriers, first, barrier);
@@ -286,11 +287,11 @@ void Schedule::State::add_step(std::uint32_t pass) {
 
 /// Leaves the host's images where the host wants them, and histories at rest: visible to all that may read them.
 void Schedule::State::finish(std::span<const ImportState> imports) {
-    for (std::uint32_t index = 0; index < plan->slots.size(); ++index) {
-        const Slot& slot = plan->slots[index];
+    for (std::uint32_t index = 0; index < solution->slots.size(); ++index) {
+        const Slot& slot = solution->slots[index];
         Barrier barrier{.slot = index,
-                        .target_stages = plan->past[index].stages,
-                        .target_access = plan->past[index].access & ~all_writes,
+                        .target_stages = solution->past[index].stages,
+                        .target_access = solution->past[index].access & ~all_writes,
                         .new_layout = slot.rest_layout};
         if (slot.kind == Slot::Kind::Import) {
             const ImportState host = slot.import_index < imports.size() ? imports[slot.import_index] : ImportState{};
@@ -302,9 +303,9 @@ void Schedule::State::finish(std::span<const ImportState> imports) {
         }
         if (barrier.new_layout == VK_IMAGE_LAYOUT_UNDEFINED) continue;
         for (std::uint32_t level = 0; level < slot.desc.mip_levels; ++level) {
-            const MipState& state = mips[plan->first_mip[index] + level];
+            const MipState& state = mips[solution->first_mip[index] + level];
             const bool is_elsewhere = state.layout != barrier.new_layout;
-            const bool is_unseen = (plan->past[index].reads & ~state.seen_by) != 0;
+            const bool is_unseen = (solution->past[index].reads & ~state.seen_by) != 0;
             const bool is_needed = slot.kind == Slot::Kind::Import ? state.is_touched || is_elsewhere
                                                                    : state.is_touched && (is_elsewhere || is_unseen);
             if (!is_needed) continue;
@@ -316,21 +317,21 @@ void Schedule::State::finish(std::span<const ImportState> imports) {
     }
 }
 
-Schedule::Schedule(const Compiled& compiled) : state_(std::make_unique<State>(compiled.plan())) {}
+Schedule::Schedule(const Compiled& compiled) : state_(std::make_unique<State>(compiled.solution())) {}
 Schedule::~Schedule() = default;
 Schedule::Schedule(Schedule&&) noexcept = default;
 Schedule& Schedule::operator=(Schedule&&) noexcept = default;
 
-void Schedule::derive(std::span<const bool> toggles, std::span<const ImportState> imports, std::uint64_t frame) {
+void Schedule::derive(std::span<const bool> gates, std::span<const ImportState> imports, std::uint64_t frame) {
     State& state = *state_;
-    for (std::size_t i = 0; i < state.toggles.size(); ++i) state.toggles[i] = i >= toggles.size() || toggles[i];
+    for (std::size_t i = 0; i < state.gates.size(); ++i) state.gates[i] = i >= gates.size() || gates[i];
     state.frame = frame;
     state.steps.clear();
     state.barriers.clear();
     state.final_barriers.clear();
     state.find_live();
     state.start(imports);
-    for (std::uint32_t pass = 0; pass < state.plan->passes.size(); ++pass) {
+    for (std::uint32_t pass = 0; pass < state.solution->passes.size(); ++pass) {
         if (state.is_live[pass] != 0) state.add_step(pass);
     }
     state.finish(imports);
@@ -345,7 +346,7 @@ Recording Schedule::recording() const {
     return {.steps = state_->steps,
             .barriers = state_->barriers,
             .final_barriers = state_->final_barriers,
-            .toggles = state_->toggles,
+            .gates = state_->gates,
             .frame = state_->frame};
 }
 

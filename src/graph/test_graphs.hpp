@@ -45,9 +45,9 @@ inline ImportState host_state(VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL) {
             .final_access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
 }
 
-inline constexpr std::uint32_t toggle_count = 4;
+inline constexpr std::uint32_t gate_count = 4;
 
-/// A graph of up to twenty passes with toggles, fall-backs, mip chains, histories and in-place writes. Not every one
+/// A graph of up to twenty passes with gates, fall-backs, mip chains, histories and in-place writes. Not every one
 /// compiles: the caller skips those.
 inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
     std::mt19937 random(seed);
@@ -78,7 +78,7 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
     const std::uint32_t pass_count = 4 + pick(16);
     for (std::uint32_t i = 0; i < pass_count; ++i) {
         PassDesc pass{.name = fmt::format("pass{}", i)};
-        if (pick(3) == 0) pass.toggle = static_cast<std::int32_t>(pick(toggle_count));
+        if (pick(3) == 0) pass.gate = static_cast<std::int32_t>(pick(gate_count));
         std::vector<std::uint32_t> used_images;
         const auto is_used = [&used_images](std::uint32_t index) {
             return std::find(used_images.begin(), used_images.end(), index) != used_images.end();
@@ -114,7 +114,7 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
             made.push_back({fresh, image_count++, mips});
         }
         const bool is_pyramid = made[0].mip_levels == 3 && pass.writes[0].mips.count == 1;
-        const std::int32_t toggle = pass.toggle;
+        const std::int32_t gate = pass.gate;
         const Version instead = pick(2) == 0 || pass.reads.empty() ? black : pass.reads[0].version;
         const std::string name = pass.name;
         made[0].version = graph.add(std::move(pass))[0];
@@ -123,10 +123,10 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
                 made[0].version = graph.add({.name = fmt::format("{}-mip{}", name, level),
                                              .reads = {{made[0].version, Use::SampledCompute, {level - 1, 1}}},
                                              .writes = {{made[0].version, Use::StorageWrite, {level, 1}}},
-                                             .toggle = toggle})[0];
+                                             .gate = gate})[0];
             }
         }
-        if (toggle >= 0 && (replaced.empty() || pick(2) == 0)) graph.fall_back(made[0].version, instead);
+        if (gate >= 0 && (replaced.empty() || pick(2) == 0)) graph.fall_back(made[0].version, instead);
         for (const std::size_t index : replaced) live.erase(live.begin() + static_cast<std::ptrdiff_t>(index));
         live.push_back(made[0]);
     }

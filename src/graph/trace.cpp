@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include "graph/plan.hpp"
+#include "graph/solution.hpp"
 
 namespace darkroom::graph {
 namespace {

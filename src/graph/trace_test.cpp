@@ -10,12 +10,12 @@ namespace darkroom::graph::test {
 namespace {
 
 /// Compiles, derives one frame, lets the checker look at it, and returns the trace.
-std::string trace_of(const Graph& graph, std::span<const bool> toggles, std::span<const ImportState> imports,
+std::string trace_of(const Graph& graph, std::span<const bool> gates, std::span<const ImportState> imports,
                      std::uint64_t frame = 0) {
     const auto compiled = graph.compile(full_hd, measure);
     if (!compiled) return compiled.error().text;
     Schedule schedule(*compiled);
-    schedule.derive(toggles, imports, frame);
+    schedule.derive(gates, imports, frame);
     const auto checked = check(*compiled, schedule, imports);
     EXPECT_TRUE(checked) << checked.error().text;
     return trace(*compiled, schedule);
@@ -117,12 +117,12 @@ TEST(GraphTrace, PassThatIsOffIsReplacedByItsInput) {
     const Version color = host_image(graph, "color");
     const Version side = graph.create(image("side"));
     const Version blurred = graph.create(image("blurred"));
-    // Only the toggled pass needs this one, so it goes with it.
+    // Only the gated pass needs this one, so it goes with it.
     const Version prepared = graph.add({.name = "prepare", .writes = {{side, Use::ColorWrite}}})[0];
     const Version blur = graph.add({.name = "blur",
                                     .reads = {{color, Use::SampledCompute}, {prepared, Use::SampledCompute}},
                                     .writes = {{blurred, Use::StorageWrite}},
-                                    .toggle = 0})[0];
+                                    .gate = 0})[0];
     graph.fall_back(blur, color);
     graph.add({.name = "show", .reads = {{blur, Use::SampledFragment}}, .has_side_effect = true});
     const std::array imports{ImportState{.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
@@ -146,7 +146,7 @@ TEST(GraphTrace, BlendThatIsOffLeavesTheOlderContent) {
     Graph graph;
     const Version target = host_image(graph, "target");
     const Version filled = graph.add({.name = "fill", .writes = {{target, Use::ColorWrite}}})[0];
-    graph.keep(graph.add({.name = "overlay", .writes = {{filled, Use::ColorBlend}}, .toggle = 0})[0]);
+    graph.keep(graph.add({.name = "overlay", .writes = {{filled, Use::ColorBlend}}, .gate = 0})[0]);
     const std::array imports{host_state(VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)};
     EXPECT_EQ(trace_of(graph, std::array{true}, imports),
               "barrier target: color-output:color-write -> color-output:color-write\n"

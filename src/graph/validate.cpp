@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The errors of a declaration. A toggle may be on or off in any frame, so every read is followed through each
+// The errors of a declaration. A gate may be on or off in any frame, so every read is followed through each
 // combination that matters to it: the alternatives.
 #include <fmt/format.h>
 
@@ -7,25 +7,25 @@
 #include <bit>
 #include <optional>
 
-#include "graph/plan.hpp"
+#include "graph/solution.hpp"
 
 namespace darkroom::graph {
 namespace {
 
 enum class Certainty : std::uint8_t { On, Off, Maybe };
 
-bool implies(const Declaration& declaration, std::int32_t toggle, std::int32_t other) {
-    if (toggle == other) return true;
+bool implies(const Declaration& declaration, std::int32_t gate, std::int32_t other) {
+    if (gate == other) return true;
     return std::ranges::any_of(declaration.implications, [&](const Implication& implication) {
-        return implication.toggle == toggle && implies(declaration, implication.implied, other);
+        return implication.gate == gate && implies(declaration, implication.implied, other);
     });
 }
 
-Certainty certainty(const Declaration& declaration, std::int32_t toggle, std::span<const Assumption> assumptions) {
-    if (toggle < 0) return Certainty::On;
+Certainty certainty(const Declaration& declaration, std::int32_t gate, std::span<const Assumption> assumptions) {
+    if (gate < 0) return Certainty::On;
     for (const Assumption& assumption : assumptions) {
-        if (assumption.is_on && implies(declaration, assumption.toggle, toggle)) return Certainty::On;
-        if (!assumption.is_on && implies(declaration, toggle, assumption.toggle)) return Certainty::Off;
+        if (assumption.is_on && implies(declaration, assumption.gate, gate)) return Certainty::On;
+        if (!assumption.is_on && implies(declaration, gate, assumption.gate)) return Certainty::Off;
     }
     return Certainty::Maybe;
 }
@@ -54,7 +54,7 @@ class Validator {
   private:
     const std::string& image_name(std::uint32_t version) const { return declaration_.image_of(version).desc.name; }
     const std::string& pass_name(std::uint32_t pass) const { return declaration_.passes[pass].desc.name; }
-    std::int32_t toggle_of(std::uint32_t pass) const { return declaration_.passes[pass].desc.toggle; }
+    std::int32_t gate_of(std::uint32_t pass) const { return declaration_.passes[pass].desc.gate; }
 
     Result<> check_image(const ImageDesc& desc) const {
         if (desc.size.denominator == 0 || (desc.size.numerator == 0 && desc.size.width == 0)) {
@@ -100,11 +100,11 @@ class Validator {
 
     /// Follows `read` through all its alternatives.
     Result<> check_read(std::uint32_t pass, const Read& read) const {
-        for (const Alternative& found : alternatives(declaration_, read.version.index, toggle_of(pass))) {
+        for (const Alternative& found : alternatives(declaration_, read.version.index, gate_of(pass))) {
             if (found.version == none) {
                 return user_error(fmt::format(
                     "pass '{}' reads '{}', but pass '{}' that writes it may be off: it needs a fall-back, or the same "
-                    "toggle",
+                    "gate",
                     pass_name(pass), image_name(found.last), pass_name(declaration_.versions[found.last].producer)));
             }
             const Image& image = declaration_.image_of(found.version);
@@ -138,7 +138,7 @@ class Validator {
             const VersionRecord& record = declaration_.versions[later];
             if (later <= found.version || later == own_write || record.producer > pass || (record.mips & mips) == 0)
                 continue;
-            if (certainty(declaration_, toggle_of(record.producer), found.assumptions) == Certainty::Off) continue;
+            if (certainty(declaration_, gate_of(record.producer), found.assumptions) == Certainty::Off) continue;
             if (record.producer == pass) {
                 return user_error(what + " and writes the same mip level: StorageReadWrite or ColorBlend do both");
             }
@@ -147,7 +147,7 @@ class Validator {
         return {};
     }
 
-    /// Every level of `mips` must have been written, whichever toggles are off beyond those assumed.
+    /// Every level of `mips` must have been written, whichever gates are off beyond those assumed.
     Result<> check_content(const Alternative& found, MipMask mips, const std::string& what) const {
         const Image& image = declaration_.image_of(found.version);
         for (std::uint32_t level = 0; level < image.desc.mip_levels; ++level) {
@@ -157,7 +157,7 @@ class Validator {
             while (declaration_.versions[version].producer != none) {
                 const VersionRecord& record = declaration_.versions[version];
                 const bool is_on =
-                    certainty(declaration_, toggle_of(record.producer), found.assumptions) == Certainty::On;
+                    certainty(declaration_, gate_of(record.producer), found.assumptions) == Certainty::On;
                 if (is_on && has_mip(record.mips, level) && !record.keeps_content) break;
                 if (!is_on && record.next() != record.replaced) {
                     return user_error(fmt::format("{}{}: pass '{}', which writes part of it, may be off", what,
@@ -176,7 +176,7 @@ class Validator {
     Result<> check_kept_content(std::uint32_t pass, std::uint32_t made) const {
         const VersionRecord& record = declaration_.versions[made];
         if (!record.keeps_content) return {};
-        for (const Alternative& found : alternatives(declaration_, record.replaced, toggle_of(pass))) {
+        for (const Alternative& found : alternatives(declaration_, record.replaced, gate_of(pass))) {
             const bool is_same = found.version != none && declaration_.versions[found.version].image == record.image;
             if (!is_same) {
                 return user_error(fmt::format(
@@ -202,7 +202,7 @@ class Validator {
         };
         std::vector<Access> accesses;
         for (const Read& read : pass.desc.reads) {
-            for (const Alternative& found : alternatives(declaration_, read.version.index, pass.desc.toggle)) {
+            for (const Alternative& found : alternatives(declaration_, read.version.index, pass.desc.gate)) {
                 const std::uint32_t image = declaration_.versions[found.version].image;
                 const MipMask mips = mip_mask(read.mips, declaration_.images[image].desc.mip_levels);
                 accesses.push_back({image, mips, layout_of(read.use)});
@@ -252,25 +252,24 @@ class Validator {
 
 }  // namespace
 
-std::vector<Alternative> alternatives(const Declaration& declaration, std::uint32_t version,
-                                      std::int32_t reader_toggle) {
+std::vector<Alternative> alternatives(const Declaration& declaration, std::uint32_t version, std::int32_t reader_gate) {
     std::vector<Alternative> result;
     std::vector<Assumption> assumptions;
-    if (reader_toggle >= 0) assumptions.push_back({reader_toggle, true});
+    if (reader_gate >= 0) assumptions.push_back({reader_gate, true});
     std::uint32_t last = version;
     while (version != none) {
         last = version;
         const std::uint32_t producer = declaration.versions[version].producer;
-        const std::int32_t toggle = producer == none ? -1 : declaration.passes[producer].desc.toggle;
-        const Certainty certain = certainty(declaration, toggle, assumptions);
+        const std::int32_t gate = producer == none ? -1 : declaration.passes[producer].desc.gate;
+        const Certainty certain = certainty(declaration, gate, assumptions);
         if (certain == Certainty::On) {
             result.push_back({version, last, assumptions});
             return result;
         }
         if (certain == Certainty::Maybe) {
             result.push_back({version, last, assumptions});
-            result.back().assumptions.push_back({toggle, true});
-            assumptions.push_back({toggle, false});
+            result.back().assumptions.push_back({gate, true});
+            assumptions.push_back({gate, false});
         }
         version = declaration.versions[version].next();
     }

@@ -402,7 +402,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     if ((usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0) pass.stage = gpu::Stage::Raster;
     if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) == 0) pass.stage = gpu::Stage::Compute;
     const bool is_raster = pass.stage == gpu::Stage::Raster;
-    graph::PassDesc desc{.name = pass.name, .toggle = pass.toggle};
+    graph::PassDesc desc{.name = pass.name, .gate = pass.toggle};
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         if (pass.inputs[i].table != no_table) continue;
         const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The tables behind the frame graph: what was declared (Declaration) and what compile() made of it (Plan). For the
+// The tables behind the frame graph: what was declared (Declaration) and what compile() made of it (Solution). For the
 // files of this folder only; everybody else uses graph.hpp.
 
 #include <array>
@@ -45,7 +45,7 @@ struct Image {
 struct VersionRecord {
     std::uint32_t image = none;
     std::uint32_t producer = none;  ///< pass, or none: none, or a culled one
-    std::int32_t toggle = -1;       ///< of the producer
+    std::int32_t gate = -1;         ///< of the producer
     std::uint32_t replaced = none;  ///< none: the image as the frame finds it
     std::uint32_t killer = none;    ///< the pass that replaced it
     std::uint32_t instead = none;   ///< explicit fall-back
@@ -67,9 +67,9 @@ struct PassRecord {
     std::vector<Version> made;
 };
 
-/// Whenever `toggle` is on, `implied` is.
+/// Whenever `gate` is on, `implied` is.
 struct Implication {
-    std::int32_t toggle = -1, implied = -1;
+    std::int32_t gate = -1, implied = -1;
 };
 
 /// What the user of Graph said.
@@ -96,7 +96,7 @@ struct Past {
 };
 
 /// Result of compile(). Versions keep their declared numbers; passes are numbered anew, without the culled ones.
-struct Plan {
+struct Solution {
     std::vector<Image> images;
     std::vector<VersionRecord> versions;
     std::vector<PassDesc> passes;
@@ -122,9 +122,9 @@ inline constexpr VkAccessFlags2 all_writes =
     VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
     VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
 
-/// What is taken for granted while looking at one possible frame: a toggle is on, or off.
+/// What is taken for granted while looking at one possible frame: a gate is on, or off.
 struct Assumption {
-    std::int32_t toggle = -1;
+    std::int32_t gate = -1;
     bool is_on = false;
 };
 /// One version that a reader may get, and what must hold for that. `version` none: there is no fall-back.
@@ -133,9 +133,9 @@ struct Alternative {
     std::uint32_t last = none;  ///< the last version tried: names the producer that lacks a fall-back
     std::vector<Assumption> assumptions;
 };
-/// All versions that a read of `version` may resolve to, given the reader's own toggle (-1: none).
+/// All versions that a read of `version` may resolve to, given the reader's own gate (-1: none).
 [[nodiscard]] std::vector<Alternative> alternatives(const Declaration& declaration, std::uint32_t version,
-                                                    std::int32_t reader_toggle);
+                                                    std::int32_t reader_gate);
 
 /// All errors of a declaration that need no device.
 [[nodiscard]] Result<> validate(const Declaration& declaration, VkExtent2D max_extent);
