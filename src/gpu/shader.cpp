@@ -9,10 +9,10 @@
 #include <shaderc/shaderc.hpp>
 #include <string_view>
 #include <system_error>
-#include <thread>
 
 #include "core/files.hpp"
 #include "core/hash.hpp"
+#include "core/parallel.hpp"
 #include "gpu/shaderc_version.hpp"
 
 namespace darkroom::gpu {
@@ -122,22 +122,7 @@ Result<Words> ShaderCompiler::compile(const ShaderSource& source) {
 
 std::vector<Result<Words>> ShaderCompiler::compile_all(std::span<const ShaderSource> sources) {
     std::vector<Result<Words>> results(sources.size());
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-        for (std::size_t index = next++; index < sources.size(); index = next++) {
-            results[index] = compile(sources[index]);
-        }
-    };
-    const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
-    const std::size_t thread_count = std::min(processors, sources.size());
-    std::vector<std::jthread> threads;
-    // The calling thread works too, so a machine that can start no thread still compiles.
-    try {
-        for (std::size_t index = 1; index < thread_count; ++index) threads.emplace_back(work);
-    } catch (const std::system_error&) {
-    }
-    work();
-    threads.clear();
+    parallel_for(sources.size(), 0, [&](std::size_t index) { results[index] = compile(sources[index]); });
     return results;
 }
 

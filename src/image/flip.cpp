@@ -5,36 +5,17 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <numbers>
-#include <system_error>
-#include <thread>
 #include <utility>
+
+#include "core/parallel.hpp"
 
 namespace darkroom {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-/// Runs `work(i)` for 0 <= i < count on all cores. The result does not depend on how many there are.
-void parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
-    std::atomic<std::size_t> next{0};
-    const auto run = [&] {
-        for (std::size_t i = next++; i < count; i = next++) work(i);
-    };
-    std::vector<std::thread> threads;
-    const std::size_t wanted = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), count);
-    try {
-        while (threads.size() + 1 < wanted) threads.emplace_back(run);
-    } catch (const std::system_error&) {
-        // Fewer threads do the same work.
-    }
-    run();
-    for (std::thread& thread : threads) thread.join();
-}
 
 /// One dimension of a separable filter, symmetric or antisymmetric: the tap at -k weighs mirror * half[k].
 struct Kernel {
@@ -221,7 +202,7 @@ struct Opponent {
 
 template <class Decode>
 void convert(Opponent& out, const Picture& picture, const Decode& decode) {
-    parallel(out.height, [&](std::size_t row) {
+    parallel_for(out.height, 0, [&](std::size_t row) {
         for (std::size_t i = row * out.width; i < (row + 1) * out.width; ++i) {
             const float* pixel = &picture.pixels[4 * i];
             const Color xyz = relative_xyz({decode(pixel[0]), decode(pixel[1]), decode(pixel[2])});
@@ -305,7 +286,7 @@ class Band {
 void raise_errors(std::vector<float>& errors, const Opponent& reference, const Opponent& test, const Filters& filters) {
     constexpr std::size_t band_rows = 48;
     const float largest = std::pow(hyab(hunt_lab({0.0f, 1.0f, 0.0f}), hunt_lab({0.0f, 0.0f, 1.0f})), color_exponent);
-    parallel((reference.height + band_rows - 1) / band_rows, [&](std::size_t index) {
+    parallel_for((reference.height + band_rows - 1) / band_rows, 0, [&](std::size_t index) {
         const std::size_t first = index * band_rows;
         const std::size_t rows = std::min(band_rows, reference.height - first);
         Band a(reference, filters, first, rows);

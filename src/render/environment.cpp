@@ -2,14 +2,12 @@
 #include "render/environment.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <system_error>
-#include <thread>
+
+#include "core/parallel.hpp"
 
 namespace darkroom::render {
 
@@ -19,22 +17,6 @@ using scene::vec2;
 using scene::vec3;
 
 constexpr double pi = std::numbers::pi;
-
-/// Calls body(i) for all i below `count`, on as many threads as there are processors.
-void in_parallel(std::size_t count, const std::function<void(std::size_t)>& body) {
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < count; i = next++) body(i);
-    };
-    const std::size_t threads = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), count);
-    std::vector<std::jthread> helpers;
-    try {
-        for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
-    } catch (const std::system_error&) {
-        // This thread does what the missing ones would have done.
-    }
-    work();
-}
 
 /// The pixels of the source that one pixel of the target covers, and by how much, along one axis.
 struct Cover {
@@ -227,7 +209,7 @@ std::array<vec3, 9> irradiance_harmonics(const Picture& skybox) {
                       high.sine_cosine - low.sine_cosine, high.sine_squared - low.sine_squared};
     }
     std::vector<std::array<dvec3, 9>> rows(skybox.height);
-    in_parallel(skybox.height, [&](std::size_t y) {
+    parallel_for(skybox.height, 0, [&](std::size_t y) {
         dvec3 one(0), sine(0), cosine(0), sine_cosine(0), sine_squared(0);
         for (std::uint32_t x = 0; x < skybox.width; ++x) {
             const float* const pixel = skybox.at(x, static_cast<std::uint32_t>(y));
@@ -275,7 +257,7 @@ Picture resampled(const Picture& sky, std::uint32_t width, std::uint32_t height)
     const std::vector<Cover> columns = covers(sky.width, width, [](double t) { return t; });
     const std::vector<Cover> rows = covers(sky.height, height, [](double t) { return -std::cos(pi * t) / 2; });
     Picture out(width, height);
-    in_parallel(height, [&](std::size_t y) {
+    parallel_for(height, 0, [&](std::size_t y) {
         std::vector<double> sums(std::size_t{sky.width} * 4);
         for (std::size_t i = 0; i < rows[y].weights.size(); ++i) {
             const float* const line = sky.at(0, rows[y].first + static_cast<std::uint32_t>(i));
@@ -301,8 +283,8 @@ std::vector<Picture> prefilter(const Picture& skybox, std::uint32_t width, std::
         Picture picture(std::max(1U, width >> level), std::max(1U, width >> (level + 1)));
         const std::uint32_t wide = source_width(picture.width, alpha);
         const Source source(resampled(skybox, wide, wide / 2), picture.width);
-        in_parallel(picture.height,
-                    [&](std::size_t row) { filter_row(source, alpha, static_cast<std::uint32_t>(row), picture); });
+        parallel_for(picture.height, 0,
+                     [&](std::size_t row) { filter_row(source, alpha, static_cast<std::uint32_t>(row), picture); });
         out.push_back(std::move(picture));
     }
     return out;
@@ -311,7 +293,7 @@ std::vector<Picture> prefilter(const Picture& skybox, std::uint32_t width, std::
 Picture split_sum_table(std::uint32_t size) {
     Picture table(size, size);
     const std::vector<DiscPoint> disc = disc_points(16, 16);
-    in_parallel(size, [&](std::size_t y) {
+    parallel_for(size, 0, [&](std::size_t y) {
         for (std::uint32_t x = 0; x < size; ++x) {
             const vec2 pair = split_sum((x + 0.5) / size, (static_cast<double>(y) + 0.5) / size, disc);
             float* const pixel = table.at(x, static_cast<std::uint32_t>(y));

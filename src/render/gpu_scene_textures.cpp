@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "render/gpu_scene_textures.hpp"
 
-#include <atomic>
 #include <set>
-#include <system_error>
 #include <thread>
 
+#include "core/parallel.hpp"
 #include "render/upload_mips.hpp"
 
 namespace darkroom::render {
@@ -35,23 +34,6 @@ const scene::Image* image_of(const scene::Assets& assets, const TextureKey& key)
         key.model == scene::no_index ? assets.images : assets.models[key.model].images;
     if (key.image >= images.size() || images[key.image].is_empty()) return nullptr;
     return &images[key.image];
-}
-
-/// Calls `work(i)` for every i below `count`, on as many threads as there are processors.
-template <class Work>
-void for_each_on_threads(std::size_t count, const Work& work) {
-    std::atomic<std::size_t> next = 0;
-    const auto loop = [&] {
-        for (std::size_t i = next++; i < count; i = next++) work(i);
-    };
-    std::vector<std::jthread> threads;
-    try {
-        for (std::size_t i = 1; i < std::min<std::size_t>(count, std::thread::hardware_concurrency()); ++i)
-            threads.emplace_back(loop);
-    } catch (const std::system_error&) {
-        // The calling thread does what the missing ones would have.
-    }
-    loop();
 }
 
 VkSamplerAddressMode address_mode(scene::Wrap wrap) {
@@ -103,7 +85,7 @@ Result<> GpuTextures::create_constant(std::array<std::uint8_t, 4> rgba, Uploader
 Result<> GpuTextures::create_textures(const scene::Assets& assets, std::span<const TextureKey> keys,
                                       Uploader& uploader) {
     std::vector<std::vector<MipLevel>> chains(keys.size());
-    for_each_on_threads(keys.size(), [&](std::size_t i) {
+    parallel_for(keys.size(), 0, [&](std::size_t i) {
         const scene::Image& image = *image_of(assets, keys[i]);
         chains[i] = mip_levels(image.width, image.height, image.rgba, keys[i].transfer == Transfer::Srgb);
     });

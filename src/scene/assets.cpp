@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 
+#include "core/parallel.hpp"
 #include "image/decoder.hpp"
 #include "image/frame_file.hpp"
 #include "scene/image_batch.hpp"
@@ -129,7 +130,7 @@ Assets load_assets(const Scene& scene) {
     const std::vector<fs::path>& model_files = wanted.models.files();
     std::vector<Result<Model>> models(model_files.size());
     std::optional<Result<FrameFile>> sky;
-    parallel_for(model_files.size() + 1, [&](std::size_t i) {
+    parallel_for(model_files.size() + 1, 0, [&](std::size_t i) {
         if (i > 0)
             models[i - 1] = read_model(model_files[i - 1]);
         else if (!wanted.skybox.empty())

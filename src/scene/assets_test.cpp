@@ -8,7 +8,6 @@
 #include "image/frame_file.hpp"
 #include "image/test_files.hpp"
 #include "scene/gltf_test_model.hpp"
-#include "scene/image_batch.hpp"
 
 namespace darkroom::scene {
 namespace {
@@ -111,13 +110,6 @@ TEST_F(SceneAssets, BrokenImagesSayWhatAndWhere) {
     const auto bytes = decode_image({}, "nothing");
     ASSERT_FALSE(bytes);
     EXPECT_EQ(bytes.error().text, "nothing: is empty");
-}
-
-TEST(SceneParallel, EveryIndexOnce) {
-    std::vector<int> visits(1000);
-    parallel_for(visits.size(), [&](std::size_t i) { ++visits[i]; });
-    EXPECT_TRUE(std::all_of(visits.begin(), visits.end(), [](int count) { return count == 1; }));
-    parallel_for(0, [](std::size_t) { FAIL(); });
 }
 
 }  // namespace

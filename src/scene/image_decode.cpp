@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/files.hpp"
+#include "core/parallel.hpp"
 #include "image/memory_input.hpp"
 #include "scene/assets.hpp"
 #include "scene/image_batch.hpp"
@@ -112,7 +113,7 @@ std::vector<Result<Image>> decode_images(std::span<const EncodedImage> sources) 
     std::vector<Result<Image>> results(sources.size());
     std::vector<std::vector<std::byte>> files(sources.size());
     std::vector<std::optional<OpenedImage>> opened(sources.size());
-    parallel_for(sources.size(), [&](std::size_t i) {
+    parallel_for(sources.size(), 0, [&](std::size_t i) {
         std::span<const std::byte> bytes = sources[i].bytes;
         if (bytes.empty() && !sources[i].file.empty()) {
             auto file = read_file(sources[i].file);
@@ -147,7 +148,7 @@ std::vector<Result<Image>> decode_images(std::span<const EncodedImage> sources) 
             fmt::format("{} pixels in {} bytes: larger than its file can be worth", count, opened[i]->byte_count()));
         opened[i].reset();
     }
-    parallel_for(sources.size(), [&](std::size_t i) {
+    parallel_for(sources.size(), 0, [&](std::size_t i) {
         if (!opened[i]) return;
         results[i] = opened[i]->decode();
         if (results[i]) results[i]->name = sources[i].name;
