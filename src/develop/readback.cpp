@@ -7,8 +7,9 @@
 #include <cstring>
 #include <string_view>
 
-#include "plan/half.hpp"
 #include "core/assert.hpp"
+#include "gpu/formats.hpp"
+#include "plan/half.hpp"
 
 namespace darkroom {
 
@@ -32,10 +33,6 @@ const Layout* layout_of(VkFormat format) {
     return nullptr;
 }
 
-VkImageAspectFlags aspect_of(const ImageRef& image) {
-    return image.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
-}
-
 std::size_t texel_count(const ImageRef& image) {
     const VkExtent2D extent = image.used_region().extent;
     return std::size_t{extent.width} * extent.height * image.layer_count;
@@ -54,7 +51,8 @@ void barrier(const gpu::Context& context, VkCommandBuffer commands, const ImageR
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = image.image,
-        .subresourceRange = {aspect_of(image), image.mip_level, 1, image.array_layer, image.layer_count},
+        .subresourceRange = {gpu::format_traits(image.format).aspects, image.mip_level, 1, image.array_layer,
+                             image.layer_count},
     };
     const VkDependencyInfo dependency{
         .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &of_image};
@@ -115,10 +113,10 @@ Result<Readback> Readback::create(gpu::Context& context, const ImageRef& image) 
 
 void Readback::record(VkCommandBuffer commands) const {
     const VkRect2D region = image_.used_region();
-    const VkBufferImageCopy copy{
-        .imageSubresource = {aspect_of(image_), image_.mip_level, image_.array_layer, image_.layer_count},
-        .imageOffset = {region.offset.x, region.offset.y, 0},
-        .imageExtent = {region.extent.width, region.extent.height, 1}};
+    const VkBufferImageCopy copy{.imageSubresource = {gpu::sampled_aspect(image_.format), image_.mip_level,
+                                                      image_.array_layer, image_.layer_count},
+                                 .imageOffset = {region.offset.x, region.offset.y, 0},
+                                 .imageExtent = {region.extent.width, region.extent.height, 1}};
     barrier(*context_, commands, image_, image_.layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     context_->vk.CmdCopyImageToBuffer(commands, image_.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer_.handle, 1,
                                       &copy);

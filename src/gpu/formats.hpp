@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the kernels need to know of a colour format: its name in GLSL, its size, and how a shader sees its values.
-// Formats that are not in the table can be sampled, and written as attachments, but never loaded or stored.
+// What formats are, in one list: name, GLSL name, size, aspects, and how a shader sees the values. What a device can do
+// with them is asked of the Context. A format that is not in the list passes for one of colour that can be sampled, and
+// written as an attachment, but never loaded or stored; compressed and multi-planar formats are not in it.
 
 #include <vulkan/vulkan.h>
 
@@ -17,12 +18,19 @@ struct FormatTraits {
     std::string_view glsl_qualifier;  ///< of storage images; empty: GLSL has none
     std::uint32_t bits = 0;           ///< a texel
     Numeric numeric = Numeric::Float;
-    bool needs_extended = false;  ///< shaderStorageImageExtendedFormats
+    VkImageAspectFlags aspects = VK_IMAGE_ASPECT_COLOR_BIT;  ///< all that an image of the format has
+    bool is_float = false;                                   ///< stored as floating-point numbers
+    bool is_srgb = false;                                    ///< decoded when it is read, encoded when it is written
+    bool needs_extended = false;                             ///< shaderStorageImageExtendedFormats
 };
 
-/// With bits = 0 for a format that the table does not hold.
+/// With bits = 0 for a format that the list does not hold.
 [[nodiscard]] FormatTraits format_traits(VkFormat format);
-/// "R16G16B16A16_SFLOAT"; "an unknown format" for one that the table does not hold.
+/// "R16G16B16A16_SFLOAT"; "an unknown format" for one that the list does not hold.
 [[nodiscard]] std::string_view format_name(VkFormat format);
+[[nodiscard]] bool is_depth(VkFormat format);
+[[nodiscard]] bool has_stencil(VkFormat format);
+/// The one aspect that a view for sampling, or a copy, names: depth of depth formats with or without stencil.
+[[nodiscard]] VkImageAspectFlags sampled_aspect(VkFormat format);
 
 }  // namespace darkroom::gpu

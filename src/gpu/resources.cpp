@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "gpu/formats.hpp"
 
 namespace darkroom::gpu {
 
@@ -29,20 +30,6 @@ std::array<VkMemoryPropertyFlags, 2> wanted_properties(Memory::Kind kind) {
             return {host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, host_memory};
     }
     return {0, 0};
-}
-
-bool has_depth(VkFormat format) {
-    switch (format) {
-        case VK_FORMAT_D16_UNORM:
-        case VK_FORMAT_X8_D24_UNORM_PACK32:
-        case VK_FORMAT_D32_SFLOAT:
-        case VK_FORMAT_D16_UNORM_S8_UINT:
-        case VK_FORMAT_D24_UNORM_S8_UINT:
-        case VK_FORMAT_D32_SFLOAT_S8_UINT:
-            return true;
-        default:
-            return false;
-    }
 }
 
 VkImageViewType view_type(const ImageInfo& info) {
@@ -91,8 +78,7 @@ Result<VkImageView> create_view(Context& context, const Image& image, VkImageVie
         .image = image.handle,
         .viewType = type,
         .format = image.info.format,
-        .subresourceRange = {.aspectMask = static_cast<VkImageAspectFlags>(
-                                 has_depth(image.info.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
+        .subresourceRange = {.aspectMask = sampled_aspect(image.info.format),
                              .baseMipLevel = part.first_mip,
                              .levelCount = part.mip_count,
                              .baseArrayLayer = part.first_layer,

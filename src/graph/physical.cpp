@@ -7,6 +7,7 @@
 #include <array>
 
 #include "core/assert.hpp"
+#include "gpu/formats.hpp"
 
 namespace darkroom::graph {
 namespace {
@@ -18,21 +19,6 @@ gpu::ImageInfo info_of(const ImageDesc& desc, VkImageUsageFlags usage, VkExtent2
             .mip_levels = desc.mip_levels,
             .array_layers = desc.array_layers,
             .usage = usage};
-}
-
-VkImageAspectFlags aspects_of(VkFormat format) {
-    switch (format) {
-        case VK_FORMAT_D16_UNORM:
-        case VK_FORMAT_X8_D24_UNORM_PACK32:
-        case VK_FORMAT_D32_SFLOAT:
-            return VK_IMAGE_ASPECT_DEPTH_BIT;
-        case VK_FORMAT_D16_UNORM_S8_UINT:
-        case VK_FORMAT_D24_UNORM_S8_UINT:
-        case VK_FORMAT_D32_SFLOAT_S8_UINT:
-            return VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
-        default:
-            return VK_IMAGE_ASPECT_COLOR_BIT;
-    }
 }
 
 }  // namespace
@@ -142,7 +128,7 @@ void Physical::record_barriers(VkCommandBuffer commands, const gpu::Dispatch& vk
                         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                         .image = handle(barrier.slot, view_index),
-                        .subresourceRange = {.aspectMask = aspects_of(entry.format),
+                        .subresourceRange = {.aspectMask = gpu::format_traits(entry.format).aspects,
                                              .baseMipLevel = entry.base_mip_level + barrier.mips.first,
                                              .levelCount = barrier.mips.count,
                                              .baseArrayLayer = entry.base_array_layer,
@@ -179,7 +165,7 @@ void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, s
             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
             .image = image,
-            .subresourceRange = {aspects_of(entry.format), 0, entry.mip_levels, 0, entry.array_layers}};
+            .subresourceRange = {gpu::format_traits(entry.format).aspects, 0, entry.mip_levels, 0, entry.array_layers}};
         const VkDependencyInfo dependency{
             .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
         vk.CmdPipelineBarrier2(commands, &dependency);
@@ -187,7 +173,7 @@ void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, s
     for (const Entry& entry : entries_) {
         if (entry.kind != Slot::Kind::History) continue;
         const VkImage image = entry.handles[instance(entry, view_index)];
-        const VkImageAspectFlags aspects = aspects_of(entry.format);
+        const VkImageAspectFlags aspects = gpu::format_traits(entry.format).aspects;
         const VkImageSubresourceRange range{aspects, 0, entry.mip_levels, 0, entry.array_layers};
         constexpr VkImageLayout clear_layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
         change(entry, image, VK_IMAGE_LAYOUT_UNDEFINED, clear_layout);

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <map>
 
-#include "plan/planner_state.hpp"
 #include "gpu/formats.hpp"
+#include "plan/planner_state.hpp"
 
 namespace darkroom::plan {
 
@@ -31,15 +31,6 @@ graph::Size scaled(graph::Size size, std::uint32_t numerator, std::uint32_t deno
 }
 bool is_same(graph::Size a, graph::Size b) {
     return std::uint64_t{a.numerator} * b.denominator == std::uint64_t{b.numerator} * a.denominator;
-}
-
-bool is_float(VkFormat format) {
-    return format == VK_FORMAT_R16G16B16A16_SFLOAT || format == VK_FORMAT_R32G32B32A32_SFLOAT ||
-           format == VK_FORMAT_B10G11R11_UFLOAT_PACK32;
-}
-bool is_srgb(VkFormat format) {
-    return format == VK_FORMAT_R8G8B8A8_SRGB || format == VK_FORMAT_B8G8R8A8_SRGB ||
-           format == VK_FORMAT_A8B8G8R8_SRGB_PACK32;
 }
 
 std::string missing_needs(const Needs& needs, const CompileDesc& desc) {
@@ -453,13 +444,13 @@ std::int32_t Planner::toggle_index(Gate toggle) {
 }
 
 Domain target_domain(const CompileDesc& desc) {
-    return desc.target_domain.value_or(is_float(desc.target) ? Domain::SceneLinear : Domain::Encoded);
+    return desc.target_domain.value_or(gpu::format_traits(desc.target).is_float ? Domain::SceneLinear : Domain::Encoded);
 }
 
 Finish finish_of(Domain domain, const CompileDesc& desc) {
     if (target_domain(desc) != Domain::Encoded) return Finish::None;
-    if (domain == Domain::Encoded) return is_srgb(desc.target) ? Finish::DecodeSrgb : Finish::None;
-    const bool is_encoded_here = !is_srgb(desc.target) && desc.encodes_target.value_or(!is_float(desc.target));
+    if (domain == Domain::Encoded) return gpu::format_traits(desc.target).is_srgb ? Finish::DecodeSrgb : Finish::None;
+    const bool is_encoded_here = !gpu::format_traits(desc.target).is_srgb && desc.encodes_target.value_or(!gpu::format_traits(desc.target).is_float);
     return is_encoded_here ? Finish::EncodeSrgb : Finish::None;
 }
 
