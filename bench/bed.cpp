@@ -93,17 +93,15 @@ Frame Bed::frame(WorldUse use) const {
 
 CompileDesc Bed::compile_desc(WorldUse use) const {
     CompileDesc out{.max_extent = extent,
-                    .color = scene_format,
-                    .target = target_format,
-                    .color_usage = every_use,
-                    .target_usage = every_use,
+                    .color = {scene_format, every_use},
+                    .target = {target_format, every_use},
                     .target_domain = Domain::Encoded};
     if (use == WorldUse::None) return out;
     const Frame frame = this->frame(use);
-    out.depth = frame.depth.format;
+    constexpr VkImageUsageFlags layer_use = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    out.depth = {frame.depth.format, layer_use};
     out.is_depth_planar = use == WorldUse::Planar;
-    out.normals = frame.normals.format;
-    out.layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    out.normals = {frame.normals.format, layer_use};
     out.has_shadows = true;
     return out;
 }

@@ -123,10 +123,10 @@ Stack single_stack(const EffectInfo& effect) {
 void fill(Composer& composer, const Stack& stack) {
     Handle before = scene_color;
     for (const Step& step : stack) {
-        Inputs inputs{.source = scene_color, .enabled = step.is_on};
-        if (step.joins_scene) inputs.input = scene_color;
-        if (step.effect->has_second) inputs.second = step.joins_scene ? before : scene_color;
-        before = composer.add(*step.effect, step.words.data(), inputs);
+        EntryDesc desc{.source = scene_color, .enabled = step.is_on};
+        if (step.joins_scene) desc.input = scene_color;
+        if (step.effect->has_second) desc.second = step.joins_scene ? before : scene_color;
+        before = composer.add(*step.effect, step.words.data(), desc);
     }
 }
 

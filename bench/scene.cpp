@@ -97,14 +97,14 @@ Result<Row> dungeon_post_row(Bed& bed, const std::string& name) {
     if (auto plan = post->composer->compile(desc); !plan) return failure(std::move(plan));
     post->composer->wait_for_kernels();
     auto target = gpu::Image::create(bed.context, {.name = "target",
-                                                   .format = desc.target,
+                                                   .format = desc.target.format,
                                                    .extent = {scene_extent.width, scene_extent.height, 1},
-                                                   .usage = desc.target_usage});
+                                                   .usage = desc.target.usage});
     if (!target) return failure(std::move(target));
     post->target = std::move(*target);
     post->frame.target = {.image = post->target.handle,
                           .view = post->target.mip_views[0],
-                          .format = desc.target,
+                          .format = desc.target.format,
                           .extent = scene_extent,
                           .last_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
     Result<> recorded{};

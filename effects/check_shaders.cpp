@@ -18,8 +18,8 @@ using namespace darkroom;
 
 plan::Entry entry_of(const EffectInfo& info) {
     plan::Entry entry{.info = &info};
-    entry.inputs.name = info.name;
-    if (info.has_second) entry.inputs.second = scene_color;
+    entry.desc.name = info.name;
+    if (info.has_second) entry.desc.second = scene_color;
     entry.base.assign(info.parameters.defaults.begin(), info.parameters.defaults.end());
     return entry;
 }
@@ -64,10 +64,10 @@ int main() {
     for (const auto& stack : stacks()) {
         for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster}) {
             const CompileDesc desc{.max_extent = {1920, 1080},
-                                   .depth = VK_FORMAT_D32_SFLOAT,
-                                   .normals = VK_FORMAT_R16G16B16A16_SFLOAT,
-                                   .velocity = VK_FORMAT_R16G16_SFLOAT,
-                                   .ui = VK_FORMAT_R8G8B8A8_UNORM,
+                                   .depth = {VK_FORMAT_D32_SFLOAT},
+                                   .normals = {VK_FORMAT_R16G16B16A16_SFLOAT},
+                                   .velocity = {VK_FORMAT_R16G16_SFLOAT},
+                                   .ui = {VK_FORMAT_R8G8B8A8_UNORM},
                                    .has_shadows = true,
                                    .target_domain = Domain::Encoded};
             auto program = plan::plan_program(

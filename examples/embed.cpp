@@ -221,10 +221,10 @@ int main(int argc, char** argv) {
         composer.add(darkroom::Vignette{.intensity = 0.4f});
         composer.add(darkroom::Encode{});
         composer.add(darkroom::Dither{});
-        const darkroom::Plan plan = check(composer.compile({.max_extent = extent,
-                                                            .color = hdr.format,
-                                                            .target = target.format,
-                                                            .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT}));
+        const darkroom::Plan plan =
+            check(composer.compile({.max_extent = extent,
+                                    .color = {hdr.format},
+                                    .target = {target.format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}}));
         std::printf("%s", plan.text().c_str());
 
         const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,

@@ -7,8 +7,8 @@
 #include <darkroom/look.hpp>
 #include <filesystem>
 
-#include "develop/reference_chain.hpp"
 #include "compose/test_host.hpp"
+#include "develop/reference_chain.hpp"
 
 namespace darkroom {
 namespace {
@@ -182,7 +182,8 @@ TEST_F(ChainEverything, IsPlannedInBothOrders) {
     for (const bool is_documented : {true, false}) {
         Composer composer(gpu::test::device());
         fill_with_everything(composer, is_documented);
-        const auto plan = composer.plan({.max_extent = {320, 200}, .depth = VK_FORMAT_D32_SFLOAT, .has_shadows = true});
+        const auto plan =
+            composer.plan({.max_extent = {320, 200}, .depth = {VK_FORMAT_D32_SFLOAT}, .has_shadows = true});
         ASSERT_TRUE(plan) << plan.error().text;
         Names planned;
         for (const PlanPass& pass : plan->passes)
@@ -209,9 +210,9 @@ TEST_F(ChainEverything, IsItsReferencesInThatOrder) {
         EXPECT_LE(255 * test::worst_difference(made, expected), 4);
         // Only this order gives this picture. Volumetric light and the bloom of the scene are both added.
         for (std::size_t i = 0; i + 1 < composer.size(); ++i) {
-            if (composer.inputs(composer.entry(i)).name == "volumetric") continue;
+            if (composer.desc(composer.entry(i)).name == "volumetric") continue;
             EXPECT_GT(mean_codes(made, references_in_turn(composer, floor, i)), 2 * error)
-                << composer.inputs(composer.entry(i)).name << " and what follows it";
+                << composer.desc(composer.entry(i)).name << " and what follows it";
         }
     }
 }

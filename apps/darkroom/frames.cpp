@@ -151,7 +151,7 @@ void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Compos
         // What the flat table has on by itself, nobody asked for.
         const bool is_usual =
             look.is_flat && info.flat.starts_on && std::ranges::equal(composer.words(*entry), info.parameters.defaults);
-        if (composer.inputs(*entry).enabled && !info.is_last_step && !is_usual) warn(fmt::format("left out: {}", text));
+        if (composer.desc(*entry).enabled && !info.is_last_step && !is_usual) warn(fmt::format("left out: {}", text));
     }
 }
 

@@ -333,7 +333,7 @@ TEST(EffectSsao, GpuHasTheSameBitsWithAnyKernel) {
     const gpu::test::Picture depth = gpu::test::upload(host.device.context(), test::pixels_of(view.depth),
                                                        VK_FORMAT_R32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
     CompileDesc desc = host.compile_desc();
-    desc.depth = VK_FORMAT_R32_SFLOAT;
+    desc.depth.format = VK_FORMAT_R32_SFLOAT;
     desc.is_depth_planar = true;
     Frame frame = host.frame();
     frame.depth = test::image_ref(depth);

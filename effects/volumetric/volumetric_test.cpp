@@ -234,7 +234,7 @@ TEST(EffectVolumetric, GpuWithoutShadowsItIsLeftOutAndThePlanSaysSo) {
     EXPECT_EQ(test::worst_difference(flat.developed({.density = 50}), flat.picture), 0);
     Composer composer(gpu::test::device());
     composer.add(Volumetric{});
-    const auto plan = composer.plan({.max_extent = {64, 36}, .depth = VK_FORMAT_D32_SFLOAT, .has_shadows = false});
+    const auto plan = composer.plan({.max_extent = {64, 36}, .depth = {VK_FORMAT_D32_SFLOAT}, .has_shadows = false});
     ASSERT_TRUE(plan) << plan.error().text;
     ASSERT_FALSE(plan->left_out.empty());
     EXPECT_NE(plan->left_out.front().find("shadows"), std::string::npos) << plan->left_out.front();

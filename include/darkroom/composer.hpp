@@ -7,7 +7,7 @@
 //     composer.add(darkroom::Bloom{.intensity = 0.08f});
 //     composer.add(darkroom::Tonemap{});
 //     composer.add(darkroom::Encode{});
-//     auto plan = composer.compile({.max_extent = {1920, 1080}, .target = VK_FORMAT_R8G8B8A8_UNORM});
+//     auto plan = composer.compile({.max_extent = {1920, 1080}, .depth = {VK_FORMAT_D32_SFLOAT}});
 //     composer.record(command_buffer, {.color = hdr, .time = seconds, .target = target});   // every frame
 //
 // The contract. `add`, `compile`, `set` and the like may allocate and take time. `record` allocates nothing, throws
@@ -43,7 +43,7 @@ struct Handle {
 inline constexpr Handle scene_color{~0u};
 
 /// What belongs to the stack entry, not to the effect.
-struct Inputs {
+struct EntryDesc {
     Handle input;        ///< the picture; default: the entry before
     Handle source;       ///< what effects with passes read instead of the picture (bloom: the scene)
     Handle second;       ///< the second picture of effects that take two
@@ -61,21 +61,26 @@ struct ComposerDesc {
     bool has_timers = false;  ///< GPU timestamps around every pass
 };
 
+/// What every frame's image of one kind is, as the host made it: its view's format and the usage of the image.
+struct ImageUse {
+    VkFormat format = VK_FORMAT_UNDEFINED;  ///< UNDEFINED: not given
+    /// Inputs need SAMPLED; with STORAGE own pixels are read cheaper. A target needs COLOR_ATTACHMENT or STORAGE.
+    VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    friend bool operator==(const ImageUse&, const ImageUse&) = default;
+};
+
 /// What the frames will be like. Compile again when one of these changes.
 struct CompileDesc {
     VkExtent2D max_extent{};
-    VkFormat color = VK_FORMAT_R16G16B16A16_SFLOAT;
-    VkFormat depth = VK_FORMAT_UNDEFINED;  ///< UNDEFINED: not given
+    ImageUse color{VK_FORMAT_R16G16B16A16_SFLOAT};
+    ImageUse depth;
     /// Every frame's camera says DepthKind::Planar: the depth image is then read as it is, without a pass.
     bool is_depth_planar = false;
-    VkFormat normals = VK_FORMAT_UNDEFINED;
-    VkFormat velocity = VK_FORMAT_UNDEFINED;
-    VkFormat ui = VK_FORMAT_UNDEFINED;
+    ImageUse normals;
+    ImageUse velocity;
+    ImageUse ui;
     bool has_shadows = false;  ///< frames have lights with cascades in D32_SFLOAT
-    VkFormat target = VK_FORMAT_R8G8B8A8_UNORM;
-    VkImageUsageFlags color_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< with STORAGE, own pixels are read cheaper
-    VkImageUsageFlags layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of depth, normals and velocity alike
-    VkImageUsageFlags target_usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    ImageUse target{VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
     /// What the target takes: Encoded for pictures that are shown, SceneLinear for float files (encode and dither are
     /// then skipped). Unset: Encoded for UNORM and SRGB formats, SceneLinear for float formats.
     std::optional<Domain> target_domain;
@@ -103,11 +108,11 @@ class Composer {
 
     /// Appends an effect; no input named means the output of the pass before.
     template <class Effect>
-    Handle add(const Effect& parameters, const Inputs& inputs = {}) {
-        return add(effect_info(parameters), &parameters, inputs);
+    Handle add(const Effect& parameters, const EntryDesc& desc = {}) {
+        return add(effect_info(parameters), &parameters, desc);
     }
     /// The same for an effect known at run time. `parameters`: info.parameters.words() words, or null for defaults.
-    Handle add(const EffectInfo& info, const void* parameters, const Inputs& inputs = {});
+    Handle add(const EffectInfo& info, const void* parameters, const EntryDesc& desc = {});
     void clear();
 
     // Entries: found by name, changed between frames. Errors name the entry, the value and what is allowed.
@@ -115,7 +120,7 @@ class Composer {
     [[nodiscard]] std::size_t size() const;
     [[nodiscard]] Handle entry(std::size_t index) const;
     [[nodiscard]] const EffectInfo& info(Handle) const;
-    [[nodiscard]] const Inputs& inputs(Handle) const;
+    [[nodiscard]] const EntryDesc& desc(Handle) const;
     [[nodiscard]] std::span<const std::uint32_t> words(Handle) const;
     Result<> set_enabled(Handle, bool enabled);
     Result<> set_opacity(Handle, float opacity);

@@ -37,7 +37,7 @@ inline constexpr auto entry_rows =
              field<&EntryState::blend>("How the result goes over the input."));
 
 /// One effect of a look. The wires are names: "scene" is the picture as it came, others are the `output` of an entry
-/// before this one; empty is the default of darkroom::Inputs.
+/// before this one; empty is the default of darkroom::EntryDesc.
 struct LookEntry {
     const EffectInfo* effect = nullptr;
     std::vector<std::uint32_t> words;  ///< of the effect's struct

@@ -58,17 +58,17 @@ const ImageRef& host_image(const Frame& frame, HostImage image) {
 VkFormat expected_format(const CompileDesc& desc, HostImage image) {
     switch (image) {
         case HostImage::Color:
-            return desc.color;
+            return desc.color.format;
         case HostImage::Depth:
-            return desc.depth;
+            return desc.depth.format;
         case HostImage::Normals:
-            return desc.normals;
+            return desc.normals.format;
         case HostImage::Velocity:
-            return desc.velocity;
+            return desc.velocity.format;
         case HostImage::Ui:
-            return desc.ui;
+            return desc.ui.format;
         default:
-            return desc.target;
+            return desc.target.format;
     }
 }
 
@@ -228,8 +228,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
         const ParamTable& table = stack[i].info->parameters;
         const std::span<std::uint32_t> words(block + program_.block_words[i], block_words(table));
         words[0] = is_on_[i] ? 1 : 0;
-        words[1] = std::bit_cast<std::uint32_t>(stack[i].inputs.opacity);
-        words[2] = static_cast<std::uint32_t>(stack[i].inputs.blend);
+        words[1] = std::bit_cast<std::uint32_t>(stack[i].desc.opacity);
+        words[2] = static_cast<std::uint32_t>(stack[i].desc.blend);
         write_block(table, {words_of(static_cast<std::uint32_t>(i)), table.words()}, words);
     }
     block[program_.finish_word] = static_cast<std::uint32_t>(finish_);

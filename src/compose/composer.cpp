@@ -29,7 +29,7 @@ Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& 
 }
 
 std::string shown(const plan::Entry& entry, const ParamInfo& row) {
-    return fmt::format("{}.{}", entry.inputs.name, row.name);
+    return fmt::format("{}.{}", entry.desc.name, row.name);
 }
 
 /// Whether a value is surely allowed, found out without memory: values change inside frame loops. What is not goes the
@@ -74,7 +74,7 @@ Result<> check_value(const plan::Entry& entry, const ParamInfo& row, std::span<c
 Result<> check_together(const plan::Entry& entry, std::span<const std::uint32_t> words) {
     if (entry.info->conflict == nullptr) return {};
     const std::string conflict = entry.info->conflict(words.data());
-    return conflict.empty() ? Result<>{} : user_error(fmt::format("{}: {}", entry.inputs.name, conflict));
+    return conflict.empty() ? Result<>{} : user_error(fmt::format("{}: {}", entry.desc.name, conflict));
 }
 
 /// All values of an entry: a struct that a host filled may hold anything.
@@ -136,7 +136,7 @@ struct Composer::State {
         std::vector<std::string> names;
         for (const ParamInfo& info : entry.info->parameters.rows) names.emplace_back(info.name);
         return user_error(
-            fmt::format("{} has no parameter '{}'{}", entry.inputs.name, parameter, suggestion(parameter, names)));
+            fmt::format("{} has no parameter '{}'{}", entry.desc.name, parameter, suggestion(parameter, names)));
     }
 };
 
@@ -149,14 +149,14 @@ Composer::Composer(Composer&&) noexcept = default;
 Composer& Composer::operator=(Composer&&) noexcept = default;
 Composer::~Composer() = default;
 
-Handle Composer::add(const EffectInfo& info, const void* parameters, const Inputs& inputs) {
-    plan::Entry entry{.info = &info, .inputs = inputs};
+Handle Composer::add(const EffectInfo& info, const void* parameters, const EntryDesc& desc) {
+    plan::Entry entry{.info = &info, .desc = desc};
     entry.base.assign(info.parameters.defaults.begin(), info.parameters.defaults.end());
     if (parameters != nullptr) std::memcpy(entry.base.data(), parameters, entry.base.size() * 4);
-    if (entry.inputs.name.empty()) {
+    if (entry.desc.name.empty()) {
         const auto same = std::count_if(state_->stack.begin(), state_->stack.end(),
                                         [&](const plan::Entry& other) { return other.info->name == info.name; });
-        entry.inputs.name = same == 0 ? std::string(info.name) : fmt::format("{}#{}", info.name, same + 1);
+        entry.desc.name = same == 0 ? std::string(info.name) : fmt::format("{}#{}", info.name, same + 1);
     }
     state_->stack.push_back(std::move(entry));
     state_->is_stale = true;
@@ -170,18 +170,18 @@ void Composer::clear() {
 
 std::optional<Handle> Composer::find(std::string_view entry_name) const {
     for (std::uint32_t i = 0; i < state_->stack.size(); ++i)
-        if (state_->stack[i].inputs.name == entry_name) return Handle{i + 1};
+        if (state_->stack[i].desc.name == entry_name) return Handle{i + 1};
     return std::nullopt;
 }
 std::size_t Composer::size() const { return state_->stack.size(); }
 Handle Composer::entry(std::size_t index) const { return {static_cast<std::uint32_t>(index + 1)}; }
 const EffectInfo& Composer::info(Handle handle) const { return *state_->at(handle).info; }
-const Inputs& Composer::inputs(Handle handle) const { return state_->at(handle).inputs; }
+const EntryDesc& Composer::desc(Handle handle) const { return state_->at(handle).desc; }
 std::span<const std::uint32_t> Composer::words(Handle handle) const { return state_->at(handle).base; }
 
 Result<> Composer::set_enabled(Handle handle, bool enabled) {
     if (!state_->has(handle)) return unknown_handle();
-    state_->at(handle).inputs.enabled = enabled;
+    state_->at(handle).desc.enabled = enabled;
     return {};
 }
 
@@ -189,7 +189,7 @@ Result<> Composer::set_opacity(Handle handle, float opacity) {
     if (!state_->has(handle)) return unknown_handle();
     plan::Entry& entry = state_->at(handle);
     if (!(opacity >= 0 && opacity <= 1))
-        return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.inputs.name, opacity));
+        return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.desc.name, opacity));
     // An entry with passes of its own is laid over its input by the next kernel, if that was planned so.
     const bool is_mixable = !state_->chain || state_->is_stale ||
                             state_->chain->program().is_mixable.size() < handle.id ||
@@ -198,8 +198,8 @@ Result<> Composer::set_opacity(Handle handle, float opacity) {
         return user_error(fmt::format(
             "{}: opacity = {}: it has passes of its own and was compiled with opacity 1; allowed are 0 and 1, "
             "or add it with an opacity below 1 and compile",
-            entry.inputs.name, opacity));
-    entry.inputs.opacity = opacity;
+            entry.desc.name, opacity));
+    entry.desc.opacity = opacity;
     return {};
 }
 
@@ -232,7 +232,7 @@ Result<> Composer::set(Handle handle, std::string_view parameter, double value) 
 Result<> Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) {
     if (!state_->has(handle)) return unknown_handle();
     plan::Entry& entry = state_->at(handle);
-    if (entry.info != &info) return user_error(fmt::format("{} is no {}", entry.inputs.name, info.name));
+    if (entry.info != &info) return user_error(fmt::format("{} is no {}", entry.desc.name, info.name));
     const std::span words(static_cast<const std::uint32_t*>(parameters), entry.base.size());
     if (auto ok = check_values(entry, words); !ok) return ok;
     std::copy(words.begin(), words.end(), entry.base.begin());

@@ -191,8 +191,8 @@ TEST_F(ComposeResolution, OneLevelOfOneLayerOfTheHostsImages) {
     const CompileDesc desc = host.compile_desc();
     const ReferenceImage expected = expected_of(host, desc);
     for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
-        Layered color(host.device.context(), {44, 36}, desc.color, 1, 1),
-            target(host.device.context(), {44, 36}, desc.target, 2, 1);
+        Layered color(host.device.context(), {44, 36}, desc.color.format, 1, 1),
+            target(host.device.context(), {44, 36}, desc.target.format, 2, 1);
         color.copy(host.color, true);
         target.copy(host.target, true);
         Composer composer(host.device);

@@ -4,18 +4,18 @@
 
 #include <random>
 
-#include "plan/program.hpp"
 #include "compose/test_host.hpp"
+#include "plan/program.hpp"
 
 namespace darkroom::plan {
 namespace {
 
 class ComposeSchedule : public test::StackTest {};
 
-Entry entry_of(std::string_view effect, std::vector<Entry>& stack, Inputs inputs = {}) {
+Entry entry_of(std::string_view effect, std::vector<Entry>& stack, EntryDesc desc = {}) {
     const EffectInfo& info = *find_effect(effect);
-    inputs.name = std::string(effect) + std::to_string(stack.size());
-    Entry entry{.info = &info, .inputs = std::move(inputs)};
+    desc.name = std::string(effect) + std::to_string(stack.size());
+    Entry entry{.info = &info, .desc = std::move(desc)};
     entry.base.assign(info.parameters.defaults.begin(), info.parameters.defaults.end());
     return entry;
 }
@@ -30,13 +30,13 @@ std::vector<Entry> random_stack(std::mt19937& random) {
             return pick == 0 ? Handle{} : pick == 1 ? scene_color : Handle{pick - 1};
         };
         const EffectInfo& info = *all_effects()[below(static_cast<std::uint32_t>(all_effects().size()))];
-        Inputs inputs;
-        if (below(3) == 0) inputs.input = handle();
-        if (below(2) == 0) inputs.source = handle();
-        if (below(3) == 0) inputs.mask = handle();
-        if (info.has_second) inputs.second = i == 0 ? scene_color : Handle{1 + below(i)};
-        if (below(3) == 0) inputs.opacity = 0.5f;
-        stack.push_back(entry_of(info.name, stack, inputs));
+        EntryDesc desc;
+        if (below(3) == 0) desc.input = handle();
+        if (below(2) == 0) desc.source = handle();
+        if (below(3) == 0) desc.mask = handle();
+        if (info.has_second) desc.second = i == 0 ? scene_color : Handle{1 + below(i)};
+        if (below(3) == 0) desc.opacity = 0.5f;
+        stack.push_back(entry_of(info.name, stack, desc));
     }
     return stack;
 }
@@ -104,7 +104,7 @@ TEST_F(ComposeSchedule, TheCheckerAcceptsEveryFrameOfEveryStack) {
         const std::vector<Entry> stack = random_stack(random);
         CompileDesc desc{.max_extent = {640, 360}};
         desc.fuse = seed % 3 != 0;
-        if (seed % 2 == 0) desc.color_usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+        if (seed % 2 == 0) desc.color.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
         // The stages mixed as a device with few formats would have them.
         const auto program =
             plan_program(stack, desc, {.stage_of = [&](const gpu::KernelSpec& spec) -> Result<gpu::Stage> {

@@ -39,7 +39,7 @@ ReferenceImage developed(VkFormat target, const std::function<void(Composer&)>& 
     fill(composer);
     CompileDesc desc = host.compile_desc();
     desc.target_domain.reset();
-    desc.target_usage &= ~usage_without;
+    desc.target.usage &= ~usage_without;
     desc.kernels = stage;
     auto made = composer.compile(desc);
     EXPECT_TRUE(made) << made.error().text;
@@ -156,7 +156,7 @@ TEST_F(ComposeTarget, AColorImageWithoutStorageIsSampled) {
     Composer composer(host.device);
     add(composer, "exposure", {{"exposure", 2}});
     CompileDesc desc = host.compile_desc();
-    desc.color_usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    desc.color.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
     test::must(composer.compile(desc));
     const ReferenceImage sampled = host.run(composer);
     test::must(composer.compile(host.compile_desc()));

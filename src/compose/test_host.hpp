@@ -38,8 +38,8 @@ inline void set_word(Composer& composer, Handle handle, std::string_view paramet
     must(composer.set(handle, parameter, std::span<const std::uint32_t>(&word, 1)));
 }
 inline Handle add(Composer& composer, std::string_view effect, std::initializer_list<Value> values = {},
-                  const Inputs& inputs = {}) {
-    const Handle handle = composer.add(*find_effect(effect), nullptr, inputs);
+                  const EntryDesc& desc = {}) {
+    const Handle handle = composer.add(*find_effect(effect), nullptr, desc);
     for (const Value& value : values) must(composer.set(handle, value.parameter, value.value));
     return handle;
 }
@@ -95,10 +95,8 @@ struct Host {
     [[nodiscard]] CompileDesc compile_desc() const {
         const gpu::ImageInfo& info = color.image.info;
         return {.max_extent = {info.extent.width, info.extent.height},
-                .color = info.format,
-                .target = target.image.info.format,
-                .color_usage = info.usage,
-                .target_usage = target.image.info.usage,
+                .color = {info.format, info.usage},
+                .target = {target.image.info.format, target.image.info.usage},
                 .target_domain = Domain::Encoded,
                 .intermediate = VK_FORMAT_R32G32B32A32_SFLOAT};
     }

@@ -52,10 +52,10 @@ class RandomScene {
     }
 
     void tell(CompileDesc& desc) const {
-        if (depth_) desc.depth = depth_->image.info.format;
+        if (depth_) desc.depth.format = depth_->image.info.format;
         desc.is_depth_planar = is_planar_promised_;
-        if (normals_) desc.normals = normals_->image.info.format;
-        if (velocity_) desc.velocity = velocity_->image.info.format;
+        if (normals_) desc.normals.format = normals_->image.info.format;
+        if (velocity_) desc.velocity.format = velocity_->image.info.format;
         desc.has_shadows = has_shadows_;
     }
     /// The scene must outlive the frame.

@@ -85,15 +85,15 @@ inline void fill_random(std::mt19937& random, Composer& composer, Values values,
     for (std::uint32_t i = 0; i < entries; ++i) {
         const EffectInfo* info = effects[below(random, static_cast<std::uint32_t>(effects.size()))];
         if (i == place) info = always;
-        Inputs inputs;
-        if (one_in(random, 6)) inputs.input = random_handle(random, i);
-        if (one_in(random, 3)) inputs.source = random_handle(random, i);
-        if (one_in(random, 5)) inputs.mask = random_handle(random, i);
-        if (info->has_second) inputs.second = i == 0 ? scene_color : Handle{1 + below(random, i)};
-        if (one_in(random, 3)) inputs.opacity = static_cast<float>(between(random, 0, 1));
-        if (one_in(random, 3)) inputs.blend = static_cast<BlendMode>(below(random, 9));
-        inputs.enabled = !one_in(random, 8);
-        set_random(random, composer, composer.add(*info, nullptr, inputs), values);
+        EntryDesc desc;
+        if (one_in(random, 6)) desc.input = random_handle(random, i);
+        if (one_in(random, 3)) desc.source = random_handle(random, i);
+        if (one_in(random, 5)) desc.mask = random_handle(random, i);
+        if (info->has_second) desc.second = i == 0 ? scene_color : Handle{1 + below(random, i)};
+        if (one_in(random, 3)) desc.opacity = static_cast<float>(between(random, 0, 1));
+        if (one_in(random, 3)) desc.blend = static_cast<BlendMode>(below(random, 9));
+        desc.enabled = !one_in(random, 8);
+        set_random(random, composer, composer.add(*info, nullptr, desc), values);
     }
 }
 
@@ -105,11 +105,10 @@ inline std::string described(const Composer& composer) {
     };
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const Handle entry = composer.entry(i);
-        const Inputs& inputs = composer.inputs(entry);
-        out += "\n  " + inputs.name + (inputs.enabled ? "" : ", off") + ": in " + shown(inputs.input) + ", source " +
-               shown(inputs.source) + ", second " + shown(inputs.second) + ", mask " + shown(inputs.mask) +
-               ", opacity " + std::to_string(inputs.opacity) + ", blend " +
-               std::to_string(static_cast<int>(inputs.blend));
+        const EntryDesc& desc = composer.desc(entry);
+        out += "\n  " + desc.name + (desc.enabled ? "" : ", off") + ": in " + shown(desc.input) + ", source " +
+               shown(desc.source) + ", second " + shown(desc.second) + ", mask " + shown(desc.mask) + ", opacity " +
+               std::to_string(desc.opacity) + ", blend " + std::to_string(static_cast<int>(desc.blend));
         const auto words = composer.words(entry);
         for (const ParamInfo& row : composer.info(entry).parameters.rows) {
             out += ", " + std::string(row.name);

@@ -165,14 +165,12 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
     Composer composer(device, {.frames_in_flight = 1});
     fill(composer);
     const auto plan = composer.compile({.max_extent = extent,
-                                        .color = options.color,
-                                        .depth = depth ? options.depth_format : VK_FORMAT_UNDEFINED,
+                                        .color = {options.color, gpu::test::all_usage(context, options.color)},
+                                        .depth = {depth ? options.depth_format : VK_FORMAT_UNDEFINED},
                                         .is_depth_planar = depth && options.is_depth_planar,
-                                        .normals = normals ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_UNDEFINED,
+                                        .normals = {normals ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_UNDEFINED},
                                         .has_shadows = !shadow_maps.empty(),
-                                        .target = options.target,
-                                        .color_usage = gpu::test::all_usage(context, options.color),
-                                        .target_usage = gpu::test::all_usage(context, options.target),
+                                        .target = {options.target, gpu::test::all_usage(context, options.target)},
                                         .target_domain = options.target_domain,
                                         .kernels = options.kernels,
                                         .fuse = options.fuse,
@@ -240,7 +238,7 @@ void expect_gpu_matches_reference(const EffectInfo& info, const void* parameters
     const auto run = [&](KernelStage stage) {
         return develop(
             [&](Composer& composer) {
-                composer.add(info, parameters, info.has_second ? Inputs{.second = scene_color} : Inputs{});
+                composer.add(info, parameters, info.has_second ? EntryDesc{.second = scene_color} : EntryDesc{});
             },
             picture, {.kernels = stage});
     };

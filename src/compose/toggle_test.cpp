@@ -140,7 +140,7 @@ TEST_F(ComposeToggles, OpacityHasItsRules) {
         EXPECT_NE(refused.error().text.find("exposure: opacity"), std::string::npos);
         EXPECT_NE(refused.error().text.find("[0, 1]"), std::string::npos);
     }
-    EXPECT_EQ(composer.inputs(exposure).opacity, 1.0f);
+    EXPECT_EQ(composer.desc(exposure).opacity, 1.0f);
     test::must(composer.compile(host.compile_desc()));
     const ReferenceImage before = host.run(composer);
     const auto refused = composer.set_opacity(plain, 0.5f);

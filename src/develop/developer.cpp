@@ -7,10 +7,10 @@
 #include <cstring>
 #include <optional>
 
-#include "plan/half.hpp"
 #include "core/assert.hpp"
 #include "gpu/context.hpp"
 #include "gpu/resources.hpp"
+#include "plan/half.hpp"
 
 namespace darkroom {
 
@@ -81,8 +81,7 @@ ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayo
 CompileDesc compile_desc_for(Device& device, const DevelopDesc& desc) {
     const bool is_bytes = desc.target == DevelopTarget::Encoded8;
     const VkFormat target = is_bytes ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
-    return {.target = target,
-            .target_usage = target_usage(device.context(), target),
+    return {.target = {target, target_usage(device.context(), target)},
             .target_domain = desc.target == DevelopTarget::SceneLinear ? Domain::SceneLinear : Domain::Encoded,
             .encodes_target = desc.target != DevelopTarget::SceneLinear,
             .kernels = desc.kernels,
@@ -90,20 +89,17 @@ CompileDesc compile_desc_for(Device& device, const DevelopDesc& desc) {
 }
 
 CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const Layers& layers, const DevelopDesc& desc) {
-    const auto format = [&](std::size_t i) {
-        return layers[i].values.empty() ? VK_FORMAT_UNDEFINED : layers[i].format;
+    const auto use = [&](std::size_t i) {
+        if (layers[i].values.empty()) return ImageUse{};
+        return ImageUse{layers[i].format, shader_usage(device.context(), layers[i].format)};
     };
     CompileDesc out = compile_desc_for(device, desc);
     out.max_extent = input.extent;
-    out.color = layers[0].format;
-    out.color_usage = shader_usage(device.context(), layers[0].format);
-    out.depth = format(1);
-    out.is_depth_planar = out.depth != VK_FORMAT_UNDEFINED;
-    out.normals = format(2);
-    out.velocity = format(3);
-    out.layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
-    for (const VkFormat given : {out.depth, out.normals, out.velocity})
-        if (given != VK_FORMAT_UNDEFINED) out.layer_usage &= shader_usage(device.context(), given);
+    out.color = {layers[0].format, shader_usage(device.context(), layers[0].format)};
+    out.depth = use(1);
+    out.is_depth_planar = out.depth.format != VK_FORMAT_UNDEFINED;
+    out.normals = use(2);
+    out.velocity = use(3);
     out.has_shadows = std::any_of(input.lights.begin(), input.lights.end(), has_cascades);
     return out;
 }
@@ -111,9 +107,8 @@ CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const La
 /// Do two descriptions that one DevelopDesc made ask for the same?
 bool is_same(const CompileDesc& a, const CompileDesc& b) {
     return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
-           a.color == b.color && a.color_usage == b.color_usage && a.layer_usage == b.layer_usage &&
-           a.depth == b.depth && a.is_depth_planar == b.is_depth_planar && a.normals == b.normals &&
-           a.velocity == b.velocity && a.ui == b.ui && a.has_shadows == b.has_shadows;
+           a.color == b.color && a.depth == b.depth && a.is_depth_planar == b.is_depth_planar &&
+           a.normals == b.normals && a.velocity == b.velocity && a.ui == b.ui && a.has_shadows == b.has_shadows;
 }
 
 /// The cascades of one light, an array, and the buffer that fills it.
@@ -153,14 +148,12 @@ CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const Dev
     const Frame& frame = input.frame;
     CompileDesc out = compile_desc_for(device, desc);
     out.max_extent = frame.color.used_region().extent;
-    out.color = frame.color.format;
-    out.color_usage = input.color_usage;
-    out.layer_usage = input.layer_usage;
-    out.depth = frame.depth.format;
+    out.color = {frame.color.format, input.color_usage};
+    out.depth = {frame.depth.format, input.layer_usage};
     out.is_depth_planar = frame.depth.is_given() && frame.camera.depth == DepthKind::Planar;
-    out.normals = frame.normals.format;
-    out.velocity = frame.velocity.format;
-    out.ui = frame.ui.format;
+    out.normals = {frame.normals.format, input.layer_usage};
+    out.velocity = {frame.velocity.format, input.layer_usage};
+    out.ui = {frame.ui.format};
     out.has_shadows = std::any_of(frame.lights.begin(), frame.lights.end(),
                                   [](const Light& light) { return light.cascades.is_given(); });
     return out;
@@ -230,9 +223,9 @@ struct Developer::State {
         plan = std::move(*made);
         composer.wait_for_kernels();
         auto image = gpu::Image::create(context(), {.name = "target",
-                                                    .format = wanted.target,
+                                                    .format = wanted.target.format,
                                                     .extent = {wanted.max_extent.width, wanted.max_extent.height, 1},
-                                                    .usage = wanted.target_usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+                                                    .usage = wanted.target.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
         if (!image) return failure(std::move(image));
         target = std::move(*image);
         auto read = Readback::create(context(), target_before_reading());

@@ -7,8 +7,8 @@
 #include <darkroom/effects.hpp>
 #include <limits>
 
-#include "plan/half.hpp"
 #include "gpu/test_run.hpp"
+#include "plan/half.hpp"
 
 namespace darkroom {
 namespace {
@@ -85,7 +85,7 @@ TEST(ComposeDeveloper, ImagesOfTheDeviceAndOfMainMemoryGiveTheSameBytes) {
 
         const DevelopInput in_memory{
             .extent = {33, 17}, .color = layers.color, .depth = layers.depth, .time = 2, .frame_index = 3};
-        EXPECT_EQ(compile_desc_for(device, in_memory, {}).color, VK_FORMAT_R16G16B16A16_SFLOAT);
+        EXPECT_EQ(compile_desc_for(device, in_memory, {}).color.format, VK_FORMAT_R16G16B16A16_SFLOAT);
         const Result<DevelopedPicture> second = developer.develop(composer, in_memory);
         ASSERT_TRUE(second) << second.error().text;
         EXPECT_EQ(first->bytes, second->bytes);

@@ -74,42 +74,42 @@ class Chain {
     Result<> add(std::size_t index) {
         const Handle handle = composer_.entry(index);
         const EffectInfo& info = composer_.info(handle);
-        const Inputs& inputs = composer_.inputs(handle);
-        for (const Handle wire : {inputs.input, inputs.source, inputs.second, inputs.mask})
+        const EntryDesc& desc = composer_.desc(handle);
+        for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
             if (wire.is_given() && wire != scene_color && wire.id > index)
-                return user_error(fmt::format("stack entry '{}': it reads the output of a later entry", inputs.name));
-        const std::size_t from = value_of(inputs.input, index);
+                return user_error(fmt::format("stack entry '{}': it reads the output of a later entry", desc.name));
+        const std::size_t from = value_of(desc.input, index);
         values_.push_back(from);
         std::string why = missing_needs(info.needs, input_);
         if (!why.empty()) why = fmt::format("needs {}, which the frame does not have", why);
         if (why.empty() && info.is_last_step && input_.target_domain == Domain::SceneLinear)
             why = "the target takes scene-linear floats";
         if (!why.empty()) {
-            left_out_.push_back(fmt::format("{}: {}", inputs.name, why));
+            left_out_.push_back(fmt::format("{}: {}", desc.name, why));
             return {};
         }
-        if (info.has_second && !inputs.second.is_given())
+        if (info.has_second && !desc.second.is_given())
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
-                                          inputs.name, info.name));
+                                          desc.name, info.name));
         const std::vector<std::uint32_t> words = composer_.current(handle);
         const Domain before = domains_[from];
         const bool is_off =
-            !inputs.enabled || inputs.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
+            !desc.enabled || desc.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
         if (!is_off && info.reference == nullptr)
-            return user_error(fmt::format("stack entry '{}': {} has no reference", inputs.name, info.name));
-        pictures_.push_back(is_off ? pictures_[from] : result(info, inputs, words, index, from));
+            return user_error(fmt::format("stack entry '{}': {} has no reference", desc.name, info.name));
+        pictures_.push_back(is_off ? pictures_[from] : result(info, desc, words, index, from));
         domains_.push_back(is_off || info.makes == nullptr ? before : info.makes(before, words.data()));
         values_.back() = pictures_.size() - 1;
         return {};
     }
 
-    ReferenceImage result(const EffectInfo& info, const Inputs& inputs, const std::vector<std::uint32_t>& words,
+    ReferenceImage result(const EffectInfo& info, const EntryDesc& desc, const std::vector<std::uint32_t>& words,
                           std::size_t index, std::size_t from) const {
         const ReferenceImage& base = pictures_[from];
         ReferenceImage layer = info.reference(
             words.data(), {.picture = &base,
-                           .source = inputs.source.is_given() ? &pictures_[value_of(inputs.source, index)] : &base,
-                           .second = inputs.second.is_given() ? &pictures_[value_of(inputs.second, index)] : nullptr,
+                           .source = desc.source.is_given() ? &pictures_[value_of(desc.source, index)] : &base,
+                           .second = desc.second.is_given() ? &pictures_[value_of(desc.second, index)] : nullptr,
                            .depth = input_.depth,
                            .normals = input_.normals,
                            .velocity = input_.velocity,
@@ -117,13 +117,13 @@ class Chain {
                            .camera = input_.camera,
                            .time = input_.time,
                            .frame_index = input_.frame_index});
-        const bool is_plain = inputs.opacity == 1 && inputs.blend == BlendMode::Mix && !inputs.mask.is_given();
+        const bool is_plain = desc.opacity == 1 && desc.blend == BlendMode::Mix && !desc.mask.is_given();
         const bool is_same_size = layer.width == base.width && layer.height == base.height;
         if (is_plain || !is_same_size) return layer;
-        const ReferenceImage* const mask = inputs.mask.is_given() ? &pictures_[value_of(inputs.mask, index)] : nullptr;
+        const ReferenceImage* const mask = desc.mask.is_given() ? &pictures_[value_of(desc.mask, index)] : nullptr;
         for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
-            const double opacity = inputs.opacity * (mask == nullptr ? 1.0 : mask_weight(mask->pixels[i]));
-            layer.pixels[i] = merged(base.pixels[i], layer.pixels[i], opacity, inputs.blend);
+            const double opacity = desc.opacity * (mask == nullptr ? 1.0 : mask_weight(mask->pixels[i]));
+            layer.pixels[i] = merged(base.pixels[i], layer.pixels[i], opacity, desc.blend);
         }
         return layer;
     }

@@ -47,17 +47,17 @@ Result<> apply(const Look& look, Composer& composer) {
                 return user_error(fmt::format("{}: {}: {} = \"{}\": no entry before it has this output",
                                               look.shown_name, names[index], end.key, printable(name)));
         }
-        const Inputs inputs{.input = wire(entry->input),
-                            .source = look.is_flat ? scene_color : wire(entry->source),
-                            .second = wire(entry->second),
-                            .mask = wire(entry->mask),
-                            .name = names[index],
-                            .output = entry->output,
-                            .enabled = look.is_enabled ? entry->state.enabled.on != 0 : true,
-                            .opacity = entry->state.opacity,
-                            .blend = entry->state.blend};
+        const EntryDesc desc{.input = wire(entry->input),
+                             .source = look.is_flat ? scene_color : wire(entry->source),
+                             .second = wire(entry->second),
+                             .mask = wire(entry->mask),
+                             .name = names[index],
+                             .output = entry->output,
+                             .enabled = look.is_enabled ? entry->state.enabled.on != 0 : true,
+                             .opacity = entry->state.opacity,
+                             .blend = entry->state.blend};
         const void* const words = look.is_enabled ? entry->words.data() : nullptr;
-        const Handle handle = composer.add(*entry->effect, words, inputs);
+        const Handle handle = composer.add(*entry->effect, words, desc);
         if (!entry->output.empty()) outputs[entry->output] = handle;
     }
     return {};

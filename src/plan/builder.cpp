@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "plan/planner_state.hpp"
 #include "core/assert.hpp"
+#include "plan/planner_state.hpp"
 
 namespace darkroom::plan {
 
@@ -15,7 +15,7 @@ PassImage Builder::remember(Image image) {
 
 PassImage Builder::image_of(std::size_t value) {
     const auto version =
-        planner_.materialise(value, fmt::format("{} reads around its pixels", planner_.stack_[entry_].inputs.name));
+        planner_.materialise(value, fmt::format("{} reads around its pixels", planner_.stack_[entry_].desc.name));
     if (!version) {
         error = version.error().text;
         return {};
@@ -26,13 +26,13 @@ PassImage Builder::image_of(std::size_t value) {
 PassImage Builder::picture() { return image_of(input_); }
 
 PassImage Builder::source() {
-    const Handle handle = planner_.stack_[entry_].inputs.source;
+    const Handle handle = planner_.stack_[entry_].desc.source;
     return image_of(handle.is_given() ? planner_.value_of(handle, entry_) : input_);
 }
 
 graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
     const graph::Size size = planner_.values_[input_].size;
-    return {.name = fmt::format("{}.{}", planner_.stack_[entry_].inputs.name, desc.name),
+    return {.name = fmt::format("{}.{}", planner_.stack_[entry_].desc.name, desc.name),
             .format = desc.format,
             .size = {.numerator = size.numerator * desc.numerator, .denominator = size.denominator * desc.denominator},
             .mip_levels = desc.mip_levels};
@@ -62,7 +62,7 @@ namespace {
 struct FrameImageRow {
     HostImage image;
     const char* name;
-    VkFormat format;
+    ImageUse use;
 };
 
 FrameImageRow frame_image_row(const CompileDesc& desc, FrameImage which) {
@@ -76,20 +76,17 @@ FrameImageRow frame_image_row(const CompileDesc& desc, FrameImage which) {
 }  // namespace
 
 bool Builder::has_frame_image(FrameImage which) const {
-    return frame_image_row(planner_.desc_, which).format != VK_FORMAT_UNDEFINED;
+    return frame_image_row(planner_.desc_, which).use.format != VK_FORMAT_UNDEFINED;
 }
 
 PassImage Builder::frame_image(FrameImage which) {
     const FrameImageRow row = frame_image_row(planner_.desc_, which);
-    if (row.format == VK_FORMAT_UNDEFINED) {
+    if (row.use.format == VK_FORMAT_UNDEFINED) {
         error = fmt::format("effect '{}' reads the frame's {} without naming it in its needs",
                             planner_.stack_[entry_].info->name, row.name);
         return {};
     }
-    const VkImageUsageFlags usage =
-        which == FrameImage::Ui ? VkImageUsageFlags{VK_IMAGE_USAGE_SAMPLED_BIT} : planner_.desc_.layer_usage;
-    return remember(
-        {.version = planner_.import_host(row.image, row.name, row.format, usage, {}), .format = row.format});
+    return remember({.version = planner_.import_host(row.image, row.name, row.use, {}), .format = row.use.format});
 }
 
 PassImage Builder::shadow_map(std::uint32_t number) {
@@ -101,10 +98,10 @@ PassImage Builder::shadow_map(std::uint32_t number) {
         return {};
     }
     const auto which = static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::Shadow0) + number);
-    return remember({.version = planner_.import_host(which, names[number], VK_FORMAT_D32_SFLOAT,
-                                                     VK_IMAGE_USAGE_SAMPLED_BIT, {.width = 1, .height = 1}),
-                     .format = VK_FORMAT_D32_SFLOAT,
-                     .is_shadow_map = true});
+    return remember(
+        {.version = planner_.import_host(which, names[number], {VK_FORMAT_D32_SFLOAT}, {.width = 1, .height = 1}),
+         .format = VK_FORMAT_D32_SFLOAT,
+         .is_shadow_map = true});
 }
 
 PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&), ConditionFunction condition) {
@@ -158,8 +155,8 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     const Entry& entry = planner_.stack_[entry_];
     if (!error.empty() || desc.output.index >= images_.size()) return {};
     ProgramPass pass{
-        .name = fmt::format("{}.{}", entry.inputs.name, desc.name), .entry = entry_, .constants = desc.constants};
-    pass.boundary = fmt::format("{} has passes of its own", entry.inputs.name);
+        .name = fmt::format("{}.{}", entry.desc.name, desc.name), .entry = entry_, .constants = desc.constants};
+    pass.boundary = fmt::format("{} has passes of its own", entry.desc.name);
 
     std::vector<std::string> names;
     for (const KernelPassDesc::Input& input : desc.inputs) {

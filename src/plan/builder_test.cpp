@@ -86,10 +86,8 @@ class Rig {
 
     [[nodiscard]] Result<Plan> compile(std::uint32_t views = 1) {
         return composer.compile({.max_extent = extent_,
-                                 .color = format,
-                                 .target = format,
-                                 .color_usage = gpu::test::all_usage(context(), format),
-                                 .target_usage = gpu::test::all_usage(context(), format),
+                                 .color = {format, gpu::test::all_usage(context(), format)},
+                                 .target = {format, gpu::test::all_usage(context(), format)},
                                  .views = views,
                                  .intermediate = format});
     }

@@ -10,7 +10,9 @@ namespace {
 
 using test::add;
 
-CompileDesc hd(VkFormat target = VK_FORMAT_R8G8B8A8_UNORM) { return {.max_extent = {1920, 1080}, .target = target}; }
+CompileDesc hd(VkFormat target = VK_FORMAT_R8G8B8A8_UNORM) {
+    return {.max_extent = {1920, 1080}, .target = {target, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}};
+}
 
 class ComposePlan : public test::StackTest {
   protected:
@@ -212,7 +214,7 @@ TEST_F(ComposePlan, MissingInputsLeaveAnEffectOut) {
     add(composer, "exposure");
     composer.add(deep, nullptr);
     CompileDesc desc = hd();
-    desc.velocity = VK_FORMAT_R16G16_SFLOAT;
+    desc.velocity.format = VK_FORMAT_R16G16_SFLOAT;
     const Plan made = plan(desc);
     ASSERT_EQ(made.left_out.size(), 1u);
     EXPECT_NE(made.left_out[0].find("deep: needs depth"), std::string::npos) << made.left_out[0];
@@ -252,7 +254,7 @@ TEST_F(ComposePlan, BothShippedOrdersGiveNoRemark) {
         composer.clear();
         for (const EffectInfo* const info : flat) composer.add(*info, nullptr, {.source = scene_color});
         CompileDesc desc = hd();
-        desc.depth = VK_FORMAT_D32_SFLOAT;
+        desc.depth.format = VK_FORMAT_D32_SFLOAT;
         desc.has_shadows = true;
         const Plan made = plan(desc);
         EXPECT_TRUE(made.remarks.empty())

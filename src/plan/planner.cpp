@@ -38,11 +38,11 @@ std::string missing_needs(const Needs& needs, const CompileDesc& desc) {
     const auto say = [&](bool is_needed, bool is_there, std::string_view name) {
         if (is_needed && !is_there) out += fmt::format("{}{}", out.empty() ? "" : " and ", name);
     };
-    say(needs.depth, desc.depth != VK_FORMAT_UNDEFINED, "depth");
-    say(needs.normals, desc.normals != VK_FORMAT_UNDEFINED, "normals");
-    say(needs.velocity, desc.velocity != VK_FORMAT_UNDEFINED, "velocity");
+    say(needs.depth, desc.depth.format != VK_FORMAT_UNDEFINED, "depth");
+    say(needs.normals, desc.normals.format != VK_FORMAT_UNDEFINED, "normals");
+    say(needs.velocity, desc.velocity.format != VK_FORMAT_UNDEFINED, "velocity");
     say(needs.shadows, desc.has_shadows, "shadows");
-    say(needs.ui, desc.ui != VK_FORMAT_UNDEFINED, "a UI image");
+    say(needs.ui, desc.ui.format != VK_FORMAT_UNDEFINED, "a UI image");
     return out;
 }
 
@@ -55,7 +55,7 @@ Result<Program> Planner::run() {
     if (auto ok = check_handles(); !ok) return failure(std::move(ok));
     lay_out_constants();
 
-    const graph::Version color = import_host(HostImage::Color, "color", desc_.color, desc_.color_usage, {});
+    const graph::Version color = import_host(HostImage::Color, "color", desc_.color, {});
     values_.push_back({.image = color, .domain = Domain::SceneLinear, .why = "the scene colour starts here"});
     entry_values_.assign(stack_.size(), 0);
     leave_out();
@@ -82,17 +82,17 @@ Result<> Planner::check_handles() const {
     const auto check = [&](std::uint32_t entry, Handle handle, std::string_view which) -> Result<> {
         if (!handle.is_given() || handle == scene_color || handle.id - 1 < entry) return {};
         return user_error(fmt::format("stack entry '{}': its {} is not the output of an earlier entry",
-                                      stack_[entry].inputs.name, which));
+                                      stack_[entry].desc.name, which));
     };
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
-        const Inputs& inputs = stack_[i].inputs;
-        if (auto ok = check(i, inputs.input, "input"); !ok) return ok;
-        if (auto ok = check(i, inputs.source, "source"); !ok) return ok;
-        if (auto ok = check(i, inputs.second, "second"); !ok) return ok;
-        if (auto ok = check(i, inputs.mask, "mask"); !ok) return ok;
-        if (stack_[i].info->has_second && !inputs.second.is_given())
+        const EntryDesc& desc = stack_[i].desc;
+        if (auto ok = check(i, desc.input, "input"); !ok) return ok;
+        if (auto ok = check(i, desc.source, "source"); !ok) return ok;
+        if (auto ok = check(i, desc.second, "second"); !ok) return ok;
+        if (auto ok = check(i, desc.mask, "mask"); !ok) return ok;
+        if (stack_[i].info->has_second && !desc.second.is_given())
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
-                                          inputs.name, stack_[i].info->name));
+                                          desc.name, stack_[i].info->name));
     }
     return {};
 }
@@ -118,7 +118,7 @@ void Planner::leave_out() {
         else if (info.is_last_step && target_domain_ == Domain::SceneLinear)
             why = "the target takes scene-linear floats";
         if (why.empty()) continue;
-        program_.left_out.push_back(fmt::format("{}: {}", stack_[i].inputs.name, why));
+        program_.left_out.push_back(fmt::format("{}: {}", stack_[i].desc.name, why));
         program_.is_left_out[i] = true;
     }
 }
@@ -131,7 +131,7 @@ std::uint32_t Planner::resolved(Handle handle, std::uint32_t entry) const {
 
 void Planner::resolve_inputs() {
     for (std::uint32_t i = 0; i < stack_.size(); ++i)
-        program_.entry_inputs.push_back(resolved(stack_[i].inputs.input, i));
+        program_.entry_inputs.push_back(resolved(stack_[i].desc.input, i));
     program_.last_entry = resolved({}, static_cast<std::uint32_t>(stack_.size()));
 }
 
@@ -143,12 +143,12 @@ Domain Planner::present_domain(std::uint32_t entry, Domain before) const {
 
 void Planner::remark_domain(std::uint32_t entry, Domain domain) {
     const EffectInfo& info = *stack_[entry].info;
-    if (!stack_[entry].inputs.enabled || info.accepts.contains(domain)) return;
+    if (!stack_[entry].desc.enabled || info.accepts.contains(domain)) return;
     std::string accepted;
     for (const Domain d : {Domain::SceneLinear, Domain::DisplayLinear, Domain::Encoded})
         if (info.accepts.contains(d)) accepted += fmt::format("{}{}", accepted.empty() ? "" : " or ", name_of(d));
-    program_.remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.",
-                                           stack_[entry].inputs.name, accepted, name_of(domain)));
+    program_.remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", stack_[entry].desc.name,
+                                           accepted, name_of(domain)));
 }
 
 std::size_t Planner::value_of(Handle handle, std::uint32_t entry) const {
@@ -156,7 +156,7 @@ std::size_t Planner::value_of(Handle handle, std::uint32_t entry) const {
     if (handle.is_given()) return entry_values_[handle.id - 1];
     return entry == 0 ? 0 : entry_values_[entry - 1];
 }
-std::size_t Planner::input_of(std::uint32_t entry) const { return value_of(stack_[entry].inputs.input, entry); }
+std::size_t Planner::input_of(std::uint32_t entry) const { return value_of(stack_[entry].desc.input, entry); }
 
 /// Who reads the output of each entry as a picture of its own: such an output must become an image.
 void Planner::count_readers() {
@@ -167,7 +167,7 @@ void Planner::count_readers() {
     };
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         if (program_.is_left_out[i]) continue;
-        const Inputs& wiring = stack_[i].inputs;
+        const EntryDesc& wiring = stack_[i].desc;
         for (const Handle handle : {wiring.source, wiring.second, wiring.mask}) {
             const std::uint32_t from = handle.is_given() ? resolved(handle, i) : no_entry;
             if (from != no_entry) image_reader_[from] = wiring.name;
@@ -189,15 +189,15 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
     if (info.touch == Touch::Neighbourhood || info.touch == Touch::History)
         return add_result(entry, input, builder, domain);
 
-    FusedStep step{.info = &info, .entry = entry, .name = stack_[entry].inputs.name};
+    FusedStep step{.info = &info, .entry = entry, .name = stack_[entry].desc.name};
     std::vector<PassInput> side_inputs;
     for (Builder::Side& side : builder.sides) {
         step.sides.push_back(side.name);
         side_inputs.push_back(side.input);
     }
     if (info.has_second) {
-        auto second = materialise(value_of(stack_[entry].inputs.second, entry),
-                                  fmt::format("{} reads it as its second picture", stack_[entry].inputs.name));
+        auto second = materialise(value_of(stack_[entry].desc.second, entry),
+                                  fmt::format("{} reads it as its second picture", stack_[entry].desc.name));
         if (!second) return failure(std::move(second));
         step.sides.emplace_back("second");
         side_inputs.push_back({.version = *second});
@@ -208,9 +208,9 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
 Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, Builder& builder, Domain domain) {
     if (!builder.output.is_valid())
         return user_error(fmt::format("effect '{}': its build() names no result", stack_[entry].info->name));
-    auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].inputs.name));
+    auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].desc.name));
     if (!picture) return failure(std::move(picture));
-    const std::string why = fmt::format("{} has passes of its own", stack_[entry].inputs.name);
+    const std::string why = fmt::format("{} has passes of its own", stack_[entry].desc.name);
     fall_back(builder.output, *picture);
 
     const OutputScale& scale = stack_[entry].info->output_scale;
@@ -221,16 +221,16 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
         return values_.size() - 1;
     }
     values_.push_back({.image = *picture, .size = size, .domain = domain, .why = why});
-    FusedStep step{.info = stack_[entry].info, .entry = entry, .name = stack_[entry].inputs.name, .is_merge = true};
+    FusedStep step{.info = stack_[entry].info, .entry = entry, .name = stack_[entry].desc.name, .is_merge = true};
     return append(entry, values_.size() - 1, std::move(step), {{.version = builder.output}}, domain);
 }
 
 Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, FusedStep step,
                                     std::vector<PassInput> sides, Domain domain) {
-    const std::string& name = stack_[entry].inputs.name;
+    const std::string& name = stack_[entry].desc.name;
     const Value from = values_[input];
     std::size_t kernel = from.kernel;
-    const std::size_t side_count = sides.size() + (stack_[entry].inputs.mask.is_given() ? 1 : 0);
+    const std::size_t side_count = sides.size() + (stack_[entry].desc.mask.is_given() ? 1 : 0);
     if (kernel == no_kernel) {
         kernel = open_kernel(input, from.why);
     } else {
@@ -248,9 +248,8 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
             kernel = open_kernel(input, std::move(why));
         }
     }
-    if (stack_[entry].inputs.mask.is_given()) {
-        auto mask =
-            materialise(value_of(stack_[entry].inputs.mask, entry), fmt::format("{} reads it as its mask", name));
+    if (stack_[entry].desc.mask.is_given()) {
+        auto mask = materialise(value_of(stack_[entry].desc.mask, entry), fmt::format("{} reads it as its mask", name));
         if (mask) mask = at_size(*mask, from.size, fmt::format("{}.mask", name));
         if (!mask) return failure(std::move(mask));
         step.has_mask = true;
@@ -327,9 +326,8 @@ Result<> Planner::finish() {
         kernel = open_kernel(last, values_[last].why);
     }
     program_.target_size = kernels_[kernel].size;
-    const graph::Version target =
-        import_host(HostImage::Target, "target", desc_.target, desc_.target_usage, program_.target_size);
-    auto version = close_kernel(kernel, target, desc_.target, finish, true);
+    const graph::Version target = import_host(HostImage::Target, "target", desc_.target, program_.target_size);
+    auto version = close_kernel(kernel, target, desc_.target.format, finish, true);
     if (!version) return failure(std::move(version));
     program_.graph.keep(*version);
     return {};
@@ -344,7 +342,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
 
     Gate toggle;
     for (const FusedStep& step : kernel.steps) {
-        const std::string& name = stack_[step.entry].inputs.name;
+        const std::string& name = stack_[step.entry].desc.name;
         pass.name += (pass.name.empty() ? "" : "+") + name;
         toggle.entries.push_back(step.entry);
         pass.spec.constants += entry_members(*stack_[step.entry].info, step.entry, program_.block_words[step.entry]);
@@ -444,13 +442,13 @@ std::int32_t Planner::toggle_index(Gate toggle) {
 }
 
 Domain target_domain(const CompileDesc& desc) {
-    return desc.target_domain.value_or(gpu::format_traits(desc.target).is_float ? Domain::SceneLinear : Domain::Encoded);
+    return desc.target_domain.value_or(gpu::format_traits(desc.target.format).is_float ? Domain::SceneLinear : Domain::Encoded);
 }
 
 Finish finish_of(Domain domain, const CompileDesc& desc) {
     if (target_domain(desc) != Domain::Encoded) return Finish::None;
-    if (domain == Domain::Encoded) return gpu::format_traits(desc.target).is_srgb ? Finish::DecodeSrgb : Finish::None;
-    const bool is_encoded_here = !gpu::format_traits(desc.target).is_srgb && desc.encodes_target.value_or(!gpu::format_traits(desc.target).is_float);
+    if (domain == Domain::Encoded) return gpu::format_traits(desc.target.format).is_srgb ? Finish::DecodeSrgb : Finish::None;
+    const bool is_encoded_here = !gpu::format_traits(desc.target.format).is_srgb && desc.encodes_target.value_or(!gpu::format_traits(desc.target.format).is_float);
     return is_encoded_here ? Finish::EncodeSrgb : Finish::None;
 }
 

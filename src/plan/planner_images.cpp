@@ -4,20 +4,19 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gpu/formats.hpp"
 #include "plan/half.hpp"
 #include "plan/planner_state.hpp"
-#include "gpu/formats.hpp"
 
 namespace darkroom::plan {
 
-graph::Version Planner::import_host(HostImage image, const char* name, VkFormat format, VkImageUsageFlags usage,
-                                    graph::Size size) {
+graph::Version Planner::import_host(HostImage image, const char* name, const ImageUse& use, graph::Size size) {
     if (const auto found = host_images_.find(image); found != host_images_.end()) return found->second;
     program_.imports.emplace_back(image);
     const graph::Version version =
-        program_.graph.import({.image = {.name = name, .format = format, .size = size}, .usage = usage});
+        program_.graph.import({.image = {.name = name, .format = use.format, .size = size}, .usage = use.usage});
     host_images_[image] = version;
-    facts_[version.index] = {.root = version.index, .size = size, .format = format, .usage = usage};
+    facts_[version.index] = {.root = version.index, .size = size, .format = use.format, .usage = use.usage};
     return version;
 }
 

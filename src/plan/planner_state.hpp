@@ -78,8 +78,7 @@ class Planner {
     [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
     [[nodiscard]] bool is_shared_toggle(std::size_t index) const;
     [[nodiscard]] std::int32_t toggle_index(Gate toggle);
-    [[nodiscard]] graph::Version import_host(HostImage image, const char* name, VkFormat format,
-                                             VkImageUsageFlags usage, graph::Size size);
+    [[nodiscard]] graph::Version import_host(HostImage image, const char* name, const ImageUse& use, graph::Size size);
     [[nodiscard]] graph::Version create_picture(std::string name, graph::Size size);
     void fall_back(graph::Version version, graph::Version instead);
     [[nodiscard]] graph::Version import_neutral(VkFormat format, const PassVector& value);

@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "plan/glsl.hpp"
 #include "gpu/kernel.hpp"
 #include "graph/graph.hpp"
+#include "plan/glsl.hpp"
 
 namespace darkroom::plan {
 
 /// A stack entry as the Composer keeps it.
 struct Entry {
     const EffectInfo* info = nullptr;
-    Inputs inputs;
+    EntryDesc desc;
     std::vector<std::uint32_t> base;  ///< parameter words
     struct Override {
         std::string owner;
@@ -37,7 +37,7 @@ struct Entry {
         return is_on && info->makes != nullptr ? info->makes(before, words) : before;
     }
     [[nodiscard]] bool is_plain() const {
-        return inputs.opacity == 1.0f && inputs.blend == BlendMode{} && !inputs.mask.is_given();
+        return desc.opacity == 1.0f && desc.blend == BlendMode{} && !desc.mask.is_given();
     }
 };
 
