@@ -22,7 +22,7 @@ namespace {
 using Words = std::vector<std::uint32_t>;
 
 // Raised whenever the options below change, so that no entry made with others is found.
-constexpr std::string_view options_version = "darkroom 1: vulkan 1.3, spir-v 1.5, performance";
+constexpr std::string_view options_version = "darkroom 2: vulkan 1.2, spir-v 1.5, performance";
 
 shaderc_shader_kind kind_of(ShaderStage stage) {
     switch (stage) {
@@ -54,20 +54,62 @@ std::optional<Words> read_entry(const std::filesystem::path& path) {
     if (content_hash(content) != expected) return {};
     Words words(content.size() / sizeof(std::uint32_t));
     std::memcpy(words.data(), content.data(), content.size());
+    // Its time is when it was last used, by which the cache is thinned out.
+    std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now(), error);
     return words;
 }
 
 /// A cache that cannot be written is slow, not wrong: failures are dropped.
-void write_entry(const std::filesystem::path& path, const Words& words) {
+std::uintmax_t write_entry(const std::filesystem::path& path, const Words& words) {
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
-    if (error) return;
+    if (error) return 0;
     const std::span<const std::byte> content = std::as_bytes(std::span(words));
     const Hash hash = content_hash(content);
     std::vector<std::byte> bytes(sizeof hash + content.size());
     std::memcpy(bytes.data(), &hash, sizeof hash);
     std::memcpy(bytes.data() + sizeof hash, content.data(), content.size());
-    static_cast<void>(write_file(path, bytes));
+    return write_file(path, bytes) ? bytes.size() : 0;
+}
+
+struct CachedFile {
+    std::filesystem::path path;
+    std::uintmax_t bytes = 0;
+    std::filesystem::file_time_type used{};
+};
+
+/// Temporary files that a killed process left behind count as well. What vanishes meanwhile was another process's
+/// doing.
+std::vector<CachedFile> cached_files(const std::filesystem::path& folder) {
+    std::vector<CachedFile> files;
+    std::error_code error;
+    std::filesystem::directory_iterator entry(folder, error);
+    for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+        if (entry->path().extension() != ".spv") continue;
+        std::error_code of_file;
+        CachedFile file{.path = entry->path(), .bytes = entry->file_size(of_file)};
+        if (!of_file) file.used = entry->last_write_time(of_file);
+        if (!of_file) files.push_back(std::move(file));
+    }
+    return files;
+}
+
+/// Removes what was used longest ago if there are more bytes than `most`, and returns how many remain.
+std::uintmax_t thin_out(const std::filesystem::path& folder, std::uintmax_t most) {
+    std::vector<CachedFile> files = cached_files(folder);
+    std::uintmax_t total = 0;
+    for (const CachedFile& file : files) total += file.bytes;
+    if (total <= most) return total;
+    // Further than to the bound, so that the folder is not looked through again for every entry that comes.
+    const std::uintmax_t wanted = most - most / 4;
+    std::ranges::sort(files, {}, &CachedFile::used);
+    for (const CachedFile& file : files) {
+        if (total <= wanted) break;
+        std::error_code error;
+        std::filesystem::remove(file.path, error);
+        total -= file.bytes;
+    }
+    return total;
 }
 
 /// The first line that reports an error, without the word "error:". The compiler writes "file:line: error: message".
@@ -87,8 +129,9 @@ Result<Words> run_compiler(const ShaderSource& source) {
     try {
         shaderc::Compiler compiler;
         shaderc::CompileOptions options;
-        options.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_3);
-        // SPIR-V 1.6 states workgroup sizes in a way that asks the host for the feature maintenance4.
+        // What a 1.2 device loads. SPIR-V 1.6 would also state workgroup sizes in a way that asks the host for the
+        // feature maintenance4.
+        options.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_2);
         options.SetTargetSpirv(shaderc_spirv_version_1_5);
         options.SetOptimizationLevel(shaderc_optimization_level_performance);
         const shaderc::SpvCompilationResult result =
@@ -104,7 +147,15 @@ Result<Words> run_compiler(const ShaderSource& source) {
 
 }  // namespace
 
-ShaderCompiler::ShaderCompiler(std::filesystem::path cache_folder) : folder_(std::move(cache_folder)) {}
+ShaderCompiler::ShaderCompiler(std::filesystem::path cache_folder, std::uintmax_t most_bytes)
+    : folder_(std::move(cache_folder)), most_bytes_(most_bytes) {}
+
+void ShaderCompiler::add_entry(const std::filesystem::path& path, const Words& words) {
+    const std::uintmax_t bytes = write_entry(path, words);
+    const std::lock_guard lock(size_mutex_);
+    if (known_bytes_) *known_bytes_ += bytes;
+    if (!known_bytes_ || *known_bytes_ > most_bytes_) known_bytes_ = thin_out(folder_, most_bytes_);
+}
 
 Result<Words> ShaderCompiler::compile(const ShaderSource& source) {
     const std::filesystem::path path = folder_.empty() ? std::filesystem::path() : entry_path(folder_, source);
@@ -116,7 +167,7 @@ Result<Words> ShaderCompiler::compile(const ShaderSource& source) {
     }
     ++compiled;
     Result<Words> words = run_compiler(source);
-    if (words && !path.empty()) write_entry(path, *words);
+    if (words && !path.empty()) add_entry(path, *words);
     return words;
 }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // GLSL to SPIR-V, with a content-addressed disk cache: the key hashes source, stage, options and the compiler's
-// version. A damaged entry is recompiled, never trusted (the file carries a hash of its words).
+// version. A damaged entry is recompiled, never trusted (the file carries a hash of its words). Several processes may
+// share a folder: entries appear whole, and one that another process removed is compiled again.
 
 #include <atomic>
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
-#include <functional>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,8 +26,11 @@ struct ShaderSource {
 
 class ShaderCompiler {
   public:
-    /// An empty folder: no disk cache.
-    explicit ShaderCompiler(std::filesystem::path cache_folder);
+    /// Some thousands of kernels.
+    static constexpr std::uintmax_t most_bytes_by_default = std::uintmax_t{128} << 20U;
+    /// An empty folder: no disk cache. When its entries exceed `most_bytes`, those that were not used for longest are
+    /// removed, down to three quarters of it.
+    explicit ShaderCompiler(std::filesystem::path cache_folder, std::uintmax_t most_bytes = most_bytes_by_default);
     /// Error text: "file:line: message" of the first error, by the #line directives of the source.
     [[nodiscard]] Result<std::vector<std::uint32_t>> compile(const ShaderSource& source);
     /// Compiles many on a few threads; results in order.
@@ -35,7 +40,12 @@ class ShaderCompiler {
     std::atomic<std::uint64_t> from_cache{0};
 
   private:
+    void add_entry(const std::filesystem::path& path, const std::vector<std::uint32_t>& words);
+
     std::filesystem::path folder_;
+    std::uintmax_t most_bytes_;
+    std::mutex size_mutex_;                      ///< guards the next member
+    std::optional<std::uintmax_t> known_bytes_;  ///< when this process last looked, and what it added since
 };
 
 }  // namespace darkroom::gpu

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "core/files.hpp"
+#include "core/parallel.hpp"
 
 namespace darkroom::gpu {
 
@@ -24,6 +27,16 @@ class GpuShaderCache : public ::testing::Test {
     [[nodiscard]] std::filesystem::path only_entry() const {
         const std::filesystem::directory_iterator entries(folder);
         return entries == std::filesystem::directory_iterator() ? std::filesystem::path() : entries->path();
+    }
+    [[nodiscard]] std::uintmax_t bytes_in_folder() const {
+        std::uintmax_t bytes = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) bytes += entry.file_size();
+        return bytes;
+    }
+    void make_older(int hours) const {
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            std::filesystem::last_write_time(entry.path(), entry.last_write_time() - std::chrono::hours(hours));
+        }
     }
     std::filesystem::path folder =
         std::filesystem::path(::testing::TempDir()) /
@@ -62,6 +75,65 @@ TEST_F(GpuShaderCache, DoesNotTrustADamagedEntry) {
         EXPECT_EQ(compiler.compile(empty).value(), *made) << size;
     }
     EXPECT_EQ(compiler.from_cache, 0U);
+}
+
+TEST_F(GpuShaderCache, ForgetsWhatWasNotUsedForLongest) {
+    const auto numbered = [](int index) {
+        return source("layout(local_size_x = " + std::to_string(index + 2) + ") in;\nvoid main() {}\n");
+    };
+    ASSERT_TRUE(ShaderCompiler(folder).compile(numbered(0)));
+    const std::uintmax_t entry_size = std::filesystem::file_size(only_entry());
+    ShaderCompiler compiler(folder, 4 * entry_size + entry_size / 2);
+    for (int index = 1; index < 4; ++index) ASSERT_TRUE(compiler.compile(numbered(index)));
+    EXPECT_EQ(bytes_in_folder(), 4 * entry_size) << "as many as there is room for";
+    // Hours apart, so that no clock's steps matter; then the oldest is used again.
+    make_older(24);
+    ASSERT_TRUE(compiler.compile(numbered(0)));
+    ASSERT_TRUE(compiler.compile(numbered(4)));
+    EXPECT_LE(bytes_in_folder(), 4 * entry_size);
+    EXPECT_GE(bytes_in_folder(), 2 * entry_size);
+    ShaderCompiler next(folder);
+    ASSERT_TRUE(next.compile(numbered(0)));
+    ASSERT_TRUE(next.compile(numbered(4)));
+    EXPECT_EQ(next.from_cache, 2U) << "what was used last stays";
+    int missing = 0;
+    for (int index = 1; index < 4; ++index) {
+        const std::uint64_t before = next.compiled;
+        ASSERT_TRUE(next.compile(numbered(index)));
+        missing += next.compiled > before ? 1 : 0;
+    }
+    EXPECT_GE(missing, 1);
+}
+
+TEST_F(GpuShaderCache, CompilersThatShareAFolderKeepItsBound) {
+    constexpr std::uintmax_t most = 1500;
+    std::vector<ShaderSource> sources;
+    for (int index = 0; index < 12; ++index) {
+        sources.push_back(source("layout(local_size_x = " + std::to_string(index + 1) + ") in;\nvoid main() {}\n"));
+    }
+    ShaderCompiler one(folder, most), other(folder, most);
+    std::vector<Result<Words>> results(2 * sources.size());
+    parallel_for(results.size(), 4, [&](std::size_t index) {
+        ShaderCompiler& compiler = index % 2 == 0 ? one : other;
+        results[index] = compiler.compile(sources[index / 2]);
+    });
+    ShaderCompiler without({});
+    for (std::size_t index = 0; index < results.size(); ++index) {
+        ASSERT_TRUE(results[index]) << results[index].error().text;
+        if (index % 2 == 0) continue;
+        EXPECT_EQ(*results[index], *results[index - 1]);
+        EXPECT_EQ(*results[index], without.compile(sources[index / 2]).value());
+    }
+    // Each looks at the folder again after `most` bytes of its own, so together they may be over by one bound.
+    EXPECT_LE(bytes_in_folder(), 2 * most);
+}
+
+TEST(GpuShader, MakesWhatAVulkan12DeviceLoads) {
+    ShaderCompiler compiler({});
+    const Result<Words> words = compiler.compile(source("layout(local_size_x = 1) in;\nvoid main() {}\n"));
+    ASSERT_TRUE(words);
+    constexpr std::uint32_t spirv_1_5 = 0x00010500;
+    EXPECT_EQ((*words)[1], spirv_1_5);
 }
 
 TEST(GpuShader, WorksWithoutAFolder) {
