@@ -59,7 +59,8 @@ TEST(Formats, NumbersAreSeenByShadersAsTheyAreStored) {
     EXPECT_EQ(format_traits(VK_FORMAT_R16G16_SINT).numeric, Numeric::Signed);
     EXPECT_EQ(format_traits(VK_FORMAT_A2B10G10R10_UINT_PACK32).numeric, Numeric::Unsigned);
     EXPECT_EQ(format_traits(VK_FORMAT_R8G8B8A8_SNORM).numeric, Numeric::Float);
-    EXPECT_EQ(format_traits(VK_FORMAT_D24_UNORM_S8_UINT).numeric, Numeric::Float) << "its depth is read, not its stencil";
+    EXPECT_EQ(format_traits(VK_FORMAT_D24_UNORM_S8_UINT).numeric, Numeric::Float)
+        << "its depth is read, not its stencil";
     EXPECT_EQ(format_traits(VK_FORMAT_R16G16_SINT).glsl_qualifier, "rg16i");
     EXPECT_EQ(format_traits(VK_FORMAT_R16G16_SINT).bits, 32U);
 }
