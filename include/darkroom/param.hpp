@@ -17,6 +17,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <darkroom/name_of.hpp>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -108,6 +110,10 @@ struct ParamTable {
 
 namespace detail {
 
+/// Not constexpr: a description that calls it is no constant and does not compile, and the compiler shows the sentence.
+/// A throw would do the same, but not in a host that is compiled without exceptions.
+[[noreturn]] inline void refuse(const char* /*why*/) { std::abort(); }
+
 template <auto M>
 struct Member;
 template <class O, class T, T O::*M>
@@ -116,63 +122,7 @@ struct Member<M> {
     using Type = T;
 };
 
-// The compiler knows how a template argument is spelled; asking it keeps a name from being written twice. GCC and
-// Clang; the static_asserts fail first if a compiler changes its wording.
-constexpr std::string_view last_identifier(std::string_view pretty, std::string_view key) {
-    pretty.remove_prefix(pretty.find(key) + key.size());
-    pretty = pretty.substr(0, pretty.find_first_of(";]"));
-    return pretty.substr(pretty.rfind(':') + 1);
-}
-template <auto V>
-constexpr std::string_view name_of() {
-    return last_identifier(__PRETTY_FUNCTION__, "V = ");
-}
-template <class T>
-constexpr std::string_view name_of() {
-    return last_identifier(__PRETTY_FUNCTION__, "T = ");
-}
 static_assert(name_of<&Rgb::g>() == "g" && name_of<Scale::Log>() == "Log" && name_of<Range>() == "Range");
-
-/// An enumerator's name as users write it: AcesNarkowicz -> aces_narkowicz.
-struct SnakeName {
-    std::array<char, 48> text{};
-    std::size_t size = 0;
-    [[nodiscard]] constexpr std::string_view view() const { return {text.data(), size}; }
-};
-constexpr SnakeName snake_name(std::string_view pascal) {
-    SnakeName out;
-    for (std::size_t i = 0; i < pascal.size(); ++i) {
-        const bool is_upper = pascal[i] >= 'A' && pascal[i] <= 'Z';
-        if (is_upper && i > 0) out.text[out.size++] = '_';
-        out.text[out.size++] = is_upper ? static_cast<char>(pascal[i] - 'A' + 'a') : pascal[i];
-    }
-    return out;
-}
-
-template <class E>
-struct Enumerators {
-    static constexpr std::size_t limit = 32;
-    static constexpr std::size_t count = [] {
-        std::size_t n = 0;
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
-            // A value without an enumerator prints as "(E)3".
-            ((n += name_of<static_cast<E>(I)>().find(')') == std::string_view::npos ? 1u : 0u), ...);
-        }
-        (std::make_index_sequence<limit>{});
-        return n;
-    }();
-    static constexpr std::array<SnakeName, count> storage = [] {
-        std::array<SnakeName, count> out{};
-        [&]<std::size_t... I>(std::index_sequence<I...>) { ((out[I] = snake_name(name_of<static_cast<E>(I)>())), ...); }
-        (std::make_index_sequence<count>{});
-        return out;
-    }();
-    static constexpr std::array<std::string_view, count> names = [] {
-        std::array<std::string_view, count> out{};
-        for (std::size_t i = 0; i < count; ++i) out[i] = storage[i].view();
-        return out;
-    }();
-};
 static_assert(Enumerators<Scale>::count == 2 && Enumerators<Scale>::names[1] == "log");
 
 template <class T>
@@ -265,7 +215,7 @@ struct Field {
     /// unroll the loop and fold what follows from its number. For integers of at most 8 bits that are seldom animated.
     [[nodiscard]] constexpr Field as_loop_count() const {
         static_assert(std::is_same_v<typename detail::Member<M>::Type, std::int32_t>);
-        if (info.range.min < 0 || info.range.max > 255) throw "a loop count lies in [0, 255]";
+        if (info.range.min < 0 || info.range.max > 255) detail::refuse("a loop count lies in [0, 255]");
         Field copy = *this;
         copy.info.is_loop_count = true;
         return copy;
@@ -282,11 +232,11 @@ template <auto M>
 constexpr Field<M> field(std::string_view doc, Range range = {}, Unit unit = unit::none) {
     using Owner = typename detail::Member<M>::Owner;
     using Type = typename detail::Member<M>::Type;
-    if (doc.empty() || doc.back() != '.') throw "the doc of a parameter is a sentence";
+    if (doc.empty() || doc.back() != '.') detail::refuse("the doc of a parameter is a sentence");
     if constexpr (detail::has_range<Type>()) {
-        if (!(range.min < range.max)) throw "the range is empty";
-        if (range.scale == Scale::Log && range.min <= 0) throw "a log range starts above zero";
-        if (!detail::is_inside(Owner{}.*M, range)) throw "the default lies outside the range";
+        if (!(range.min < range.max)) detail::refuse("the range is empty");
+        if (range.scale == Scale::Log && range.min <= 0) detail::refuse("a log range starts above zero");
+        if (!detail::is_inside(Owner{}.*M, range)) detail::refuse("the default lies outside the range");
     }
     ParamInfo info{.name = detail::name_of<M>(),
                    .doc = doc,
@@ -318,7 +268,7 @@ constexpr auto describe(Field<M>... fields) {
     std::uint32_t next = 0;
     std::size_t i = 0;
     for (const ParamInfo& info : {fields.info...}) {
-        if (info.word != next) throw "describe the members in the order they are declared";
+        if (info.word != next) detail::refuse("describe the members in the order they are declared");
         next += info.words;
         out.rows[i++] = info;
     }
