@@ -1,4 +1,4 @@
-# What an engine links: libdarkroom.so, one shared object of core, gpu, graph, compose and effects, and
+# What an engine links: libdarkroom.so, one shared object of core, gpu, graph, plan, compose and effects, and
 # libdarkroom_looks.so, which reads looks (TOML) and table files. In the tree and installed they are Darkroom::darkroom and
 # Darkroom::looks. Included after the folders they are made of.
 
@@ -18,6 +18,10 @@ function(darkroom_shared_library name)
     LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
     LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/darkroom.map)
   target_link_options(${name} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/darkroom.map)
+  if(NOT DARKROOM_SANITIZE)
+    # A library that is used here and not named would be a surprise for the host.
+    target_link_options(${name} PRIVATE LINKER:-z,defs)
+  endif()
   target_include_directories(${name} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<BUILD_INTERFACE:${DARKROOM_GENERATED}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${name} INTERFACE cxx_std_20)
@@ -26,12 +30,13 @@ function(darkroom_shared_library name)
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
-darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS core gpu graph plan compose effects)
+set(DARKROOM_PARTS core gpu graph plan compose effects)
+darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS ${DARKROOM_PARTS})
 # The headers name Vulkan types; a host calls Vulkan through whatever loader it has.
 target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)
 if(TARGET darkroom_looks)
   darkroom_shared_library(darkroom_looks_shared OUTPUT darkroom_looks EXPORT looks PARTS toml looks)
-  target_link_libraries(darkroom_looks_shared PUBLIC darkroom_shared)
+  target_link_libraries(darkroom_looks_shared PUBLIC darkroom_shared PRIVATE darkroom_fmt)
 endif()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/darkroom DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
