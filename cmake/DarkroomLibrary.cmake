@@ -1,6 +1,7 @@
 # What an engine links: libdarkroom.so, one shared object of core, gpu, graph, plan, compose and effects, and
-# libdarkroom_looks.so, which reads looks (TOML) and table files. In the tree and installed they are Darkroom::darkroom and
-# Darkroom::looks. Included after the folders they are made of.
+# libdarkroom_looks.so, which reads looks (TOML) and table files; or libdarkroom.a, which is the former as an archive
+# (DARKROOM_STATIC). In the tree and installed they are Darkroom::darkroom, Darkroom::looks and Darkroom::static. Included
+# after the folders they are made of.
 
 include(CMakePackageConfigHelpers)
 
@@ -37,6 +38,9 @@ target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)
 if(TARGET darkroom_looks)
   darkroom_shared_library(darkroom_looks_shared OUTPUT darkroom_looks EXPORT looks PARTS toml looks)
   target_link_libraries(darkroom_looks_shared PUBLIC darkroom_shared PRIVATE darkroom_fmt)
+endif()
+if(DARKROOM_STATIC)
+  include(DarkroomStatic)
 endif()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/darkroom DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
