@@ -28,12 +28,17 @@ add_library(darkroom_options INTERFACE)
 # Without -fno-trapping-math and -fno-math-errno the CPU references stay scalar; neither changes a result.
 target_compile_options(darkroom_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -Wno-missing-field-initializers -fno-trapping-math -fno-math-errno)
-if(DARKROOM_SANITIZE)
+if(DARKROOM_SANITIZE STREQUAL thread)
+  target_compile_options(darkroom_options INTERFACE -fsanitize=thread)
+  target_link_options(darkroom_options INTERFACE -fsanitize=thread)
+elseif(DARKROOM_SANITIZE)
   # What is left out doubles the time of the build, and AddressSanitizer sees most of it.
   target_compile_options(darkroom_options INTERFACE -fsanitize=address,undefined
     -fno-sanitize=vptr,null,alignment,object-size -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(darkroom_options INTERFACE -fsanitize=address,undefined)
-  # Leaks are traced back to the driver, which must still be loaded when the report is made.
+endif()
+if(DARKROOM_SANITIZE)
+  # What is reported is traced back to the driver, which must still be loaded then.
   target_sources(darkroom_options INTERFACE
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${PROJECT_SOURCE_DIR}/tests/keep_libraries.cpp>)
 endif()

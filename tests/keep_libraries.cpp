@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Part of every program of the sanitizer build: shared libraries stay loaded, because the leak report at exit can only
+// Part of every program of the sanitizer builds: shared libraries stay loaded, because the report at exit can only
 // name a driver, and its suppressions can only match one, that is still there.
 
 extern "C" int dlclose(void*);
