@@ -78,6 +78,15 @@ is_current() {
     [[ -z $(find "${program_sources[@]/#/$root/}" ! "${made[@]}" -newer "$stamp" -print -quit) ]]
 }
 
+# How much of the last build came from the compiler's cache, of which nothing is said where it compiled nothing.
+say_cache_hits() {
+    [[ -s $1 ]] || return 0
+    local hits misses
+    hits=$(grep -cE '^(direct|preprocessed)_cache_hit$' "$1") || true
+    misses=$(grep -cx cache_miss "$1") || true
+    say "$hits of $((hits + misses)) compiled files from the cache"
+}
+
 # build FOLDER TARGET CMAKE_OPTION...: configures and builds TARGET. One build at a time in a folder.
 build() {
     local folder=$1 target=$2
@@ -101,12 +110,14 @@ build() {
     printf '%s' "$root" >"$folder/.building"
     cmake -S "$root" -B "$folder" -G Ninja "$@" >>"$log" 2>&1 || failed "configuring"
     # Without the lock, which a compiler cache's server would keep.
-    cmake --build "$folder" --target "$target" >>"$log" 2>&1 9>&- &
+    rm -f "$folder/.ccache"
+    CCACHE_STATSLOG=$folder/.ccache cmake --build "$folder" --target "$target" >>"$log" 2>&1 9>&- &
     local builder=$!
     trap 'kill "$builder" 2>/dev/null; exit 130' INT TERM
     show_progress "$builder"
     wait "$builder" || failed "building"
     trap - INT TERM
     mv "$folder/.building" "$folder/.built"
+    say_cache_hits "$folder/.ccache"
     exec 9>&-
 }
