@@ -222,7 +222,7 @@ class Compiler {
                 slot.last_pass = std::max(slot.last_pass, pass);
                 own_past_[index].stages |= stages_of(use);
                 own_past_[index].access |= access_of(use);
-                if (!is_write(use)) own_past_[index].reads |= 1u << static_cast<std::uint32_t>(use);
+                if (!is_write(use)) own_past_[index].reads |= sight_of(use);
             }
         });
         extend_kept();

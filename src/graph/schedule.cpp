@@ -14,13 +14,13 @@ struct MipState {
     VkPipelineStageFlags2 write_stages = 0;  ///< to wait for, to come after the last write
     VkAccessFlags2 write_access = 0;         ///< of that write, 0 if already made available
     VkPipelineStageFlags2 read_stages = 0;   ///< that have read since
-    std::uint32_t seen_by = 0;               ///< uses that see the last write, one bit each
+    std::uint32_t seen_by = 0;               ///< uses that see the last write, see sight_of
     bool is_touched = false;
 };
 
 /// What a pass wants of a mip level.
 struct Wanted {
-    std::uint32_t uses = 0;  ///< one bit each; 0: nothing
+    std::uint32_t uses = 0;  ///< see sight_of; 0: nothing
     VkPipelineStageFlags2 stages = 0;
     VkAccessFlags2 access = 0;
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -240,6 +240,8 @@ void Schedule::State::start(std::span<const ImportState> imports) {
         if (slot.kind == Slot::Kind::History && !is_current) {
             state.layout = slot.rest_layout;
             state.seen_by = none;  // finish() saw to that.
+            // The last frame may have read it in any of these after it wrote it.
+            state.read_stages = state.write_stages;
         }
         std::fill_n(mips.begin() + solution->first_mip[index], slot.desc.mip_levels, state);
     }
@@ -251,7 +253,7 @@ void Schedule::State::want(std::uint32_t slot, MipMask mask, Use use) {
     for (std::uint32_t level = 0; level < solution->slots[slot].desc.mip_levels; ++level) {
         if (!has_mip(mask, level)) continue;
         Wanted& all = wanted[solution->first_mip[slot] + level];
-        all.uses |= 1u << static_cast<std::uint32_t>(use);
+        all.uses |= sight_of(use);
         all.stages |= stages_of(use);
         all.access |= access_of(use);
         all.layout = layout_of(use);

@@ -88,11 +88,18 @@ struct Declaration {
     }
 };
 
+/// One bit for what a use sees of a write: uses of the same stage and access see the same.
+[[nodiscard]] constexpr std::uint32_t sight_of(Use use) {
+    if (use == Use::SampledGeneralCompute) use = Use::SampledCompute;
+    if (use == Use::SampledGeneralFragment) use = Use::SampledFragment;
+    return 1u << static_cast<std::uint32_t>(use);
+}
+
 /// Everything that may have touched the memory of a slot before a frame's first use of it.
 struct Past {
     VkPipelineStageFlags2 stages = 0;
     VkAccessFlags2 access = 0;
-    std::uint32_t reads = 0;  ///< uses that only read, one bit each
+    std::uint32_t reads = 0;  ///< uses that only read, see sight_of
 };
 
 /// Result of compile(). Versions keep their declared numbers; passes are numbered anew, without the culled ones.

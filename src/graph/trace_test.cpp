@@ -193,6 +193,27 @@ TEST(GraphTrace, HistoryWriterIsKeptByTheReaderOfThePreviousFrame) {
               "final average#0: compute:store -> compute|fragment:sample, general -> read-only\n");
 }
 
+TEST(GraphTrace, HistoryMovesAfterTheReadersOfTheLastFrame) {
+    Graph graph;
+    const Graph::History history = graph.history(image("history"));
+    graph.add({.name = "first", .reads = {{history.previous, Use::SampledFragment}}, .has_side_effect = true});
+    graph.add({.name = "second", .reads = {{history.previous, Use::SampledGeneralCompute}}, .has_side_effect = true});
+    const Version current = graph.add({.name = "write", .writes = {{history.current, Use::ColorWrite}}})[0];
+    // Both stages see the content, so the frame ends without a barrier.
+    graph.add({.name = "third", .reads = {{current, Use::SampledFragment}}, .has_side_effect = true});
+    graph.add({.name = "fourth", .reads = {{current, Use::SampledCompute}}, .has_side_effect = true});
+    const auto compiled = graph.compile(full_hd, measure);
+    ASSERT_TRUE(compiled) << compiled.error().text;
+    std::array<Schedule, 3> schedules{Schedule(*compiled), Schedule(*compiled), Schedule(*compiled)};
+    std::vector<Recording> recordings;
+    for (std::uint64_t frame = 0; frame < schedules.size(); ++frame) {
+        schedules[frame].derive({}, {}, frame);
+        recordings.push_back(schedules[frame].recording());
+    }
+    const auto checked = check_frames(*compiled, recordings, {});
+    EXPECT_TRUE(checked) << checked.error().text;
+}
+
 TEST(GraphTrace, UnusedImportStillGoesToItsFinalLayout) {
     Graph graph;
     host_image(graph, "moved");
