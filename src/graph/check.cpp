@@ -250,15 +250,18 @@ class Checker {
         return {};
     }
 
-    /// What a reader of `version` is to get in this frame, found by trying one fall-back after the other.
-    std::uint32_t version_for_reader(std::uint32_t version) const {
+    bool holds_nothing(std::uint32_t version) const {
+        return solution_.versions[version].replaced == none && !solution_.image_of(version).starts_defined();
+    }
+
+    /// What a reader of `version` is to get in this frame, found by trying one fall-back after the other. `own`: the
+    /// reader's own fall-back, or none.
+    std::uint32_t version_for_reader(std::uint32_t version, std::uint32_t own = none) const {
         while (version != none && is_off(solution_.versions[version].gate)) {
             const VersionRecord& record = solution_.versions[version];
-            if (record.instead != none) {
-                version = record.instead;
-            } else {
-                version = record.keeps_content || record.is_partial ? record.replaced : none;
-            }
+            const bool has_older = record.instead == none && (record.keeps_content || record.is_partial);
+            if (own != none && (!has_older || holds_nothing(record.replaced))) return version_for_reader(own);
+            version = has_older ? record.replaced : record.instead;
         }
         return version;
     }
@@ -323,7 +326,7 @@ class Checker {
     }
 
     Result<> play_read(const Read& read, const std::string& who) {
-        const std::uint32_t version = version_for_reader(read.version.index);
+        const std::uint32_t version = version_for_reader(read.version.index, read.instead.index);
         if (version == none) return user_error(who + " reads an image whose producer is off");
         const std::uint32_t slot = solution_.image_of(version).slots[recording_.frame % 2];
         const MipMask mips = levels_of(read.mips, solution_.slots[slot].desc.mip_levels);

@@ -71,10 +71,10 @@ class Compiler {
         return {};
     }
 
-    void need(Needs& needs, std::uint32_t version, std::int32_t gate, MipRange mips) const {
-        for (const Alternative& found : alternatives(declaration_, version, gate)) {
+    void need(Needs& needs, const Read& read, std::int32_t gate) const {
+        for (const Alternative& found : alternatives(declaration_, read.version.index, gate, read.instead.index)) {
             if (found.version == none) continue;
-            needs.mips[found.version] |= mip_mask(mips, declaration_.image_of(found.version).desc.mip_levels);
+            needs.mips[found.version] |= mip_mask(read.mips, declaration_.image_of(found.version).desc.mip_levels);
         }
     }
 
@@ -83,7 +83,7 @@ class Compiler {
     void cull() {
         needs_ = {std::vector<MipMask>(declaration_.versions.size()), std::vector<bool>(declaration_.passes.size())};
         for (std::uint32_t version = 0; version < declaration_.versions.size(); ++version) {
-            if (declaration_.versions[version].is_kept) need(needs_, version, -1, {});
+            if (declaration_.versions[version].is_kept) need(needs_, {.version = {version}}, -1);
         }
         std::vector<bool> is_read(declaration_.history_count);
         for (bool is_changed = true; is_changed;) {
@@ -112,18 +112,19 @@ class Compiler {
             }
         }
         if (!is_needed) return;
-        for (const Read& read : record.desc.reads) need(needs_, read.version.index, record.desc.gate, read.mips);
+        for (const Read& read : record.desc.reads) need(needs_, read, record.desc.gate);
     }
 
     bool mark_histories(const PassDesc& pass, std::vector<bool>& is_read) {
         bool is_changed = false;
         for (const Read& read : pass.reads) {
-            for (const Alternative& found : alternatives(declaration_, read.version.index, pass.gate)) {
+            for (const Alternative& found :
+                 alternatives(declaration_, read.version.index, pass.gate, read.instead.index)) {
                 if (found.version == none) continue;
                 const Image& image = declaration_.image_of(found.version);
                 if (!image.is_previous || is_read[image.history_index]) continue;
                 is_read[image.history_index] = is_changed = true;
-                need(needs_, solution_->final_history_version[image.history_index], -1, {});
+                need(needs_, {.version = {solution_->final_history_version[image.history_index]}}, -1);
             }
         }
         return is_changed;
@@ -173,7 +174,8 @@ class Compiler {
             if (pass == none) continue;
             const PassDesc& desc = declaration_.passes[declared].desc;
             for (const Read& read : desc.reads) {
-                for (const Alternative& found : alternatives(declaration_, read.version.index, desc.gate)) {
+                for (const Alternative& found :
+                     alternatives(declaration_, read.version.index, desc.gate, read.instead.index)) {
                     if (found.version != none) function(pass, read.use, declaration_.versions[found.version].image);
                 }
             }

@@ -129,6 +129,55 @@ TEST(GraphError, FallBackCycle) {
     EXPECT_EQ(error_of(graph), "fall-backs form a cycle: 'x' -> 'y' -> 'x'");
 }
 
+TEST(GraphError, OwnFallBackIsEnough) {
+    Graph graph;
+    const Version black = constant(graph, "black");
+    const Version made = write(graph, "a", graph.create(image("x")), Use::StorageWrite, 0);
+    graph.add({.name = "b", .reads = {{.version = made, .instead = black}}, .has_side_effect = true});
+    EXPECT_EQ(error_of(graph), "no error");
+    read(graph, "c", made);
+    EXPECT_EQ(error_of(graph),
+              "pass 'c' reads 'x', but pass 'a' that writes it may be off: it needs a fall-back, or the same gate");
+}
+
+TEST(GraphError, OwnFallBackThatMayBeOffItself) {
+    Graph graph;
+    const Version other = write(graph, "z", graph.create(image("y")), Use::StorageWrite, 1);
+    const Version made = write(graph, "a", graph.create(image("x")), Use::StorageWrite, 0);
+    graph.fall_back(made, constant(graph, "black"));
+    graph.add({.name = "b", .reads = {{.version = made, .instead = other}}, .has_side_effect = true});
+    EXPECT_EQ(error_of(graph),
+              "pass 'b' reads 'y', but pass 'z' that writes it may be off: it needs a fall-back, or the same gate");
+}
+
+TEST(GraphError, OwnFallBackThatLeadsBack) {
+    Graph graph;
+    const Version first = write(graph, "a", graph.create(image("x")), Use::StorageWrite, 0);
+    const Version second = write(graph, "z", graph.create(image("y")), Use::StorageWrite, 1);
+    graph.fall_back(second, first);
+    graph.fall_back(first, constant(graph, "black"));
+    graph.add({.name = "b", .reads = {{.version = first, .instead = second}}, .has_side_effect = true});
+    EXPECT_EQ(error_of(graph), "fall-backs of pass 'b' form a cycle: 'x' -> 'y' -> 'x'");
+}
+
+TEST(GraphError, OwnFallBackThatLeadsToAnOlderVersion) {
+    Graph graph;
+    const Version first = write(graph, "a", graph.create(image("x")), Use::StorageWrite, 1);
+    const Version second = write(graph, "z", first, Use::ColorBlend, 1);
+    const Version side = write(graph, "s", graph.create(image("y")), Use::StorageWrite, 0);
+    graph.fall_back(side, first);
+    graph.fall_back(first, constant(graph, "black"));
+    graph.add({.name = "b", .reads = {{.version = second, .instead = side}}, .has_side_effect = true});
+    EXPECT_EQ(error_of(graph), "fall-backs of pass 'b' form a cycle: 'x' -> 'y' -> 'x'");
+}
+
+TEST(GraphError, OwnFallBackThatDoesNotExist) {
+    Graph graph;
+    const Version made = write(graph, "a", graph.create(image("x")));
+    graph.add({.name = "b", .reads = {{.version = made, .instead = {99}}}, .has_side_effect = true});
+    EXPECT_EQ(error_of(graph), "pass 'b' reads 'x', or a version that does not exist");
+}
+
 TEST(GraphError, FallBackOverwrittenBeforeTheReader) {
     Graph graph;
     const Version color = host_image(graph, "color");

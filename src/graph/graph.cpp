@@ -82,14 +82,17 @@ Version add_write(Declaration& declaration, const PassDesc& desc, const Write& w
     }
     const MipMask mips = mip_mask(write.mips, image.desc.mip_levels);
     const auto pass = static_cast<std::uint32_t>(declaration.passes.size());
-    declaration.versions[write.version.index].killer = pass;
-    return add_version(declaration, {.image = declaration.versions[write.version.index].image,
+    VersionRecord& replaced = declaration.versions[write.version.index];
+    const bool is_first = replaced.producer == none && !image.starts_defined();
+    replaced.killer = pass;
+    return add_version(declaration, {.image = replaced.image,
                                      .producer = pass,
                                      .gate = desc.gate,
                                      .replaced = write.version.index,
                                      .mips = mips,
                                      .keeps_content = keeps_content(write.use),
-                                     .is_partial = mips != all_mips(image.desc.mip_levels)});
+                                     .is_partial = mips != all_mips(image.desc.mip_levels),
+                                     .is_first = is_first});
 }
 
 }  // namespace
@@ -125,6 +128,10 @@ std::vector<Version> Graph::add(PassDesc desc) {
     for (const Read& read : desc.reads) {
         if (!is_usable(declaration, desc.name, read.version, "reads")) continue;
         is_inside(declaration, desc.name, read.version, read.mips, "reads");
+        if (read.instead.is_valid() && read.instead.index >= declaration.versions.size()) {
+            declaration.complain(fmt::format("pass '{}' reads '{}', or a version that does not exist", desc.name,
+                                             declaration.image_of(read.version.index).desc.name));
+        }
         if (is_write(read.use)) {
             declaration.complain(fmt::format("pass '{}' reads '{}' with a use that writes", desc.name,
                                              declaration.image_of(read.version.index).desc.name));

@@ -88,6 +88,8 @@ struct Read {
     Version version;
     Use use = Use::SampledCompute;
     MipRange mips{};
+    /// What this reader alone gets instead, see Graph::fall_back. Invalid: what all readers get.
+    Version instead{};
 };
 struct Write {
     Version version;  ///< the version this write replaces
@@ -142,7 +144,8 @@ class Graph {
 
     /// If the producer of `version` is off in a frame, its readers get `instead`: the pass's own input, or a constant.
     /// Mip levels that `instead` lacks become its last one. Without a fall-back, a write that keeps content falls back
-    /// to the version it replaces.
+    /// to the version it replaces. A reader with a Read::instead gets that one in place of any of these that would lead
+    /// to another image, or to none.
     void fall_back(Version version, Version instead);
     /// A promise of the caller: whenever `gate` is on, `implied` is on, too. No cycles.
     void imply(std::int32_t gate, std::int32_t implied);
@@ -252,9 +255,9 @@ class Schedule {
     [[nodiscard]] std::span<const Barrier> final_barriers() const;  ///< after the last step: the host's layouts
     [[nodiscard]] Recording recording() const;
     [[nodiscard]] bool runs(std::uint32_t pass) const;  ///< is this kept pass among the steps?
-    /// The slot that a reader of `version` gets in this frame, after fall-backs. ~0u: the version was culled, or its
-    /// producer is off and has no fall-back (then nothing that runs reads it).
-    [[nodiscard]] std::uint32_t slot_of(Version version) const;
+    /// The slot that a reader of `version` gets in this frame, after fall-backs (`instead`: Read::instead). ~0u: the
+    /// version was culled, or its producer is off and has no fall-back (then nothing that runs reads it).
+    [[nodiscard]] std::uint32_t slot_of(Version version, Version instead = {}) const;
 
   private:
     struct State;

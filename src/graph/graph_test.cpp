@@ -134,6 +134,94 @@ TEST(GraphCompile, FallBackLivesAsLongAsItMayBeRead) {
     EXPECT_EQ(schedule.slot_of(graded), schedule.slot_of(color));
 }
 
+TEST(GraphCompile, EveryReaderGetsItsOwnFallBack) {
+    for (const bool is_black_first : {true, false}) {
+        SCOPED_TRACE(is_black_first);
+        Graph graph;
+        const Version black = constant(graph, "black"), white = constant(graph, "white");
+        const Version depth = host_image(graph, "depth");
+        const Version shared = graph.add({.name = "shared",
+                                          .reads = {{depth, Use::SampledCompute}},
+                                          .writes = {{graph.create(image("x")), Use::StorageWrite}},
+                                          .gate = 0})[0];
+        const Version first = is_black_first ? black : white, second = is_black_first ? white : black;
+        graph.add({.name = "first", .reads = {{.version = shared, .instead = first}}, .has_side_effect = true});
+        graph.add({.name = "second", .reads = {{.version = shared, .instead = second}}, .has_side_effect = true});
+        const auto compiled = graph.compile(full_hd, measure);
+        ASSERT_TRUE(compiled) << compiled.error().text;
+        const std::array<ImportState, 3> imports{{{}, {}, host_state()}};
+        Schedule schedule(*compiled);
+        schedule.derive(std::array{false}, imports, 0);
+        EXPECT_EQ(schedule.slot_of(shared, black), schedule.slot_of(black));
+        EXPECT_EQ(schedule.slot_of(shared, white), schedule.slot_of(white));
+        EXPECT_EQ(schedule.slot_of(shared), none) << "who asks for nothing gets nothing";
+        EXPECT_TRUE(check(*compiled, schedule, imports));
+        schedule.derive(std::array{true}, imports, 1);
+        EXPECT_EQ(schedule.slot_of(shared, black), schedule.slot_of(shared));
+        EXPECT_EQ(schedule.slot_of(shared, white), schedule.slot_of(shared));
+        EXPECT_TRUE(check(*compiled, schedule, imports));
+    }
+}
+
+TEST(GraphCompile, OwnFallBackIsMadeForItsReaderAlone) {
+    Graph graph;
+    const Version black = constant(graph, "black");
+    const Version shared =
+        graph.add({.name = "shared", .writes = {{graph.create(image("x")), Use::StorageWrite}}, .gate = 0})[0];
+    const Version usual = graph.add({.name = "usual", .writes = {{graph.create(image("y")), Use::StorageWrite}}})[0];
+    const Version own = graph.add({.name = "own", .writes = {{graph.create(image("z")), Use::StorageWrite}}})[0];
+    graph.fall_back(shared, usual);
+    graph.add({.name = "first", .reads = {{.version = shared, .instead = own}}, .has_side_effect = true, .gate = 1});
+    graph.add({.name = "second", .reads = {{.version = shared, .instead = black}}, .has_side_effect = true});
+    const auto compiled = graph.compile(full_hd, measure);
+    ASSERT_TRUE(compiled) << compiled.error().text;
+    ASSERT_EQ(compiled->culled().size(), 1u) << "every reader has its own";
+    EXPECT_EQ(compiled->culled()[0], "usual");
+    const std::uint32_t own_pass = compiled->kept_pass_of({2});
+    Schedule schedule(*compiled);
+    const auto runs_own = [&](bool shared_is_on, bool first_is_on) {
+        schedule.derive(std::array{shared_is_on, first_is_on}, {}, 0);
+        const auto checked = check(*compiled, schedule, {});
+        EXPECT_TRUE(checked) << checked.error().text;
+        return schedule.runs(own_pass);
+    };
+    EXPECT_FALSE(runs_own(true, true));
+    EXPECT_FALSE(runs_own(false, false));
+    EXPECT_TRUE(runs_own(false, true));
+    EXPECT_EQ(schedule.slot_of(shared, own), schedule.slot_of(own));
+}
+
+TEST(GraphCompile, OwnFallBackStandsInForAWholePyramid) {
+    Graph graph;
+    const Version black = constant(graph, "black");
+    Version pyramid = graph.create(image("x", 3));
+    for (std::uint32_t level = 0; level < 3; ++level) {
+        pyramid = graph.add(
+            {.name = fmt::to_string(level), .writes = {{pyramid, Use::StorageWrite, {level, 1}}}, .gate = 0})[0];
+    }
+    graph.add({.name = "end", .reads = {{.version = pyramid, .instead = black}}, .has_side_effect = true});
+    const auto compiled = graph.compile(full_hd, measure);
+    ASSERT_TRUE(compiled) << compiled.error().text;
+    Schedule schedule(*compiled);
+    schedule.derive(std::array{false}, {}, 0);
+    EXPECT_EQ(schedule.slot_of(pyramid, black), schedule.slot_of(black));
+    EXPECT_TRUE(check(*compiled, schedule, {}));
+}
+
+TEST(GraphCompile, OwnFallBackLeavesOlderContentAlone) {
+    Graph graph;
+    const Version black = constant(graph, "black");
+    const Version filled = graph.add({.name = "fill", .writes = {{graph.create(image("x")), Use::ColorWrite}}})[0];
+    const Version blended = graph.add({.name = "blend", .writes = {{filled, Use::ColorBlend}}, .gate = 0})[0];
+    graph.add({.name = "end", .reads = {{.version = blended, .instead = black}}, .has_side_effect = true});
+    const auto compiled = graph.compile(full_hd, measure);
+    ASSERT_TRUE(compiled) << compiled.error().text;
+    Schedule schedule(*compiled);
+    schedule.derive(std::array{false}, {}, 0);
+    EXPECT_EQ(schedule.slot_of(blended, black), schedule.slot_of(filled));
+    EXPECT_TRUE(check(*compiled, schedule, {}));
+}
+
 TEST(GraphCompile, KeptTransientIsNotSharedAfterItsWrite) {
     Graph graph;
     const Version kept = graph.add({.name = "a", .writes = {{graph.create(image("kept")), Use::StorageWrite}}})[0];

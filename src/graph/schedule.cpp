@@ -92,9 +92,11 @@ struct Schedule::State {
     const Solution* solution = nullptr;
     std::vector<std::uint8_t> gates;
     std::uint64_t frame = 0;
-    std::vector<std::uint32_t> resolved;  ///< per version
-    std::vector<MipMask> needed;          ///< per version
-    std::vector<std::uint8_t> is_live;    ///< per pass
+    std::vector<std::uint32_t> resolved;       ///< per version
+    std::vector<std::uint32_t> read_versions;  ///< per read of all passes: what it resolves to
+    std::vector<std::uint32_t> first_read;     ///< per pass: where its reads begin there
+    std::vector<MipMask> needed;               ///< per version
+    std::vector<std::uint8_t> is_live;         ///< per pass
     std::vector<std::uint8_t> is_history_read;
     std::vector<MipState> mips;
     std::vector<Wanted> wanted;
@@ -104,9 +106,11 @@ struct Schedule::State {
 
     explicit State(const Solution& compiled);
     bool is_on(std::int32_t gate) const { return gate < 0 || gates[static_cast<std::size_t>(gate)] != 0; }
-    std::uint32_t slot_of(std::uint32_t version) const;
-    std::uint32_t resolve(std::uint32_t version) const;
-    void need(std::uint32_t version, MipRange range);
+    std::uint32_t slot_of(std::uint32_t resolved_version) const;
+    std::uint32_t resolve(std::uint32_t version, std::uint32_t instead = none) const;
+    std::span<const std::uint32_t> reads_of(std::uint32_t pass) const;
+    void need(std::uint32_t resolved_version, MipRange range);
+    void resolve_all();
     void find_live();
     void walk(std::uint32_t pass);
     bool mark_histories();
@@ -122,6 +126,8 @@ Schedule::State::State(const Solution& compiled) : solution(&compiled) {
     std::uint32_t most_mips = 1;
     for (const Slot& slot : solution->slots) most_mips = std::max(most_mips, slot.desc.mip_levels);
     for (const PassDesc& pass : solution->passes) {
+        first_read.push_back(static_cast<std::uint32_t>(read_versions.size()));
+        read_versions.resize(read_versions.size() + pass.reads.size(), none);
         last_gate = std::max(last_gate, pass.gate);
         const std::size_t accesses = pass.reads.size() + pass.writes.size();
         access_bound = std::max(access_bound, accesses);
@@ -141,16 +147,19 @@ Schedule::State::State(const Solution& compiled) : solution(&compiled) {
     final_barriers.reserve(solution->mip_count);
 }
 
-std::uint32_t Schedule::State::slot_of(std::uint32_t version) const {
-    const std::uint32_t found = version < resolved.size() ? resolved[version] : none;
-    return found == none ? none : solution->image_of(found).slots[frame & 1];
+std::uint32_t Schedule::State::slot_of(std::uint32_t resolved_version) const {
+    return resolved_version == none ? none : solution->image_of(resolved_version).slots[frame & 1];
 }
 
-std::uint32_t Schedule::State::resolve(std::uint32_t version) const {
+std::span<const std::uint32_t> Schedule::State::reads_of(std::uint32_t pass) const {
+    return std::span(read_versions).subspan(first_read[pass], solution->passes[pass].reads.size());
+}
+
+std::uint32_t Schedule::State::resolve(std::uint32_t version, std::uint32_t instead) const {
     while (version != none) {
         const VersionRecord& record = solution->versions[version];
         if (!is_on(record.gate)) {
-            version = record.next();
+            version = record.next(instead);
         } else if (record.is_culled()) {
             version = record.replaced;  // Nobody needs what the culled pass would have written over it.
         } else {
@@ -160,9 +169,19 @@ std::uint32_t Schedule::State::resolve(std::uint32_t version) const {
     return none;
 }
 
-void Schedule::State::need(std::uint32_t version, MipRange range) {
-    const std::uint32_t found = resolved[version];
-    if (found != none) needed[found] |= mip_mask(range, solution->image_of(found).desc.mip_levels);
+void Schedule::State::need(std::uint32_t resolved_version, MipRange range) {
+    if (resolved_version == none) return;
+    needed[resolved_version] |= mip_mask(range, solution->image_of(resolved_version).desc.mip_levels);
+}
+
+void Schedule::State::resolve_all() {
+    for (std::uint32_t version = 0; version < resolved.size(); ++version) resolved[version] = resolve(version);
+    for (std::uint32_t pass = 0; pass < solution->passes.size(); ++pass) {
+        const std::vector<Read>& reads = solution->passes[pass].reads;
+        for (std::size_t i = 0; i < reads.size(); ++i) {
+            read_versions[first_read[pass] + i] = resolve(reads[i].version.index, reads[i].instead.index);
+        }
+    }
 }
 
 void Schedule::State::walk(std::uint32_t pass) {
@@ -180,7 +199,7 @@ void Schedule::State::walk(std::uint32_t pass) {
         if (rest != 0 && before != none && solution->versions[before].image == record.image) needed[before] |= rest;
     }
     if (!is_needed) return;
-    for (const Read& read : desc.reads) need(read.version.index, read.mips);
+    for (std::size_t i = 0; i < desc.reads.size(); ++i) need(reads_of(pass)[i], desc.reads[i].mips);
 }
 
 /// A history whose previous image is read needs its current one written. True if that is news.
@@ -188,8 +207,7 @@ bool Schedule::State::mark_histories() {
     bool is_changed = false;
     for (std::uint32_t pass = 0; pass < solution->passes.size(); ++pass) {
         if (!is_live[pass]) continue;
-        for (const Read& read : solution->passes[pass].reads) {
-            const std::uint32_t found = resolved[read.version.index];
+        for (const std::uint32_t found : reads_of(pass)) {
             if (found == none || !solution->image_of(found).is_previous) continue;
             const std::uint32_t history = solution->image_of(found).history_index;
             if (is_history_read[history] != 0) continue;
@@ -210,11 +228,10 @@ bool Schedule::State::mark_histories() {
 }
 
 void Schedule::State::find_live() {
-    for (std::uint32_t version = 0; version < resolved.size(); ++version) resolved[version] = resolve(version);
     std::fill(needed.begin(), needed.end(), MipMask{0});
     std::fill(is_history_read.begin(), is_history_read.end(), std::uint8_t{0});
     for (std::uint32_t version = 0; version < resolved.size(); ++version) {
-        if (solution->versions[version].is_kept) need(version, {});
+        if (solution->versions[version].is_kept) need(resolved[version], {});
     }
     do {
         for (auto pass = static_cast<std::uint32_t>(solution->passes.size()); pass-- > 0;) {
@@ -265,9 +282,10 @@ void Schedule::State::add_step(std::uint32_t pass) {
     const PassDesc& desc = solution->passes[pass];
     const std::size_t first = barriers.size();
     touched.clear();
-    for (const Read& read : desc.reads) {
-        const std::uint32_t slot = slot_of(read.version.index);
-        if (slot != none) want(slot, mip_mask(read.mips, solution->slots[slot].desc.mip_levels), read.use);
+    for (std::size_t i = 0; i < desc.reads.size(); ++i) {
+        const std::uint32_t slot = slot_of(reads_of(pass)[i]);
+        if (slot == none) continue;
+        want(slot, mip_mask(desc.reads[i].mips, solution->slots[slot].desc.mip_levels), desc.reads[i].use);
     }
     for (std::size_t i = 0; i < desc.writes.size(); ++i) {
         const VersionRecord& record = solution->versions[solution->made[pass][i].index];
@@ -331,6 +349,7 @@ void Schedule::derive(std::span<const bool> gates, std::span<const ImportState> 
     state.steps.clear();
     state.barriers.clear();
     state.final_barriers.clear();
+    state.resolve_all();
     state.find_live();
     state.start(imports);
     for (std::uint32_t pass = 0; pass < state.solution->passes.size(); ++pass) {
@@ -343,7 +362,11 @@ std::span<const Step> Schedule::steps() const { return state_->steps; }
 std::span<const Barrier> Schedule::barriers() const { return state_->barriers; }
 std::span<const Barrier> Schedule::final_barriers() const { return state_->final_barriers; }
 bool Schedule::runs(std::uint32_t pass) const { return pass < state_->is_live.size() && state_->is_live[pass] != 0; }
-std::uint32_t Schedule::slot_of(Version version) const { return state_->slot_of(version.index); }
+std::uint32_t Schedule::slot_of(Version version, Version instead) const {
+    if (version.index >= state_->resolved.size()) return none;
+    const bool has_own = instead.index < state_->resolved.size();
+    return state_->slot_of(has_own ? state_->resolve(version.index, instead.index) : state_->resolved[version.index]);
+}
 Recording Schedule::recording() const {
     return {.steps = state_->steps,
             .barriers = state_->barriers,

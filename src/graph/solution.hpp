@@ -4,6 +4,7 @@
 // files of this folder only; everybody else uses graph.hpp.
 
 #include <array>
+#include <utility>
 
 #include "graph/graph.hpp"
 
@@ -52,13 +53,19 @@ struct VersionRecord {
     MipMask mips = 0;               ///< what the producer writes
     bool keeps_content = false;     ///< the producer needs the replaced version, in `mips`
     bool is_partial = false;        ///< the producer leaves some mip levels alone
+    bool is_first = false;          ///< what the producer replaced holds nothing
     bool is_kept = false;
 
     [[nodiscard]] bool is_culled() const { return producer == none && replaced != none; }
-    /// What a reader gets while the producer is off.
+    /// What a reader gets while the producer is off. `own`: what that reader asked for, or none; taken once.
+    [[nodiscard]] std::uint32_t next(std::uint32_t& own) const {
+        const bool leaves_older = instead == none && (keeps_content || is_partial);
+        if (leaves_older && (own == none || !is_first)) return replaced;
+        return own != none ? std::exchange(own, none) : instead;
+    }
     [[nodiscard]] std::uint32_t next() const {
-        if (instead != none) return instead;
-        return keeps_content || is_partial ? replaced : none;
+        std::uint32_t own = none;
+        return next(own);
     }
 };
 
@@ -140,9 +147,9 @@ struct Alternative {
     std::uint32_t last = none;  ///< the last version tried: names the producer that lacks a fall-back
     std::vector<Assumption> assumptions;
 };
-/// All versions that a read of `version` may resolve to, given the reader's own gate (-1: none).
+/// All versions that a read of `version` may resolve to, given the reader's own gate (-1: none) and fall-back.
 [[nodiscard]] std::vector<Alternative> alternatives(const Declaration& declaration, std::uint32_t version,
-                                                    std::int32_t reader_gate);
+                                                    std::int32_t reader_gate, std::uint32_t instead = none);
 
 /// All errors of a declaration that need no device.
 [[nodiscard]] Result<> validate(const Declaration& declaration, VkExtent2D max_extent);

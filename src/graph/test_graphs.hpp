@@ -47,7 +47,8 @@ inline ImportState host_state(VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL) {
 
 inline constexpr std::uint32_t gate_count = 4;
 
-/// A graph of up to twenty passes with gates, fall-backs, mip chains, histories and in-place writes. Not every one
+/// A graph of up to twenty passes with gates, fall-backs of images and of readers, mip chains, histories and in-place
+/// writes. Not every one
 /// compiles: the caller skips those.
 inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
     std::mt19937 random(seed);
@@ -62,13 +63,13 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
     Graph graph;
     std::vector<Live> live;
     std::uint32_t image_count = 0;
-    const Version black = constant(graph, "black");
+    const Version black = constant(graph, "black"), white = constant(graph, "white");
     live.push_back({black, image_count++, 1, false, true});
     const std::uint32_t hosts = 1 + pick(3);
     for (std::uint32_t i = 0; i < hosts; ++i) {
         live.push_back({host_image(graph, fmt::format("host{}", i)), image_count++});
     }
-    import_count = hosts + 1;
+    import_count = hosts + 2;
     std::vector<Live> unwritten;
     if (pick(2) == 0) {
         const Graph::History history = graph.history(image("history"));
@@ -91,6 +92,7 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
                                          Use::TransferRead};
             const Use use = source.is_constant || pick(2) == 0 ? any_reads[pick(2)] : any_reads[pick(4)];
             pass.reads.push_back({source.version, use, {pick(source.mip_levels), pick(2) == 0 ? 1 : ~0u}});
+            if (pick(3) == 0) pass.reads.back().instead = pick(2) == 0 ? white : live[pick(live.size())].version;
         }
         std::vector<std::size_t> replaced;
         std::vector<Live> made;
@@ -132,7 +134,7 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
     }
     graph.add({.name = "result", .reads = {{live.back().version, Use::SampledFragment}}, .has_side_effect = true});
     graph.add({.name = "other result",
-               .reads = {{live[pick(live.size())].version, Use::SampledFragment}},
+               .reads = {{.version = live[pick(live.size())].version, .use = Use::SampledFragment, .instead = white}},
                .has_side_effect = true});
     return graph;
 }

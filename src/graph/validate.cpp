@@ -100,7 +100,9 @@ class Validator {
 
     /// Follows `read` through all its alternatives.
     Result<> check_read(std::uint32_t pass, const Read& read) const {
-        for (const Alternative& found : alternatives(declaration_, read.version.index, gate_of(pass))) {
+        if (auto result = check_own_cycle(pass, read); !result) return result;
+        for (const Alternative& found :
+             alternatives(declaration_, read.version.index, gate_of(pass), read.instead.index)) {
             if (found.version == none) {
                 return user_error(fmt::format(
                     "pass '{}' reads '{}', but pass '{}' that writes it may be off: it needs a fall-back, or the same "
@@ -120,6 +122,23 @@ class Validator {
             const MipMask mips = mip_mask(read.mips, image.desc.mip_levels);
             if (auto result = check_overwritten(pass, found, mips, what); !result) return result;
             if (auto result = check_content(found, mips, what); !result) return result;
+        }
+        return {};
+    }
+
+    /// What a reader asks for itself must not lead back to what it stands in for.
+    Result<> check_own_cycle(std::uint32_t pass, const Read& read) const {
+        if (!read.instead.is_valid()) return {};
+        std::uint32_t own = read.instead.index;
+        for (std::uint32_t start = read.version.index; start != none && own != none;
+             start = declaration_.versions[start].next(own)) {
+            std::string path = fmt::format("'{}'", image_name(start));
+            for (std::uint32_t version = read.instead.index; version != none;
+                 version = declaration_.versions[version].next()) {
+                path += fmt::format(" -> '{}'", image_name(version));
+                if (version == start)
+                    return user_error(fmt::format("fall-backs of pass '{}' form a cycle: {}", pass_name(pass), path));
+            }
         }
         return {};
     }
@@ -202,7 +221,8 @@ class Validator {
         };
         std::vector<Access> accesses;
         for (const Read& read : pass.desc.reads) {
-            for (const Alternative& found : alternatives(declaration_, read.version.index, pass.desc.gate)) {
+            for (const Alternative& found :
+                 alternatives(declaration_, read.version.index, pass.desc.gate, read.instead.index)) {
                 const std::uint32_t image = declaration_.versions[found.version].image;
                 const MipMask mips = mip_mask(read.mips, declaration_.images[image].desc.mip_levels);
                 accesses.push_back({image, mips, layout_of(read.use)});
@@ -252,7 +272,8 @@ class Validator {
 
 }  // namespace
 
-std::vector<Alternative> alternatives(const Declaration& declaration, std::uint32_t version, std::int32_t reader_gate) {
+std::vector<Alternative> alternatives(const Declaration& declaration, std::uint32_t version, std::int32_t reader_gate,
+                                      std::uint32_t instead) {
     std::vector<Alternative> result;
     std::vector<Assumption> assumptions;
     if (reader_gate >= 0) assumptions.push_back({reader_gate, true});
@@ -271,7 +292,7 @@ std::vector<Alternative> alternatives(const Declaration& declaration, std::uint3
             result.back().assumptions.push_back({gate, true});
             assumptions.push_back({gate, false});
         }
-        version = declaration.versions[version].next();
+        version = declaration.versions[version].next(instead);
     }
     result.push_back({none, last, assumptions});
     return result;
