@@ -305,9 +305,13 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
         if (shadow_number(which) >= 0)
             return {.view = host.view,
                     .region = {region.offset, region.extent, host.extent},
-                    .sampler = context_.shadow_sampler};
+                    .sampler = context_.shadow_sampler,
+                    .layout = schedule_->read_layout(slot)};
         const bool is_depth = host.format == VK_FORMAT_D32_SFLOAT || host.format == VK_FORMAT_D16_UNORM;
-        return {.view = host.view, .region = {region.offset, region.extent, host.extent}, .is_nearest = is_depth};
+        return {.view = host.view,
+                .region = {region.offset, region.extent, host.extent},
+                .is_nearest = is_depth,
+                .layout = schedule_->read_layout(slot)};
     }
     if (image.kind == graph::Slot::Kind::Constant) {
         const auto constant = std::find_if(program_.constants.begin(), program_.constants.end(),

@@ -58,14 +58,20 @@ struct Copy {
           barriers(of.barriers.begin(), of.barriers.end()),
           final_barriers(of.final_barriers.begin(), of.final_barriers.end()),
           toggles(std::move(on)),
+          read_layouts(of.read_layouts.begin(), of.read_layouts.end()),
           frame(of.frame) {}
     [[nodiscard]] graph::Recording recording() const {
-        return {
-            .steps = steps, .barriers = barriers, .final_barriers = final_barriers, .gates = toggles, .frame = frame};
+        return {.steps = steps,
+                .barriers = barriers,
+                .final_barriers = final_barriers,
+                .gates = toggles,
+                .read_layouts = read_layouts,
+                .frame = frame};
     }
     std::vector<graph::Step> steps;
     std::vector<graph::Barrier> barriers, final_barriers;
     std::vector<std::uint8_t> toggles;
+    std::vector<VkImageLayout> read_layouts;
     std::uint64_t frame = 0;
 };
 

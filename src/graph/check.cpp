@@ -266,6 +266,22 @@ class Checker {
         return version;
     }
 
+    /// Where a descriptor says that a sampled image is, or the one layout that another use needs.
+    Result<VkImageLayout> layout_for(std::uint32_t slot, Use use, const std::string& who) const {
+        const bool is_sampled = use == Use::SampledCompute || use == Use::SampledFragment;
+        if (!is_sampled || slot >= recording_.read_layouts.size()) return layout_of(use);
+        constexpr std::array sampled_layouts{VK_IMAGE_LAYOUT_GENERAL,
+                                             VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL,
+                                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                             VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+                                             VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
+                                             VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL};
+        const VkImageLayout layout = recording_.read_layouts[slot];
+        if (std::ranges::find(sampled_layouts, layout) != sampled_layouts.end()) return layout;
+        return user_error(fmt::format("{} samples '{}' in layout {}, which does not allow it", who, name(slot),
+                                      static_cast<int>(layout)));
+    }
+
     /// Fails unless `mip` holds what version `version` stands for.
     Result<> check_content(std::uint32_t version, std::uint32_t slot, std::uint32_t mip, const std::string& who) const {
         if (version == none) return user_error(fmt::format("{} reads an image whose producer is off", who));
@@ -330,11 +346,12 @@ class Checker {
         if (version == none) return user_error(who + " reads an image whose producer is off");
         const std::uint32_t slot = solution_.image_of(version).slots[recording_.frame % 2];
         const MipMask mips = levels_of(read.mips, solution_.slots[slot].desc.mip_levels);
+        const auto layout = layout_for(slot, read.use, who);
+        if (!layout) return user_error(layout.error().text);
         for (std::uint32_t mip = 0; mip < solution_.slots[slot].desc.mip_levels; ++mip) {
             if ((mips >> mip & 1u) == 0) continue;
             if (auto result = check_content(version, slot, mip, who); !result) return result;
-            if (auto result = access(slot, mip, who, stages_of(read.use), access_of(read.use), layout_of(read.use));
-                !result) {
+            if (auto result = access(slot, mip, who, stages_of(read.use), access_of(read.use), *layout); !result) {
                 return result;
             }
             add_events(levels_[slot][mip], who, stages_of(read.use), 0);

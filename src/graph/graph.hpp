@@ -193,6 +193,8 @@ struct Barrier {
     VkPipelineStageFlags2 source_stages = 0, target_stages = 0;
     VkAccessFlags2 source_access = 0, target_access = 0;
     VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED, new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    /// The host keeps the layouts of depth and stencil apart: the stencil, if there is one, stays as it is.
+    bool is_depth_alone = false;
 };
 
 /// What compile() made. Moving it leaves the schedules made from it valid; destroying it does not.
@@ -227,7 +229,8 @@ struct Step {
 struct Recording {
     std::span<const Step> steps;
     std::span<const Barrier> barriers, final_barriers;
-    std::span<const std::uint8_t> gates;  ///< 0: off; gates beyond the span are on
+    std::span<const std::uint8_t> gates;          ///< 0: off; gates beyond the span are on
+    std::span<const VkImageLayout> read_layouts;  ///< per slot: what sampling passes find it in
     std::uint64_t frame = 0;
 };
 
@@ -258,6 +261,9 @@ class Schedule {
     /// The slot that a reader of `version` gets in this frame, after fall-backs (`instead`: Read::instead). ~0u: the
     /// version was culled, or its producer is off and has no fall-back (then nothing that runs reads it).
     [[nodiscard]] std::uint32_t slot_of(Version version, Version instead = {}) const;
+    /// The layout in which SampledCompute and SampledFragment find a slot in this frame. A host's image that is only
+    /// read stays where it is, if it can be sampled there: depth that the host goes on testing, for one.
+    [[nodiscard]] VkImageLayout read_layout(std::uint32_t slot) const;
 
   private:
     struct State;

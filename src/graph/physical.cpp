@@ -128,7 +128,9 @@ void Physical::record_barriers(VkCommandBuffer commands, const gpu::Dispatch& vk
                         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                         .image = handle(barrier.slot, view_index),
-                        .subresourceRange = {.aspectMask = gpu::format_traits(entry.format).aspects,
+                        .subresourceRange = {.aspectMask = barrier.is_depth_alone
+                                                               ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                                                               : gpu::format_traits(entry.format).aspects,
                                              .baseMipLevel = entry.base_mip_level + barrier.mips.first,
                                              .levelCount = barrier.mips.count,
                                              .baseArrayLayer = entry.base_array_layer,

@@ -28,7 +28,12 @@ void for_each_case(std::uint32_t count, const std::function<void(Case&)>& body) 
         auto compiled = graph.compile(full_hd, measure);
         if (!compiled) continue;
         ++found;
-        Case item{seed, std::move(*compiled), std::vector<ImportState>(import_count, host_state())};
+        constexpr std::array layouts{VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                     VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
+        Case item{seed, std::move(*compiled), {}};
+        for (std::uint32_t i = 0; i < import_count; ++i)
+            item.imports.push_back(host_state(layouts[(seed + i) % layouts.size()]));
         body(item);
     }
     ASSERT_EQ(found, count) << "of " << seed << " graphs too few compile";
@@ -45,6 +50,7 @@ struct Copy {
     std::vector<Step> steps;
     std::vector<Barrier> barriers, final_barriers;
     std::vector<std::uint8_t> gates;
+    std::vector<VkImageLayout> read_layouts;
     std::uint64_t frame = 0;
 
     explicit Copy(const Recording& from)
@@ -52,8 +58,9 @@ struct Copy {
           barriers(from.barriers.begin(), from.barriers.end()),
           final_barriers(from.final_barriers.begin(), from.final_barriers.end()),
           gates(from.gates.begin(), from.gates.end()),
+          read_layouts(from.read_layouts.begin(), from.read_layouts.end()),
           frame(from.frame) {}
-    Recording recording() const { return {steps, barriers, final_barriers, gates, frame}; }
+    Recording recording() const { return {steps, barriers, final_barriers, gates, read_layouts, frame}; }
     Barrier& barrier(std::size_t index) {
         return index < barriers.size() ? barriers[index] : final_barriers[index - barriers.size()];
     }
@@ -126,6 +133,29 @@ TEST(GraphRandom, CheckerMissesNoMissingBarrier) {
             }
         }
     });
+}
+
+TEST(GraphRandom, CheckerMissesNoWrongLayoutOfADescriptor) {
+    std::size_t changed = 0;
+    for_each_case(100, [&](Case& item) {
+        Schedule schedule(item.compiled);
+        schedule.derive({}, item.imports, 0);
+        Copy copy(schedule.recording());
+        for (const Step& step : copy.steps) {
+            for (const Read& read : item.compiled.passes()[step.pass].reads) {
+                const std::uint32_t slot = schedule.slot_of(read.version, read.instead);
+                const bool is_sampled = read.use == Use::SampledCompute || read.use == Use::SampledFragment;
+                if (!is_sampled || item.compiled.slots()[slot].kind != Slot::Kind::Import) continue;
+                const VkImageLayout right = copy.read_layouts[slot];
+                copy.read_layouts[slot] = VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL;
+                const Recording recording = copy.recording();
+                EXPECT_FALSE(check_frames(item.compiled, {&recording, 1}, item.imports)) << "seed " << item.seed;
+                copy.read_layouts[slot] = right;
+                ++changed;
+            }
+        }
+    });
+    EXPECT_GT(changed, 50u);
 }
 
 TEST(GraphRandom, LiveImagesShareNoBytes) {

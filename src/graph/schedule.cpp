@@ -86,6 +86,32 @@ bool advance(MipState& state, const Wanted& wanted, Barrier& barrier) {
     return is_needed;
 }
 
+/// Uses that find a slot in Schedule::read_layout.
+bool is_sampled(Use use) { return layout_of(use) == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; }
+
+bool can_sample_in(VkImageLayout layout) {
+    switch (layout) {
+        case VK_IMAGE_LAYOUT_GENERAL:
+        case VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL:
+        case VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL:
+        case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL:
+        case VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL:
+        case VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL:
+            return true;
+        default:
+            return false;
+    }
+}
+
+/// Layouts of the depth aspect: the stencil has one of its own.
+bool is_of_depth_alone(VkImageLayout layout) {
+    return layout == VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL || layout == VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+}
+
+ImportState state_of(const Slot& slot, std::span<const ImportState> imports) {
+    return slot.import_index < imports.size() ? imports[slot.import_index] : ImportState{};
+}
+
 }  // namespace
 
 struct Schedule::State {
@@ -95,6 +121,8 @@ struct Schedule::State {
     std::vector<std::uint32_t> resolved;       ///< per version
     std::vector<std::uint32_t> read_versions;  ///< per read of all passes: what it resolves to
     std::vector<std::uint32_t> first_read;     ///< per pass: where its reads begin there
+    std::vector<VkImageLayout> read_layouts;   ///< per slot
+    std::vector<std::uint8_t> is_depth_alone;  ///< per slot
     std::vector<MipMask> needed;               ///< per version
     std::vector<std::uint8_t> is_live;         ///< per pass
     std::vector<std::uint8_t> is_history_read;
@@ -112,6 +140,7 @@ struct Schedule::State {
     void need(std::uint32_t resolved_version, MipRange range);
     void resolve_all();
     void find_live();
+    void find_read_layouts(std::span<const ImportState> imports);
     void walk(std::uint32_t pass);
     bool mark_histories();
     void start(std::span<const ImportState> imports);
@@ -139,6 +168,8 @@ Schedule::State::State(const Solution& compiled) : solution(&compiled) {
     needed.resize(solution->versions.size());
     is_live.resize(solution->passes.size());
     is_history_read.resize(solution->history_count);
+    read_layouts.resize(solution->slots.size());
+    is_depth_alone.resize(solution->slots.size());
     mips.resize(solution->mip_count);
     wanted.resize(solution->mip_count);
     touched.reserve(access_bound);
@@ -244,13 +275,39 @@ void Schedule::State::find_live() {
     } while (mark_histories());
 }
 
+/// A host's image that is only read stays where it is, if every read can be done there.
+void Schedule::State::find_read_layouts(std::span<const ImportState> imports) {
+    constexpr VkImageLayout usual = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    for (std::uint32_t index = 0; index < solution->slots.size(); ++index) {
+        const Slot& slot = solution->slots[index];
+        read_layouts[index] = usual;
+        is_depth_alone[index] = 0;
+        if (slot.kind != Slot::Kind::Import) continue;
+        const ImportState host = state_of(slot, imports);
+        if (can_sample_in(host.layout)) read_layouts[index] = host.layout;
+        is_depth_alone[index] = is_of_depth_alone(host.layout) || is_of_depth_alone(host.final_layout) ? 1 : 0;
+    }
+    for (std::uint32_t pass = 0; pass < solution->passes.size(); ++pass) {
+        if (is_live[pass] == 0) continue;
+        const PassDesc& desc = solution->passes[pass];
+        for (std::size_t i = 0; i < desc.reads.size(); ++i) {
+            const std::uint32_t slot = slot_of(reads_of(pass)[i]);
+            const Use use = desc.reads[i].use;
+            if (slot != none && !is_sampled(use) && layout_of(use) != read_layouts[slot]) read_layouts[slot] = usual;
+        }
+        for (const Version made : solution->made[pass]) {
+            read_layouts[solution->image_of(made.index).slots[frame & 1]] = usual;
+        }
+    }
+}
+
 void Schedule::State::start(std::span<const ImportState> imports) {
     for (std::uint32_t index = 0; index < solution->slots.size(); ++index) {
         const Slot& slot = solution->slots[index];
         MipState state{.write_stages = solution->past[index].stages,
                        .write_access = solution->past[index].access & all_writes};
         if (slot.kind == Slot::Kind::Import) {
-            const ImportState host = slot.import_index < imports.size() ? imports[slot.import_index] : ImportState{};
+            const ImportState host = state_of(slot, imports);
             state = {.layout = host.layout, .write_stages = host.stages, .write_access = host.access & all_writes};
         }
         const bool is_current = slot.kind == Slot::Kind::History && slot.history_parity == (frame & 1);
@@ -273,7 +330,7 @@ void Schedule::State::want(std::uint32_t slot, MipMask mask, Use use) {
         all.uses |= sight_of(use);
         all.stages |= stages_of(use);
         all.access |= access_of(use);
-        all.layout = layout_of(use);
+        all.layout = is_sampled(use) ? read_layouts[slot] : layout_of(use);
         all.is_write |= is_write(use);
     }
 }
@@ -295,7 +352,7 @@ void Schedule::State::add_step(std::uint32_t pass) {
         for (std::uint32_t level = 0; level < solution->slots[slot].desc.mip_levels; ++level) {
             const std::uint32_t index = solution->first_mip[slot] + level;
             if (wanted[index].uses == 0) continue;
-            Barrier barrier{.slot = slot, .mips = {level, 1}};
+            Barrier barrier{.slot = slot, .mips = {level, 1}, .is_depth_alone = is_depth_alone[slot] != 0};
             if (advance(mips[index], wanted[index], barrier)) append(barriers, first, barrier);
             wanted[index] = {};
         }
@@ -312,9 +369,10 @@ void Schedule::State::finish(std::span<const ImportState> imports) {
         Barrier barrier{.slot = index,
                         .target_stages = solution->past[index].stages,
                         .target_access = solution->past[index].access & ~all_writes,
-                        .new_layout = slot.rest_layout};
+                        .new_layout = slot.rest_layout,
+                        .is_depth_alone = is_depth_alone[index] != 0};
         if (slot.kind == Slot::Kind::Import) {
-            const ImportState host = slot.import_index < imports.size() ? imports[slot.import_index] : ImportState{};
+            const ImportState host = state_of(slot, imports);
             barrier.target_stages = host.final_stages;
             barrier.target_access = host.final_access;
             barrier.new_layout = host.final_layout;
@@ -351,6 +409,7 @@ void Schedule::derive(std::span<const bool> gates, std::span<const ImportState> 
     state.final_barriers.clear();
     state.resolve_all();
     state.find_live();
+    state.find_read_layouts(imports);
     state.start(imports);
     for (std::uint32_t pass = 0; pass < state.solution->passes.size(); ++pass) {
         if (state.is_live[pass] != 0) state.add_step(pass);
@@ -367,11 +426,13 @@ std::uint32_t Schedule::slot_of(Version version, Version instead) const {
     const bool has_own = instead.index < state_->resolved.size();
     return state_->slot_of(has_own ? state_->resolve(version.index, instead.index) : state_->resolved[version.index]);
 }
+VkImageLayout Schedule::read_layout(std::uint32_t slot) const { return state_->read_layouts[slot]; }
 Recording Schedule::recording() const {
     return {.steps = state_->steps,
             .barriers = state_->barriers,
             .final_barriers = state_->final_barriers,
             .gates = state_->gates,
+            .read_layouts = state_->read_layouts,
             .frame = state_->frame};
 }
 

@@ -21,6 +21,19 @@ std::string trace_of(const Graph& graph, std::span<const bool> gates, std::span<
     return trace(*compiled, schedule);
 }
 
+Version depth_image(Graph& graph) {
+    return graph.import(
+        {.image = {.name = "depth", .format = VK_FORMAT_D32_SFLOAT_S8_UINT}, .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
+}
+/// Just written by the tests of the host's last pass; to stay where it is.
+ImportState depth_state(VkImageLayout layout) {
+    return {
+        .layout = layout,
+        .stages = VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+        .access = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+    };
+}
+
 }  // namespace
 
 TEST(GraphTrace, OnePassFromHostToHost) {
@@ -221,6 +234,98 @@ TEST(GraphTrace, UnusedImportStillGoesToItsFinalLayout) {
     const std::array imports{host_state(VK_IMAGE_LAYOUT_GENERAL), host_state(VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)};
     EXPECT_EQ(trace_of(graph, {}, imports),
               "final moved: color-output:color-write -> fragment:sample, general -> read-only\n");
+}
+
+TEST(GraphTrace, DepthIsSampledWhereTheHostHasIt) {
+    constexpr std::array layouts{VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+                                 VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
+                                 VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
+                                 VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL};
+    for (const VkImageLayout layout : layouts) {
+        SCOPED_TRACE(static_cast<int>(layout));
+        Graph graph;
+        const Version depth = depth_image(graph);
+        graph.add({.name = "fog", .reads = {{depth, Use::SampledCompute}}, .has_side_effect = true});
+        graph.add({.name = "show", .reads = {{depth, Use::SampledFragment}}, .has_side_effect = true});
+        std::array imports{depth_state(layout)};
+        EXPECT_EQ(trace_of(graph, {}, imports),
+                  "barrier depth: depth-tests:depth-write -> compute:sample\n"
+                  "pass fog\n"
+                  "barrier depth: depth-tests:depth-write -> fragment:sample\n"
+                  "pass show\n");
+        imports[0].final_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+        const auto compiled = graph.compile(full_hd, measure);
+        ASSERT_TRUE(compiled);
+        Schedule schedule(*compiled);
+        schedule.derive({}, imports, 0);
+        EXPECT_EQ(schedule.read_layout(0), layout);
+        ASSERT_EQ(schedule.final_barriers().size(), 1u);
+        EXPECT_EQ(schedule.final_barriers()[0].old_layout, layout);
+        EXPECT_TRUE(check(*compiled, schedule, imports));
+    }
+}
+
+TEST(GraphTrace, DepthMovesFromWhereItCannotBeSampled) {
+    Graph graph;
+    graph.add({.name = "fog", .reads = {{depth_image(graph), Use::SampledCompute}}, .has_side_effect = true});
+    EXPECT_EQ(trace_of(graph, {}, std::array{depth_state(VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL)}),
+              "barrier depth: depth-tests:depth-write -> compute:sample, depth -> read-only\n"
+              "pass fog\n");
+}
+
+TEST(GraphTrace, ImageThatIsAlsoLoadedOrWrittenMoves) {
+    Graph graph;
+    const Version color = host_image(graph, "color"), other = host_image(graph, "other");
+    graph.add({.name = "sample",
+               .reads = {{color, Use::SampledCompute}, {other, Use::SampledCompute}},
+               .has_side_effect = true});
+    graph.add({.name = "load", .reads = {{color, Use::StorageRead}}, .has_side_effect = true, .gate = 0});
+    graph.keep(graph.add({.name = "write", .writes = {{other, Use::StorageReadWrite}}, .gate = 1})[0]);
+    const std::array imports{ImportState{.layout = VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL, .stages = 0, .access = 0},
+                             ImportState{.layout = VK_IMAGE_LAYOUT_GENERAL, .stages = 0, .access = 0}};
+    const auto compiled = graph.compile(full_hd, measure);
+    ASSERT_TRUE(compiled) << compiled.error().text;
+    Schedule schedule(*compiled);
+    const auto layouts = [&](bool is_loaded, bool is_written) {
+        schedule.derive(std::array{is_loaded, is_written}, imports, 0);
+        const auto checked = check(*compiled, schedule, imports);
+        EXPECT_TRUE(checked) << checked.error().text;
+        return std::pair(schedule.read_layout(0), schedule.read_layout(1));
+    };
+    constexpr VkImageLayout moved = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    EXPECT_EQ(layouts(false, false), std::pair(VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL));
+    EXPECT_EQ(layouts(true, false), std::pair(moved, VK_IMAGE_LAYOUT_GENERAL));
+    EXPECT_EQ(layouts(false, true), std::pair(VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL, moved));
+}
+
+TEST(GraphTrace, ImageInGeneralIsLoadedAndSampledThere) {
+    Graph graph;
+    const Version color = host_image(graph, "color");
+    graph.add({.name = "sample", .reads = {{color, Use::SampledCompute}}, .has_side_effect = true});
+    graph.add({.name = "load", .reads = {{color, Use::StorageRead}}, .has_side_effect = true});
+    EXPECT_EQ(trace_of(graph, {}, std::array{ImportState{.layout = VK_IMAGE_LAYOUT_GENERAL, .stages = 0, .access = 0}}),
+              "pass sample\n"
+              "pass load\n");
+}
+
+TEST(GraphTrace, StencilStaysWhereTheHostKeepsItApart) {
+    Graph graph;
+    graph.add({.name = "fog", .reads = {{depth_image(graph), Use::SampledCompute}}, .has_side_effect = true});
+    const auto compiled = graph.compile(full_hd, measure);
+    ASSERT_TRUE(compiled);
+    Schedule schedule(*compiled);
+    const auto is_depth_alone = [&](VkImageLayout before, VkImageLayout after) {
+        std::array imports{depth_state(before)};
+        imports[0].final_layout = after;
+        schedule.derive({}, imports, 0);
+        EXPECT_EQ(schedule.barriers()[0].is_depth_alone, schedule.final_barriers()[0].is_depth_alone);
+        return schedule.barriers()[0].is_depth_alone;
+    };
+    constexpr VkImageLayout together = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    EXPECT_FALSE(is_depth_alone(together, together));
+    EXPECT_TRUE(is_depth_alone(VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL));
+    EXPECT_TRUE(is_depth_alone(VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL));
+    EXPECT_TRUE(is_depth_alone(VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL));
 }
 
 TEST(GraphTrace, ConstantsNeedNoBarrier) {
