@@ -81,16 +81,15 @@ void wrap_all(Dispatch& vk) {
                &Dispatch::CreateImageView, &Dispatch::CreateSampler, &Dispatch::CreateShaderModule,
                &Dispatch::CreatePipelineCache, &Dispatch::CreateComputePipelines, &Dispatch::CreateGraphicsPipelines,
                &Dispatch::CreatePipelineLayout, &Dispatch::CreateDescriptorSetLayout, &Dispatch::CreateDescriptorPool,
-               &Dispatch::AllocateDescriptorSets, &Dispatch::FreeDescriptorSets, &Dispatch::CreateQueryPool,
-               &Dispatch::CreateFence, &Dispatch::CreateSemaphore, &Dispatch::CreateCommandPool,
-               &Dispatch::AllocateCommandBuffers, &Dispatch::BeginCommandBuffer, &Dispatch::EndCommandBuffer,
-               &Dispatch::DeviceWaitIdle, &Dispatch::QueueWaitIdle, &Dispatch::QueueSubmit2, &Dispatch::WaitForFences,
-               &Dispatch::WaitSemaphores, &Dispatch::ResetFences, &Dispatch::SetDebugUtilsObjectNameEXT>();
+               &Dispatch::AllocateDescriptorSets, &Dispatch::CreateQueryPool, &Dispatch::CreateFence,
+               &Dispatch::CreateCommandPool, &Dispatch::AllocateCommandBuffers, &Dispatch::BeginCommandBuffer,
+               &Dispatch::EndCommandBuffer, &Dispatch::DeviceWaitIdle, &Dispatch::QueueSubmit2,
+               &Dispatch::WaitForFences, &Dispatch::ResetFences, &Dispatch::SetDebugUtilsObjectNameEXT>();
     const auto destroying = [&]<auto... Members>() { (wrap_destroy<Members>(vk), ...); };
-    destroying.operator()<&Dispatch::FreeMemory, &Dispatch::DestroyBuffer, &Dispatch::DestroyImage,
-                          &Dispatch::DestroyImageView, &Dispatch::DestroyShaderModule, &Dispatch::DestroyPipeline,
-                          &Dispatch::DestroyPipelineLayout, &Dispatch::DestroyDescriptorSetLayout,
-                          &Dispatch::DestroyDescriptorPool, &Dispatch::DestroyQueryPool, &Dispatch::UnmapMemory>();
+    destroying.
+    operator()<&Dispatch::FreeMemory, &Dispatch::DestroyBuffer, &Dispatch::DestroyImage, &Dispatch::DestroyImageView,
+               &Dispatch::DestroyShaderModule, &Dispatch::DestroyPipeline, &Dispatch::DestroyPipelineLayout,
+               &Dispatch::DestroyDescriptorSetLayout, &Dispatch::DestroyDescriptorPool, &Dispatch::DestroyQueryPool>();
     bind_pipeline = vk.CmdBindPipeline;
     vk.CmdBindPipeline = [](VkCommandBuffer commands, VkPipelineBindPoint point, VkPipeline pipeline) {
         if (is_in_frame) last_pipeline = pipeline;
