@@ -112,8 +112,9 @@ Result<> Context::finish() {
     vk.GetPhysicalDeviceQueueFamilyProperties(physical_device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vk.GetPhysicalDeviceQueueFamilyProperties(physical_device, &count, families.data());
-    const bool has_timestamps = queue_family < count && families[queue_family].timestampValidBits > 0;
-    traits.timestamp_period_ns = has_timestamps ? static_cast<double>(properties.limits.timestampPeriod) : 0.0;
+    traits.timestamp_valid_bits = queue_family < count ? families[queue_family].timestampValidBits : 0;
+    traits.timestamp_period_ns =
+        traits.timestamp_valid_bits > 0 ? static_cast<double>(properties.limits.timestampPeriod) : 0.0;
 
     shaders = std::make_unique<ShaderCompiler>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");
     if (Result<> samplers = create_samplers(); !samplers) return samplers;

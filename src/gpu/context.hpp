@@ -33,7 +33,8 @@ struct Traits {
     VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;  ///< of colour and depth attachments that are sampled
     std::uint32_t max_image_dimension = 0;
     VkDeviceSize storage_alignment = 256, uniform_alignment = 256;
-    double timestamp_period_ns = 0;  ///< 0: this queue family has no timestamps
+    double timestamp_period_ns = 0;          ///< 0: this queue family has no timestamps
+    std::uint32_t timestamp_valid_bits = 0;  ///< the counter goes round after them
 };
 
 class Context {

@@ -91,7 +91,11 @@ class DescriptorSets {
     Context* context = nullptr;
 };
 
-/// GPU timestamps, a ring of `slots` recordings of up to `marks` marks each. begin() and mark() record only.
+/// How far a counter of `valid_bits` bits went from `begin` to `end`, if it went round at most once.
+[[nodiscard]] std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, std::uint32_t valid_bits);
+
+/// GPU timestamps, a ring of `slots` recordings of up to `marks` marks each. begin() and mark() record only; nothing
+/// but create() allocates. One thread at a time.
 class Timers {
   public:
     Timers() = default;
@@ -102,9 +106,10 @@ class Timers {
     void begin(VkCommandBuffer, std::uint32_t slot);
     void mark(VkCommandBuffer, std::uint32_t slot, std::uint32_t index);
     /// Milliseconds between neighbouring marks of a finished recording; empty while it is not finished. Never waits.
-    std::size_t read(std::uint32_t slot, std::uint32_t count, std::span<double> milliseconds) const;
+    std::size_t read(std::uint32_t slot, std::uint32_t count, std::span<double> milliseconds);
     VkQueryPool pool = VK_NULL_HANDLE;
     std::uint32_t marks = 0;
+    std::vector<std::uint64_t> ticks;  ///< what read() reads, `marks` of them
     Context* context = nullptr;
 };
 
