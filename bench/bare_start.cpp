@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "core/files.hpp"
+#include "gpu/loader.hpp"
 
 namespace darkroom::bench {
 
@@ -57,7 +58,9 @@ Result<> find_device(Bare& bare, const std::string& name) {
 }
 
 Result<> create_device(Bare& bare, const std::string& name) {
-    if (auto ok = bare.vk.load_loader(vkGetInstanceProcAddr); !ok) return ok;
+    const auto loader = gpu::open_vulkan_loader();
+    if (!loader) return failure(loader.error());
+    if (auto ok = bare.vk.load_loader(*loader); !ok) return ok;
     const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_3};
     const VkInstanceCreateInfo instance_info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
                                              .pApplicationInfo = &application};

@@ -3,7 +3,8 @@
 // A Device is what Darkroom runs on: created by the library (headless), or adopted from a host that already has one.
 // An adopted Device owns nothing the host made, submits nothing and waits for nothing. Device functions may be called
 // from any thread; a Device outlives the Composers made on it.
-// Needs Vulkan 1.3 with synchronization2 and dynamicRendering.
+// Needs Vulkan 1.3 with synchronization2 and dynamicRendering, or Vulkan 1.2 with the extensions that these came from,
+// VK_KHR_synchronization2 and VK_KHR_dynamic_rendering.
 
 #include <vulkan/vulkan.h>
 #include <cstdint>
@@ -36,10 +37,28 @@ struct DeviceInfo {
 };
 
 struct DeviceDesc {
-    std::string select;     ///< name (or a part of it, any case) or index; empty: a real GPU if there is one
+    /// Index, or name (or a part of it, any case); a number that is nobody's index is part of a name. Empty: a real GPU
+    /// if there is one.
+    std::string select;
     bool validate = false;  ///< Khronos validation layer with synchronization validation; DARKROOM_VALIDATE=1 also
-    LogSink log;
-    std::filesystem::path cache_folder;  ///< SPIR-V and pipeline caches; empty: the user's cache folder
+    LogSink log;            ///< log.hpp says from which threads it is called
+    /// SPIR-V (at most 128 MiB, least recently used entries go first) and pipeline caches (at most 64 MiB each), which
+    /// several processes may share. Empty: the user's cache folder.
+    std::filesystem::path cache_folder;
+    /// False: no file is read or written. DARKROOM_SHADER_CACHE=off does the same for all devices.
+    bool caches_on_disk = true;
+};
+
+/// Who gives the library its device memory: a few large pieces for images, one for each buffer. Both functions or none.
+/// They are called by whoever compiles, edits or destroys, from several threads where several do, and by the library's
+/// own threads that build kernels; never by record(). `user` is handed to both.
+struct DeviceMemoryHooks {
+    /// As vkAllocateMemory: memory of its own, of the size and type that `info` says, which nobody else maps, since the
+    /// library maps host-visible memory whole and for good. An error makes it try its next best type.
+    VkResult (*allocate)(void* user, VkDevice device, const VkMemoryAllocateInfo* info,
+                         VkDeviceMemory* memory) = nullptr;
+    void (*free)(void* user, VkDevice device, VkDeviceMemory memory) = nullptr;
+    void* user = nullptr;
 };
 
 struct AdoptDesc {
@@ -47,12 +66,27 @@ struct AdoptDesc {
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
     std::uint32_t queue_family = 0;
-    /// The pNext chain the host gave to vkCreateDevice. Vulkan cannot be asked what was enabled, so the host says it.
+    // Vulkan cannot be asked what was enabled, so the host says it; what it does not say is taken for absent.
+    /// VkApplicationInfo::apiVersion. Below 1.3, or on a device of less, the two extensions are needed and used.
+    std::uint32_t api_version = VK_API_VERSION_1_3;
+    /// The features and their pNext chain as given to vkCreateDevice: the structures of Vulkan 1.3 or of the
+    /// extensions.
     const VkPhysicalDeviceFeatures2* enabled_features = nullptr;
-    std::span<const char* const> enabled_extensions;
+    /// VkInstanceCreateInfo::ppEnabledExtensionNames. With VK_EXT_debug_utils passes and objects get names.
+    std::span<const char* const> enabled_instance_extensions;
+    /// VkDeviceCreateInfo::ppEnabledExtensionNames. Read on Vulkan 1.2 only.
+    std::span<const char* const> enabled_device_extensions;
     PFN_vkGetInstanceProcAddr get_proc = nullptr;
-    LogSink log;
-    std::filesystem::path cache_folder;
+    LogSink log;                         ///< as in DeviceDesc
+    std::filesystem::path cache_folder;  ///< as in DeviceDesc
+    bool caches_on_disk = true;          ///< as in DeviceDesc
+    /// The host's, which is then used instead of one of the library's: never saved, never destroyed, and not created
+    /// with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT, since several threads build pipelines.
+    VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
+    /// Handed to every function that creates or destroys an object. Kept by pointer: it outlives the Device and all
+    /// that was made on it.
+    const VkAllocationCallbacks* allocator = nullptr;
+    DeviceMemoryHooks memory;
 };
 
 class Device {

@@ -134,12 +134,12 @@ Result<> Chain::make_resources(bool has_timers) {
     constants_stride_ = align(program_.constants_words * 4, context_.traits.uniform_alignment);
     pass_block_stride_ = align(pass_block_size, context_.traits.uniform_alignment);
     auto constants = gpu::Buffer::create(context_, constants_stride_ * slots_, gpu::constants_usage,
-                                         gpu::Memory::Kind::Upload, "constants");
+                                         gpu::Memory::Kind::Constants, "constants");
     if (!constants) return failure(std::move(constants));
     constants_ = std::move(*constants);
     auto blocks =
         gpu::Buffer::create(context_, pass_block_stride_ * slots_ * std::max<std::size_t>(1, program_.passes.size()),
-                            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::Kind::Upload, "pass blocks");
+                            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::Kind::Constants, "pass blocks");
     if (!blocks) return failure(std::move(blocks));
     pass_blocks_ = std::move(*blocks);
 

@@ -5,6 +5,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <darkroom/device.hpp>
@@ -12,9 +13,11 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <shared_mutex>
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "gpu/dispatch.hpp"
@@ -33,6 +36,12 @@ struct Traits {
     VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;  ///< of colour and depth attachments that are sampled
     std::uint32_t max_image_dimension = 0;
     VkDeviceSize storage_alignment = 256, uniform_alignment = 256;
+    // Until a device says more: the least that Vulkan promises.
+    std::uint32_t max_uniform_range = 16384;  ///< bytes of one uniform buffer that a shader sees
+    std::uint32_t max_workgroup_invocations = 128;
+    std::array<std::uint32_t, 3> max_workgroup_size{128, 128, 64};
+    std::uint32_t max_storage_images = 4;    ///< a stage
+    std::uint32_t max_sampled_images = 16;   ///< a stage, each with a sampler
     double timestamp_period_ns = 0;          ///< 0: this queue family has no timestamps
     std::uint32_t timestamp_valid_bits = 0;  ///< the counter goes round after them
 };
@@ -53,7 +62,10 @@ class Context {
     std::mutex queue_mutex;          ///< held while something is submitted to it
     bool is_owner = false;           ///< of instance, device and messenger
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
-    VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
+    const VkAllocationCallbacks* allocator = nullptr;  ///< of every object that is created or destroyed
+    DeviceMemoryHooks memory_hooks{};                  ///< empty: vkAllocateMemory
+    VkPipelineCache pipeline_cache = VK_NULL_HANDLE;   ///< finish() makes one unless the host's is here already
+    std::size_t most_pipeline_cache_bytes = std::size_t{64} << 20U;  ///< a larger one is not kept
     VkSampler linear_sampler = VK_NULL_HANDLE, nearest_sampler = VK_NULL_HANDLE;
     VkSampler shadow_sampler = VK_NULL_HANDLE;  ///< compares with LESS_OR_EQUAL, lit outside
     VkPhysicalDeviceMemoryProperties memory{};
@@ -67,11 +79,22 @@ class Context {
     std::filesystem::path cache_folder;               ///< empty: none
     std::unique_ptr<ShaderCompiler> shaders;
 
+    /// To the log, from any thread; one thread at a time gets through.
     void say(Severity severity, std::string_view text) const;
     /// The one place where a VkResult becomes an Error: "<what> failed: VK_ERROR_...".
     [[nodiscard]] Result<> check(VkResult result, std::string_view what) const;
-    /// For images with optimal tiling.
+    /// For images with optimal tiling. The driver is asked once a format; any thread may call.
     [[nodiscard]] bool supports(VkFormat format, VkFormatFeatureFlags features) const;
+    /// Whether a linear sampler may read it.
+    [[nodiscard]] bool is_filterable(VkFormat format) const;
+
+    /// From the host's hooks or the driver; `what` is for the error.
+    [[nodiscard]] Result<> allocate_memory(const VkMemoryAllocateInfo&, std::string_view what, VkDeviceMemory&) const;
+    void free_memory(VkDeviceMemory handle) const;
+
+    /// Writes the pipeline cache to its file if pipelines have been made since it was read or written: after a compile,
+    /// from any thread. Costs a comparison where nothing is new. Of several processes the last one's file stays.
+    void save_pipeline_cache_if_grown();
 
     /// Makes what every use of the device needs: samplers, pipeline cache, shader compiler, memory properties, limits.
     /// Called once by Device, when dispatch table, handles and traits that depend on enabled features are set.
@@ -80,9 +103,20 @@ class Context {
   private:
     [[nodiscard]] Result<> create_samplers();
     [[nodiscard]] Result<> create_pipeline_cache();
-    void save_pipeline_cache() const;
     [[nodiscard]] std::filesystem::path pipeline_cache_path() const;
+    [[nodiscard]] std::vector<std::byte> read_pipeline_cache(const std::filesystem::path& path) const;
     [[nodiscard]] bool is_own_pipeline_cache(std::span<const std::byte> data) const;
+    [[nodiscard]] VkFormatFeatureFlags features_of(VkFormat format) const;
+
+    // Recursive, because a sink may itself make a call that has something to say.
+    mutable std::recursive_mutex log_mutex_;
+    mutable std::shared_mutex formats_mutex_;  ///< guards the next member
+    mutable std::unordered_map<VkFormat, VkFormatFeatureFlags> formats_;
+    bool owns_pipeline_cache_ = false;
+    std::filesystem::path pipeline_cache_path_;  ///< empty: not saved
+    std::atomic<std::uint64_t> pipelines_saved_{0};
+    std::mutex saving_mutex_;  ///< guards the next member
+    std::size_t pipeline_cache_size_ = 0;
 };
 
 /// "VK_ERROR_DEVICE_LOST" and so on.

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
 #include <cstdlib>
-#include <cstring>
 #include <darkroom/device.hpp>
-#include <optional>
 #include <string_view>
 
-#include "core/folders.hpp"
 #include "gpu/context.hpp"
+#include "gpu/device_facts.hpp"
+#include "gpu/loader.hpp"
+#include "gpu/select_device.hpp"
 
 namespace darkroom {
 
@@ -23,12 +21,6 @@ using gpu::Context;
 using gpu::Dispatch;
 
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
-constexpr VkQueueFlags needed_queue = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-
-std::string lower_case(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 bool wants_validation(const DeviceDesc& desc) {
     const char* variable = std::getenv("DARKROOM_VALIDATE");
@@ -74,7 +66,15 @@ bool has_instance_extension(const Dispatch& vk, const char* layer, std::string_v
 
 Result<> create_instance(Context& context, bool validate) {
     Dispatch& vk = context.vk;
-    if (Result<> loaded = vk.load_loader(vkGetInstanceProcAddr); !loaded) return loaded;
+    const Result<PFN_vkGetInstanceProcAddr> loader = gpu::open_vulkan_loader();
+    if (!loader) return failure(loader.error());
+    if (Result<> loaded = vk.load_loader(*loader); !loaded) return loaded;
+    std::uint32_t loader_version = 0;
+    vk.EnumerateInstanceVersion(&loader_version);
+    if (loader_version < VK_API_VERSION_1_2) {
+        return machine_error(fmt::format("the Vulkan loader is of version {}; 1.2 or later is needed",
+                                         gpu::version_text(loader_version)));
+    }
     if (validate && !has_layer(vk, validation_layer)) {
         return machine_error(
             fmt::format("validation was asked for, but the layer {} is not installed (package vulkan-validationlayers)",
@@ -112,87 +112,30 @@ Result<> create_instance(Context& context, bool validate) {
         .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
         .ppEnabledExtensionNames = extensions.data(),
     };
-    const VkResult created = vk.CreateInstance(&create_info, nullptr, &context.instance);
+    const VkResult created = vk.CreateInstance(&create_info, context.allocator, &context.instance);
     if (Result<> checked = context.check(created, "creating a Vulkan instance"); !checked) return checked;
     context.is_owner = true;
     if (Result<> loaded = vk.load_instance(context.instance, context.traits.has_debug_labels); !loaded) return loaded;
     if (!validate) return {};
-    return context.check(vk.CreateDebugUtilsMessengerEXT(context.instance, &messenger, nullptr, &context.messenger),
-                         "listening to the validation layer");
-}
-
-std::optional<std::uint32_t> find_queue_family(const Context& context, VkPhysicalDevice device) {
-    std::uint32_t count = 0;
-    context.vk.GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    context.vk.GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    for (std::uint32_t family = 0; family < count; ++family) {
-        if ((families[family].queueFlags & needed_queue) == needed_queue) return family;
-    }
-    return {};
-}
-
-struct AvailableFeatures {
-    VkPhysicalDeviceFeatures core{};
-    bool has_synchronization2 = false;
-    bool has_dynamic_rendering = false;
-};
-
-AvailableFeatures query_features(const Context& context, VkPhysicalDevice device) {
-    VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-    VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features13};
-    context.vk.GetPhysicalDeviceFeatures2(device, &features);
-    return {
-        .core = features.features,
-        .has_synchronization2 = features13.synchronization2 == VK_TRUE,
-        .has_dynamic_rendering = features13.dynamicRendering == VK_TRUE,
-    };
-}
-
-std::string version_text(std::uint32_t version) {
-    return fmt::format("{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version));
-}
-
-DeviceInfo describe(const Context& context, VkPhysicalDevice device, std::uint32_t index) {
-    VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
-    context.vk.GetPhysicalDeviceProperties2(device, &properties);
-    DeviceInfo info{
-        .index = index,
-        .name = properties.properties.deviceName,
-        .driver = fmt::format("{} {}", driver.driverName, driver.driverInfo),
-        .api_version = properties.properties.apiVersion,
-        .is_software = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU,
-    };
-    std::vector<std::string> missing;
-    if (info.api_version < VK_API_VERSION_1_3) {
-        missing.push_back(fmt::format("Vulkan 1.3 (it has {})", version_text(info.api_version)));
-    } else {
-        const AvailableFeatures features = query_features(context, device);
-        if (!features.has_synchronization2) missing.emplace_back("the feature synchronization2");
-        if (!features.has_dynamic_rendering) missing.emplace_back("the feature dynamicRendering");
-    }
-    if (!find_queue_family(context, device)) missing.emplace_back("a queue family with graphics and compute");
-    info.is_usable = missing.empty();
-    if (!missing.empty()) info.reason = fmt::format("lacks {}", fmt::join(missing, ", "));
-    return info;
+    return context.check(
+        vk.CreateDebugUtilsMessengerEXT(context.instance, &messenger, context.allocator, &context.messenger),
+        "listening to the validation layer");
 }
 
 struct Candidate {
     VkPhysicalDevice device = VK_NULL_HANDLE;
     DeviceInfo info;
-    int rank = 0;  ///< lower is better
+    std::ptrdiff_t rank = 0;  ///< lower is better
 };
 
-int rank_of(const Context& context, VkPhysicalDevice device, const DeviceInfo& info) {
+std::ptrdiff_t rank_of(const Context& context, VkPhysicalDevice device, const DeviceInfo& info) {
     VkPhysicalDeviceProperties properties{};
     context.vk.GetPhysicalDeviceProperties(device, &properties);
     const std::array order{VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,
                            VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU, VK_PHYSICAL_DEVICE_TYPE_OTHER,
                            VK_PHYSICAL_DEVICE_TYPE_CPU};
-    const auto place = std::ranges::find(order, properties.deviceType);
-    const int rank = static_cast<int>(place - order.begin());
-    return info.is_usable ? rank : rank + static_cast<int>(order.size()) + 1;
+    const std::ptrdiff_t rank = std::ranges::find(order, properties.deviceType) - order.begin();
+    return info.is_usable ? rank : rank + std::ssize(order) + 1;
 }
 
 /// Best first.
@@ -205,7 +148,11 @@ Result<std::vector<Candidate>> find_devices(const Context& context) {
         return failure(std::move(checked));
     std::vector<Candidate> candidates;
     for (std::uint32_t index = 0; index < count; ++index) {
-        Candidate candidate{.device = handles[index], .info = describe(context, handles[index], index)};
+        Candidate candidate{.device = handles[index], .info = gpu::identify(context.vk, handles[index], index)};
+        const std::vector<std::string> missing =
+            gpu::missing_for_creation(context.vk, candidate.device, candidate.info);
+        candidate.info.is_usable = missing.empty();
+        if (!missing.empty()) candidate.info.reason = fmt::format("lacks {}", fmt::join(missing, ", "));
         candidate.rank = rank_of(context, candidate.device, candidate.info);
         candidates.push_back(std::move(candidate));
     }
@@ -213,58 +160,50 @@ Result<std::vector<Candidate>> find_devices(const Context& context) {
     return candidates;
 }
 
-std::string names_of(std::span<const Candidate> candidates) {
-    std::vector<std::string> names;
-    for (const Candidate& candidate : candidates) {
-        names.push_back(fmt::format("{} \"{}\"", candidate.info.index, candidate.info.name));
-    }
-    return fmt::format("{}", fmt::join(names, ", "));
+std::vector<DeviceInfo> infos_of(std::span<const Candidate> candidates) {
+    std::vector<DeviceInfo> infos;
+    for (const Candidate& candidate : candidates) infos.push_back(candidate.info);
+    return infos;
 }
 
-Result<Candidate> select_device(std::span<const Candidate> candidates, const std::string& select) {
-    if (candidates.empty()) return machine_error("no Vulkan device: the loader found no driver");
-    const Candidate* chosen = nullptr;
-    std::uint32_t index = 0;
-    const char* const end = select.data() + select.size();
-    const bool is_index = !select.empty() && std::from_chars(select.data(), end, index).ptr == end;
-    for (const Candidate& candidate : candidates) {
-        const bool is_match = is_index ? candidate.info.index == index
-                                       : lower_case(candidate.info.name).find(lower_case(select)) != std::string::npos;
-        if (!is_match) continue;
-        chosen = &candidate;
-        break;
-    }
-    if (chosen == nullptr) {
-        return user_error(fmt::format("device \"{}\": no such device; there are {}", select, names_of(candidates)));
-    }
-    if (!chosen->info.is_usable) {
+Result<Candidate> choose(std::span<const Candidate> candidates, const std::string& select) {
+    const Result<std::size_t> place = gpu::select_device(infos_of(candidates), select);
+    if (!place) return failure(place.error());
+    const Candidate& chosen = candidates[*place];
+    if (!chosen.info.is_usable) {
         return machine_error(
-            fmt::format("device {} \"{}\": {}", chosen->info.index, chosen->info.name, chosen->info.reason));
+            fmt::format("device {} \"{}\": {}", chosen.info.index, chosen.info.name, chosen.info.reason));
     }
-    return *chosen;
+    return chosen;
 }
 
 Result<> create_device(Context& context) {
     const Dispatch& vk = context.vk;
-    const VkPhysicalDeviceFeatures available = query_features(context, context.physical_device).core;
+    VkPhysicalDeviceFeatures2 queried{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+    vk.GetPhysicalDeviceFeatures2(context.physical_device, &queried);
+    const VkPhysicalDeviceFeatures& available = queried.features;
     context.traits.has_extended_storage_formats = available.shaderStorageImageExtendedFormats == VK_TRUE;
     context.traits.has_storage_write_without_format = available.shaderStorageImageWriteWithoutFormat == VK_TRUE;
     context.traits.has_wireframe = available.fillModeNonSolid == VK_TRUE;
     context.traits.has_depth_clamp = available.depthClamp == VK_TRUE;
-    // For who submits on a device of ours; the library itself needs none. Every 1.3 device has it.
+    // For who submits on a device of ours; the library itself needs none. Every device has it.
     VkPhysicalDeviceVulkan12Features features12{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
         .timelineSemaphore = VK_TRUE,
     };
-    VkPhysicalDeviceVulkan13Features features13{
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+    VkPhysicalDeviceSynchronization2Features synchronization{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES,
         .pNext = &features12,
         .synchronization2 = VK_TRUE,
+    };
+    VkPhysicalDeviceDynamicRenderingFeatures rendering{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES,
+        .pNext = &synchronization,
         .dynamicRendering = VK_TRUE,
     };
     const VkPhysicalDeviceFeatures2 features{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-        .pNext = &features13,
+        .pNext = &rendering,
         .features = {.fullDrawIndexUint32 = available.fullDrawIndexUint32,
                      .imageCubeArray = available.imageCubeArray,
                      .independentBlend = available.independentBlend,
@@ -276,6 +215,7 @@ Result<> create_device(Context& context) {
                      .shaderStorageImageExtendedFormats = available.shaderStorageImageExtendedFormats,
                      .shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat},
     };
+    const gpu::PromotedNames names = gpu::promoted_names(context.info.api_version);
     constexpr float priority = 1.0F;
     const VkDeviceQueueCreateInfo queue_info{
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -288,88 +228,23 @@ Result<> create_device(Context& context) {
         .pNext = &features,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &queue_info,
+        .enabledExtensionCount =
+            names == gpu::PromotedNames::Khr ? static_cast<std::uint32_t>(gpu::promoted_extensions.size()) : 0U,
+        .ppEnabledExtensionNames = gpu::promoted_extensions.data(),
     };
     VkDevice device = VK_NULL_HANDLE;
-    const VkResult created = vk.CreateDevice(context.physical_device, &create_info, nullptr, &device);
+    const VkResult created = vk.CreateDevice(context.physical_device, &create_info, context.allocator, &device);
     if (Result<> checked = context.check(created, fmt::format("creating a device on \"{}\"", context.info.name));
         !checked) {
         return checked;
     }
-    if (Result<> loaded = context.vk.load_device(device, context.traits.has_debug_labels); !loaded) {
-        if (vk.DestroyDevice != nullptr) vk.DestroyDevice(device, nullptr);
+    if (Result<> loaded = context.vk.load_device(device, context.traits.has_debug_labels, names); !loaded) {
+        if (vk.DestroyDevice != nullptr) vk.DestroyDevice(device, context.allocator);
         return loaded;
     }
     context.device = device;
     vk.GetDeviceQueue(device, context.queue_family, 0, &context.queue);
     return {};
-}
-
-std::filesystem::path cache_folder_of(const std::filesystem::path& wanted) {
-    return wanted.empty() ? user_cache_folder() : wanted;
-}
-
-struct EnabledFeatures {
-    VkPhysicalDeviceFeatures core{};
-    bool has_synchronization2 = false;
-    bool has_dynamic_rendering = false;
-};
-
-EnabledFeatures read_chain(const VkPhysicalDeviceFeatures2* features) {
-    EnabledFeatures enabled;
-    if (features == nullptr) return enabled;
-    enabled.core = features->features;
-    const auto* link = static_cast<const VkBaseInStructure*>(features->pNext);
-    for (; link != nullptr; link = link->pNext) {
-        const void* const structure = link;
-        if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES) {
-            const auto& features13 = *static_cast<const VkPhysicalDeviceVulkan13Features*>(structure);
-            enabled.has_synchronization2 |= features13.synchronization2 == VK_TRUE;
-            enabled.has_dynamic_rendering |= features13.dynamicRendering == VK_TRUE;
-        } else if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES) {
-            const auto& single = *static_cast<const VkPhysicalDeviceSynchronization2Features*>(structure);
-            enabled.has_synchronization2 |= single.synchronization2 == VK_TRUE;
-        } else if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES) {
-            const auto& single = *static_cast<const VkPhysicalDeviceDynamicRenderingFeatures*>(structure);
-            enabled.has_dynamic_rendering |= single.dynamicRendering == VK_TRUE;
-        }
-    }
-    return enabled;
-}
-
-std::vector<std::string> missing_handles(const AdoptDesc& desc) {
-    std::vector<std::string> missing;
-    if (desc.instance == VK_NULL_HANDLE) missing.emplace_back("instance");
-    if (desc.physical_device == VK_NULL_HANDLE) missing.emplace_back("physical_device");
-    if (desc.device == VK_NULL_HANDLE) missing.emplace_back("device");
-    if (desc.get_proc == nullptr) missing.emplace_back("get_proc");
-    return missing;
-}
-
-std::vector<std::string> missing_capabilities(const Context& context, const AdoptDesc& desc,
-                                              const EnabledFeatures& enabled) {
-    std::vector<std::string> missing;
-    if (context.info.api_version < VK_API_VERSION_1_3) {
-        missing.push_back(fmt::format("Vulkan 1.3 (the device has {})", version_text(context.info.api_version)));
-    }
-    std::uint32_t count = 0;
-    context.vk.GetPhysicalDeviceQueueFamilyProperties(desc.physical_device, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    context.vk.GetPhysicalDeviceQueueFamilyProperties(desc.physical_device, &count, families.data());
-    if (desc.queue_family >= count) {
-        missing.push_back(fmt::format("queue family {} (the device has 0 to {})", desc.queue_family, count - 1));
-    } else {
-        const VkQueueFlags flags = families[desc.queue_family].queueFlags;
-        if ((flags & VK_QUEUE_GRAPHICS_BIT) == 0) {
-            missing.push_back(fmt::format("graphics in queue family {}", desc.queue_family));
-        }
-        if ((flags & VK_QUEUE_COMPUTE_BIT) == 0) {
-            missing.push_back(fmt::format("compute in queue family {}", desc.queue_family));
-        }
-    }
-    const char* const where = desc.enabled_features == nullptr ? " (enabled_features is null)" : "";
-    if (!enabled.has_synchronization2) missing.push_back(fmt::format("the feature synchronization2{}", where));
-    if (!enabled.has_dynamic_rendering) missing.push_back(fmt::format("the feature dynamicRendering{}", where));
-    return missing;
 }
 
 }  // namespace
@@ -385,60 +260,25 @@ std::uint64_t Device::validation_messages() const { return context_->validation_
 Result<std::vector<DeviceInfo>> Device::list() {
     Context context;
     if (Result<> created = create_instance(context, false); !created) return failure(std::move(created));
-    Result<std::vector<Candidate>> candidates = find_devices(context);
-    if (!candidates) return failure(std::move(candidates));
-    std::vector<DeviceInfo> infos;
-    for (Candidate& candidate : *candidates) infos.push_back(std::move(candidate.info));
-    return infos;
+    const Result<std::vector<Candidate>> candidates = find_devices(context);
+    if (!candidates) return failure(candidates.error());
+    return infos_of(*candidates);
 }
 
 Result<Device> Device::create(const DeviceDesc& desc) {
     auto context = std::make_shared<Context>();
     context->log = desc.log;
-    context->cache_folder = cache_folder_of(desc.cache_folder);
+    context->cache_folder = gpu::cache_folder_of(desc.cache_folder, desc.caches_on_disk);
     if (Result<> created = create_instance(*context, wants_validation(desc)); !created)
         return failure(std::move(created));
     const Result<std::vector<Candidate>> candidates = find_devices(*context);
     if (!candidates) return failure(candidates.error());
-    Result<Candidate> chosen = select_device(*candidates, desc.select);
+    Result<Candidate> chosen = choose(*candidates, desc.select);
     if (!chosen) return failure(std::move(chosen));
     context->physical_device = chosen->device;
     context->info = std::move(chosen->info);
-    context->queue_family = find_queue_family(*context, context->physical_device).value_or(0);
+    context->queue_family = gpu::find_queue_family(context->vk, context->physical_device).value_or(0);
     if (Result<> created = create_device(*context); !created) return failure(std::move(created));
-    if (Result<> finished = context->finish(); !finished) return failure(std::move(finished));
-    return Device(std::move(context));
-}
-
-Result<Device> Device::adopt(const AdoptDesc& desc) {
-    if (const std::vector<std::string> missing = missing_handles(desc); !missing.empty()) {
-        return user_error(fmt::format("adopting a device: not given: {}", fmt::join(missing, ", ")));
-    }
-    auto context = std::make_shared<Context>();
-    context->log = desc.log;
-    context->cache_folder = cache_folder_of(desc.cache_folder);
-    context->vk.GetInstanceProcAddr = desc.get_proc;
-    context->instance = desc.instance;
-    context->physical_device = desc.physical_device;
-    context->queue_family = desc.queue_family;
-    const bool has_debug_utils = std::ranges::any_of(desc.enabled_extensions, [](const char* name) {
-        return std::strcmp(name, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) == 0;
-    });
-    if (Result<> loaded = context->vk.load_instance(desc.instance, has_debug_utils); !loaded)
-        return failure(std::move(loaded));
-    context->info = describe(*context, desc.physical_device, 0);
-    const EnabledFeatures enabled = read_chain(desc.enabled_features);
-    if (const std::vector<std::string> missing = missing_capabilities(*context, desc, enabled); !missing.empty()) {
-        return user_error(fmt::format("adopting \"{}\": it lacks {}", context->info.name, fmt::join(missing, ", ")));
-    }
-    context->traits.has_extended_storage_formats = enabled.core.shaderStorageImageExtendedFormats == VK_TRUE;
-    context->traits.has_storage_write_without_format = enabled.core.shaderStorageImageWriteWithoutFormat == VK_TRUE;
-    context->traits.has_wireframe = enabled.core.fillModeNonSolid == VK_TRUE;
-    context->traits.has_depth_clamp = enabled.core.depthClamp == VK_TRUE;
-    context->traits.has_debug_labels = has_debug_utils;
-    if (Result<> loaded = context->vk.load_device(desc.device, has_debug_utils); !loaded)
-        return failure(std::move(loaded));
-    context->device = desc.device;
     if (Result<> finished = context->finish(); !finished) return failure(std::move(finished));
     return Device(std::move(context));
 }

@@ -59,7 +59,6 @@ void load_device_functions(Dispatch& table, Load& load) {
     load(table.DestroyDevice, "vkDestroyDevice");
     load(table.DeviceWaitIdle, "vkDeviceWaitIdle");
     load(table.GetDeviceQueue, "vkGetDeviceQueue");
-    load(table.QueueSubmit2, "vkQueueSubmit2");
     load(table.AllocateMemory, "vkAllocateMemory");
     load(table.FreeMemory, "vkFreeMemory");
     load(table.MapMemory, "vkMapMemory");
@@ -107,10 +106,7 @@ void load_device_functions(Dispatch& table, Load& load) {
     load(table.CmdBindPipeline, "vkCmdBindPipeline");
     load(table.CmdBindDescriptorSets, "vkCmdBindDescriptorSets");
     load(table.CmdPushConstants, "vkCmdPushConstants");
-    load(table.CmdPipelineBarrier2, "vkCmdPipelineBarrier2");
     load(table.CmdDispatch, "vkCmdDispatch");
-    load(table.CmdBeginRendering, "vkCmdBeginRendering");
-    load(table.CmdEndRendering, "vkCmdEndRendering");
     load(table.CmdSetViewport, "vkCmdSetViewport");
     load(table.CmdSetScissor, "vkCmdSetScissor");
     load(table.CmdBindVertexBuffers, "vkCmdBindVertexBuffers");
@@ -124,7 +120,16 @@ void load_device_functions(Dispatch& table, Load& load) {
     load(table.CmdClearColorImage, "vkCmdClearColorImage");
     load(table.CmdClearDepthStencilImage, "vkCmdClearDepthStencilImage");
     load(table.CmdResetQueryPool, "vkCmdResetQueryPool");
-    load(table.CmdWriteTimestamp2, "vkCmdWriteTimestamp2");
+}
+
+template <class Load>
+void load_promoted_functions(Dispatch& table, Load& load, PromotedNames names) {
+    const bool is_core = names == PromotedNames::Core;
+    load(table.QueueSubmit2, is_core ? "vkQueueSubmit2" : "vkQueueSubmit2KHR");
+    load(table.CmdPipelineBarrier2, is_core ? "vkCmdPipelineBarrier2" : "vkCmdPipelineBarrier2KHR");
+    load(table.CmdWriteTimestamp2, is_core ? "vkCmdWriteTimestamp2" : "vkCmdWriteTimestamp2KHR");
+    load(table.CmdBeginRendering, is_core ? "vkCmdBeginRendering" : "vkCmdBeginRenderingKHR");
+    load(table.CmdEndRendering, is_core ? "vkCmdEndRendering" : "vkCmdEndRenderingKHR");
 }
 
 }  // namespace
@@ -148,10 +153,11 @@ Result<> Dispatch::load_instance(VkInstance instance, bool has_debug_utils) {
     return load.result();
 }
 
-Result<> Dispatch::load_device(VkDevice device, bool has_debug_utils) {
+Result<> Dispatch::load_device(VkDevice device, bool has_debug_utils, PromotedNames names) {
     Dispatch& table = *this;
     Loader load(GetDeviceProcAddr, device);
     load_device_functions(table, load);
+    load_promoted_functions(table, load, names);
     if (has_debug_utils) {
         load(table.SetDebugUtilsObjectNameEXT, "vkSetDebugUtilsObjectNameEXT");
         load(table.CmdBeginDebugUtilsLabelEXT, "vkCmdBeginDebugUtilsLabelEXT");

@@ -5,9 +5,18 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
+#include <cstdint>
 #include <darkroom/result.hpp>
 
 namespace darkroom::gpu {
+
+/// By which names a device has the functions that Vulkan 1.3 took over from extensions. What they do is the same.
+enum class PromotedNames : std::uint8_t { Core, Khr };
+
+/// Where those functions come from on Vulkan 1.2.
+inline constexpr std::array promoted_extensions{VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
+                                                VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME};
 
 struct Dispatch {
     PFN_vkGetInstanceProcAddr GetInstanceProcAddr = nullptr;
@@ -115,7 +124,8 @@ struct Dispatch {
     /// Needs GetInstanceProcAddr.
     [[nodiscard]] Result<> load_instance(VkInstance instance, bool has_debug_utils);
     /// Needs load_instance().
-    [[nodiscard]] Result<> load_device(VkDevice device, bool has_debug_utils);
+    [[nodiscard]] Result<> load_device(VkDevice device, bool has_debug_utils,
+                                       PromotedNames names = PromotedNames::Core);
 };
 
 }  // namespace darkroom::gpu

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "gpu/context.hpp"
@@ -94,6 +95,24 @@ TEST(GpuDispatch, NamesMissingFunctions) {
     ASSERT_FALSE(loaded);
     EXPECT_EQ(loaded.error().text, "the Vulkan driver lacks the functions vkCmdDispatch, vkCmdBeginRendering");
     EXPECT_EQ(vk.SetDebugUtilsObjectNameEXT, nullptr);
+}
+
+TEST(GpuDispatch, PromotedFunctionsAreAskedForByTheNamesThatTheDeviceHas) {
+    for (const PromotedNames names : {PromotedNames::Core, PromotedNames::Khr}) {
+        static std::set<std::string> asked;
+        asked.clear();
+        Dispatch vk;
+        vk.GetDeviceProcAddr = [](VkDevice, const char* name) -> PFN_vkVoidFunction {
+            asked.insert(name);
+            return [] {};
+        };
+        ASSERT_TRUE(vk.load_device(VK_NULL_HANDLE, false, names));
+        for (const std::string name : {"vkQueueSubmit2", "vkCmdPipelineBarrier2", "vkCmdWriteTimestamp2",
+                                       "vkCmdBeginRendering", "vkCmdEndRendering"}) {
+            EXPECT_EQ(asked.contains(name), names == PromotedNames::Core) << name;
+            EXPECT_EQ(asked.contains(name + "KHR"), names == PromotedNames::Khr) << name;
+        }
+    }
 }
 
 }  // namespace

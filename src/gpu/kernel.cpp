@@ -98,7 +98,8 @@ class ShaderModule {
             .pCode = words.data(),
         };
         ShaderModule module(context);
-        const VkResult result = context.vk.CreateShaderModule(context.device, &create_info, nullptr, &module.handle_);
+        const VkResult result =
+            context.vk.CreateShaderModule(context.device, &create_info, context.allocator, &module.handle_);
         Result<> checked = context.check(result, fmt::format("creating the shader module of \"{}\"", name));
         if (!checked) return failure(std::move(checked));
         return module;
@@ -108,7 +109,7 @@ class ShaderModule {
     }
     ShaderModule& operator=(ShaderModule&&) = delete;
     ~ShaderModule() {
-        if (handle_ != VK_NULL_HANDLE) context_.vk.DestroyShaderModule(context_.device, handle_, nullptr);
+        if (handle_ != VK_NULL_HANDLE) context_.vk.DestroyShaderModule(context_.device, handle_, context_.allocator);
     }
     [[nodiscard]] VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits flag) const {
         return {
@@ -142,8 +143,8 @@ Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& s
         .layout = layout,
     };
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result =
-        context.vk.CreateComputePipelines(context.device, context.pipeline_cache, 1, &create_info, nullptr, &pipeline);
+    const VkResult result = context.vk.CreateComputePipelines(context.device, context.pipeline_cache, 1, &create_info,
+                                                              context.allocator, &pipeline);
     Result<> checked = context.check(result, fmt::format("creating the compute pipeline of \"{}\"", spec.name));
     if (!checked) return failure(std::move(checked));
     return pipeline;
@@ -219,8 +220,8 @@ Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& sp
         .layout = layout,
     };
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result =
-        context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &create_info, nullptr, &pipeline);
+    const VkResult result = context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &create_info,
+                                                               context.allocator, &pipeline);
     Result<> checked = context.check(result, fmt::format("creating the raster pipeline of \"{}\"", spec.name));
     if (!checked) return failure(std::move(checked));
     return pipeline;
@@ -259,9 +260,9 @@ struct Kernel::State {
     State(const State&) = delete;
     State& operator=(const State&) = delete;
     ~State() {
-        context.vk.DestroyPipeline(context.device, pipeline, nullptr);
-        context.vk.DestroyPipelineLayout(context.device, pipeline_layout, nullptr);
-        context.vk.DestroyDescriptorSetLayout(context.device, set_layout, nullptr);
+        context.vk.DestroyPipeline(context.device, pipeline, context.allocator);
+        context.vk.DestroyPipelineLayout(context.device, pipeline_layout, context.allocator);
+        context.vk.DestroyDescriptorSetLayout(context.device, set_layout, context.allocator);
     }
     Result<> create_layouts();
     Result<> create_pipeline();
@@ -284,13 +285,15 @@ Result<> Kernel::State::create_layouts() {
         .bindingCount = static_cast<std::uint32_t>(bindings.size()),
         .pBindings = bindings.data(),
     };
-    const VkResult set_result = context.vk.CreateDescriptorSetLayout(context.device, &set_info, nullptr, &set_layout);
+    const VkResult set_result =
+        context.vk.CreateDescriptorSetLayout(context.device, &set_info, context.allocator, &set_layout);
     Result<> checked = context.check(set_result, fmt::format("creating the set layout of \"{}\"", spec.name));
     if (!checked) return checked;
     const VkPipelineLayoutCreateInfo layout_info{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, .setLayoutCount = 1, .pSetLayouts = &set_layout};
-    return context.check(context.vk.CreatePipelineLayout(context.device, &layout_info, nullptr, &pipeline_layout),
-                         fmt::format("creating the pipeline layout of \"{}\"", spec.name));
+    return context.check(
+        context.vk.CreatePipelineLayout(context.device, &layout_info, context.allocator, &pipeline_layout),
+        fmt::format("creating the pipeline layout of \"{}\"", spec.name));
 }
 
 Result<> Kernel::State::create_pipeline() {

@@ -20,7 +20,7 @@ class Module {
     explicit Module(Context& context) : context_(context) {}
     Module(const Module&) = delete;
     Module& operator=(const Module&) = delete;
-    ~Module() { context_.vk.DestroyShaderModule(context_.device, handle, nullptr); }
+    ~Module() { context_.vk.DestroyShaderModule(context_.device, handle, context_.allocator); }
 
     Result<> compile(const std::string& name, const std::string& text, ShaderStage stage) {
         const Result<std::vector<std::uint32_t>> words =
@@ -29,7 +29,7 @@ class Module {
         const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                             .codeSize = words->size() * 4,
                                             .pCode = words->data()};
-        return context_.check(context_.vk.CreateShaderModule(context_.device, &info, nullptr, &handle),
+        return context_.check(context_.vk.CreateShaderModule(context_.device, &info, context_.allocator, &handle),
                               fmt::format("creating the shader \"{}\"", name));
     }
     VkShaderModule handle = VK_NULL_HANDLE;
@@ -47,7 +47,7 @@ Result<VkPipelineLayout> create_layout(Context& context, const PipelineDesc& des
                                           .pushConstantRangeCount = desc.push_constant_size > 0 ? 1U : 0U,
                                           .pPushConstantRanges = &range};
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreatePipelineLayout(context.device, &info, nullptr, &layout),
+    Result<> made = context.check(context.vk.CreatePipelineLayout(context.device, &info, context.allocator, &layout),
                                   fmt::format("creating the layout of the pipeline \"{}\"", desc.name));
     if (!made) return failure(std::move(made));
     return layout;
@@ -140,9 +140,9 @@ Result<VkPipeline> create_pipeline(Context& context, const PipelineDesc& desc, V
                                             .pDynamicState = &dynamic,
                                             .layout = layout};
     VkPipeline pipeline = VK_NULL_HANDLE;
-    Result<> made = context.check(
-        context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &info, nullptr, &pipeline),
-        fmt::format("creating the pipeline \"{}\"", desc.name));
+    Result<> made = context.check(context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &info,
+                                                                     context.allocator, &pipeline),
+                                  fmt::format("creating the pipeline \"{}\"", desc.name));
     if (!made) return failure(std::move(made));
     return pipeline;
 }
@@ -161,8 +161,9 @@ Result<SetLayout> SetLayout::create(Context& context, std::span<const Binding> b
                                                .pBindings = list.data()};
     SetLayout layout;
     layout.context = &context;
-    Result<> made = context.check(context.vk.CreateDescriptorSetLayout(context.device, &info, nullptr, &layout.handle),
-                                  "creating a descriptor set layout");
+    Result<> made =
+        context.check(context.vk.CreateDescriptorSetLayout(context.device, &info, context.allocator, &layout.handle),
+                      "creating a descriptor set layout");
     if (!made) return failure(std::move(made));
     return layout;
 }
@@ -174,7 +175,7 @@ SetLayout& SetLayout::operator=(SetLayout&& other) noexcept {
     return *this;
 }
 SetLayout::~SetLayout() {
-    if (handle != VK_NULL_HANDLE) context->vk.DestroyDescriptorSetLayout(context->device, handle, nullptr);
+    if (handle != VK_NULL_HANDLE) context->vk.DestroyDescriptorSetLayout(context->device, handle, context->allocator);
 }
 
 Result<Pipeline> Pipeline::create(Context& context, const PipelineDesc& desc) {
@@ -206,8 +207,8 @@ Pipeline& Pipeline::operator=(Pipeline&& other) noexcept {
 }
 Pipeline::~Pipeline() {
     if (context == nullptr) return;
-    context->vk.DestroyPipeline(context->device, handle, nullptr);
-    context->vk.DestroyPipelineLayout(context->device, layout, nullptr);
+    context->vk.DestroyPipeline(context->device, handle, context->allocator);
+    context->vk.DestroyPipelineLayout(context->device, layout, context->allocator);
 }
 
 }  // namespace darkroom::gpu

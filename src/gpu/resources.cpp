@@ -16,22 +16,6 @@ namespace {
 constexpr VkImageUsageFlags viewable_usage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
     VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
-constexpr VkMemoryPropertyFlags host_memory =
-    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-
-/// Best first; the last one is what the kind cannot do without.
-std::array<VkMemoryPropertyFlags, 2> wanted_properties(Memory::Kind kind) {
-    switch (kind) {
-        case Memory::Kind::Device:
-            return {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
-        case Memory::Kind::Upload:
-            return {host_memory, host_memory};
-        case Memory::Kind::Readback:
-            return {host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, host_memory};
-    }
-    return {0, 0};
-}
-
 VkImageViewType view_type(const ImageInfo& info) {
     if (info.type == VK_IMAGE_TYPE_3D) return VK_IMAGE_VIEW_TYPE_3D;
     if (info.type == VK_IMAGE_TYPE_1D) return VK_IMAGE_VIEW_TYPE_1D;
@@ -53,7 +37,7 @@ Result<VkImage> create_image(Context& context, const ImageInfo& info) {
         .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
     };
     VkImage image = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateImage(context.device, &create_info, nullptr, &image);
+    const VkResult result = context.vk.CreateImage(context.device, &create_info, context.allocator, &image);
     Result<> checked = context.check(
         result, fmt::format("creating the image \"{}\", {} x {}", info.name, info.extent.width, info.extent.height));
     if (!checked) return failure(std::move(checked));
@@ -85,7 +69,7 @@ Result<VkImageView> create_view(Context& context, const Image& image, VkImageVie
                              .layerCount = part.layer_count},
     };
     VkImageView view = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateImageView(context.device, &create_info, nullptr, &view);
+    const VkResult result = context.vk.CreateImageView(context.device, &create_info, context.allocator, &view);
     Result<> checked = context.check(result, fmt::format("creating a view of the image \"{}\"", image.info.name));
     if (!checked) return failure(std::move(checked));
     return view;
@@ -124,31 +108,22 @@ Result<Image> bind_image(Context& context, Image image, VkDeviceMemory memory, V
 
 Result<Memory> Memory::create(Context& context, VkDeviceSize size, std::uint32_t type_bits, Kind kind,
                               std::string_view what) {
-    const Dispatch& vk = context.vk;
     Memory memory;
-    VkResult result = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    Result<> allocated = machine_error(fmt::format("no type of the device's memory will do for {}", what));
     // A full heap is no reason to fail while another type would do.
-    for (const VkMemoryPropertyFlags wanted : wanted_properties(kind)) {
-        for (std::uint32_t type = 0; type < context.memory.memoryTypeCount; ++type) {
-            const VkMemoryPropertyFlags flags = context.memory.memoryTypes[type].propertyFlags;
-            const bool is_allowed = (type_bits & (1U << type)) != 0 && (flags & wanted) == wanted &&
-                                    (flags & VK_MEMORY_PROPERTY_PROTECTED_BIT) == 0;
-            if (!is_allowed) continue;
-            const VkMemoryAllocateInfo allocate_info{
-                .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = size, .memoryTypeIndex = type};
-            result = vk.AllocateMemory(context.device, &allocate_info, nullptr, &memory.handle);
-            if (result == VK_SUCCESS) break;
-        }
-        if (result == VK_SUCCESS) break;
+    for (const std::uint32_t type : memory_types_for(context.memory, type_bits, kind)) {
+        const VkMemoryAllocateInfo allocate_info{
+            .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = size, .memoryTypeIndex = type};
+        allocated = context.allocate_memory(allocate_info, what, memory.handle);
+        if (allocated) break;
     }
-    Result<> checked = context.check(result, fmt::format("allocating {} bytes of memory for {}", size, what));
-    if (!checked) return failure(std::move(checked));
+    if (!allocated) return failure(std::move(allocated));
     memory.context = &context;
     memory.size = size;
     if (kind == Kind::Device) return memory;
     void* mapped = nullptr;
-    checked = context.check(vk.MapMemory(context.device, memory.handle, 0, VK_WHOLE_SIZE, 0, &mapped),
-                            fmt::format("mapping the memory of {}", what));
+    Result<> checked = context.check(context.vk.MapMemory(context.device, memory.handle, 0, VK_WHOLE_SIZE, 0, &mapped),
+                                     fmt::format("mapping the memory of {}", what));
     if (!checked) return failure(std::move(checked));
     memory.mapped = static_cast<std::byte*>(mapped);
     return memory;
@@ -163,7 +138,7 @@ Memory& Memory::operator=(Memory&& other) noexcept {
     return *this;
 }
 Memory::~Memory() {
-    if (handle != VK_NULL_HANDLE) context->vk.FreeMemory(context->device, handle, nullptr);
+    if (handle != VK_NULL_HANDLE) context->free_memory(handle);
 }
 
 Result<Image> Image::create(Context& context, const ImageInfo& info) {
@@ -196,7 +171,7 @@ Result<VkMemoryRequirements> Image::measure(Context& context, const ImageInfo& i
     const Result<VkImage> handle = create_image(context, info);
     if (!handle) return failure(handle.error());
     const VkMemoryRequirements requirements = requirements_of(context, *handle);
-    context.vk.DestroyImage(context.device, *handle, nullptr);
+    context.vk.DestroyImage(context.device, *handle, context.allocator);
     return requirements;
 }
 
@@ -213,10 +188,12 @@ Image& Image::operator=(Image&& other) noexcept {
 }
 Image::~Image() {
     if (handle == VK_NULL_HANDLE) return;
-    for (const VkImageView mip_view : mip_views) context->vk.DestroyImageView(context->device, mip_view, nullptr);
-    for (const VkImageView layer_view : layer_views) context->vk.DestroyImageView(context->device, layer_view, nullptr);
-    context->vk.DestroyImageView(context->device, view, nullptr);
-    context->vk.DestroyImage(context->device, handle, nullptr);
+    for (const VkImageView mip_view : mip_views)
+        context->vk.DestroyImageView(context->device, mip_view, context->allocator);
+    for (const VkImageView layer_view : layer_views)
+        context->vk.DestroyImageView(context->device, layer_view, context->allocator);
+    context->vk.DestroyImageView(context->device, view, context->allocator);
+    context->vk.DestroyImage(context->device, handle, context->allocator);
 }
 
 Result<Buffer> Buffer::create(Context& context, VkDeviceSize size, VkBufferUsageFlags usage, Memory::Kind kind,
@@ -228,8 +205,9 @@ Result<Buffer> Buffer::create(Context& context, VkDeviceSize size, VkBufferUsage
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     Buffer buffer;
-    Result<> checked = context.check(context.vk.CreateBuffer(context.device, &create_info, nullptr, &buffer.handle),
-                                     fmt::format("creating the buffer \"{}\", {} bytes", name, size));
+    Result<> checked =
+        context.check(context.vk.CreateBuffer(context.device, &create_info, context.allocator, &buffer.handle),
+                      fmt::format("creating the buffer \"{}\", {} bytes", name, size));
     if (!checked) return failure(std::move(checked));
     buffer.context = &context;
     name_object(context, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.handle), std::string(name));
@@ -253,7 +231,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     return *this;
 }
 Buffer::~Buffer() {
-    if (handle != VK_NULL_HANDLE) context->vk.DestroyBuffer(context->device, handle, nullptr);
+    if (handle != VK_NULL_HANDLE) context->vk.DestroyBuffer(context->device, handle, context->allocator);
 }
 
 Result<DescriptorSets> DescriptorSets::create(Context& context, std::span<const VkDescriptorSetLayout> layouts) {
@@ -274,8 +252,9 @@ Result<DescriptorSets> DescriptorSets::create(Context& context, std::span<const 
         .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
         .pPoolSizes = sizes.data(),
     };
-    Result<> checked = context.check(context.vk.CreateDescriptorPool(context.device, &pool_info, nullptr, &result.pool),
-                                     fmt::format("creating a pool of {} descriptor sets", count));
+    Result<> checked =
+        context.check(context.vk.CreateDescriptorPool(context.device, &pool_info, context.allocator, &result.pool),
+                      fmt::format("creating a pool of {} descriptor sets", count));
     if (!checked) return failure(std::move(checked));
     const VkDescriptorSetAllocateInfo allocate_info{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
@@ -298,7 +277,7 @@ DescriptorSets& DescriptorSets::operator=(DescriptorSets&& other) noexcept {
     return *this;
 }
 DescriptorSets::~DescriptorSets() {
-    if (pool != VK_NULL_HANDLE) context->vk.DestroyDescriptorPool(context->device, pool, nullptr);
+    if (pool != VK_NULL_HANDLE) context->vk.DestroyDescriptorPool(context->device, pool, context->allocator);
 }
 
 void name_object(Context& context, VkObjectType type, std::uint64_t handle, const std::string& name) {

@@ -15,12 +15,13 @@
 #include <vector>
 
 #include "gpu/context.hpp"
+#include "gpu/memory_types.hpp"
 
 namespace darkroom::gpu {
 
 class Memory {
   public:
-    enum class Kind : std::uint8_t { Device, Upload, Readback };
+    using Kind = MemoryKind;
     Memory() = default;
     [[nodiscard]] static Result<Memory> create(Context&, VkDeviceSize size, std::uint32_t type_bits, Kind,
                                                std::string_view what);
@@ -28,7 +29,7 @@ class Memory {
     Memory& operator=(Memory&&) noexcept;
     ~Memory();
     VkDeviceMemory handle = VK_NULL_HANDLE;
-    std::byte* mapped = nullptr;  ///< Upload and Readback: persistently mapped, coherent
+    std::byte* mapped = nullptr;  ///< all but Kind::Device: persistently mapped, coherent
     VkDeviceSize size = 0;
     Context* context = nullptr;
 };

@@ -17,8 +17,8 @@ struct Submission {
     Submission(const Submission&) = delete;
     Submission& operator=(const Submission&) = delete;
     ~Submission() {
-        context.vk.DestroyFence(context.device, fence, nullptr);
-        context.vk.DestroyCommandPool(context.device, pool, nullptr);
+        context.vk.DestroyFence(context.device, fence, context.allocator);
+        context.vk.DestroyCommandPool(context.device, pool, context.allocator);
     }
     Context& context;
     VkCommandPool pool = VK_NULL_HANDLE;
@@ -32,10 +32,10 @@ VkResult run(Context& context, Submission& submission, const std::function<void(
         .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
         .queueFamilyIndex = context.queue_family,
     };
-    VkResult result = vk.CreateCommandPool(context.device, &pool_info, nullptr, &submission.pool);
+    VkResult result = vk.CreateCommandPool(context.device, &pool_info, context.allocator, &submission.pool);
     if (result != VK_SUCCESS) return result;
     const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    result = vk.CreateFence(context.device, &fence_info, nullptr, &submission.fence);
+    result = vk.CreateFence(context.device, &fence_info, context.allocator, &submission.fence);
     if (result != VK_SUCCESS) return result;
     const VkCommandBufferAllocateInfo allocate_info{
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,

@@ -25,7 +25,7 @@ Result<Timers> Timers::create(Context& context, std::uint32_t slots, std::uint32
         .queryCount = slots * marks,
     };
     Result<> checked =
-        context.check(context.vk.CreateQueryPool(context.device, &create_info, nullptr, &timers.pool),
+        context.check(context.vk.CreateQueryPool(context.device, &create_info, context.allocator, &timers.pool),
                       "creating the timestamp queries");
     if (!checked) return failure(std::move(checked));
     return timers;
@@ -40,7 +40,7 @@ Timers& Timers::operator=(Timers&& other) noexcept {
     return *this;
 }
 Timers::~Timers() {
-    if (pool != VK_NULL_HANDLE) context->vk.DestroyQueryPool(context->device, pool, nullptr);
+    if (pool != VK_NULL_HANDLE) context->vk.DestroyQueryPool(context->device, pool, context->allocator);
 }
 
 void Timers::begin(VkCommandBuffer commands, std::uint32_t slot) {

@@ -24,7 +24,7 @@ Result<VkSampler> create_sampler(gpu::Context& context) {
                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                    .maxLod = VK_LOD_CLAMP_NONE};
     VkSampler sampler = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreateSampler(context.device, &info, nullptr, &sampler),
+    Result<> made = context.check(context.vk.CreateSampler(context.device, &info, context.allocator, &sampler),
                                   "creating the sampler of the environment");
     if (!made) return failure(std::move(made));
     return sampler;
@@ -131,7 +131,7 @@ GpuEnvironment& GpuEnvironment::operator=(GpuEnvironment&& other) noexcept {
     return *this;
 }
 GpuEnvironment::~GpuEnvironment() {
-    if (sampler != VK_NULL_HANDLE) context->vk.DestroySampler(context->device, sampler, nullptr);
+    if (sampler != VK_NULL_HANDLE) context->vk.DestroySampler(context->device, sampler, context->allocator);
 }
 
 }  // namespace darkroom::render

@@ -10,7 +10,8 @@ SetAllocator::SetAllocator(gpu::Context& context, std::span<const VkDescriptorPo
 }
 
 SetAllocator::~SetAllocator() {
-    for (const VkDescriptorPool pool : pools_) context_->vk.DestroyDescriptorPool(context_->device, pool, nullptr);
+    for (const VkDescriptorPool pool : pools_)
+        context_->vk.DestroyDescriptorPool(context_->device, pool, context_->allocator);
 }
 
 Result<> SetAllocator::add_pool() {
@@ -19,8 +20,9 @@ Result<> SetAllocator::add_pool() {
                                           .poolSizeCount = static_cast<std::uint32_t>(sizes_.size()),
                                           .pPoolSizes = sizes_.data()};
     VkDescriptorPool pool = VK_NULL_HANDLE;
-    Result<> made = context_->check(context_->vk.CreateDescriptorPool(context_->device, &info, nullptr, &pool),
-                                    "creating a pool of the scene's descriptor sets");
+    Result<> made =
+        context_->check(context_->vk.CreateDescriptorPool(context_->device, &info, context_->allocator, &pool),
+                        "creating a pool of the scene's descriptor sets");
     if (!made) return made;
     pools_.push_back(pool);
     left_ = sets_a_pool_;

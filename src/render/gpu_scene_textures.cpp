@@ -59,7 +59,8 @@ bool has_anisotropy(const gpu::Context& context) {
 }  // namespace
 
 GpuTextures::~GpuTextures() {
-    for (const auto& [key, sampler] : samplers_) context_->vk.DestroySampler(context_->device, sampler, nullptr);
+    for (const auto& [key, sampler] : samplers_)
+        context_->vk.DestroySampler(context_->device, sampler, context_->allocator);
 }
 
 Result<> GpuTextures::create(const scene::Assets& assets, Uploader& uploader) {
@@ -127,7 +128,7 @@ Result<VkSampler> GpuTextures::sampler(scene::Wrap wrap_u, scene::Wrap wrap_v, b
         .maxAnisotropy = is_anisotropic ? most_anisotropy : 1,
         .maxLod = VK_LOD_CLAMP_NONE};
     VkSampler sampler = VK_NULL_HANDLE;
-    Result<> made = context_->check(context_->vk.CreateSampler(context_->device, &info, nullptr, &sampler),
+    Result<> made = context_->check(context_->vk.CreateSampler(context_->device, &info, context_->allocator, &sampler),
                                     "creating a sampler of the scene");
     if (!made) return failure(std::move(made));
     samplers_.emplace(key, sampler);

@@ -76,8 +76,9 @@ Result<Resolve> Resolve::create(gpu::Context& context, const TargetFormats& form
     out.sets_ = std::move(*sets);
     const VkDeviceSize alignment = context.traits.uniform_alignment;
     out.block_stride_ = (gpu::pass_block_size(spec) + alignment - 1) / alignment * alignment;
-    Result<gpu::Buffer> blocks = gpu::Buffer::create(context, out.block_stride_ * slots, gpu::constants_usage,
-                                                     gpu::Memory::Kind::Upload, "pass blocks of the scene's resolve");
+    Result<gpu::Buffer> blocks =
+        gpu::Buffer::create(context, out.block_stride_ * slots, gpu::constants_usage, gpu::Memory::Kind::Constants,
+                            "pass blocks of the scene's resolve");
     if (!blocks) return failure(std::move(blocks));
     out.blocks_ = std::move(*blocks);
     return out;

@@ -50,10 +50,10 @@ Result<> view_as_array(gpu::Context& context, gpu::Image& image) {
                                      .format = image.info.format,
                                      .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1}};
     VkImageView view = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreateImageView(context.device, &info, nullptr, &view),
+    Result<> made = context.check(context.vk.CreateImageView(context.device, &info, context.allocator, &view),
                                   fmt::format("creating a view of the image \"{}\"", image.info.name));
     if (!made) return made;
-    context.vk.DestroyImageView(context.device, image.view, nullptr);
+    context.vk.DestroyImageView(context.device, image.view, context.allocator);
     image.view = view;
     return {};
 }
@@ -98,7 +98,7 @@ Result<VkSampler> create_sampler(gpu::Context& context) {
                                    .compareOp = VK_COMPARE_OP_LESS_OR_EQUAL,
                                    .borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE};
     VkSampler sampler = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreateSampler(context.device, &info, nullptr, &sampler),
+    Result<> made = context.check(context.vk.CreateSampler(context.device, &info, context.allocator, &sampler),
                                   "creating the sampler of shadow maps");
     if (!made) return failure(std::move(made));
     return sampler;
@@ -161,7 +161,7 @@ struct ShadowPass::State {
     State(const State&) = delete;
     State& operator=(const State&) = delete;
     ~State() {
-        if (sampler != VK_NULL_HANDLE) context->vk.DestroySampler(context->device, sampler, nullptr);
+        if (sampler != VK_NULL_HANDLE) context->vk.DestroySampler(context->device, sampler, context->allocator);
     }
 
     [[nodiscard]] Result<gpu::Pipeline> create_pipeline(const Variant& variant) const {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The system's Vulkan loader, opened when the library makes a device of its own. Nothing is linked: a host that has a
+// device brings its own vkGetInstanceProcAddr, and may have no loader at all.
+
+#include <vulkan/vulkan.h>
+
+#include <darkroom/result.hpp>
+
+namespace darkroom::gpu {
+
+/// vkGetInstanceProcAddr of the loader, which stays open to the end of the process.
+[[nodiscard]] Result<PFN_vkGetInstanceProcAddr> open_vulkan_loader(const char* library = "libvulkan.so.1");
+
+}  // namespace darkroom::gpu
