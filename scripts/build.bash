@@ -111,7 +111,7 @@ build() {
     cmake -S "$root" -B "$folder" -G Ninja "$@" >>"$log" 2>&1 || failed "configuring"
     # Without the lock, which a compiler cache's server would keep.
     rm -f "$folder/.ccache"
-    CCACHE_STATSLOG=$folder/.ccache cmake --build "$folder" --target "$target" >>"$log" 2>&1 9>&- &
+    CCACHE_STATSLOG=$(cd "$folder" && pwd)/.ccache cmake --build "$folder" --target "$target" >>"$log" 2>&1 9>&- &
     local builder=$!
     trap 'kill "$builder" 2>/dev/null; exit 130' INT TERM
     show_progress "$builder"

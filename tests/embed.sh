@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# embed.sh TREE BUILD COMPILER SHADERC...: what is installed serves hosts unlike our own programs (tests/embed). SHADERC are
-# the archives of the host's own GLSL compiler; where there are none, the library as an archive is not tried.
+# embed.sh TREE BUILD COMPILER SHADERC...: what is installed serves hosts unlike our own programs (tests/embed). SHADERC
+# are the archives of the host's own GLSL compiler; where there are none, the library as an archive is not tried.
 set -euo pipefail
 tree=$1 build=$2 compiler=$3
 shift 3

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# wrong_descriptions.sh TREE COMPILER: a parameter that is described wrongly does not compile, and the compiler shows the
-# sentence that says why, without exceptions as with them. The right description compiles.
+# wrong_descriptions.sh TREE COMPILER: a parameter that is described wrongly does not compile, and the compiler shows
+# the sentence that says why, without exceptions as with them. The right description compiles.
 set -euo pipefail
 tree=$1 compiler=$2
 work=$(mktemp -d)

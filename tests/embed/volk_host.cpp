@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A host's use of volk: the loader's functions are there before main, and the others from the creation of the instance on.
+// A host's use of volk: the loader's functions are there before main, the others once there is an instance.
 
 #include <cstdlib>
 #define VOLK_IMPLEMENTATION

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the headers of fmt leave to its library, compiled into ours, as src/format.cc of fmt 9 does it: a host needs no
-// libfmt, and no file of ours compiles the formatting of numbers again, which header-only use would double its time with.
+// libfmt, and no file of ours compiles the formatting of numbers again, which is what header-only use costs.
 
 #include <fmt/format-inl.h>
 
