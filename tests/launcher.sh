@@ -107,4 +107,21 @@ DARKROOM_BUILD=$work/other "$tree/darkroom" >"$work/out" 2>"$work/said"
 [[ $("$tree/test" --all 2>/dev/null) != *"-LE"* ]] || fail "./test --all"
 [[ $("$tree/test" --sanitize 2>/dev/null) == "ctest --test-dir $tree/build-sanitize "*" -L ^(fast|gpu)$" ]] || fail "./test --sanitize"
 grep -q 'DARKROOM_SANITIZE=ON' "$STUB_LOG" || fail "./test --sanitize configures without sanitizers"
+out=$("$tree/test" --thread 2>/dev/null)
+[[ $out == "ctest --test-dir $tree/build-thread "*" -L ^(fast|gpu)$" ]] || fail "./test --thread: $out"
+grep -q 'DARKROOM_SANITIZE=thread .*DARKROOM_TEST_FOLDERS=' "$STUB_LOG" || fail "./test --thread: no sanitizer"
+grep -qF -- "--build $tree/build-thread --target darkroom_tests" "$STUB_LOG" || fail "./test --thread: what is built"
+status=0
+"$tree/test" --thread --all 2>"$work/said" || status=$?
+[[ $status == 2 ]] && grep -q 'one of them' "$work/said" || fail "./test --thread --all"
+
+# How much came from the compiler's cache is said in one line, where something was compiled.
+cat >>"$work/bin/cmake" <<'STUB'
+[[ -z ${STUB_HITS:-} || $1 != --build ]] ||
+    printf '%s\n' '# a.cpp' direct_cache_hit '# b.cpp' cache_miss >"$CCACHE_STATSLOG"
+STUB
+STUB_HITS=1 "$tree/test" -R Bloom >"$work/out" 2>"$work/said"
+grep -qxF 'darkroom: 1 of 2 compiled files from the cache' "$work/said" || fail "the cache's hits are not said"
+"$tree/test" -R Bloom >"$work/out" 2>"$work/said"
+! grep -q 'cache' "$work/said" || fail "hits of a build that compiled nothing"
 echo "launcher: all as it should be"
