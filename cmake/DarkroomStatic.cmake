@@ -1,6 +1,6 @@
 # The target darkroom_static: libdarkroom.a, one object of all that libdarkroom.so is made of, the GLSL compiler and fmt
-# included. All symbols but those of darkroom:: are local to it, so that it stands beside another glslang, shaderc or fmt
-# in one program. Needs the linker and objcopy of GNU, and shaderc as an archive.
+# included. All symbols but those of darkroom:: are local to it, so that it stands beside another glslang, shaderc or
+# fmt in one program. Needs the linker and objcopy of GNU, and shaderc as an archive.
 
 get_target_property(DARKROOM_STATIC_COMPILER darkroom_shaderc INTERFACE_LINK_LIBRARIES)
 list(FILTER DARKROOM_STATIC_COMPILER INCLUDE REGEX "\\.(a|so)$")
@@ -18,16 +18,17 @@ foreach(part ${DARKROOM_PARTS})
   list(APPEND objects $<TARGET_OBJECTS:darkroom_${part}>)
 endforeach()
 
-# Groups are dissolved: the linker would throw a group away where the host has one of the same name, and with it code that
-# local symbols refer to. The binding "unique" of some static variables is one that objcopy leaves as it is; these get
-# names that nobody else has.
+# Groups are dissolved: the linker would throw a group away where the host has one of the same name, and with it code
+# that local symbols refer to. The binding "unique" of some static variables is one that objcopy leaves as it is; these
+# get names that nobody else has.
 set(whole ${CMAKE_BINARY_DIR}/darkroom_static.o)
 add_custom_command(OUTPUT ${whole} COMMAND_EXPAND_LISTS VERBATIM
   COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${whole} ${objects} --start-group ${libraries} --end-group
   COMMAND ${CMAKE_OBJCOPY} --wildcard --keep-global-symbol "_ZN8darkroom*" --keep-global-symbol "_ZNK8darkroom*"
     --keep-global-symbol "_ZZN8darkroom*" --keep-global-symbol "_ZZNK8darkroom*"
     --keep-global-symbol "_ZT?N8darkroom*" --keep-global-symbol "_ZGV*N8darkroom*" ${whole}
-  COMMAND sh -c "${CMAKE_NM} --defined-only ${whole} | awk '$2 == \"u\" { print $3, \"_ZN8darkroom.\" $3 }' >${whole}.unique"
+  COMMAND sh -c "${CMAKE_NM} --defined-only ${whole} |\
+ awk '$2 == \"u\" && $3 !~ /^_Z(GV)?Z*NK?8darkroom/ { print $3, \"darkroom.\" $3 }' >${whole}.unique"
   COMMAND ${CMAKE_OBJCOPY} --redefine-syms ${whole}.unique ${whole}
   DEPENDS ${objects} ${libraries} COMMENT "Linking darkroom_static.o")
 set_source_files_properties(${whole} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)

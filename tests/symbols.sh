@@ -1,20 +1,27 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# symbols.sh LIBRARY...: a shared object exports C++ symbols of this project and no others, and needs the C++ runtime and
-# our other libraries alone.
+# symbols.sh LIBRARY...: a shared object or an archive exports C++ symbols of this project and no others, and a shared
+# object needs the C++ runtime and our other libraries alone.
 set -euo pipefail
 for library in "$@"; do
-    exported=$(nm -D --defined-only --demangle "$library" | cut -d ' ' -f 3-)
-    foreign=$(grep -vE '^((vtable|VTT|typeinfo|typeinfo name|guard variable) for )?darkroom::' <<<"$exported" || true)
+    # What is dynamic of an archive is what is global in it.
+    kind=--dynamic
+    [[ $library == *.a ]] && kind=--extern-only
+    exported=$(nm $kind --defined-only "$library" | sed -nE 's/^[0-9a-f]+ . //p')
+    # Functions, variables, tables, types, guards, what is local in functions, and what DarkroomStatic.cmake renames.
+    foreign=$(grep -vE '^(_Z(T[VTIS]|GV)?Z*NK?8darkroom|darkroom\.)' <<<"$exported" | c++filt || true)
     if [[ -n $foreign ]]; then
         printf '%s exports what is not ours:\n%s\n' "$library" "$foreign"
         exit 1
     fi
-    grep -q '^darkroom::' <<<"$exported" || { echo "$library exports nothing of ours" && exit 1; }
+    grep -q '^_ZN8darkroom' <<<"$exported" || { echo "$library exports nothing of ours" && exit 1; }
+    if nm $kind --undefined-only "$library" | grep -w 'vk[A-Z][A-Za-z0-9]*'; then
+        echo "$library calls Vulkan's prototypes, which a host may not have" && exit 1
+    fi
 
     needed=$(readelf -d --wide "$library" | sed -nE 's/.*\(NEEDED\).*\[(.*)\]/\1/p')
-    foreign=$(grep -vE '^(libstdc\+\+|libm|libgcc_s|libc|libpthread|libdl|ld-linux[-a-z0-9_]*|libdarkroom)\.so\.[0-9.]+$' \
-        <<<"$needed" || true)
+    runtime='libstdc\+\+|libm|libgcc_s|libc|libpthread|libdl|ld-linux[-a-z0-9_]*'
+    foreign=$(grep -vE "^(($runtime|libdarkroom)\.so\.[0-9.]+)?\$" <<<"$needed" || true)
     if [[ -n $foreign ]]; then
         printf '%s needs more than the C++ runtime:\n%s\n' "$library" "$foreign"
         exit 1
