@@ -14,6 +14,7 @@ struct MipState {
     VkPipelineStageFlags2 write_stages = 0;  ///< to wait for, to come after the last write
     VkAccessFlags2 write_access = 0;         ///< of that write, 0 if already made available
     VkPipelineStageFlags2 read_stages = 0;   ///< that have read since
+    VkAccessFlags2 read_access = 0;          ///< by which the write was made visible to them
     std::uint32_t seen_by = 0;               ///< uses that see the last write, see sight_of
     bool is_touched = false;
 };
@@ -46,9 +47,10 @@ void append(std::vector<Barrier>& barriers, std::size_t first, const Barrier& ba
 /// The source half of a barrier after everything that happened to the level.
 void wait_for_all(const MipState& state, Barrier& barrier) {
     const bool was_read = state.read_stages != 0;
-    // Whoever read it since waited for the write, so waiting for the readers is enough.
+    // Whoever read it since waited for the write, so waiting for the readers is enough. A kernel may read less than its
+    // pass says; by the readers' access the barrier still follows from the one that they waited at.
     barrier.source_stages = was_read ? state.read_stages : state.write_stages;
-    barrier.source_access = was_read ? 0 : state.write_access;
+    barrier.source_access = was_read ? state.read_access : state.write_access;
 }
 
 /// Moves `state` on to what `wanted` makes of it; true if that takes `barrier`.
@@ -76,10 +78,12 @@ bool advance(MipState& state, const Wanted& wanted, Barrier& barrier) {
         state = {.layout = wanted.layout,
                  .write_stages = wanted.stages,
                  .read_stages = wanted.stages,
+                 .read_access = wanted.access,
                  .seen_by = wanted.uses,
                  .is_touched = true};
     } else {
         state.read_stages |= wanted.stages;
+        state.read_access |= wanted.access;
         state.seen_by |= wanted.uses;
         state.is_touched = true;
     }

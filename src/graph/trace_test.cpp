@@ -48,7 +48,7 @@ TEST(GraphTrace, OnePassFromHostToHost) {
               "barrier color: color-output:color-write -> compute:sample, color -> read-only\n"
               "barrier target: color-output:color-write -> compute:store, undefined -> general\n"
               "pass copy\n"
-              "final color: compute -> fragment:sample\n"
+              "final color: compute:sample -> fragment:sample\n"
               "final target: compute:store -> fragment:sample, general -> read-only\n");
 }
 
@@ -68,7 +68,7 @@ TEST(GraphTrace, SecondReaderOfTheSameStageNeedsNoBarrier) {
               "pass second\n"
               "barrier middle: compute -> fragment:sample\n"
               "pass other stage\n"
-              "barrier middle: compute|fragment -> compute:load, read-only -> general\n"
+              "barrier middle: compute|fragment:sample -> compute:load, read-only -> general\n"
               "pass other layout\n");
 }
 
@@ -84,7 +84,7 @@ TEST(GraphTrace, WriteAfterReadWaitsWithoutFlush) {
               "pass write\n"
               "barrier middle: compute:store -> compute:load\n"
               "pass read\n"
-              "barrier middle: compute -> compute:store\n"
+              "barrier middle: compute:load -> compute:store\n"
               "pass again\n"
               "barrier middle: compute:store -> compute:load\n"
               "pass end\n");
