@@ -9,7 +9,7 @@ Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, std::span<const Fused
         spec.body = effect_pass_body(pass, steps.front().baked);
         return spec;
     }
-    auto body = fused_body(steps, finish, pass.is_resampled);
+    auto body = fused_body(steps, finish, pass.resampling);
     if (!body) return failure(std::move(body));
     spec.body = std::move(*body);
     return spec;

@@ -27,7 +27,17 @@ PassImage Builder::picture() { return image_of(input_); }
 
 PassImage Builder::source() {
     const Handle handle = planner_.stack_[entry_].desc.source;
-    return image_of(handle.is_given() ? planner_.value_of(handle, entry_) : input_);
+    if (!handle.is_given()) return image_of(input_);
+    const PassImage image = image_of(planner_.value_of(handle, entry_));
+    if (!error.empty()) return {};
+    return at_own_size(planner_.at_size(images_[image.index].version, planner_.values_[input_].size,
+                                        fmt::format("{}.source", planner_.stack_[entry_].desc.name)));
+}
+
+PassImage Builder::at_own_size(Result<graph::Version> version) {
+    if (version) return remember({.version = *version, .format = planner_.facts_.at(version->index).format});
+    error = version.error().text;
+    return {};
 }
 
 graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
@@ -86,7 +96,8 @@ PassImage Builder::frame_image(FrameImage which) {
                             planner_.stack_[entry_].info->name, row.name);
         return {};
     }
-    return remember({.version = planner_.import_host(row.image, row.name, row.use, {}), .format = row.use.format});
+    const graph::Version image = planner_.import_host(row.image, row.name, row.use, {});
+    return at_own_size(planner_.frame_image_at_size(which, image, planner_.values_[input_].size));
 }
 
 PassImage Builder::shadow_map(std::uint32_t number) {
@@ -105,7 +116,8 @@ PassImage Builder::shadow_map(std::uint32_t number) {
 }
 
 PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&), ConditionFunction condition) {
-    auto found = planner_.shared_.find(name);
+    const std::string key = fmt::format("{} {}", name, fraction_text(planner_.values_[input_].size));
+    auto found = planner_.shared_.find(key);
     if (found == planner_.shared_.end()) {
         // A toggle of its own, which further effects join; what is shared may itself need something shared.
         planner_.program_.toggles.push_back({});
@@ -118,11 +130,11 @@ PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&)
         if (made.index >= images_.size()) return {};
         const Image& written = images_[made.index];
         found = planner_.shared_
-                    .emplace(std::string(name), Planner::Shared{.version = written.version,
-                                                                .first_written = written.first_written,
-                                                                .format = written.format,
-                                                                .toggle = own,
-                                                                .needs = needs})
+                    .emplace(key, Planner::Shared{.version = written.version,
+                                                  .first_written = written.first_written,
+                                                  .format = written.format,
+                                                  .toggle = own,
+                                                  .needs = needs})
                     .first;
     }
     const Planner::Shared& image = found->second;

@@ -298,7 +298,7 @@ Result<std::string> instance_text(const EffectInfo& info, std::string_view file,
     return out;
 }
 
-Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, bool is_resampled) {
+Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling) {
     std::string declarations, code;
     std::set<std::string_view> structs;
     bool has_merge = false;
@@ -348,9 +348,11 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
         }
     }
     const bool is_warp = !steps.empty() && steps.front().info->touch == Touch::Warp && !steps.front().is_merge;
-    const std::string_view read = is_resampled ? "sample_linear(picture, pixel.uv)"
-                                  : is_warp    ? "load_clamped(picture, pixel.texel)"
-                                               : "load(picture, pixel.texel)";
+    std::string_view read = is_warp ? "load_clamped(picture, pixel.texel)" : "load(picture, pixel.texel)";
+    if (resampling == Resampling::Linear) read = "sample_linear(picture, pixel.uv)";
+    // The texel under the pixel's centre; in integers, because a product of floats may fall short of it.
+    if (resampling == Resampling::Nearest)
+        read = "load_clamped(picture, (2 * pixel.texel + 1) * size(picture) / (2 * pixel.size))";
     return fmt::format(
         "{}{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",
         curve_struct(), helpers, declarations, read, code);

@@ -68,8 +68,9 @@ struct FusedStep {
 enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb, OfFrame };
 /// The member of the block that Finish::OfFrame reads.
 [[nodiscard]] std::string finish_member(std::uint32_t word);
-/// The body of a fused kernel: reads image `picture`, applies the steps in order, finishes for the target. A resampled
-/// picture may have another extent than the output.
-[[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, bool is_resampled);
+/// How a fused kernel reads a picture that may have another extent than its output.
+enum class Resampling : std::uint8_t { None, Linear, Nearest };
+/// The body of a fused kernel: reads image `picture`, applies the steps in order, finishes for the target.
+[[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling);
 
 }  // namespace darkroom::plan

@@ -211,10 +211,12 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
     auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].desc.name));
     if (!picture) return failure(std::move(picture));
     const std::string why = fmt::format("{} has passes of its own", stack_[entry].desc.name);
-    fall_back(builder.output, *picture);
-
     const OutputScale& scale = stack_[entry].info->output_scale;
     const graph::Size size = scaled(values_[input].size, scale.numerator, scale.denominator);
+    // Whoever reads the output counts on its size, on or off.
+    picture = at_size(*picture, size, fmt::format("{}.resampled input", stack_[entry].desc.name));
+    if (!picture) return failure(std::move(picture));
+    fall_back(builder.output, *picture);
     if (stack_[entry].is_plain()) {
         program_.is_mixable[entry] = false;
         values_.push_back({.image = builder.output, .size = size, .domain = domain, .why = why});
@@ -277,7 +279,8 @@ std::size_t Planner::open_kernel(std::size_t input, std::string why) {
 
 Result<graph::Version> Planner::materialise(std::size_t index, const std::string& why) {
     if (values_[index].image.is_valid()) return values_[index].image;
-    const graph::Version image = create_picture(fmt::format("picture {}", kernels_.size()), values_[index].size);
+    const graph::Version image =
+        create_picture(fmt::format("picture {}", kernels_.size()), values_[index].size, desc_.intermediate);
     auto version = close_kernel(values_[index].kernel, image, desc_.intermediate, Finish::None, false);
     if (!version) return version;
     // Nobody joined the kernel behind this value (its reader was known), so whoever comes next starts a new one.
@@ -287,10 +290,9 @@ Result<graph::Version> Planner::materialise(std::size_t index, const std::string
     return *version;
 }
 
-graph::Version Planner::create_picture(std::string name, graph::Size size) {
-    const graph::Version image =
-        program_.graph.create({.name = std::move(name), .format = desc_.intermediate, .size = size});
-    facts_[image.index] = {.root = image.index, .size = size, .format = desc_.intermediate, .usage = own_usage};
+graph::Version Planner::create_picture(std::string name, graph::Size size, VkFormat format) {
+    const graph::Version image = program_.graph.create({.name = std::move(name), .format = format, .size = size});
+    facts_[image.index] = {.root = image.index, .size = size, .format = format, .usage = own_usage};
     return image;
 }
 
@@ -303,8 +305,8 @@ bool Planner::has_size(graph::Version version, graph::Size size) const {
 Result<graph::Version> Planner::at_size(graph::Version version, graph::Size size, const std::string& name) {
     if (has_size(version, size)) return version;
     kernels_.push_back({.picture = version, .size = size, .boundary = "its pictures differ in size"});
-    auto out = close_kernel(kernels_.size() - 1, create_picture(name, size), desc_.intermediate, Finish::None, true);
-    return out;
+    return close_kernel(kernels_.size() - 1, create_picture(name, size, desc_.intermediate), desc_.intermediate,
+                        Finish::None, true);
 }
 
 Result<> Planner::finish() {
@@ -356,8 +358,8 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     const bool is_shared = std::ranges::any_of(kernel.images, [&](const auto& image) {
         return image.second.table == no_table && may_share(kernel.picture, image.second.version);
     });
-    pass.is_resampled = !is_warp && !has_size(kernel.picture, kernel.size);
-    const bool is_sampled = is_warp || is_shared || pass.is_resampled;
+    if (!is_warp && !has_size(kernel.picture, kernel.size)) pass.resampling = kernel.resampling;
+    const bool is_sampled = is_warp || is_shared || pass.resampling != Resampling::None;
     pass.spec.images.push_back(
         {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});
@@ -366,7 +368,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         if (is_storage_side(kernel, input)) pass.spec.images.back().storage_format = storage_format(input.version);
         pass.inputs.push_back(input);
     }
-    auto body = fused_body(pass.steps, finish, pass.is_resampled);
+    auto body = fused_body(pass.steps, finish, pass.resampling);
     if (!body) return failure(std::move(body));
     pass.spec.body = std::move(*body);
     // Unfused, a kernel whose entry is off copies: else every picture would live as long as those it may stand in for.

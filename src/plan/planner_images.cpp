@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: MIT
 // The images that a plan knows: those of the host, neutral ones, what may stand behind each, and how a kernel reads it.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "gpu/formats.hpp"
 #include "plan/half.hpp"
 #include "plan/planner_state.hpp"
 
 namespace darkroom::plan {
+
+std::string fraction_text(graph::Size size) {
+    const std::uint32_t divisor = std::gcd(size.numerator, size.denominator);
+    return fmt::format("{}/{}", size.numerator / divisor, size.denominator / divisor);
+}
 
 graph::Version Planner::import_host(HostImage image, const char* name, const ImageUse& use, graph::Size size) {
     if (const auto found = host_images_.find(image); found != host_images_.end()) return found->second;
@@ -95,6 +103,24 @@ VkFormat Planner::storage_format(graph::Version version) const {
     for (const graph::Version instead : facts.fall_backs)
         if (storage_format(instead) != facts.format) return VK_FORMAT_UNDEFINED;
     return facts.format;
+}
+
+Result<graph::Version> Planner::frame_image_at_size(FrameImage which, graph::Version version, graph::Size size) {
+    if (has_size(version, size)) return version;
+    if (const auto found = resampled_.find({which, fraction_text(size)}); found != resampled_.end()) return found->second;
+    // Between two distances, directions or motions there is none that is true of either.
+    const bool is_nearest = which != FrameImage::Ui;
+    const VkFormat format = which == FrameImage::Depth ? VK_FORMAT_R32_SFLOAT
+                            : is_nearest               ? VK_FORMAT_R32G32B32A32_SFLOAT
+                                                       : desc_.intermediate;
+    const std::string name = fmt::format("frame image {} at {}", static_cast<int>(which), fraction_text(size));
+    kernels_.push_back({.picture = version,
+                        .size = size,
+                        .boundary = "it is read behind a picture of another size",
+                        .resampling = is_nearest ? Resampling::Nearest : Resampling::Linear});
+    auto out = close_kernel(kernels_.size() - 1, create_picture(name, size, format), format, Finish::None, true);
+    if (out) resampled_.emplace(std::pair(which, fraction_text(size)), *out);
+    return out;
 }
 
 }  // namespace darkroom::plan

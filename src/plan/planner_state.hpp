@@ -18,6 +18,9 @@ class Builder;
 inline constexpr VkImageUsageFlags own_usage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
 
+/// One text for equal sizes.
+[[nodiscard]] std::string fraction_text(graph::Size size);
+
 class Planner {
   public:
     Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits);
@@ -40,6 +43,7 @@ class Planner {
         graph::Version picture;
         graph::Size size{};
         std::string boundary;
+        Resampling resampling = Resampling::Linear;  ///< where the picture has another size
         std::vector<FusedStep> steps;
         std::vector<std::pair<std::string, PassInput>> images;
     };
@@ -72,6 +76,9 @@ class Planner {
     [[nodiscard]] Result<graph::Version> materialise(std::size_t value, const std::string& why);
     /// An image of exactly this size for what is read by texel: resampled, if anything else may stand there.
     [[nodiscard]] Result<graph::Version> at_size(graph::Version version, graph::Size size, const std::string& name);
+    /// An image of the host at an entry's size, where that is another one.
+    [[nodiscard]] Result<graph::Version> frame_image_at_size(FrameImage which, graph::Version version,
+                                                             graph::Size size);
     [[nodiscard]] bool has_size(graph::Version version, graph::Size size) const;
     [[nodiscard]] Result<graph::Version> close_kernel(std::size_t kernel, graph::Version target, VkFormat format,
                                                       Finish finish, bool is_always_on);
@@ -79,7 +86,7 @@ class Planner {
     [[nodiscard]] bool is_shared_toggle(std::size_t index) const;
     [[nodiscard]] std::int32_t toggle_index(Gate toggle);
     [[nodiscard]] graph::Version import_host(HostImage image, const char* name, const ImageUse& use, graph::Size size);
-    [[nodiscard]] graph::Version create_picture(std::string name, graph::Size size);
+    [[nodiscard]] graph::Version create_picture(std::string name, graph::Size size, VkFormat format);
     void fall_back(graph::Version version, graph::Version instead);
     [[nodiscard]] graph::Version import_neutral(VkFormat format, const PassVector& value);
     /// An input that is not the picture: sampled, but for tables that are only loaded.
@@ -103,7 +110,10 @@ class Planner {
     std::map<std::uint32_t, Facts> facts_;  ///< by version
     std::map<HostImage, graph::Version> host_images_;
 
-    /// What several effects share, by name; its passes run while any of those that asked is on.
+    std::map<std::pair<FrameImage, std::string>, graph::Version> resampled_;  ///< by size
+
+    /// What several effects share, by name and the size of the picture at their place; its passes run while any of
+    /// those that asked is on.
     struct Shared {
         graph::Version version, first_written;
         VkFormat format = VK_FORMAT_UNDEFINED;
@@ -167,6 +177,7 @@ class Builder final : public PassBuilder {
     [[nodiscard]] PassInput input_of(const Image& image, std::uint32_t mip_level) const;
     [[nodiscard]] PassImage remember(Image image);
     [[nodiscard]] PassImage image_of(std::size_t value);
+    [[nodiscard]] PassImage at_own_size(Result<graph::Version> version);
 
     Planner& planner_;
     std::uint32_t entry_ = 0;

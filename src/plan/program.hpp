@@ -78,7 +78,7 @@ struct ProgramPass {
     // A fused kernel:
     std::vector<FusedStep> steps;
     Finish finish = Finish::None;
-    bool is_resampled = false;
+    Resampling resampling = Resampling::None;
 };
 
 /// A table, or a neutral image that stands in for a version: uploaded once, constant after. A neutral image may be
