@@ -56,7 +56,7 @@ struct Case {
                 {.extent = extent, .is_broken = desc.has_broken_scene, .has_everything = !one_in(random, 3)}),
           composer(host.device),
           text("number " + std::to_string(number)) {
-        test::fill_random(random, composer, desc.values, scene_effect(number));
+        test::fill_random(random, composer, {.values = desc.values, .always = scene_effect(number)});
         if (desc.ends_encoded) test::add(composer, "encode");
         text += scene.described() + test::described(composer);
     }

@@ -77,45 +77,77 @@ inline Handle random_handle(std::mt19937& random, std::uint32_t entry) {
     return pick == 0 ? Handle{} : pick == 1 ? scene_color : Handle{pick - 1};
 }
 
-/// `always`: an effect that the stack holds at some place.
-inline void fill_random(std::mt19937& random, Composer& composer, Values values, const EffectInfo* always = nullptr) {
+struct StackDesc {
+    Values values = Values::Sane;
+    const EffectInfo* always = nullptr;  ///< an effect that the stack holds at some place
+    std::span<const EffectInfo* const> effects = all_effects();
+    std::uint32_t one_input_in = 6;  ///< how many entries name their input
+};
+
+inline void fill_random(std::mt19937& random, Composer& composer, const StackDesc& desc) {
     const std::uint32_t entries = 2 + below(random, 5);
-    const std::uint32_t place = always == nullptr ? entries : below(random, entries);
-    const auto effects = all_effects();
+    const std::uint32_t place = desc.always == nullptr ? entries : below(random, entries);
     for (std::uint32_t i = 0; i < entries; ++i) {
-        const EffectInfo* info = effects[below(random, static_cast<std::uint32_t>(effects.size()))];
-        if (i == place) info = always;
-        EntryDesc desc;
-        if (one_in(random, 6)) desc.input = random_handle(random, i);
-        if (one_in(random, 3)) desc.source = random_handle(random, i);
-        if (one_in(random, 5)) desc.mask = random_handle(random, i);
-        if (info->has_second) desc.second = i == 0 ? scene_color : Handle{1 + below(random, i)};
-        if (one_in(random, 3)) desc.opacity = static_cast<float>(between(random, 0, 1));
-        if (one_in(random, 3)) desc.blend = static_cast<BlendMode>(below(random, 9));
-        desc.enabled = !one_in(random, 8);
-        set_random(random, composer, composer.add(*info, nullptr, desc), values);
+        const EffectInfo* info = desc.effects[below(random, static_cast<std::uint32_t>(desc.effects.size()))];
+        if (i == place) info = desc.always;
+        EntryDesc inputs;
+        if (one_in(random, desc.one_input_in)) inputs.input = random_handle(random, i);
+        if (one_in(random, 3)) inputs.source = random_handle(random, i);
+        if (one_in(random, 5)) inputs.mask = random_handle(random, i);
+        if (info->has_second) inputs.second = i == 0 ? scene_color : Handle{1 + below(random, i)};
+        if (one_in(random, 3)) inputs.opacity = static_cast<float>(between(random, 0, 1));
+        if (one_in(random, 3)) inputs.blend = static_cast<BlendMode>(below(random, 9));
+        inputs.enabled = !one_in(random, 8);
+        set_random(random, composer, composer.add(*info, nullptr, inputs), desc.values);
     }
 }
 
-/// Entries, wires and values: all that it takes to build the stack again.
+/// What a user may do while the picture runs: other values, choices and toggles; entries on, off, or half seen. The
+/// same edits for every composer that holds the same stack and is compiled for the same frames.
+inline void edit_random(std::mt19937& random, Composer& composer, Values values) {
+    for (std::size_t i = 0; i < composer.size(); ++i) {
+        const Handle entry = composer.entry(i);
+        if (one_in(random, 2)) set_random(random, composer, entry, values);
+        if (one_in(random, 3)) must(composer.set_enabled(entry, !composer.desc(entry).enabled));
+        constexpr std::array opacities{0.0F, 0.25F, 1.0F};
+        // An entry with passes of its own may have been planned without a mix: it refuses.
+        if (one_in(random, 3)) (void)composer.set_opacity(entry, opacities[below(random, 3)]);
+    }
+}
+
+/// Entries, wires and values as a look's stack, for effects of the library: all that it takes to build it again.
 inline std::string described(const Composer& composer) {
     std::string out;
-    const auto shown = [](Handle handle) {
-        return handle == scene_color ? std::string("scene") : std::to_string(handle.id);
+    const auto wire = [&](std::string_view key, Handle handle) {
+        if (handle.is_given())
+            out += fmt::format("{} = \"{}\"\n", key, handle == scene_color ? "scene" : composer.desc(handle).name);
     };
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const Handle entry = composer.entry(i);
-        const EntryDesc& desc = composer.desc(entry);
-        out += "\n  " + desc.name + (desc.enabled ? "" : ", off") + ": in " + shown(desc.input) + ", source " +
-               shown(desc.source) + ", second " + shown(desc.second) + ", mask " + shown(desc.mask) + ", opacity " +
-               std::to_string(desc.opacity) + ", blend " + std::to_string(static_cast<int>(desc.blend));
+        const EntryDesc& inputs = composer.desc(entry);
+        out += fmt::format("\n[[stack]]\neffect = \"{0}\"\noutput = \"{1}\"\n", composer.info(entry).name, inputs.name);
+        if (!inputs.enabled) out += "enabled = false\n";
+        wire("input", inputs.input);
+        wire("source", inputs.source);
+        wire("second", inputs.second);
+        wire("mask", inputs.mask);
+        if (inputs.opacity != 1) out += fmt::format("opacity = {}\n", inputs.opacity);
+        if (inputs.blend != BlendMode::Mix) out += fmt::format("blend = {}\n", static_cast<int>(inputs.blend));
         const auto words = composer.words(entry);
         for (const ParamInfo& row : composer.info(entry).parameters.rows) {
-            out += ", " + std::string(row.name);
-            const bool is_whole = row.kind == Kind::Int || row.kind == Kind::Choice || row.kind == Kind::Toggle;
-            for (const std::uint32_t word : words.subspan(row.word, row.words))
-                out += is_whole ? fmt::format(" {}", static_cast<std::int32_t>(word))
-                                : fmt::format(" {}", std::bit_cast<float>(word));
+            std::string value;
+            for (const std::uint32_t word : words.subspan(row.word, row.words)) {
+                if (!value.empty()) value += ", ";
+                if (row.kind == Kind::Choice)
+                    value += fmt::format("\"{}\"", row.choices[word]);
+                else if (row.kind == Kind::Toggle)
+                    value += word != 0 ? "true" : "false";
+                else if (row.kind == Kind::Int)
+                    value += fmt::format("{}", static_cast<std::int32_t>(word));
+                else
+                    value += fmt::format("{}", std::bit_cast<float>(word));
+            }
+            out += fmt::format("{} = {}\n", row.name, row.words == 1 ? value : "[" + value + "]");
         }
     }
     return out;

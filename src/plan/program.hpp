@@ -30,7 +30,7 @@ struct Entry {
     void evaluate(std::span<std::uint32_t> out) const;
     /// Whether it changes anything in a frame with these values; what the plan leaves out never does.
     [[nodiscard]] bool is_on(const std::uint32_t* words) const {
-        return inputs.enabled && inputs.opacity > 0 && (info->is_identity == nullptr || !info->is_identity(words));
+        return desc.enabled && desc.opacity > 0 && (info->is_identity == nullptr || !info->is_identity(words));
     }
     /// What the picture is behind it, in a frame with these values.
     [[nodiscard]] Domain domain_after(Domain before, const std::uint32_t* words, bool is_on) const {
