@@ -24,11 +24,14 @@ struct Glow {
 struct Recode {
     Toggle is_encoded = true;
 };
+struct Absent {
+    float amount = 1;
+};
 struct Halve {
     float amount = 1;
 };
 
-inline constexpr std::array<EffectFile, 6> test_effect_files{{
+inline constexpr std::array<EffectFile, 7> test_effect_files{{
     {"shift.glsl",
      "vec4 shift(Pixel pixel, Shift parameters) {\n"
      "    return load_clamped(picture, pixel.texel + ivec2(parameters.pixels, 0));\n}\n"},
@@ -50,6 +53,7 @@ inline constexpr std::array<EffectFile, 6> test_effect_files{{
      "vec4 recode(vec4 color, Pixel pixel, Recode parameters) {\n"
      "    vec3 light = clamp(color.rgb, 0.0, 1.0);\n"
      "    return vec4(parameters.is_encoded != 0u ? sqrt(light) : light * light, color.a);\n}\n"},
+    {"absent.glsl", "vec4 absent(vec4 color, Pixel pixel, Absent parameters) { return vec4(0.0); }\n"},
     {"halve_down.glsl",
      "vec4 shade(Pixel pixel) {\n"
      "    vec4 color = load_clamped(halve_in, 2 * pixel.texel + 1);\n"
@@ -125,6 +129,7 @@ inline constexpr auto cross_rows = describe(field<&Cross::is_wide>("Two pixels a
                                             field<&Cross::amount>("How much of the average is seen.", {0, 1}));
 inline constexpr auto glow_rows = describe(field<&Glow::amount>("How much is added.", {0, 1}));
 inline constexpr auto recode_rows = describe(field<&Recode::is_encoded>("A root, else a square."));
+inline constexpr auto absent_rows = describe(field<&Absent::amount>("Nothing.", {0, 1}));
 inline constexpr auto halve_rows = describe(field<&Halve::amount>("How bright it gets.", {0, 1}));
 
 /// A warp.
@@ -178,6 +183,12 @@ inline const EffectInfo recode_effect{.name = "recode",
                                               return recode.is_encoded ? Domain::Encoded : Domain::DisplayLinear;
                                           },
                                       .reference = pointwise_reference<Recode, recode_reference>};
+/// Needs what no test brings: left out, it hands on what it gets.
+inline const EffectInfo absent_effect{.name = "absent",
+                                      .doc = "Is never there.",
+                                      .parameters = absent_rows.table(),
+                                      .files = test_effect_files,
+                                      .needs = {.ui = true}};
 /// A result of half the size.
 inline const EffectInfo halve_effect{
     .name = "halve",
