@@ -84,6 +84,28 @@ Result<> check_values(const plan::Entry& entry, std::span<const std::uint32_t> w
     return check_together(entry, words);
 }
 
+/// Errors, plans and looks call an entry by its name.
+Result<> check_names(std::span<const plan::Entry> stack) {
+    for (std::size_t i = 0; i < stack.size(); ++i) {
+        const std::string& name = stack[i].inputs.name;
+        if (name.empty()) return user_error(fmt::format("stack entry {}: its name is empty", i + 1));
+        const auto control = std::ranges::find_if(
+            name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f; });
+        if (control != name.end())
+            return user_error(
+                fmt::format("stack entry {}: its name holds the control character {:#04x} at place {}; "
+                            "allowed is text",
+                            i + 1, static_cast<unsigned>(*control), control - name.begin()));
+        for (std::size_t other = 0; other < i; ++other)
+            if (stack[other].inputs.name == name)
+                return user_error(
+                    fmt::format("stack entries {} and {}: both are named '{}'; allowed is a name of "
+                                "their own for each",
+                                other + 1, i + 1, name));
+    }
+    return {};
+}
+
 Failure unknown_handle() { return user_error("a handle that names no entry of this composer"); }
 
 }  // namespace
@@ -121,6 +143,7 @@ struct Composer::State {
         return stack[handle.id - 1];
     }
     [[nodiscard]] Result<plan::Program> program(const CompileDesc& compile_desc) const {
+        if (auto ok = check_names(stack); !ok) return failure(std::move(ok));
         const gpu::Context& context = device->context();
         const bool is_software = context.traits.is_software;
         const plan::PlannerTraits traits{

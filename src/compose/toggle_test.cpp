@@ -229,6 +229,26 @@ TEST_F(ComposeValues, WrongValuesAreRefusedWithTheInterval) {
     EXPECT_TRUE(std::ranges::equal(composer.words(vignette), before));
 }
 
+TEST_F(ComposeValues, NamesTellEntriesApart) {
+    const auto error = [](std::string_view first, std::string_view second) {
+        Composer composer(gpu::test::device());
+        add(composer, "exposure", {}, {.name = std::string(first)});
+        add(composer, "negative", {}, {.name = std::string(second)});
+        const auto plan = composer.plan({.max_extent = {8, 8}});
+        return plan ? std::string() : plan.error().text;
+    };
+    EXPECT_EQ(error("a \"quoted\" name",
+                    "\xc3\xa9"
+                    "clat"),
+              "");
+    EXPECT_EQ(error("gain", "gain"),
+              "stack entries 1 and 2: both are named 'gain'; allowed is a name of their own for each");
+    const std::string refused = error("gain", "a\nline");
+    EXPECT_NE(refused.find("stack entry 2"), std::string::npos) << refused;
+    EXPECT_NE(refused.find("0x0a"), std::string::npos) << refused;
+    EXPECT_EQ(refused.find('\n'), std::string::npos);
+}
+
 TEST_F(ComposeValues, NamesAndHandlesFindEntries) {
     Composer composer(gpu::test::device());
     const Handle first = add(composer, "exposure"), second = add(composer, "exposure"),
