@@ -249,8 +249,10 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
                                                         .base_array_layer = image.array_layer,
                                                         .array_layers = image.layer_count});
     }
-    reset_histories(commands, frame);
-    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, views_[frame.view].recordings++);
+    reset_histories(frame);
+    physical_->begin(commands, context_.vk, extent, frame.view);
+    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_,
+                      physical_->histories(frame.view).recordings);
 
     const bool is_timed = timers_.pool != VK_NULL_HANDLE;
     if (is_timed) {
@@ -269,6 +271,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
         }
     }
     physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
+    physical_->end(frame.view);
     ++recordings_;
     return {};
 }
@@ -280,19 +283,17 @@ const ImageRef& Chain::image_of(const Frame& frame, HostImage which) const {
 }
 
 /// Histories start from zero where nothing of the last frame of the view can be used.
-void Chain::reset_histories(VkCommandBuffer commands, const Frame& frame) {
-    if (program_.history_entries.empty()) return;
+void Chain::reset_histories(const Frame& frame) {
     View& view = views_[frame.view];
-    const VkExtent2D extent = frame.color.used_region().extent;
-    bool is_related = view.recordings > 0 && !frame.camera.is_cut && frame.delta_time > 0 &&
-                      view.extent.width == extent.width && view.extent.height == extent.height;
+    bool is_related = !frame.camera.is_cut && frame.delta_time > 0;
     for (std::size_t i = 0; i < program_.history_entries.size(); ++i) {
         const bool is_on = is_on_[program_.history_entries[i]];
         if (is_on && !view.was_on[i]) is_related = false;
         view.was_on[i] = is_on ? 1 : 0;
     }
-    view.extent = extent;
-    if (!is_related) physical_->record_reset(commands, context_.vk, frame.view);
+    for (std::uint32_t i = 0; i < physical_->history_count() && !is_related; ++i) {
+        if (graph::HistoryImages* const history = physical_->history(i, frame.view)) history->state.needs_reset = true;
+    }
 }
 
 gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,

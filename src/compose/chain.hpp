@@ -43,7 +43,7 @@ class Chain {
     [[nodiscard]] Result<> make_resources(bool has_timers);
     [[nodiscard]] Result<> check_frame(const Frame& frame) const;
     [[nodiscard]] const ImageRef& image_of(const Frame& frame, HostImage which) const;
-    void reset_histories(VkCommandBuffer commands, const Frame& frame);
+    void reset_histories(const Frame& frame);
     [[nodiscard]] Domain domain_behind(std::uint32_t entry) const {
         return entry == no_entry ? Domain::SceneLinear : domains_[entry];
     }
@@ -91,8 +91,6 @@ class Chain {
 
     /// What the histories of a view were made from.
     struct View {
-        std::uint64_t recordings = 0;
-        VkExtent2D extent{};
         std::vector<std::uint8_t> was_on;  ///< per entry with histories
     };
     std::vector<View> views_;

@@ -159,6 +159,7 @@ class Compiler {
                   .desc = image.desc,
                   .import_index = image.import_index,
                   .history_index = image.history_index,
+                  .history_key = image.history_key,
                   .history_parity = parity,
                   .first_pass = none,
                   .extent = image.desc.size.of(max_extent_)};
@@ -231,10 +232,10 @@ class Compiler {
         for (Slot& slot : solution_->slots) {
             if (slot.first_pass == none) slot.first_pass = 0;
             if (slot.kind != Slot::Kind::History) continue;
-            // A reset clears. SHADER_READ_ONLY_OPTIMAL is what most readers want, but needs an image made for sampling.
-            slot.usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-            slot.rest_layout = (slot.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0 ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
-                                                                              : VK_IMAGE_LAYOUT_GENERAL;
+            // A reset clears. What another plan makes of the history is not known here, so all plans leave it in the
+            // layout that most readers want.
+            slot.usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+            slot.rest_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         }
         return check_imports();
     }

@@ -178,6 +178,17 @@ TEST(GraphError, OwnFallBackThatDoesNotExist) {
     EXPECT_EQ(error_of(graph), "pass 'b' reads 'x', or a version that does not exist");
 }
 
+TEST(GraphError, OneKeyOfTwoHistories) {
+    Graph graph;
+    (void)graph.history(image("x"), {.owner = 3, .number = 1});
+    (void)graph.history(image("y"), {.owner = 3, .number = 0});
+    (void)graph.history(image("z"));
+    (void)graph.history(image("z"));
+    EXPECT_EQ(error_of(graph), "no error");
+    (void)graph.history(image("w"), {.owner = 3, .number = 1});
+    EXPECT_EQ(error_of(graph), "the histories 'x' and 'w' have the same key 3.1: one a history is allowed");
+}
+
 TEST(GraphError, FallBackOverwrittenBeforeTheReader) {
     Graph graph;
     const Version color = host_image(graph, "color");

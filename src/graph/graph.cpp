@@ -113,14 +113,20 @@ Version Graph::create(ImageDesc desc) {
     return add_image(*declaration_, {.desc = std::move(desc), .kind = Slot::Kind::Transient});
 }
 
-Graph::History Graph::history(ImageDesc desc) {
-    const std::uint32_t index = declaration_->history_count++;
-    const Version current =
-        add_image(*declaration_, {.desc = desc, .kind = Slot::Kind::History, .history_index = index});
-    const Version previous =
-        add_image(*declaration_,
-                  {.desc = std::move(desc), .kind = Slot::Kind::History, .history_index = index, .is_previous = true});
-    return {current, previous};
+Graph::History Graph::history(ImageDesc desc, HistoryKey key) {
+    for (const Image& other : declaration_->images) {
+        if (key.owner == 0 || other.kind != Slot::Kind::History || other.history_key != key) continue;
+        declaration_->complain(
+            fmt::format("the histories '{}' and '{}' have the same key {}.{}: one a history is allowed",
+                        other.desc.name, desc.name, key.owner, key.number));
+    }
+    Image image{.desc = std::move(desc),
+                .kind = Slot::Kind::History,
+                .history_index = declaration_->history_count++,
+                .history_key = key};
+    const Version current = add_image(*declaration_, image);
+    image.is_previous = true;
+    return {current, add_image(*declaration_, std::move(image))};
 }
 
 std::vector<Version> Graph::add(PassDesc desc) {

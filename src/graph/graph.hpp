@@ -109,6 +109,14 @@ struct PassId {
     std::uint32_t index = ~0u;
 };
 
+/// Names a history in all plans that hold it: who declared it (0: nobody, then it belongs to one graph alone), and how
+/// many histories that owner declared before.
+struct HistoryKey {
+    std::uint64_t owner = 0;
+    std::uint32_t number = 0;
+    friend auto operator<=>(const HistoryKey&, const HistoryKey&) = default;
+};
+
 /// Requirements of a transient image, asked of the device once at compile (or invented by a test).
 struct Requirements {
     VkDeviceSize size = 0;
@@ -136,7 +144,7 @@ class Graph {
     struct History {
         Version current, previous;
     };
-    [[nodiscard]] History history(ImageDesc desc);
+    [[nodiscard]] History history(ImageDesc desc, HistoryKey key = {});
 
     /// Adds a pass. Returns, for each of desc.writes, the version it makes. A write of some mip levels keeps the
     /// others. Mistakes are kept for compile() to report, so declaring code needs no checks.
@@ -168,6 +176,7 @@ struct Slot {
     VkImageUsageFlags usage = 0;  ///< union over all passes that were kept
     std::uint32_t import_index = ~0u;
     std::uint32_t history_index = ~0u;
+    HistoryKey history_key{};
     std::uint32_t history_parity = 0;  ///< 0: written in even frames, 1: in odd ones
     VkDeviceSize offset = 0;           ///< in the shared allocation, transients only
     VkDeviceSize size = 0;

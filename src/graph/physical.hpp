@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The Vulkan images behind the slots of a compiled graph: transients in one shared allocation, two images a history and
-// view, and the host's images, lent frame by frame. It records barriers and resets; it decides nothing.
+// view, and the host's images, lent frame by frame. It records barriers, resets and resampling; it decides nothing.
+//
+// Per recording of a view, where there are histories:
+// 1. HistoryState::needs_reset = true where the last frame cannot be used: after a cut, or where a pass that writes the
+//    history was off and is on; then begin().
+// 2. Schedule::derive(..., histories(view).recordings), barriers, passes, final barriers.
+// 3. end().
 
 #include "gpu/resources.hpp"
 #include "graph/graph.hpp"
+#include "graph/history_pool.hpp"
 
 namespace darkroom::graph {
 
@@ -22,10 +29,13 @@ struct LentImage {
 };
 
 /// Transients are shared by all views (the cameras that one graph is recorded for, one after the other); every view has
-/// its own histories. The context must outlive it.
+/// its own histories, and goes on with those of `pool`. The context must outlive it, the pool need not.
 class Physical {
   public:
     Physical() = default;
+    [[nodiscard]] static Result<Physical> create(gpu::Context& context, const Compiled& compiled, std::uint32_t views,
+                                                 HistoryPool& pool);
+    /// With histories of its own.
     [[nodiscard]] static Result<Physical> create(gpu::Context& context, const Compiled& compiled,
                                                  std::uint32_t views = 1);
 
@@ -44,15 +54,37 @@ class Physical {
     /// Barriers of one step, or the final ones. No allocation.
     void record_barriers(VkCommandBuffer commands, const gpu::Dispatch& vk, std::span<const Barrier> barriers,
                          std::uint32_t view_index = 0) const;
-    /// Clears the histories of a view to zero and brings them to their rest layout: before the view's first frame,
-    /// after a cut, and whenever a pass that writes one was off.
+
+    [[nodiscard]] HistoryView& histories(std::uint32_t view_index = 0) const { return *views_[view_index]; }
+    /// By Slot::history_index; null if the graph does not use it.
+    [[nodiscard]] HistoryImages* history(std::uint32_t history_index, std::uint32_t view_index = 0) const;
+    [[nodiscard]] std::uint32_t history_count() const { return static_cast<std::uint32_t>(histories_.size()); }
+
+    /// Orders this recording after all that another Physical, an older or a newer one, did to the view's histories.
+    /// Resets those that need it, or were not part of the view's last recording; resamples the others if the frame's
+    /// extent is not the last one's.
+    void begin(VkCommandBuffer commands, const gpu::Dispatch& vk, VkExtent2D extent,
+               std::uint32_t view_index = 0) const;
+    /// The recording of the view is complete.
+    void end(std::uint32_t view_index = 0) const;
+    /// Clears a history to zero and brings it to its rest layout.
+    void record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
+                      std::uint32_t history_index) const;
+    /// All of a view.
     void record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index = 0) const;
+    /// Resamples what the next frame of the view, of the extent `to`, gets as previous, from one of the extent `from`,
+    /// each the top left of its image. The parity of the view advances, so all its histories are resampled together:
+    /// linearly where their formats allow, by the nearest texel where they do not. What cannot be resampled, or needs a
+    /// reset, is reset.
+    void record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index, VkExtent2D from,
+                         VkExtent2D to) const;
 
   private:
     struct Entry {
         Slot::Kind kind = Slot::Kind::Transient;
         VkFormat format = VK_FORMAT_UNDEFINED;
         VkExtent2D extent{};
+        Size size{};
         std::uint32_t mip_levels = 1, array_layers = 1;
         VkImageLayout rest_layout = VK_IMAGE_LAYOUT_UNDEFINED;
         std::uint32_t import_index = ~0u;
@@ -65,12 +97,28 @@ class Physical {
     [[nodiscard]] static std::size_t instance(const Entry& entry, std::uint32_t view_index) {
         return entry.handles.size() > 1 ? view_index : 0;
     }
+    /// A history: its slots by parity, and its images in each view.
+    struct History {
+        std::array<std::uint32_t, 2> slots{~0u, ~0u};
+        std::vector<std::shared_ptr<HistoryImages>> views;
+    };
     static void adopt(Entry& entry, const gpu::Image& image);
+    [[nodiscard]] Result<> adopt_history(gpu::Context& context, const Slot& slot, std::uint32_t index,
+                                         HistoryPool& pool);
+    /// A barrier of a whole image for transfers, after and before everything else.
+    [[nodiscard]] Barrier before_transfer(std::uint32_t slot, VkImageLayout from, VkImageLayout to) const;
+    [[nodiscard]] Barrier after_transfer(std::uint32_t slot, VkImageLayout from) const;
+    void record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t slot, std::uint32_t view_index,
+                        VkExtent2D from, VkExtent2D to) const;
+    void record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t history_index,
+                     std::uint32_t view_index, VkExtent2D from, VkExtent2D to) const;
 
     gpu::Memory memory_;  ///< before the images, so that they are destroyed first
     std::vector<gpu::Image> images_;
     std::vector<Entry> entries_;
-    std::uint32_t view_count_ = 1;
+    std::vector<History> histories_;  ///< by Slot::history_index
+    std::vector<std::shared_ptr<HistoryView>> views_;
+    std::uint64_t recorder_ = 0;
 };
 
 }  // namespace darkroom::graph

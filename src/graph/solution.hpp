@@ -34,6 +34,7 @@ struct Image {
     VkImageUsageFlags allowed_usage = 0;  ///< imports only
     std::uint32_t import_index = none;
     std::uint32_t history_index = none;
+    HistoryKey history_key{};
     bool is_previous = false;
     std::vector<std::uint32_t> versions;             ///< in the order they were made
     std::array<std::uint32_t, 2> slots{none, none};  ///< histories: in even and in odd frames; else twice the same
