@@ -396,8 +396,8 @@ class Checker {
 
     /// Whatever the next frame switches on: every use that a history was compiled for must see what this frame wrote.
     Result<> check_rest(std::uint32_t slot, std::uint32_t mip) const {
-        for (std::uint32_t index = 0; index <= static_cast<std::uint32_t>(Use::HostRead); ++index) {
-            const Use use{static_cast<std::uint8_t>(index)};
+        for (std::uint8_t index = 0; index < use_count; ++index) {
+            const Use use{index};
             if ((solution_.past[slot].reads >> index & 1u) == 0) continue;
             if (auto result = access(slot, mip, "the next frame", stages_of(use), access_of(use),
                                      solution_.slots[slot].rest_layout);

@@ -249,14 +249,6 @@ TEST(GraphError, HostImageOfTheWrongUsage) {
     EXPECT_EQ(error_of(graph), "pass 'a' uses the host's image 'color' as STORAGE, but it was created for SAMPLED");
 }
 
-TEST(GraphError, ConstantOutsideOfShaders) {
-    Graph graph;
-    const Version black =
-        graph.import({.image = image("black"), .usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT, .is_constant = true});
-    read(graph, "b", black, Use::TransferRead);
-    EXPECT_EQ(error_of(graph), "pass 'b' reads 'black' other than in a shader: constants allow no more");
-}
-
 TEST(GraphError, OnePassReadsInTwoLayouts) {
     Graph graph;
     const Version color = host_image(graph, "color");

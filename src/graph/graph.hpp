@@ -32,12 +32,8 @@ enum class Use : std::uint8_t {
     StorageReadWrite,     ///< imageLoad and imageStore: the old content is kept
     ColorWrite,           ///< colour attachment, every texel of the region written: the old content is dropped
     ColorBlend,           ///< colour attachment, blended over the old content
-    DepthWrite,           ///< depth attachment, cleared first: the old content is dropped
-    DepthRead,            ///< depth attachment, tested only
-    TransferRead,
-    TransferWrite,
-    HostRead,
 };
+inline constexpr std::uint8_t use_count = 10;
 [[nodiscard]] bool is_write(Use use);
 [[nodiscard]] bool keeps_content(Use use);  ///< a write that needs what was there before
 [[nodiscard]] VkPipelineStageFlags2 stages_of(Use use);

@@ -45,7 +45,7 @@ TEST(GraphSize, MipRanges) {
 }
 
 TEST(GraphUse, AccessAndStageBelongTogether) {
-    for (std::uint8_t i = 0; i <= static_cast<std::uint8_t>(Use::HostRead); ++i) {
+    for (std::uint8_t i = 0; i < use_count; ++i) {
         const Use use{i};
         EXPECT_EQ(is_write(use), (access_of(use) & all_writes) != 0) << int{i};
         EXPECT_NE(stages_of(use), 0u) << int{i};

@@ -89,14 +89,14 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
             if (is_used(source.image)) continue;
             used_images.push_back(source.image);
             constexpr Use any_reads[] = {Use::SampledCompute, Use::SampledFragment, Use::StorageRead,
-                                         Use::TransferRead};
-            const Use use = source.is_constant || pick(2) == 0 ? any_reads[pick(2)] : any_reads[pick(4)];
+                                         Use::StorageReadFragment, Use::SampledGeneralCompute};
+            const Use use = source.is_constant || pick(2) == 0 ? any_reads[pick(2)] : any_reads[pick(5)];
             pass.reads.push_back({source.version, use, {pick(source.mip_levels), pick(2) == 0 ? 1 : ~0u}});
             if (pick(3) == 0) pass.reads.back().instead = pick(2) == 0 ? white : live[pick(live.size())].version;
         }
         std::vector<std::size_t> replaced;
         std::vector<Live> made;
-        constexpr Use fresh_writes[] = {Use::StorageWrite, Use::ColorWrite, Use::TransferWrite};
+        constexpr Use fresh_writes[] = {Use::StorageWrite, Use::ColorWrite};
         constexpr Use in_place_writes[] = {Use::StorageReadWrite, Use::ColorBlend, Use::StorageWrite};
         const std::uint32_t kind = pick(4);
         const std::size_t target = pick(live.size());
@@ -105,14 +105,14 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
             made.push_back(live[target]);
             replaced.push_back(target);
         } else if (kind == 1 && !unwritten.empty()) {
-            pass.writes.push_back({unwritten.back().version, fresh_writes[pick(3)]});
+            pass.writes.push_back({unwritten.back().version, fresh_writes[pick(2)]});
             made.push_back(unwritten.back());
             unwritten.pop_back();
         } else {
             const std::uint32_t mips = pick(3) == 0 ? 3 : 1;
             const Version fresh = graph.create(
                 {.name = fmt::format("image{}", i), .size = Size::fraction(1u << pick(4)), .mip_levels = mips});
-            pass.writes.push_back({fresh, fresh_writes[pick(3)], {0, mips == 3 && pick(2) == 0 ? 1 : ~0u}});
+            pass.writes.push_back({fresh, fresh_writes[pick(2)], {0, mips == 3 && pick(2) == 0 ? 1 : ~0u}});
             made.push_back({fresh, image_count++, mips});
         }
         const bool is_pyramid = made[0].mip_levels == 3 && pass.writes[0].mips.count == 1;

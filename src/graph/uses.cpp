@@ -11,8 +11,6 @@ bool is_write(Use use) {
         case Use::StorageReadWrite:
         case Use::ColorWrite:
         case Use::ColorBlend:
-        case Use::DepthWrite:
-        case Use::TransferWrite:
             return true;
         default:
             return false;
@@ -36,14 +34,6 @@ VkPipelineStageFlags2 stages_of(Use use) {
         case Use::ColorWrite:
         case Use::ColorBlend:
             return VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-        case Use::DepthWrite:
-        case Use::DepthRead:
-            return VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
-        case Use::TransferRead:
-        case Use::TransferWrite:
-            return VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-        case Use::HostRead:
-            return VK_PIPELINE_STAGE_2_HOST_BIT;
     }
     return VK_PIPELINE_STAGE_2_NONE;
 }
@@ -66,16 +56,6 @@ VkAccessFlags2 access_of(Use use) {
             return VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
         case Use::ColorBlend:
             return VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-        case Use::DepthWrite:
-            return VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
-        case Use::DepthRead:
-            return VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT;
-        case Use::TransferRead:
-            return VK_ACCESS_2_TRANSFER_READ_BIT;
-        case Use::TransferWrite:
-            return VK_ACCESS_2_TRANSFER_WRITE_BIT;
-        case Use::HostRead:
-            return VK_ACCESS_2_HOST_READ_BIT;
     }
     return VK_ACCESS_2_NONE;
 }
@@ -88,14 +68,6 @@ VkImageLayout layout_of(Use use) {
         case Use::ColorWrite:
         case Use::ColorBlend:
             return VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        case Use::DepthWrite:
-            return VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-        case Use::DepthRead:
-            return VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-        case Use::TransferRead:
-            return VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
-        case Use::TransferWrite:
-            return VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
         default:
             return VK_IMAGE_LAYOUT_GENERAL;
     }
@@ -116,15 +88,6 @@ VkImageUsageFlags usage_of(Use use) {
         case Use::ColorWrite:
         case Use::ColorBlend:
             return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-        case Use::DepthWrite:
-        case Use::DepthRead:
-            return VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-        case Use::TransferRead:
-            return VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-        case Use::TransferWrite:
-            return VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        case Use::HostRead:
-            return 0;
     }
     return 0;
 }

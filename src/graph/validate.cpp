@@ -115,10 +115,6 @@ class Validator {
             if (producer != none && producer >= pass) {
                 return user_error(fmt::format("{} before pass '{}' wrote it", what, pass_name(producer)));
             }
-            constexpr VkAccessFlags2 shader_read =
-                VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
-            if (image.kind == Slot::Kind::Constant && (access_of(read.use) & ~shader_read) != 0)
-                return user_error(fmt::format("{} other than in a shader: constants allow no more", what));
             const MipMask mips = mip_mask(read.mips, image.desc.mip_levels);
             if (auto result = check_overwritten(pass, found, mips, what); !result) return result;
             if (auto result = check_content(found, mips, what); !result) return result;
