@@ -50,6 +50,7 @@ class TableCatcher : public PassBuilder {
     PassImage frame_image(FrameImage) override { return {}; }
     bool has_frame_image(FrameImage) const override { return false; }
     bool is_depth_planar() const override { return false; }
+    bool is_velocity_plain() const override { return false; }
     PassImage shadow_map(std::uint32_t) override { return {}; }
     PassImage shared(std::string_view, PassImage (*)(PassBuilder&), ConditionFunction) override { return {}; }
     PassImage table(const TableDesc& desc) override {

@@ -21,6 +21,7 @@ class RecordingBuilder final : public PassBuilder {
   public:
     bool has_frame_image(FrameImage) const override { return false; }
     bool is_depth_planar() const override { return false; }
+    bool is_velocity_plain() const override { return false; }
     PassImage shadow_map(std::uint32_t) override { return {}; }
     explicit RecordingBuilder(VkExtent2D extent) : extent_(extent) {}
     PassImage picture() override { return {0}; }

@@ -32,6 +32,33 @@ PassImage make_half_depth(PassBuilder& builder) {
          .output = builder.create({.name = "half depth", .format = VK_FORMAT_R32_SFLOAT, .denominator = 2})});
 }
 
+void velocity_constants(const void*, const PassContext& context, std::span<PassVector> out) {
+    const Camera& camera = *context.camera;
+    const VelocityKind& kind = camera.velocity;
+    const std::array<float, 2> pixels{static_cast<float>(context.frame_extent.width),
+                                      static_cast<float>(context.frame_extent.height)};
+    const float sign = kind.sign == VelocityKind::Sign::PreviousMinusCurrent ? 1.0f : -1.0f;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const float unit = kind.unit == VelocityKind::Unit::Pixels ? 1.0f
+                           : kind.unit == VelocityKind::Unit::Uv   ? pixels[axis]
+                                                                   : pixels[axis] / 2;
+        const float direction = axis == 1 && !kind.is_y_down ? -1.0f : 1.0f;
+        out[0][axis] = sign * unit * direction;
+        // A point that stands still moves in the picture as its jitter changes.
+        out[0][axis + 2] = kind.has_jitter ? camera.jitter[axis] - camera.previous_jitter[axis] : 0.0f;
+    }
+}
+
+PassImage make_velocity(PassBuilder& builder) {
+    return builder.add(
+        {.name = "velocity",
+         .shader = "shared/velocity.glsl",
+         .inputs = {{.name = "shared_velocity", .image = builder.frame_image(FrameImage::Velocity), .is_loaded = true}},
+         .output = builder.create({.name = "velocity", .format = VK_FORMAT_R16G16_SFLOAT}),
+         .custom_vectors = 1,
+         .constants = velocity_constants});
+}
+
 template <NormalSource source, std::uint32_t step>
 void normal_constants(const void*, const PassContext& context, std::span<PassVector> out) {
     constexpr float shift = step == 1 ? 0 : 1;
@@ -84,6 +111,11 @@ PassImage linear_depth(PassBuilder& builder) {
 
 PassImage half_depth(PassBuilder& builder, ConditionFunction condition) {
     return builder.shared("half depth", make_half_depth, condition);
+}
+
+PassImage velocity(PassBuilder& builder, ConditionFunction condition) {
+    if (builder.is_velocity_plain()) return builder.frame_image(FrameImage::Velocity);
+    return builder.shared("velocity", make_velocity, condition);
 }
 
 PassImage view_normals(PassBuilder& builder, NormalSource source, ConditionFunction condition) {

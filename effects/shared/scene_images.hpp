@@ -12,6 +12,10 @@ namespace darkroom {
 /// The same of every second pixel of every second row: half the size, floored.
 [[nodiscard]] PassImage half_depth(PassBuilder& builder, ConditionFunction condition = nullptr);
 
+/// Previous minus current position, in pixels, y down, without jitter, whatever Camera::velocity says of the host's
+/// image: red and green. For effects whose needs name velocity.
+[[nodiscard]] PassImage velocity(PassBuilder& builder, ConditionFunction condition = nullptr);
+
 /// View space of texels that are each the first of `step` x `step` pixels of the frame: at a planar distance, x and y
 /// are (texel * ray.xy + ray.zw) * distance + texel * flat.xy + flat.zw, and z is -distance.
 struct RayConstants {

@@ -168,6 +168,7 @@ class PassCatcher : public PassBuilder {
     PassImage frame_image(FrameImage) override { return {0}; }
     bool has_frame_image(FrameImage) const override { return true; }
     bool is_depth_planar() const override { return true; }
+    bool is_velocity_plain() const override { return true; }
     PassImage shadow_map(std::uint32_t) override { return {0}; }
     PassImage shared(std::string_view, PassImage (*)(PassBuilder&), ConditionFunction condition) override {
         conditions.push_back({"shared", condition, 0});

@@ -78,6 +78,8 @@ struct CompileDesc {
     bool is_depth_planar = false;
     ImageUse normals;
     ImageUse velocity;
+    /// Every frame's camera says the default VelocityKind: velocity is then read as it is, without a pass.
+    bool is_velocity_plain = false;
     ImageUse ui;
     bool has_shadows = false;  ///< frames have lights with cascades in D32_SFLOAT
     ImageUse target{VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};

@@ -161,6 +161,8 @@ class PassBuilder {
     [[nodiscard]] virtual bool has_frame_image(FrameImage which) const = 0;
     /// Are the numbers of the depth image planar distances already?
     [[nodiscard]] virtual bool is_depth_planar() const = 0;
+    /// Are those of the velocity image previous minus current position, in pixels, y down, without jitter?
+    [[nodiscard]] virtual bool is_velocity_plain() const = 0;
     /// The cascades of shadow_light(frame.lights, number), for effects that need shadows: a sampler2DArrayShadow, used
     /// by its name. Where a frame has fewer such lights, one that is lit everywhere.
     [[nodiscard]] virtual PassImage shadow_map(std::uint32_t number) = 0;

@@ -43,6 +43,22 @@ enum class DepthKind : std::uint32_t {
     Planar,    ///< distance along the view axis, in scene units; 1e9 and more is sky
 };
 
+/// What the numbers of a velocity image mean. The default is the library's own convention.
+struct VelocityKind {
+    enum class Sign : std::uint32_t { PreviousMinusCurrent, CurrentMinusPrevious };
+    enum class Unit : std::uint32_t {
+        Pixels,
+        Uv,   ///< the picture is 1 wide and 1 high
+        Ndc,  ///< the picture is 2 wide and 2 high
+    };
+    Sign sign = Sign::PreviousMinusCurrent;
+    Unit unit = Unit::Pixels;
+    bool is_y_down = true;
+    /// Made from the jittered projections, so that a still point moves as the jitter changes.
+    bool has_jitter = false;
+    friend bool operator==(const VelocityKind&, const VelocityKind&) = default;
+};
+
 /// Camera conventions are data: any projection, y up or down in clip space, finite or infinite far plane.
 struct Camera {
     Matrix view = identity_matrix;        ///< world to camera; the camera looks along -z, y up
@@ -52,8 +68,9 @@ struct Camera {
     float near_distance = 0.1f;
     float far_distance = 1000.0f;  ///< infinite: std::numeric_limits<float>::infinity()
     DepthKind depth = DepthKind::Standard;
-    bool is_y_down = true;          ///< clip space as Vulkan has it; false: y up (a flipped viewport)
-    std::array<float, 2> jitter{};  ///< of this frame, in pixels
+    bool is_y_down = true;  ///< clip space as Vulkan has it; false: y up (a flipped viewport)
+    VelocityKind velocity;
+    std::array<float, 2> jitter{};  ///< how far the projection moves this frame's picture, in pixels, y down
     std::array<float, 2> previous_jitter{};
     bool is_cut = false;  ///< nothing of the last frame is related to this one: histories are reset
 };
@@ -86,7 +103,7 @@ struct Frame {
     ImageRef color;  ///< scene-linear Rec. 709
     ImageRef depth;
     ImageRef normals;   ///< world space, -1..1
-    ImageRef velocity;  ///< previous minus current position, pixels, y down
+    ImageRef velocity;  ///< as Camera::velocity says
     ImageRef ui;        ///< sRGB-encoded, premultiplied after encoding
     Camera camera;
     std::span<const Light> lights;

@@ -100,6 +100,7 @@ CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const La
     out.is_depth_planar = out.depth.format != VK_FORMAT_UNDEFINED;
     out.normals = use(2);
     out.velocity = use(3);
+    out.is_velocity_plain = true;
     out.has_shadows = std::any_of(input.lights.begin(), input.lights.end(), has_cascades);
     return out;
 }
@@ -108,7 +109,8 @@ CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const La
 bool is_same(const CompileDesc& a, const CompileDesc& b) {
     return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
            a.color == b.color && a.depth == b.depth && a.is_depth_planar == b.is_depth_planar &&
-           a.normals == b.normals && a.velocity == b.velocity && a.ui == b.ui && a.has_shadows == b.has_shadows;
+           a.is_velocity_plain == b.is_velocity_plain && a.normals == b.normals && a.velocity == b.velocity &&
+           a.ui == b.ui && a.has_shadows == b.has_shadows;
 }
 
 /// The cascades of one light, an array, and the buffer that fills it.
@@ -153,6 +155,7 @@ CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const Dev
     out.is_depth_planar = frame.depth.is_given() && frame.camera.depth == DepthKind::Planar;
     out.normals = {frame.normals.format, input.layer_usage};
     out.velocity = {frame.velocity.format, input.layer_usage};
+    out.is_velocity_plain = frame.camera.velocity == VelocityKind{};
     out.ui = {frame.ui.format};
     out.has_shadows = std::any_of(frame.lights.begin(), frame.lights.end(),
                                   [](const Light& light) { return light.cascades.is_given(); });

@@ -145,6 +145,7 @@ class Builder final : public PassBuilder {
     [[nodiscard]] PassImage frame_image(FrameImage which) override;
     [[nodiscard]] bool has_frame_image(FrameImage which) const override;
     [[nodiscard]] bool is_depth_planar() const override { return planner_.desc_.is_depth_planar; }
+    [[nodiscard]] bool is_velocity_plain() const override { return planner_.desc_.is_velocity_plain; }
     [[nodiscard]] PassImage shadow_map(std::uint32_t number) override;
     [[nodiscard]] PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&),
                                    ConditionFunction condition) override;
