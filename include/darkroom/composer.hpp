@@ -83,6 +83,9 @@ struct CompileDesc {
     ImageUse ui;
     bool has_shadows = false;  ///< frames have lights with cascades in D32_SFLOAT
     ImageUse target{VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
+    /// (0, 0): the target is as large as the picture at the end of the stack. Else the largest extent of a target with
+    /// an extent of its own, into which the last kernel samples the picture, bilinearly.
+    VkExtent2D target_extent{};
     /// What the target takes: Encoded for pictures that are shown, SceneLinear for float files (encode and dither are
     /// then skipped). Unset: Encoded for UNORM and SRGB formats, SceneLinear for float formats.
     std::optional<Domain> target_domain;

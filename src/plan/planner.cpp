@@ -30,6 +30,7 @@ graph::Size scaled(graph::Size size, std::uint32_t numerator, std::uint32_t deno
     return {.numerator = size.numerator * numerator, .denominator = size.denominator * denominator};
 }
 bool is_same(graph::Size a, graph::Size b) {
+    if (a.width != 0 || b.width != 0) return a.width == b.width && a.height == b.height;
     return std::uint64_t{a.numerator} * b.denominator == std::uint64_t{b.numerator} * a.denominator;
 }
 
@@ -321,11 +322,23 @@ Result<> Planner::finish() {
     const bool is_open = finish_of(Domain::Encoded, desc_) != finish_of(Domain::SceneLinear, desc_);
     for (std::uint32_t i = program_.last_entry; is_open && i != no_entry; i = program_.entry_inputs[i])
         if (stack_[i].info->makes != nullptr) finish = Finish::OfFrame;
+    const VkExtent2D own = desc_.target_extent;
+    const bool is_scaled = own.width != 0;
     std::size_t kernel = values_[last].kernel;
-    if (kernel == no_kernel || !values_[last].reader.empty()) {
-        const std::string why = fmt::format("{} reads the picture before the target, too", values_[last].reader);
+    if (is_scaled || kernel == no_kernel || !values_[last].reader.empty()) {
+        const std::string why = is_scaled
+                                    ? "the target has an extent of its own: the picture is sampled into it"
+                                    : fmt::format("{} reads the picture before the target, too", values_[last].reader);
         if (auto image = materialise(last, why); !image) return failure(std::move(image));
-        kernel = open_kernel(last, values_[last].why);
+        kernel = open_kernel(last, is_scaled ? why : values_[last].why);
+    }
+    if (is_scaled) {
+        // What the entries do is done at the picture's extent, fused or not: a dither that is scaled is the price.
+        kernels_[kernel].size = {.width = own.width, .height = own.height};
+        program_.remarks.push_back(
+            fmt::format("the target has an extent of its own, up to {}x{}: the last kernel samples the picture into "
+                        "it, bilinearly.",
+                        own.width, own.height));
     }
     program_.target_size = kernels_[kernel].size;
     const graph::Version target = import_host(HostImage::Target, "target", desc_.target, program_.target_size);
@@ -444,13 +457,16 @@ std::int32_t Planner::toggle_index(Gate toggle) {
 }
 
 Domain target_domain(const CompileDesc& desc) {
-    return desc.target_domain.value_or(gpu::format_traits(desc.target.format).is_float ? Domain::SceneLinear : Domain::Encoded);
+    return desc.target_domain.value_or(gpu::format_traits(desc.target.format).is_float ? Domain::SceneLinear
+                                                                                       : Domain::Encoded);
 }
 
 Finish finish_of(Domain domain, const CompileDesc& desc) {
     if (target_domain(desc) != Domain::Encoded) return Finish::None;
-    if (domain == Domain::Encoded) return gpu::format_traits(desc.target.format).is_srgb ? Finish::DecodeSrgb : Finish::None;
-    const bool is_encoded_here = !gpu::format_traits(desc.target.format).is_srgb && desc.encodes_target.value_or(!gpu::format_traits(desc.target.format).is_float);
+    if (domain == Domain::Encoded)
+        return gpu::format_traits(desc.target.format).is_srgb ? Finish::DecodeSrgb : Finish::None;
+    const bool is_encoded_here = !gpu::format_traits(desc.target.format).is_srgb &&
+                                 desc.encodes_target.value_or(!gpu::format_traits(desc.target.format).is_float);
     return is_encoded_here ? Finish::EncodeSrgb : Finish::None;
 }
 
