@@ -16,6 +16,10 @@
 // thread. A Composer is used by one thread at a time; its recordings go to one queue, in order. Up to frames_in_flight
 // * views recordings may be unfinished; a further record may be made only when the oldest of them has finished.
 // compile() keeps what unfinished recordings use; a Composer is destroyed only when all its recordings have finished.
+//
+// The command buffer is a primary one or not, of a queue with graphics and compute, and outside of rendering. `record`
+// leaves other pipelines and descriptor sets bound at both bind points, and another viewport and scissor; push
+// constants, vertex and index buffers are as they were. Before it records, it checks each image that the plan uses.
 
 #include <cstdint>
 #include <darkroom/blend_mode.hpp>
@@ -151,7 +155,7 @@ class Composer {
     [[nodiscard]] Result<Plan> plan(const CompileDesc& desc) const;
 
     /// Records the whole stack. Errors (a missing or mismatching image, an extent beyond the compiled maximum, no plan)
-    /// record nothing.
+    /// record nothing; they name the image and the field, such as frame.depth.layout.
     Result<> record(VkCommandBuffer commands, const Frame& frame);
 
     /// Waits for kernels that are being built for the present toggles. For headless work and tests, not for frame

@@ -14,7 +14,8 @@ namespace darkroom {
 using Matrix = std::array<float, 16>;
 inline constexpr Matrix identity_matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-/// An image of the host's, as it is when the recorded commands start.
+/// An image of the host's, as it is when the recorded commands start. Single-sampled: a multi-sampled picture is to be
+/// resolved first.
 struct ImageRef {
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;  ///< one mip level, one layer, colour or depth aspect
@@ -23,8 +24,8 @@ struct ImageRef {
     VkRect2D region{};              ///< the part that holds the picture; extent (0,0): all of it
     std::uint32_t mip_level = 0;    ///< that the view shows
     std::uint32_t array_layer = 0;  ///< first layer that the view shows
-    std::uint32_t layer_count = 1;  ///< more than 1: multi-view, one picture a layer (reserved: must be 1 today)
-    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    std::uint32_t layer_count = 1;  ///< that the view shows: of pictures 1, of cascades at least their count
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< that it is in; UNDEFINED only for a target, whose texels go
     VkPipelineStageFlags2 last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< of the host's last use
     VkAccessFlags2 last_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
     /// How to leave it, and for which use; UNDEFINED: as Darkroom last used it.
@@ -82,9 +83,10 @@ struct Light {
     std::array<float, 3> color{1, 1, 1};      ///< linear Rec. 709, times intensity
     float volumetric_intensity = 0;
     std::array<float, 3> volumetric_color{1, 1, 1};
-    /// Depth array, a layer a cascade, its view of all layers; depth 0 near the light .. 1. Not given: casts no shadow.
+    /// D32_SFLOAT array of squares, a layer a cascade, its view a 2D_ARRAY of layer_count layers; depth is 0 near the
+    /// light and 1 far from it. Not given: casts no shadow.
     ImageRef cascades;
-    std::uint32_t cascade_count = 0;
+    std::uint32_t cascade_count = 0;  ///< [0, max_cascades]; 0: casts no shadow
     /// To x, y in [-1, 1] (y down) and depth in [0, 1].
     std::array<Matrix, max_cascades> world_to_cascade{identity_matrix, identity_matrix, identity_matrix,
                                                       identity_matrix};

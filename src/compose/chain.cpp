@@ -7,7 +7,9 @@
 #include <bit>
 #include <cstring>
 
+#include "compose/frame_check.hpp"
 #include "core/assert.hpp"
+#include "gpu/format_use.hpp"
 #include "gpu/formats.hpp"
 
 namespace darkroom::compose {
@@ -18,59 +20,6 @@ using gpu::most_images;
 constexpr std::uint32_t most_custom_vectors = 96;
 
 VkDeviceSize align(VkDeviceSize size, VkDeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
-
-const char* name_of(HostImage image) {
-    switch (image) {
-        case HostImage::Color:
-            return "color";
-        case HostImage::Depth:
-            return "depth";
-        case HostImage::Normals:
-            return "normals";
-        case HostImage::Velocity:
-            return "velocity";
-        case HostImage::Ui:
-            return "ui";
-        case HostImage::Target:
-            return "target";
-        default:
-            return "lights";
-    }
-}
-
-const ImageRef& host_image(const Frame& frame, HostImage image) {
-    switch (image) {
-        case HostImage::Color:
-            return frame.color;
-        case HostImage::Depth:
-            return frame.depth;
-        case HostImage::Normals:
-            return frame.normals;
-        case HostImage::Velocity:
-            return frame.velocity;
-        case HostImage::Ui:
-            return frame.ui;
-        default:
-            return frame.target;
-    }
-}
-
-VkFormat expected_format(const CompileDesc& desc, HostImage image) {
-    switch (image) {
-        case HostImage::Color:
-            return desc.color.format;
-        case HostImage::Depth:
-            return desc.depth.format;
-        case HostImage::Normals:
-            return desc.normals.format;
-        case HostImage::Velocity:
-            return desc.velocity.format;
-        case HostImage::Ui:
-            return desc.ui.format;
-        default:
-            return desc.target.format;
-    }
-}
 
 }  // namespace
 
@@ -156,51 +105,8 @@ Result<> Chain::make_resources(bool has_timers) {
     return {};
 }
 
-Result<> Chain::check_frame(const Frame& frame) const {
-    for (const auto& which : program_.imports) {
-        if (!which) continue;
-        const ImageRef& image = image_of(frame, *which);
-        if (shadow_number(*which) >= 0) {
-            if (image.format != VK_FORMAT_D32_SFLOAT)
-                return user_error(fmt::format("record: the cascades of a light have format {}; allowed is D32_SFLOAT",
-                                              gpu::format_name(image.format)));
-            continue;
-        }
-        if (!image.is_given())
-            return user_error(fmt::format("record: frame.{} is not given, and the plan reads it", name_of(*which)));
-        if (const VkFormat expected = expected_format(desc_, *which); image.format != expected)
-            return user_error(fmt::format("record: frame.{} has format {}, the plan was compiled for {}",
-                                          name_of(*which), gpu::format_name(image.format), gpu::format_name(expected)));
-        const VkRect2D region = image.used_region();
-        const VkExtent2D color_extent = frame.color.used_region().extent;
-        const VkExtent2D wanted = *which == HostImage::Target ? program_.target_size.of(color_extent) : color_extent;
-        if (region.offset.x < 0 || region.offset.y < 0 || region.offset.x + region.extent.width > image.extent.width ||
-            region.offset.y + region.extent.height > image.extent.height)
-            return user_error(fmt::format("record: the region of frame.{} does not lie inside its {}x{} image",
-                                          name_of(*which), image.extent.width, image.extent.height));
-        if (region.extent.width != wanted.width || region.extent.height != wanted.height)
-            return user_error(fmt::format("record: frame.{} is {}x{}; with a color of {}x{} it must be {}x{}",
-                                          name_of(*which), region.extent.width, region.extent.height,
-                                          color_extent.width, color_extent.height, wanted.width, wanted.height));
-        if (image.layer_count != 1)
-            return user_error(
-                fmt::format("record: frame.{} has {} layers; 1 is allowed", name_of(*which), image.layer_count));
-    }
-    if (desc_.is_depth_planar && frame.camera.depth != DepthKind::Planar)
-        return user_error("record: the plan was compiled for planar depth; frame.camera.depth must be Planar");
-    const VkExtent2D extent = frame.color.used_region().extent;
-    if (extent.width == 0 || extent.height == 0 || extent.width > desc_.max_extent.width ||
-        extent.height > desc_.max_extent.height)
-        return user_error(fmt::format("record: the frame is {}x{}; allowed is 1x1 to {}x{}, as compiled", extent.width,
-                                      extent.height, desc_.max_extent.width, desc_.max_extent.height));
-    if (frame.view >= desc_.views)
-        return user_error(
-            fmt::format("record: view {} does not exist; allowed is [0, {}]", frame.view, desc_.views - 1));
-    return {};
-}
-
 Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<const Entry> stack) {
-    if (auto ok = check_frame(frame); !ok) return ok;
+    if (auto ok = check_frame(program_, desc_, frame); !ok) return ok;
     const VkExtent2D extent = frame.color.used_region().extent;
     const PassContext context{.frame_extent = extent,
                               .output_extent = extent,

@@ -41,7 +41,6 @@ class Chain {
     Chain(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots);
     [[nodiscard]] Result<> make_kernels(std::span<const Entry> stack);
     [[nodiscard]] Result<> make_resources(bool has_timers);
-    [[nodiscard]] Result<> check_frame(const Frame& frame) const;
     [[nodiscard]] const ImageRef& image_of(const Frame& frame, HostImage which) const;
     void reset_histories(const Frame& frame);
     [[nodiscard]] Domain domain_behind(std::uint32_t entry) const {

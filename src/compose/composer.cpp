@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "compose/chain.hpp"
+#include "compose/frame_check.hpp"
 #include "core/assert.hpp"
 #include "core/param_text.hpp"
 #include "gpu/context.hpp"
@@ -305,6 +306,11 @@ Result<Plan> Composer::compile(const CompileDesc& desc) {
         desc.max_extent.height > limit)
         return user_error(fmt::format("size {}x{}: this device allows 1x1 to {}x{}", desc.max_extent.width,
                                       desc.max_extent.height, limit, limit));
+    if (desc.target_extent.width > limit || desc.target_extent.height > limit ||
+        (desc.target_extent.width == 0) != (desc.target_extent.height == 0))
+        return user_error(fmt::format("target_extent {}x{}: this device allows 1x1 to {}x{}, and 0x0 for the picture's",
+                                      desc.target_extent.width, desc.target_extent.height, limit, limit));
+    if (auto ok = compose::check_images(state_->device->context(), desc); !ok) return failure(std::move(ok));
     if (desc.views == 0) return user_error("views = 0: allowed is 1 and more");
     for (const plan::Entry& entry : state_->stack)
         if (auto ok = check_values(entry, entry.base); !ok) return failure(std::move(ok));

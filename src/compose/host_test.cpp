@@ -251,7 +251,7 @@ TEST_F(ComposeHost, ViewsAreRecordedOneAfterTheOther) {
     third.view = 2;
     const auto refused = left.record(composer, third);
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().text.find("view 2"), std::string::npos);
+    EXPECT_NE(refused.error().text.find("frame.view is 2"), std::string::npos);
     desc.views = 0;
     EXPECT_FALSE(composer.compile(desc));
 }
@@ -302,17 +302,15 @@ TEST_F(ComposeHost, ErrorsNameTheImageAndRecordNothing) {
         EXPECT_EQ(text.find('\n'), std::string::npos);
     };
     expect_error("frame.color is not given", [](Frame& frame) { frame.color = {}; });
-    expect_error("frame.target is not given", [](Frame& frame) { frame.target.view = VK_NULL_HANDLE; });
+    expect_error("frame.target.view is null", [](Frame& frame) { frame.target.view = VK_NULL_HANDLE; });
     expect_error("R8G8B8A8_UNORM", [](Frame& frame) { frame.color.format = VK_FORMAT_R8G8B8A8_UNORM; });
-    expect_error("frame.target has format", [](Frame& frame) { frame.target.format = VK_FORMAT_B8G8R8A8_UNORM; });
+    expect_error("frame.target.format is", [](Frame& frame) { frame.target.format = VK_FORMAT_B8G8R8A8_UNORM; });
     expect_error("1x1 to 40x40", [](Frame& frame) { frame.color.extent = frame.target.extent = {41, 40}; });
     expect_error("frame.target is 40x32", [](Frame& frame) { frame.target.region = {{0, 0}, {40, 32}}; });
-    expect_error("region of frame.color", [](Frame& frame) { frame.color.region = {{1, 0}, {40, 33}}; });
-    expect_error("region of frame.target", [](Frame& frame) { frame.target.region = {{-1, 0}, {40, 33}}; });
-    expect_error("region of frame.color", [](Frame& frame) {
-        frame.color.region = {{2000000000, 0}, {4000000000u, 33}};
-    });
-    expect_error("2 layers", [](Frame& frame) { frame.color.layer_count = 2; });
+    expect_error("frame.color.region", [](Frame& frame) { frame.color.region = {{1, 0}, {40, 33}}; });
+    expect_error("frame.target.region", [](Frame& frame) { frame.target.region = {{-1, 0}, {40, 33}}; });
+    expect_error("frame.color.region", [](Frame& frame) { frame.color.region = {{2000000000, 0}, {4000000000u, 33}}; });
+    expect_error("layer_count is 2", [](Frame& frame) { frame.color.layer_count = 2; });
     EXPECT_EQ(test::worst_difference(host.read_target(), before), 0) << "a frame with an error wrote the target";
     test::must(host.record(composer, host.frame()));
     EXPECT_GT(test::worst_difference(host.read_target(), before), 0.1);

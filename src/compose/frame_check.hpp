@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Whether the host's images are what a plan needs: their descriptions before it is compiled, and each frame's before
+// anything is recorded. What passes here is sound by all that the host said; what it said wrongly only the validation
+// layers can see.
+
+#include <darkroom/composer.hpp>
+
+#include "plan/program.hpp"
+
+namespace darkroom::gpu {
+class Context;
+}
+
+namespace darkroom::compose {
+
+/// Can this device read the inputs and write the target as they are described?
+[[nodiscard]] Result<> check_images(const gpu::Context& context, const CompileDesc& desc);
+
+/// The image of a frame that is no cascades of a light.
+[[nodiscard]] const ImageRef& host_image(const Frame& frame, plan::HostImage which);
+
+/// Is every image that the program reads or writes given as it was compiled for? Allocates nothing, but for an error.
+[[nodiscard]] Result<> check_frame(const plan::Program& program, const CompileDesc& desc, const Frame& frame);
+
+}  // namespace darkroom::compose
