@@ -35,6 +35,9 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program prog
     if (!compiled) return failure(std::move(compiled));
     chain->compiled_.emplace(std::move(*compiled));
     chain->schedule_.emplace(*chain->compiled_);
+    // Depth is never filtered: what lies between two surfaces is no surface.
+    for (const graph::Slot& slot : chain->compiled_->slots())
+        chain->is_nearest_.push_back(!gpu::can_filter(context, slot.desc.format) || gpu::is_depth(slot.desc.format));
     auto tables = Tables::create(context, chain->program_.constants);
     if (!tables) return failure(std::move(tables));
     chain->tables_ = std::move(*tables);
@@ -214,10 +217,9 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
                     .region = {region.offset, region.extent, host.extent},
                     .sampler = context_.shadow_sampler,
                     .layout = schedule_->read_layout(slot)};
-        const bool is_depth = host.format == VK_FORMAT_D32_SFLOAT || host.format == VK_FORMAT_D16_UNORM;
         return {.view = host.view,
                 .region = {region.offset, region.extent, host.extent},
-                .is_nearest = is_depth,
+                .is_nearest = is_nearest_[slot],
                 .layout = schedule_->read_layout(slot)};
     }
     if (image.kind == graph::Slot::Kind::Constant) {
@@ -229,7 +231,8 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
     return {.view = physical_->mip_view(slot, mip, frame.view),
             .region = {{},
                        graph::mip_extent(image.desc.size.of(extent), mip),
-                       graph::mip_extent(image.desc.size.of(desc_.max_extent), mip)}};
+                       graph::mip_extent(image.desc.size.of(desc_.max_extent), mip)},
+            .is_nearest = is_nearest_[slot]};
 }
 
 gpu::Binding Chain::bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const {

@@ -66,6 +66,7 @@ class Chain {
     std::optional<graph::Compiled> compiled_;
     std::optional<graph::Schedule> schedule_;
     std::optional<graph::Physical> physical_;
+    std::vector<bool> is_nearest_;              ///< per slot: its format is not filtered
     std::vector<std::uint32_t> declared_pass_;  ///< kept pass -> pass of the program
 
     std::vector<Shape> last_shapes_;                   ///< per pass: of its last recording

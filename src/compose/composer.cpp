@@ -13,6 +13,7 @@
 #include "core/assert.hpp"
 #include "core/param_text.hpp"
 #include "gpu/context.hpp"
+#include "gpu/format_use.hpp"
 
 namespace darkroom {
 
@@ -149,6 +150,7 @@ struct Composer::State {
         const bool is_software = context.traits.is_software;
         const plan::PlannerTraits traits{
             .stage_of = [&](const gpu::KernelSpec& spec) { return stage_of(context, spec, compile_desc.kernels); },
+            .can_load = [&](VkFormat format) { return gpu::can_load(context, format); },
             .loads_are_cheap = is_software,
             .workgroup = is_software ? std::array{64u, 4u} : std::array{16u, 16u}};
         return plan::plan_program(stack, compile_desc, traits);

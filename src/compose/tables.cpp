@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "gpu/format_use.hpp"
+
 namespace darkroom::compose {
 
 Result<Tables> Tables::create(gpu::Context& context, std::span<const Constant> constants) {
@@ -22,7 +24,7 @@ Result<Tables> Tables::create(gpu::Context& context, std::span<const Constant> c
                                                   .usage = read | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
                                                   .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
         if (!image) return failure(std::move(image));
-        out.tables_.push_back({std::move(*image), size, layout});
+        out.tables_.push_back({std::move(*image), size, layout, !gpu::can_filter(context, desc.format)});
         // Copies start at multiples of a texel's size; 16 is the largest.
         size += (desc.data.size() + 15) / 16 * 16;
     }
@@ -73,7 +75,10 @@ void Tables::upload(VkCommandBuffer commands) {
 gpu::Binding Tables::binding(std::size_t index) const {
     const gpu::Image& image = tables_[index].image;
     const VkExtent2D size{image.info.extent.width, image.info.extent.height};
-    return {.view = image.view, .region = {{}, size, size}, .layout = tables_[index].layout};
+    return {.view = image.view,
+            .region = {{}, size, size},
+            .is_nearest = tables_[index].is_nearest,
+            .layout = tables_[index].layout};
 }
 
 Result<LitShadowMap> LitShadowMap::create(gpu::Context& context) {

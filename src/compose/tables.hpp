@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "plan/program.hpp"
 #include "gpu/resources.hpp"
+#include "plan/program.hpp"
 
 namespace darkroom::compose {
 
@@ -25,6 +25,7 @@ class Tables {
         gpu::Image image;
         VkDeviceSize offset = 0;
         VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        bool is_nearest = false;
     };
     std::vector<Table> tables_;
     gpu::Buffer staging_;

@@ -95,11 +95,13 @@ bool Planner::may_share(graph::Version a, graph::Version b) const {
     return std::ranges::find_first_of(of_a, of_b) != of_a.end();
 }
 
-/// The format for imageLoad where every image that may stand behind `version` has it, else UNDEFINED: sampled.
+/// The format for imageLoad where every image that may stand behind `version` has it and the device can, else
+/// UNDEFINED: sampled.
 VkFormat Planner::storage_format(graph::Version version) const {
     const Facts& facts = facts_.at(version.index);
     if ((facts.usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0 || gpu::format_traits(facts.format).glsl_qualifier.empty())
         return VK_FORMAT_UNDEFINED;
+    if (traits_.can_load && !traits_.can_load(facts.format)) return VK_FORMAT_UNDEFINED;
     for (const graph::Version instead : facts.fall_backs)
         if (storage_format(instead) != facts.format) return VK_FORMAT_UNDEFINED;
     return facts.format;

@@ -120,6 +120,8 @@ struct Program {
 struct PlannerTraits {
     /// Which stage runs a kernel: gpu::preferred_stage, or the one the user asked for where it can.
     std::function<Result<gpu::Stage>(const gpu::KernelSpec&)> stage_of;
+    /// Whether the device reads this format by imageLoad; null: every one.
+    std::function<bool(VkFormat)> can_load{};
     bool loads_are_cheap = false;  ///< see gpu/kernel.hpp
     std::array<std::uint32_t, 2> workgroup{16, 16};
 };
