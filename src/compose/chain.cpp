@@ -136,10 +136,10 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
     for (std::size_t i = 0; i < stack.size(); ++i) {
         const ParamTable& table = stack[i].info->parameters;
         const std::span<std::uint32_t> words(block + program_.block_words[i], block_words(table));
-        words[0] = is_on_[i] ? 1 : 0;
+        words[0] = gates_.is_on(static_cast<std::uint32_t>(i)) ? 1 : 0;
         words[1] = std::bit_cast<std::uint32_t>(stack[i].desc.opacity);
         words[2] = static_cast<std::uint32_t>(stack[i].desc.blend);
-        write_block(table, {words_of(static_cast<std::uint32_t>(i)), table.words()}, words);
+        write_block(table, {gates_.words_of(static_cast<std::uint32_t>(i)), table.words()}, words);
     }
     block[program_.finish_word] = static_cast<std::uint32_t>(finish_);
 
@@ -160,7 +160,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
     }
     reset_histories(frame);
     physical_->begin(commands, context_.vk, extent, frame.view);
-    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_,
+    schedule_->derive(gates_.toggles(), import_states_,
                       physical_->histories(frame.view).recordings);
 
     const bool is_timed = timers_.pool != VK_NULL_HANDLE;
@@ -196,7 +196,7 @@ void Chain::reset_histories(const Frame& frame) {
     View& view = views_[frame.view];
     bool is_related = !frame.camera.is_cut && frame.delta_time > 0;
     for (std::size_t i = 0; i < program_.history_entries.size(); ++i) {
-        const bool is_on = is_on_[program_.history_entries[i]];
+        const bool is_on = gates_.is_on(program_.history_entries[i]);
         if (is_on && !view.was_on[i]) is_related = false;
         view.was_on[i] = is_on ? 1 : 0;
     }
@@ -256,7 +256,7 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
         PassContext own = context;
         own.frame_extent = program_.entry_sizes[pass.entry].of(context.frame_extent);
         own.output_extent = output.region.extent;
-        pass.constants(words_of(pass.entry), own, custom);
+        pass.constants(gates_.words_of(pass.entry), own, custom);
     }
     const VkDeviceSize block_offset = pass_block_stride_ * (slot_ * program_.passes.size() + index);
     const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
@@ -292,6 +292,8 @@ std::span<const PassTime> Chain::times() {
     return {};
 }
 
-Plan Chain::describe() const { return describe_program(program_, *compiled_, desc_); }
+Plan Chain::describe(std::span<const Entry> stack) const {
+    return describe_program(program_, *compiled_, desc_, stack);
+}
 
 }  // namespace darkroom::compose

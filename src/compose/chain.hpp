@@ -9,11 +9,12 @@
 #include <span>
 #include <vector>
 
-#include "plan/program.hpp"
 #include "compose/tables.hpp"
 #include "compose/variants.hpp"
 #include "gpu/resources.hpp"
 #include "graph/physical.hpp"
+#include "plan/gates.hpp"
+#include "plan/program.hpp"
 
 namespace darkroom::compose {
 
@@ -32,7 +33,7 @@ class Chain {
     [[nodiscard]] Result<> build_lean(std::span<const Entry> stack);
     /// Recordings of it may be unfinished, but there will be no more: ends its thread.
     void retire() { builders_.reset(); }
-    [[nodiscard]] Plan describe() const;
+    [[nodiscard]] Plan describe(std::span<const Entry> stack) const;
     [[nodiscard]] const Program& program() const { return program_; }
     /// Times of the last finished recording.
     [[nodiscard]] std::span<const PassTime> times();
@@ -55,7 +56,6 @@ class Chain {
                                          VkExtent2D extent) const;
     void record_pass(VkCommandBuffer commands, std::uint32_t pass, const Frame& frame, const PassContext& context,
                      std::span<const Entry> stack);
-    [[nodiscard]] const std::uint32_t* words_of(std::uint32_t entry) const { return words_.data() + words_at_[entry]; }
 
     gpu::Context& context_;
     Program program_;
@@ -81,9 +81,7 @@ class Chain {
     gpu::Timers timers_;
 
     // Scratch of a recording, sized at compile.
-    std::vector<std::uint32_t> words_, words_at_;
-    std::unique_ptr<bool[]> is_on_, toggles_;
-    std::vector<Domain> domains_;  ///< behind each entry
+    Gates gates_;
     Finish finish_ = Finish::None;
     std::vector<graph::ImportState> import_states_;
     std::vector<PassVector> custom_;

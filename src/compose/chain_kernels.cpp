@@ -54,19 +54,10 @@ Result<> Chain::make_kernels(std::span<const Entry> stack) {
         variants_[i] = std::make_unique<Variants>(program_.passes[i]);
     }
 
-    words_at_.clear();
-    std::uint32_t words = 0;
-    for (const Entry& entry : stack) {
-        words_at_.push_back(words);
-        words += static_cast<std::uint32_t>(entry.info->parameters.words());
-    }
-    words_.resize(words + 1);
-    domains_.resize(stack.size());
-    is_on_ = std::make_unique<bool[]>(stack.size() + 1);
-    toggles_ = std::make_unique<bool[]>(program_.toggles.size() + 1);
+    gates_ = Gates(program_, stack);
     evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
     import_states_.resize(program_.imports.size());
-    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, 0);
+    schedule_->derive(gates_.toggles(), import_states_, 0);
     last_shapes_.resize(program_.passes.size());
     for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(program_.passes[i], stack);
 
@@ -79,29 +70,8 @@ Result<> Chain::make_kernels(std::span<const Entry> stack) {
 }
 
 void Chain::evaluate(std::span<const Entry> stack, const PassContext& context) {
-    for (std::size_t i = 0; i < stack.size(); ++i) {
-        std::uint32_t* const words = words_.data() + words_at_[i];
-        stack[i].evaluate({words, stack[i].info->parameters.words()});
-        is_on_[i] = !program_.is_left_out[i] && stack[i].is_on(words);
-        domains_[i] = stack[i].domain_after(domain_behind(program_.entry_inputs[i]), words, is_on_[i]);
-    }
-    finish_ = finish_of(domain_behind(program_.last_entry), desc_);
-    for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
-        const Gate& toggle = program_.toggles[i];
-        const auto holds = [&](std::uint32_t entry, ConditionFunction condition) {
-            if (condition == nullptr) return true;
-            PassContext own = context;
-            own.frame_extent = program_.entry_sizes[entry].of(context.frame_extent);
-            return condition(words_of(entry), own, toggle.argument);
-        };
-        bool is_on = false;
-        for (std::size_t e = 0; e < toggle.entries.size(); ++e) {
-            const std::uint32_t entry = toggle.entries[e];
-            is_on = is_on || (is_on_[entry] && (toggle.conditions.empty() || holds(entry, toggle.conditions[e])));
-        }
-        is_on = is_on && holds(toggle.entries.front(), toggle.condition);
-        toggles_[i] = is_on;
-    }
+    gates_.evaluate(program_, stack, context);
+    finish_ = finish_of(gates_.domain_behind(program_.last_entry), desc_);
 }
 
 Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack, const gpu::Region& output,
@@ -116,11 +86,13 @@ Shape Chain::shape_of(const ProgramPass& pass, std::span<const Entry> stack, con
     if (pass.finish == Finish::OfFrame) shape.steps |= static_cast<std::uint64_t>(finish_) << Shape::finish_bit;
     for (std::size_t i = 0; i < pass.steps.size(); ++i) {
         const std::uint32_t entry = pass.steps[i].entry;
-        if (is_on_[entry]) shape.steps |= (stack[entry].is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);
+        if (gates_.is_on(entry))
+            shape.steps |= (stack[entry].is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);
     }
     for_each_choice(pass, [&](std::size_t step, const ParamInfo& row, std::uint32_t bit, std::uint32_t bits) {
         const std::uint32_t entry = is_fused(pass) ? pass.steps[step].entry : pass.entry;
-        if (is_on_[entry]) shape.choices |= std::uint64_t{words_of(entry)[row.word] & ((1u << bits) - 1)} << bit;
+        if (gates_.is_on(entry))
+            shape.choices |= std::uint64_t{gates_.words_of(entry)[row.word] & ((1u << bits) - 1)} << bit;
     });
     return shape;
 }
@@ -148,7 +120,7 @@ Shape Chain::expected_shape(const ProgramPass& pass, std::span<const Entry> stac
 
 Result<> Chain::build_lean(std::span<const Entry> stack) {
     evaluate(stack, {.frame_extent = desc_.max_extent, .output_extent = desc_.max_extent});
-    schedule_->derive({toggles_.get(), program_.toggles.size()}, import_states_, 0);
+    schedule_->derive(gates_.toggles(), import_states_, 0);
     for (std::size_t i = 0; i < program_.passes.size(); ++i) {
         if (!variants_[i]) continue;
         if (auto ok = variants_[i]->build(context_, expected_shape(program_.passes[i], stack)); !ok) return ok;

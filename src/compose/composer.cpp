@@ -299,7 +299,7 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const {
     if (!program) return failure(std::move(program));
     auto compiled = program->graph.compile(desc.max_extent, graph::measure_on(state_->device->context()));
     if (!compiled) return failure(std::move(compiled));
-    return plan::describe_program(*program, *compiled, desc);
+    return plan::describe_program(*program, *compiled, desc, state_->stack);
 }
 
 Result<Plan> Composer::compile(const CompileDesc& desc) {
@@ -330,7 +330,7 @@ Result<Plan> Composer::compile(const CompileDesc& desc) {
     state_->chain = std::move(*chain);
     state_->compiled_for = desc;
     state_->is_stale = false;
-    return state_->chain->describe();
+    return state_->chain->describe(state_->stack);
 }
 
 Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {

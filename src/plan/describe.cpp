@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "plan/program.hpp"
+#include <array>
+#include <bit>
+
 #include "gpu/formats.hpp"
+#include "plan/gates.hpp"
 
 namespace darkroom::plan {
 
@@ -12,24 +15,41 @@ std::uint64_t bytes_of(const graph::Slot& slot, VkExtent2D frame, std::uint32_t 
     return std::uint64_t{extent.width} * extent.height * gpu::format_traits(slot.desc.format).bits / 8;
 }
 
+/// Lights that no condition of a pass leaves out: before a camera that looks along -z, bright and casting shadows.
+std::array<Light, max_shadow_lights> example_lights(const CompileDesc& desc) {
+    std::array<Light, max_shadow_lights> lights;
+    for (Light& light : lights) {
+        light.direction = {0, 0, -1};
+        light.volumetric_intensity = 1;
+        if (!desc.has_shadows) continue;
+        // Conditions ask whether there is a view, never what it is.
+        light.cascades.view = std::bit_cast<VkImageView>(std::uintptr_t{1});
+        light.cascade_count = 1;
+    }
+    return lights;
+}
+
 }  // namespace
 
-Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc) {
+Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
+                      std::span<const Entry> stack) {
     Plan plan{.extent = desc.max_extent,
               .left_out = program.left_out,
               .remarks = program.remarks,
               .transient_bytes = compiled.transient_bytes(),
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
-    // Everything on: what the plan can cost, not what this frame's toggles leave of it.
+    const Camera camera;
+    const auto lights = example_lights(desc);
+    Gates gates(program, stack);
+    gates.evaluate(
+        program, stack,
+        {.frame_extent = desc.max_extent, .output_extent = desc.max_extent, .camera = &camera, .lights = lights});
     graph::Schedule schedule(compiled);
-    const auto toggles = std::make_unique<bool[]>(program.toggles.size() + 1);
-    std::fill_n(toggles.get(), program.toggles.size(), true);
-    schedule.derive({toggles.get(), program.toggles.size()}, std::vector<graph::ImportState>(program.imports.size()),
-                    0);
+    schedule.derive(gates.toggles(), std::vector<graph::ImportState>(program.imports.size()), 0);
 
     for (std::uint32_t i = 0; i < program.passes.size(); ++i) {
         const std::uint32_t kept = compiled.kept_pass_of({i});
-        if (kept == ~0u) continue;
+        if (kept == ~0u || !schedule.runs(kept)) continue;
         const ProgramPass& pass = program.passes[i];
         const graph::Slot& output = compiled.slots()[schedule.slot_of(pass.output)];
         PlanPass out{.name = pass.name,

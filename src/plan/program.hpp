@@ -140,7 +140,9 @@ struct PlannerTraits {
 /// Made by the planner from entries; else by an effect's build.
 [[nodiscard]] inline bool is_fused(const ProgramPass& pass) { return pass.entry == ~0u; }
 
-/// The program as users read it.
-[[nodiscard]] Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc);
+/// The program as users read it: the passes that run with the stack's present values, in a frame that brings all that
+/// `desc` promises and a light to look at.
+[[nodiscard]] Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
+                                    std::span<const Entry> stack);
 
 }  // namespace darkroom::plan
