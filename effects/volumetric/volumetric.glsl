@@ -3,11 +3,12 @@
 // is like this pixel's.
 
 vec4 volumetric(vec4 color, Pixel pixel, Volumetric parameters) {
-    float planar = load(volumetric_depth, pixel.texel).r;
+    // Neutral images are of one texel, so nothing is read beyond what size() says.
+    float planar = load_clamped(volumetric_depth, pixel.texel).r;
     // NaN counts as sky, which lies where half precision ends.
     planar = planar < 60000.0 ? max(planar, 1e-3) : 60000.0;
     float inverse = 1.0 / planar;
-    ivec2 base = pixel.texel >> 1, last = max(pixel.size >> 1, ivec2(1)) - 1;
+    ivec2 base = pixel.texel >> 1, last = size(volumetric_shafts) - 1;
     vec2 part = vec2(pixel.texel & 1) * 0.5;
     vec3 sum = vec3(0.0);
     float weights = 0.0;
