@@ -5,7 +5,7 @@
 #include <darkroom/effects/god_rays.hpp>
 
 #include "god_rays/god_rays_reference.hpp"
-#include "shared/camera_reference.hpp"
+#include "shared/camera.hpp"
 #include "shared/scene_images.hpp"
 
 namespace darkroom {
@@ -76,9 +76,9 @@ void build(PassBuilder& builder) {
 GodRaysLight god_rays_light(const GodRays& parameters, const Camera* camera, const Light* first_light) {
     GodRaysLight out{.u = double{parameters.position.x}, .v = double{parameters.position.y}};
     if (parameters.follows_light && camera != nullptr && first_light != nullptr) {
-        const ReferenceCamera eye(*camera);
+        const SolvedCamera eye(*camera);
         const auto& d = first_light->direction;
-        const Double3 view = eye.view_direction({double{d[0]}, double{d[1]}, double{d[2]}});
+        const Vector3 view = eye.view_direction({double{d[0]}, double{d[1]}, double{d[2]}});
         if (!(view[2] < 0)) return out;
         // So far away that it does not matter where the camera is.
         constexpr double far = 1e9;

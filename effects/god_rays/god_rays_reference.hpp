@@ -9,6 +9,7 @@
 #include <darkroom/effects/god_rays.hpp>
 #include <darkroom/reference.hpp>
 
+#include "shared/camera_reference.hpp"
 #include "shared/sample_reference.hpp"
 
 namespace darkroom {
@@ -59,11 +60,28 @@ inline ReferenceImage god_rays_streaks(const GodRays& rays, const ReferenceImage
     return out;
 }
 
+/// Where the light is, by the reference's own camera.
+inline GodRaysLight god_rays_reference_light(const GodRays& rays, const ReferenceInput& input) {
+    GodRaysLight out{.u = double{rays.position.x}, .v = double{rays.position.y}};
+    if (rays.follows_light && !input.lights.empty()) {
+        const ReferenceCamera camera(input.camera);
+        const auto& toward = input.lights.front().light.direction;
+        const Double3 view = camera.view_direction({double{toward[0]}, double{toward[1]}, double{toward[2]}});
+        if (!(view[2] < 0)) return out;
+        const auto [u, v] = camera.uv({view[0] * 1e9, view[1] * 1e9, view[2] * 1e9});
+        if (!std::isfinite(u) || !std::isfinite(v)) return out;
+        out.u = u;
+        out.v = v;
+    }
+    const double beside = std::max(std::abs(out.u - 0.5), std::abs(out.v - 0.5)) - 0.5;
+    out.fade = std::clamp(1 - 2 * beside, 0.0, 1.0);
+    return out;
+}
+
 inline ReferenceImage god_rays_reference(const void* parameters, const ReferenceInput& input) {
     const GodRays& rays = *static_cast<const GodRays*>(parameters);
     ReferenceImage out = *input.picture;
-    const GodRaysLight light =
-        god_rays_light(rays, &input.camera, input.lights.empty() ? nullptr : &input.lights.front().light);
+    const GodRaysLight light = god_rays_reference_light(rays, input);
     if (!(light.fade > 0)) return out;
     const ReferenceImage streaks = god_rays_streaks(rays, god_rays_mask(rays, input, light), light);
     for (std::uint32_t y = 0; y < out.height; ++y)

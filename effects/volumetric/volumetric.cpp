@@ -6,7 +6,7 @@
 #include <string>
 
 #include "shared/blue_noise.hpp"
-#include "shared/camera_reference.hpp"
+#include "shared/camera.hpp"
 #include "shared/scene_images.hpp"
 #include "volumetric/volumetric_reference.hpp"
 
@@ -22,8 +22,6 @@ bool is_volumetric(const Light* light) {
            std::ranges::any_of(light->volumetric_color, [](float channel) { return channel > 0; });
 }
 
-bool is_perspective(const Camera& camera) { return camera.projection[11] != 0; }
-
 /// Is there a light worth marching for from this one on?
 bool is_lit(const void*, const PassContext& context, std::uint32_t first) {
     for (std::uint32_t number = first; number < max_shadow_lights; ++number)
@@ -36,21 +34,21 @@ constexpr std::size_t fixed_vectors = 4, vectors_per_cascade = 4;
 /// A point of the world, or the coordinates in a cascade, as it depends on a half-size pixel and its planar distance:
 /// linear in the distance, and in the pixel where the camera turns its rays, or moves them, with it.
 struct Ramp {
-    Double3 start{}, slope{}, per_x{}, per_y{};
+    Vector3 start{}, slope{}, per_x{}, per_y{};
 };
 
 Ramp world_ramp(const PassContext& context) {
-    const ReferenceCamera camera(*context.camera);
+    const SolvedCamera camera(*context.camera);
     const auto point = [&](double x, double y, double planar) {
-        const Double3 view = camera.view_position((x * 2 + 0.5) / context.frame_extent.width,
+        const Vector3 view = camera.view_position((x * 2 + 0.5) / context.frame_extent.width,
                                                   (y * 2 + 0.5) / context.frame_extent.height, planar);
-        const Double3 turned = camera.world_direction(view);
-        return Double3{camera.eye[0] + turned[0], camera.eye[1] + turned[1], camera.eye[2] + turned[2]};
+        const Vector3 turned = camera.world_direction(view);
+        return Vector3{camera.eye[0] + turned[0], camera.eye[1] + turned[1], camera.eye[2] + turned[2]};
     };
-    const auto minus = [](const Double3& a, const Double3& b) {
-        return Double3{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    const auto minus = [](const Vector3& a, const Vector3& b) {
+        return Vector3{a[0] - b[0], a[1] - b[1], a[2] - b[2]};
     };
-    const double planar = is_perspective(*context.camera) ? 1 : 0;
+    const double planar = camera.is_perspective() ? 1 : 0;
     Ramp out{.start = point(0, 0, 0)};
     out.slope = minus(point(0, 0, 1), out.start);
     out.per_x = minus(point(1, 0, planar), point(0, 0, planar));
@@ -60,7 +58,7 @@ Ramp world_ramp(const PassContext& context) {
 
 /// The world's ramp as u, v and depth in a cascade; 0.002 keeps what is lit off its own shadow.
 void write_cascade(const Matrix& m, const Ramp& world, std::span<PassVector> out) {
-    const auto row = [&](std::size_t index, const Double3& v) {
+    const auto row = [&](std::size_t index, const Vector3& v) {
         return double{m[index]} * v[0] + double{m[4 + index]} * v[1] + double{m[8 + index]} * v[2];
     };
     for (std::size_t index = 0; index < 3; ++index) {
@@ -85,15 +83,15 @@ void march_constants(const void* parameters, const PassContext& context, std::sp
     out[0] = {samples, volumetric.max_distance, std::pow(volumetric.decay, 32.0f / samples),
               volumetric.density * 0.01f * light->volumetric_intensity};
     const Ramp world = world_ramp(context);
-    const bool turns = is_perspective(*context.camera);
-    const ReferenceCamera camera(*context.camera);
-    const Double3 x = camera.view_direction(world.per_x), y = camera.view_direction(world.per_y),
+    const SolvedCamera camera(*context.camera);
+    const bool turns = camera.is_perspective();
+    const Vector3 x = camera.view_direction(world.per_x), y = camera.view_direction(world.per_y),
                   first = camera.view_direction(world.slope);
     out[1] = {turns ? static_cast<float>(x[0]) : 0.0f, static_cast<float>(first[0]),
               turns ? static_cast<float>(y[1]) : 0.0f, static_cast<float>(first[1])};
     const auto& d = light->direction;
     const double length = std::max(std::hypot(double{d[0]}, double{d[1]}, double{d[2]}), 1e-6);
-    const auto toward_light = [&](const Double3& v) {
+    const auto toward_light = [&](const Vector3& v) {
         return static_cast<float>((v[0] * double{d[0]} + v[1] * double{d[1]} + v[2] * double{d[2]}) / length);
     };
     out[2][0] = toward_light(world.slope);

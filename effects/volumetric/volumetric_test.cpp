@@ -8,6 +8,7 @@
 
 #include "compose/test_support.hpp"
 #include "gpu/test_run.hpp"
+#include "shared/camera.hpp"
 #include "volumetric/volumetric_reference.hpp"
 #include "volumetric/volumetric_test_world.hpp"
 
@@ -260,6 +261,79 @@ TEST(EffectVolumetric, GpuHostileValuesAreHarmless) {
                 ASSERT_GE(color.r, 0);
             }
         }
+    }
+}
+
+// Neutral images are of one texel: around it lies poison.
+TEST(EffectVolumetric, NothingIsReadBeyondNeutralImages) {
+    gpu::Context& context = gpu::test::context();
+    std::string_view text;
+    for (const EffectFile& file : embedded_files("volumetric"))
+        if (file.name == "volumetric.glsl") text = file.text;
+    for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster})
+        for (const VkFormat storage : {VK_FORMAT_UNDEFINED, VK_FORMAT_R32G32B32A32_SFLOAT}) {
+            const auto kernel = gpu::test::must(gpu::Kernel::create(
+                context,
+                {.name = "neutral",
+                 .images = {{.name = "volumetric_depth", .storage_format = storage},
+                            {.name = "volumetric_shafts", .storage_format = storage}},
+                 .outputs = {VK_FORMAT_R32G32B32A32_SFLOAT},
+                 .body = "struct Volumetric { float max_distance; };\n" + std::string(text) +
+                         "\nvec4 shade(Pixel pixel) { return volumetric(vec4(0.5), pixel, Volumetric(100.0)); }\n"},
+                stage));
+            const auto poisoned = [&](const std::array<float, 4>& neutral) {
+                return gpu::test::upload(
+                    context,
+                    gpu::test::make_pixels(width, height,
+                                           [&](std::uint32_t x, std::uint32_t y) {
+                                               return x == 0 && y == 0 ? neutral : std::array{7.0F, 7.0F, 7.0F, 7.0F};
+                                           }),
+                    VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
+            };
+            gpu::test::Picture depth = poisoned({1e10F, 0, 0, 0}), shafts = poisoned({0, 0, 0, 0});
+            gpu::test::Picture out = gpu::test::blank(context, {width, height}, VK_FORMAT_R32G32B32A32_SFLOAT);
+            const gpu::Region one{{}, {1, 1}, {width, height}};
+            gpu::test::run_kernel(context, *kernel,
+                                  {.inputs = {&depth, &shafts}, .outputs = {&out}, .input_regions = {one, one}});
+            for (const float value : gpu::test::download(context, out).rgba) ASSERT_EQ(value, 0.5F);
+        }
+}
+
+// The constants of the passes and the reference come from cameras of their own.
+TEST(EffectVolumetric, TheProductsCameraAgreesWithTheReferences) {
+    std::vector<Camera> cameras{test::look_at({1, 2, 6}, {0, 1, -4}, 1.1, 1.6),
+                                test::look_at({0, 9, 1}, {2, 0, 0}, 0.3, 0.7)};
+    cameras[0].projection[8] = 0.07F;
+    cameras[0].projection[9] = -0.03F;
+    Camera flat = cameras[1];
+    flat.projection = {0.2F, 0, 0, 0, 0, -0.3F, 0, 0, 0, 0, -0.01F, 0, 0.05F, -0.1F, 0, 1};
+    cameras.push_back(flat);
+    for (std::size_t i = 0; i < 3; ++i) {
+        Camera up = cameras[i];
+        up.is_y_down = false;
+        up.projection[5] = -up.projection[5];
+        up.projection[9] = -up.projection[9];
+        up.projection[13] = -up.projection[13];
+        cameras.push_back(up);
+    }
+    for (const Camera& camera : cameras) {
+        const SolvedCamera product(camera);
+        const ReferenceCamera reference(camera);
+        EXPECT_EQ(product.is_perspective(), camera.projection[11] != 0);
+        const auto expect_same = [](const auto& a, const auto& b) {
+            for (std::size_t axis = 0; axis < a.size(); ++axis)
+                EXPECT_NEAR(a[axis], b[axis], 1e-9 * std::max(1.0, std::abs(b[axis])));
+        };
+        expect_same(product.eye, reference.eye);
+        for (const double planar : {0.5, 3.0, 800.0})
+            for (const auto& [u, v] : {std::pair{0.5, 0.5}, {0.0, 0.0}, {0.9, 0.2}, {-0.5, 1.5}}) {
+                const Vector3 view = product.view_position(u, v, planar);
+                expect_same(view, reference.view_position(u, v, planar));
+                expect_same(product.uv(view), std::array{u, v});
+                expect_same(product.uv(view), reference.uv(view));
+                expect_same(product.world_direction(view), reference.world_direction(view));
+                expect_same(product.view_direction(view), reference.view_direction(view));
+            }
     }
 }
 
