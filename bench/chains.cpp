@@ -143,6 +143,7 @@ Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc)
     auto plan = chain.composer->compile(compile_desc);
     if (!plan) return failure(std::move(plan));
     chain.plan = std::move(*plan);
+    chain.compiled_for = compile_desc;
     chain.composer->wait_for_kernels();
     return chain;
 }

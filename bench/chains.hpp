@@ -52,6 +52,7 @@ struct ChainDesc {
 struct Chain {
     std::shared_ptr<Composer> composer;
     Plan plan;
+    CompileDesc compiled_for;
     WorldUse world = WorldUse::None;
 };
 [[nodiscard]] Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc = {});

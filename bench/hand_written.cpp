@@ -43,7 +43,7 @@ class TableCatcher : public PassBuilder {
   public:
     PassImage picture() override { return {}; }
     PassImage source() override { return {}; }
-    VkExtent2D max_extent() const override { return {64, 64}; }
+    std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) override { return question({64, 64}); }
     const void* parameters() const override { return parameters_; }
     PassImage create(const PassImageDesc&) override { return {}; }
     History history(const PassImageDesc&) override { return {}; }
@@ -72,15 +72,14 @@ class TableCatcher : public PassBuilder {
 struct KernelRun {
     std::unique_ptr<gpu::Kernel> kernel;
     gpu::DescriptorSets sets;
-    gpu::Buffer constants, pass_block;
-    VkDeviceSize constants_size = 0;
+    gpu::Buffer block;
     gpu::Image table;
     std::vector<gpu::Binding> images;
     gpu::Binding output;
 };
 
 Result<> fill(Bed& bed, KernelRun& run, const gpu::KernelSpec& spec, gpu::Stage stage,
-              std::span<const std::byte> constants) {
+              std::span<const std::uint32_t> words) {
     auto kernel = gpu::Kernel::create(bed.context, spec, stage);
     if (!kernel) return failure(std::move(kernel));
     run.kernel = std::move(*kernel);
@@ -88,17 +87,10 @@ Result<> fill(Bed& bed, KernelRun& run, const gpu::KernelSpec& spec, gpu::Stage 
     auto sets = gpu::DescriptorSets::create(bed.context, {&layout, 1});
     if (!sets) return failure(std::move(sets));
     run.sets = std::move(*sets);
-    run.constants_size = std::max<VkDeviceSize>(constants.size(), 16);
-    auto block = gpu::Buffer::create(bed.context, run.constants_size, gpu::constants_usage, gpu::Memory::Kind::Upload,
-                                     "constants");
+    const std::size_t size = gpu::own_block_size(spec);
+    auto block = gpu::Buffer::create(bed.context, size, gpu::block_usage, gpu::Memory::Kind::Upload, "block");
     if (!block) return failure(std::move(block));
-    run.constants = std::move(*block);
-    std::ranges::copy(constants, run.constants.memory.mapped);
-    const std::size_t pass_size = gpu::pass_block_size(spec);
-    auto pass =
-        gpu::Buffer::create(bed.context, pass_size, gpu::constants_usage, gpu::Memory::Kind::Upload, "pass block");
-    if (!pass) return failure(std::move(pass));
-    run.pass_block = std::move(*pass);
+    run.block = std::move(*block);
 
     const gpu::Region region{.extent = bed.extent, .image = bed.extent};
     run.output = {.view = bed.target.mip_views[0], .region = region};
@@ -107,7 +99,11 @@ Result<> fill(Bed& bed, KernelRun& run, const gpu::KernelSpec& spec, gpu::Stage 
         const VkExtent2D size{run.table.info.extent.width, run.table.info.extent.height};
         run.images.push_back({.view = run.table.mip_views[0], .region = {.extent = size, .image = size}});
     }
-    gpu::write_pass_block(spec, region, run.images, {}, {run.pass_block.memory.mapped, pass_size});
+    gpu::write_own_block(spec, region, run.images, {}, words, {run.block.memory.mapped, size});
+    run.kernel->write_set({.set = run.sets.sets[0],
+                           .own = {run.block.handle, 0, size},
+                           .images = run.images,
+                           .outputs = {&run.output, 1}});
     return {};
 }
 
@@ -126,8 +122,11 @@ gpu::KernelSpec tail_spec() {
         .images = {{.name = "scene", .storage_format = scene_format},
                    {.name = "tile", .storage_format = VK_FORMAT_R32G32B32A32_SFLOAT}},
         .outputs = {target_format},
-        .constants =
-            "float exposure; float vignette_intensity; float vignette_smoothness; float dither_intensity; uint frame;",
+        .members = {{gpu::BlockMember::Type::Float, "exposure"},
+                    {gpu::BlockMember::Type::Float, "vignette_intensity"},
+                    {gpu::BlockMember::Type::Float, "vignette_smoothness"},
+                    {gpu::BlockMember::Type::Float, "dither_intensity"},
+                    {gpu::BlockMember::Type::Uint, "frame"}},
         .body = std::string(tail_body)};
 }
 
@@ -140,7 +139,7 @@ std::optional<TableDesc> only_table_of(const EffectInfo& effect) {
 }
 
 Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, gpu::Stage stage,
-                       std::span<const std::byte> constants, const TableDesc* table) {
+                       std::span<const std::uint32_t> words, const TableDesc* table) {
     const auto run = std::make_shared<KernelRun>();
     if (table != nullptr) {
         auto image = upload(bed.context,
@@ -152,17 +151,12 @@ Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, 
         if (!image) return failure(std::move(image));
         run->table = std::move(*image);
     }
-    if (auto ok = fill(bed, *run, spec, stage, constants); !ok) return failure(std::move(ok));
+    if (auto ok = fill(bed, *run, spec, stage, words); !ok) return failure(std::move(ok));
     const VkImageLayout layout =
         stage == gpu::Stage::Compute ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     return Row{.name = std::move(name), .record = [&bed, run, layout](VkCommandBuffer commands) -> Result<> {
                    gpu::transition(bed.context, commands, bed.target, VK_IMAGE_LAYOUT_GENERAL, layout);
-                   run->kernel->record(commands, {.set = run->sets.sets[0],
-                                                  .constants = run->constants.handle,
-                                                  .constants_size = run->constants_size,
-                                                  .pass_block = run->pass_block.handle,
-                                                  .images = run->images,
-                                                  .outputs = {&run->output, 1}});
+                   run->kernel->record(commands, run->sets.sets[0], {&run->output, 1});
                    gpu::transition(bed.context, commands, bed.target, layout, VK_IMAGE_LAYOUT_GENERAL);
                    return {};
                }};

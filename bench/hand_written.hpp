@@ -25,6 +25,6 @@ struct TailValues {
 
 /// A row that runs `spec` from the scene to the target. `table` is its second image, if it has one.
 [[nodiscard]] Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, gpu::Stage stage,
-                                     std::span<const std::byte> constants = {}, const TableDesc* table = nullptr);
+                                     std::span<const std::uint32_t> words = {}, const TableDesc* table = nullptr);
 
 }  // namespace darkroom::bench

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <bit>
 
 #include "chains.hpp"
 #include "hand_written.hpp"
@@ -39,12 +39,10 @@ Recipe chain_recipe(std::string name, Stack stack, const ChainDesc& desc) {
             }};
 }
 
-std::vector<std::byte> tail_constants(const TailValues& values) {
-    const std::array numbers{values.exposure, values.vignette_intensity, values.vignette_smoothness,
-                             values.dither_intensity};
-    std::vector<std::byte> bytes(sizeof numbers + sizeof(std::uint32_t));
-    std::memcpy(bytes.data(), numbers.data(), sizeof numbers);
-    return bytes;
+std::vector<std::uint32_t> tail_words(const TailValues& values) {
+    const auto word = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+    return {word(values.exposure), word(values.vignette_intensity), word(values.vignette_smoothness),
+            word(values.dither_intensity), 0};
 }
 
 Recipe hand_written_recipe(gpu::Stage stage) {
@@ -53,7 +51,7 @@ Recipe hand_written_recipe(gpu::Stage stage) {
             .make = [stage](Bed& bed, const std::string& row) -> Result<Row> {
                 const auto table = only_table_of(*tail_noise_effect());
                 if (!table) return machine_error("the effect of the noise has no table of its own");
-                return kernel_row(bed, row, tail_spec(), stage, tail_constants({}), &*table);
+                return kernel_row(bed, row, tail_spec(), stage, tail_words({}), &*table);
             }};
 }
 
@@ -179,7 +177,7 @@ Result<std::vector<PassRow>> measure_passes(Bed& bed, std::uint32_t rounds) {
         std::vector<std::vector<double>> times;
         for (std::uint32_t round = 0; round <= rounds; ++round) {
             if (const auto sample = (*submitter)->run(row.record); !sample) return failure(sample.error());
-            const std::span<const PassTime> measured = chain->composer->times();
+            const std::span<const PassTime> measured = chain->composer->times().passes;
             if (round == 0) {
                 for (const PassTime& pass : measured) passes.emplace_back(pass.name);
                 times.resize(passes.size());

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "compose/variants.hpp"
+#include "plan/program.hpp"
 #include "gpu/shader.hpp"
 
 namespace {
@@ -38,21 +38,26 @@ std::vector<std::vector<plan::Entry>> stacks() {
     return out;
 }
 
+/// Every entry on, regions that are whole images, and the choices of the defaults.
+plan::Shape usual_shape(const plan::ProgramPass& pass) {
+    plan::Shape shape{.steps = plan::Shape::is_whole};
+    for (std::size_t i = 0; i < pass.steps.size() && pass.is_fused; ++i) shape.steps |= std::uint64_t{1} << (2 * i);
+    for (const plan::Literal& literal : pass.literals) {
+        const std::uint32_t value = pass.steps[literal.step].info->parameters.defaults[literal.row->word];
+        shape.choices |= (value & literal.mask()) << literal.bit;
+    }
+    return shape;
+}
+
 Result<> append_sources(const plan::Program& program, gpu::Stage stage, std::vector<gpu::ShaderSource>& out) {
     const bool is_compute = stage == gpu::Stage::Compute;
     for (const plan::ProgramPass& pass : program.passes) {
-        std::vector<gpu::KernelSpec> specs{pass.spec};
-        if (!pass.steps.empty()) {
-            std::vector<plan::FusedStep> steps = pass.steps;
-            for (plan::FusedStep& step : steps) step.is_certain = step.is_plain = true;
-            auto lean = compose::lean_spec(pass, steps);
-            if (!lean) return failure(std::move(lean));
-            specs.push_back(std::move(*lean));
-        }
-        for (const gpu::KernelSpec& spec : specs)
-            out.push_back({.name = spec.name + (is_compute ? " (compute)" : " (raster)"),
-                           .text = gpu::kernel_source(spec, stage),
+        for (auto& made : {plan::complete_spec(pass), plan::lean_spec(pass, usual_shape(pass))}) {
+            if (!made) return failure(made.error());
+            out.push_back({.name = pass.name + (is_compute ? " (compute)" : " (raster)"),
+                           .text = gpu::kernel_source(*made, stage),
                            .stage = is_compute ? gpu::ShaderStage::Compute : gpu::ShaderStage::Fragment});
+        }
     }
     return {};
 }

@@ -108,7 +108,7 @@ ReferenceImage references_in_turn(const Composer& composer, const LitFloor& floo
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const std::size_t taken = i == swapped ? i + 1 : i == swapped + 1 ? i - 1 : i;
         const Handle entry = composer.entry(taken);
-        picture = composer.info(entry).reference(composer.words(entry).data(), {.picture = &picture,
+        picture = composer.info(entry)->reference(composer.words(entry).data(), {.picture = &picture,
                                                                                 .source = &floor.picture,
                                                                                 .depth = &floor.depth,
                                                                                 .lights = {&floor.light, 1},
@@ -210,9 +210,9 @@ TEST_F(ChainEverything, IsItsReferencesInThatOrder) {
         EXPECT_LE(255 * test::worst_difference(made, expected), 4);
         // Only this order gives this picture. Volumetric light and the bloom of the scene are both added.
         for (std::size_t i = 0; i + 1 < composer.size(); ++i) {
-            if (composer.desc(composer.entry(i)).name == "volumetric") continue;
+            if (composer.desc(composer.entry(i))->name == "volumetric") continue;
             EXPECT_GT(mean_codes(made, references_in_turn(composer, floor, i)), 2 * error)
-                << composer.desc(composer.entry(i)).name << " and what follows it";
+                << composer.desc(composer.entry(i))->name << " and what follows it";
         }
     }
 }

@@ -147,21 +147,21 @@ void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Compos
     for (const std::string& text : left_out) {
         const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
         if (!entry) continue;
-        const darkroom::EffectInfo& info = composer.info(*entry);
+        const darkroom::EffectInfo& info = *composer.info(*entry);
         // What the flat table has on by itself, nobody asked for.
         const bool is_usual =
             look.is_flat && info.flat.starts_on && std::ranges::equal(composer.words(*entry), info.parameters.defaults);
-        if (composer.desc(*entry).enabled && !info.is_last_step && !is_usual) warn(fmt::format("left out: {}", text));
+        if (composer.desc(*entry)->enabled && !info.is_last_step && !is_usual) warn(fmt::format("left out: {}", text));
     }
 }
 
 void print_timings(darkroom::Composer& composer) {
     double sum = 0;
-    for (const darkroom::PassTime& pass : composer.times()) {
+    for (const darkroom::PassTime& pass : composer.times().passes) {
         fmt::print("{:>10.3f} ms  {}\n", pass.milliseconds, pass.name);
         sum += pass.milliseconds;
     }
-    if (composer.times().empty())
+    if (composer.times().passes.empty())
         warn("this device has no timestamps");
     else
         fmt::print("{:>10.3f} ms  together\n", sum);

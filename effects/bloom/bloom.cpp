@@ -49,7 +49,7 @@ bool is_level_used(const void* parameters, const PassContext& context, std::uint
 
 void build(PassBuilder& builder) {
     const PassVector neutral{0.0f, 0.0f, 0.0f, 0.0f};
-    const std::uint32_t levels = bloom_level_count(builder.max_extent());
+    const std::uint32_t levels = builder.from_max_extent(bloom_level_count);
     if (levels == 0) {
         builder.side("bloom_pyramid", PassImage{}, neutral);
         return;

@@ -26,7 +26,9 @@ class RecordingBuilder final : public PassBuilder {
     explicit RecordingBuilder(VkExtent2D extent) : extent_(extent) {}
     PassImage picture() override { return {0}; }
     PassImage source() override { return {1}; }
-    [[nodiscard]] VkExtent2D max_extent() const override { return extent_; }
+    [[nodiscard]] std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) override {
+        return question(extent_);
+    }
     [[nodiscard]] const void* parameters() const override { return &values_; }
     PassImage create(const PassImageDesc& desc) override {
         images.push_back(desc);

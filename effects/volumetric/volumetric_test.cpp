@@ -162,7 +162,7 @@ class PassCatcher : public PassBuilder {
   public:
     PassImage picture() override { return {0}; }
     PassImage source() override { return {0}; }
-    VkExtent2D max_extent() const override { return {64, 64}; }
+    std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) override { return question({64, 64}); }
     const void* parameters() const override { return &volumetric; }
     PassImage create(const PassImageDesc&) override { return {0}; }
     History history(const PassImageDesc&) override { return {}; }

@@ -13,9 +13,10 @@
 // The contract. `add`, `compile`, `set` and the like may allocate and take time. `record` allocates nothing, throws
 // nothing, waits for nothing, submits nothing, and owns nothing the host made; each host image is left in the layout
 // its reference asks for. A toggle or a parameter is seen by the next record and compiles nothing on the calling
-// thread. A Composer is used by one thread at a time; its recordings go to one queue, in order. Up to frames_in_flight
+// thread. The stack may be edited while the picture runs: compile_later() plans it anew on the Composer's thread.
+// A Composer is used by one thread at a time; its recordings go to one queue, in order. Up to frames_in_flight
 // * views recordings may be unfinished; a further record may be made only when the oldest of them has finished.
-// compile() keeps what unfinished recordings use; a Composer is destroyed only when all its recordings have finished.
+// A Composer is destroyed only when all its recordings have finished.
 //
 // The command buffer is a primary one or not, of a queue with graphics and compute, and outside of rendering. `record`
 // leaves other pipelines and descriptor sets bound at both bind points, and another viewport and scissor; push
@@ -37,7 +38,8 @@
 
 namespace darkroom {
 
-/// The output of one entry of a stack. A default one is "the output of the pass before".
+/// An entry of a stack, and its output as an input for others. A default one is "the output of the entry before". No
+/// number is given twice, in any Composer: the handle of an entry that was removed names nothing.
 struct Handle {
     std::uint32_t id = 0;
     [[nodiscard]] bool is_given() const { return id != 0; }
@@ -63,6 +65,10 @@ struct EntryDesc {
 struct ComposerDesc {
     std::uint32_t frames_in_flight = 2;
     bool has_timers = false;  ///< GPU timestamps around every pass
+    /// Threads that the library may run beside the caller's: one of the Composer's own, and while it compiles as many
+    /// more as there are processors. 0: none; compile_later() then compiles before it returns, and kernels for changed
+    /// toggles and choices are built by wait_for_kernels() alone.
+    std::uint32_t max_threads = ~0u;
 };
 
 /// What every frame's image of one kind is, as the host made it: its view's format and the usage of the image.
@@ -102,34 +108,72 @@ struct CompileDesc {
     VkFormat intermediate = VK_FORMAT_R16G16B16A16_SFLOAT;  ///< of pictures between kernels
 };
 
-/// Per-pass times of one finished recording.
 struct PassTime {
     std::string_view name;
     double milliseconds = 0;
 };
+/// Times of one finished recording: those of its own passes. Valid until the Composer records or compiles again.
+struct RecordingTimes {
+    std::uint64_t frame_index = 0;  ///< Frame::frame_index of that recording
+    std::span<const PassTime> passes;
+};
+
+/// What became of compile_later().
+struct PendingCompile {
+    bool is_pending = false;     ///< under way, or ready for the next record to take
+    std::optional<Error> error;  ///< why the last one failed; the plan before it goes on
+};
 
 class Composer {
   public:
-    explicit Composer(Device& device, const ComposerDesc& desc = {});
+    /// Shares what it needs of the device: the Device object may go first.
+    explicit Composer(const Device& device, const ComposerDesc& desc = {});
     Composer(Composer&&) noexcept;
     Composer& operator=(Composer&&) noexcept;
     ~Composer();
 
-    /// Appends an effect; no input named means the output of the pass before.
+    // The stack. Edits keep the values, overrides and histories of the entries that stay; record() goes on with the plan
+    // it has, and the present values of that plan's entries, until a compile has made another.
+    /// Appends an effect; no input named means the output of the entry before.
     template <class Effect>
     Handle add(const Effect& parameters, const EntryDesc& desc = {}) {
         return add(effect_info(parameters), &parameters, desc);
     }
     /// The same for an effect known at run time. `parameters`: info.parameters.words() words, or null for defaults.
     Handle add(const EffectInfo& info, const void* parameters, const EntryDesc& desc = {});
+    /// Puts an effect in front of an entry.
+    template <class Effect>
+    Result<Handle> insert(Handle before, const Effect& parameters, const EntryDesc& desc = {}) {
+        return insert(before, effect_info(parameters), &parameters, desc);
+    }
+    Result<Handle> insert(Handle before, const EffectInfo& info, const void* parameters, const EntryDesc& desc = {});
+    /// Takes an entry out. Entries that name it as an input must be removed, or wired anew, before the next compile.
+    Result<> remove(Handle handle);
+    /// Puts an entry in front of another; a default `before`: behind the last.
+    Result<> move(Handle handle, Handle before);
+    /// Another effect in an entry's place, with its handle, name and wiring. Values and overrides are those of the new
+    /// effect: none are kept, unless it is the same effect.
+    template <class Effect>
+    Result<> replace(Handle handle, const Effect& parameters) {
+        return replace(handle, effect_info(parameters), &parameters);
+    }
+    Result<> replace(Handle handle, const EffectInfo& info, const void* parameters);
+    /// Wires an entry anew: its inputs, mask and blend mode are those of `desc`, and its output's name; an empty name
+    /// keeps the entry's. Needs a compile.
+    Result<> rewire(Handle handle, const EntryDesc& desc);
     void clear();
 
-    // Entries: found by name, changed between frames. Errors name the entry, the value and what is allowed.
+    // Entries: found by name, changed between frames. Errors name the entry, the value and what is allowed; a handle
+    // that names no entry is one of them.
     [[nodiscard]] std::optional<Handle> find(std::string_view entry_name) const;
     [[nodiscard]] std::size_t size() const;
     [[nodiscard]] Handle entry(std::size_t index) const;
-    [[nodiscard]] const EffectInfo& info(Handle) const;
-    [[nodiscard]] const EntryDesc& desc(Handle) const;
+    /// Why a handle names no entry of this stack.
+    [[nodiscard]] Result<> check(Handle) const;
+    /// Null: the handle names no entry.
+    [[nodiscard]] const EffectInfo* info(Handle) const;
+    [[nodiscard]] const EntryDesc* desc(Handle) const;
+    /// Base values; empty: the handle names no entry.
     [[nodiscard]] std::span<const std::uint32_t> words(Handle) const;
     Result<> set_enabled(Handle, bool enabled);
     Result<> set_opacity(Handle, float opacity);
@@ -145,28 +189,37 @@ class Composer {
     Result<> set_override(Handle, std::string_view parameter, std::string_view owner,
                           std::span<const std::uint32_t> words);
     void drop_overrides(std::string_view owner);
-    /// The values that the next record uses.
+    /// The values that the next record uses; empty: the handle names no entry.
     [[nodiscard]] std::vector<std::uint32_t> current(Handle) const;
 
-    /// Plans the stack, compiles its kernels, allocates what it needs. The previous plan stays alive until the
-    /// recordings made with it have finished.
+    /// Plans the stack, makes the kernels that the device does not have yet, allocates what it needs. The previous plan
+    /// stays alive until the recordings made with it have finished. Waits for a compile_later() that has begun.
     [[nodiscard]] Result<Plan> compile(const CompileDesc& desc);
-    /// The same without a device's objects: for `darkroom plan`.
+    /// The same on the Composer's own thread, from the stack as it is now. Returns at once; record() takes the new plan
+    /// when it is ready. A newer call replaces one that is not.
+    Result<> compile_later(const CompileDesc& desc);
+    [[nodiscard]] PendingCompile pending() const;
+    /// What record() works by; null: nothing yet. Valid until the Composer records or compiles again.
+    [[nodiscard]] const Plan* current_plan() const;
+    /// The same as compile() without a device's objects: for `darkroom plan`.
     [[nodiscard]] Result<Plan> plan(const CompileDesc& desc) const;
 
     /// Records the whole stack. Errors (a missing or mismatching image, an extent beyond the compiled maximum, no plan)
     /// record nothing; they name the image and the field, such as frame.depth.layout.
     Result<> record(VkCommandBuffer commands, const Frame& frame);
+    /// The last recording will not be submitted: what it did to histories, uploads and the ring of frames is taken back.
+    /// An error: there is none, or it was taken back.
+    Result<> abandon();
 
     /// Waits for kernels that are being built for the present toggles. For headless work and tests, not for frame
     /// loops.
     void wait_for_kernels();
-    /// Times of the last recording that has finished, in order; empty without timers. Never waits.
-    [[nodiscard]] std::span<const PassTime> times();
+    /// Times of the last recording that has finished; no passes without timers. Never waits.
+    [[nodiscard]] RecordingTimes times();
     /// CPU time of the last record, in microseconds.
     [[nodiscard]] double record_microseconds() const;
     /// After device loss: keeps the stack, compiles it on another device with the last CompileDesc.
-    [[nodiscard]] Result<Plan> rebind(Device& device);
+    [[nodiscard]] Result<Plan> rebind(const Device& device);
 
   private:
     Result<> set_all(Handle, const EffectInfo&, const void* parameters);

@@ -29,8 +29,8 @@
 
 namespace darkroom {
 
-/// Owns all that info() refers to, so it outlives the Composers whose stacks hold it. Moving it keeps info() where it
-/// is.
+/// Owns all that info() refers to, together with the Composers whose stacks have held it, so it may go before them.
+/// Moving it keeps info() where it is.
 class CustomEffect {
   public:
     [[nodiscard]] static Result<CustomEffect> load(const std::filesystem::path& file);
@@ -46,8 +46,8 @@ class CustomEffect {
 
   private:
     struct State;
-    explicit CustomEffect(std::unique_ptr<const State> state);
-    std::unique_ptr<const State> state_;
+    explicit CustomEffect(std::shared_ptr<const State> state);
+    std::shared_ptr<const State> state_;
 };
 
 }  // namespace darkroom

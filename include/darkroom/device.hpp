@@ -107,6 +107,8 @@ class Device {
     [[nodiscard]] std::uint64_t validation_messages() const;
     /// The library's own view of the device, for the library's other parts.
     [[nodiscard]] gpu::Context& context() const { return *context_; }
+    /// The same, for who may outlive this object.
+    [[nodiscard]] const std::shared_ptr<gpu::Context>& shared_context() const { return context_; }
 
   private:
     explicit Device(std::shared_ptr<gpu::Context> context);

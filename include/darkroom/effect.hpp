@@ -19,6 +19,7 @@
 #include <darkroom/param.hpp>
 #include <darkroom/reference.hpp>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -143,9 +144,10 @@ class PassBuilder {
     [[nodiscard]] virtual PassImage picture() = 0;
     /// The image that the entry's `source` names, else picture().
     [[nodiscard]] virtual PassImage source() = 0;
-    /// The largest extent a frame may have here.
-    [[nodiscard]] virtual VkExtent2D max_extent() const = 0;
-    /// Values at compile; the values of a frame may differ.
+    /// A number that follows from the largest extent a frame may have here, such as the levels of a pyramid. The plan
+    /// is kept for other extents that give the same.
+    [[nodiscard]] virtual std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) = 0;
+    /// Values at compile; the values of a frame may differ. A plan that asks for them is made anew when one changes.
     [[nodiscard]] virtual const void* parameters() const = 0;
 
     [[nodiscard]] virtual PassImage create(const PassImageDesc& desc) = 0;
@@ -216,6 +218,8 @@ struct EffectInfo {
     std::string (*conflict)(const void* parameters) = nullptr;
     /// For a frame's parameters: does the effect change nothing? Such an entry is treated as switched off.
     bool (*is_identity)(const void* parameters) = nullptr;
+    /// Of a description that was made at run time: who keeps it longer than its maker holds this.
+    std::weak_ptr<const void> owner{};
 };
 
 }  // namespace darkroom

@@ -1,115 +1,34 @@
 // SPDX-License-Identifier: MIT
+// Recording a chain. What it is made of is in chain_make.cpp.
 #include "compose/chain.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "compose/frame_check.hpp"
 #include "core/assert.hpp"
-#include "gpu/format_use.hpp"
-#include "gpu/formats.hpp"
 
 namespace darkroom::compose {
 
+using plan::FixedImage;
+using plan::HostImage;
+using plan::PassInput;
+using plan::ProgramPass;
+using plan::Shape;
+
 namespace {
 
-using gpu::most_images;
-constexpr std::uint32_t most_custom_vectors = 96;
-
-VkDeviceSize align(VkDeviceSize size, VkDeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
+bool is_whole(const gpu::Region& region) {
+    return region.offset.x == 0 && region.offset.y == 0 && region.extent.width == region.image.width &&
+           region.extent.height == region.image.height;
+}
 
 }  // namespace
 
-Chain::Chain(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots)
-    : context_(context), program_(std::move(program)), desc_(desc), slots_(slots) {}
-
-Chain::~Chain() = default;
-
-Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Program program, const CompileDesc& desc,
-                                             std::uint32_t slots, bool has_timers, std::span<const Entry> stack) {
-    std::unique_ptr<Chain> chain(new Chain(context, std::move(program), desc, slots));
-    auto compiled = chain->program_.graph.compile(desc.max_extent, graph::measure_on(context));
-    if (!compiled) return failure(std::move(compiled));
-    chain->compiled_.emplace(std::move(*compiled));
-    chain->schedule_.emplace(*chain->compiled_);
-    // Depth is never filtered: what lies between two surfaces is no surface.
-    for (const graph::Slot& slot : chain->compiled_->slots())
-        chain->is_nearest_.push_back(!gpu::can_filter(context, slot.desc.format) || gpu::is_depth(slot.desc.format));
-    auto tables = Tables::create(context, chain->program_.constants);
-    if (!tables) return failure(std::move(tables));
-    chain->tables_ = std::move(*tables);
-    if (std::ranges::any_of(chain->program_.imports, [](const auto& i) { return i && shadow_number(*i) >= 0; })) {
-        auto lit = LitShadowMap::create(context);
-        if (!lit) return failure(std::move(lit));
-        chain->lit_ = std::move(*lit);
-    }
-    if (auto ok = chain->make_kernels(stack); !ok) return failure(std::move(ok));
-    if (auto ok = chain->make_resources(has_timers); !ok) return failure(std::move(ok));
-    chain->builders_ = std::make_unique<Builders>(context, chain->variants_);
-    return chain;
-}
-
-Result<> Chain::make_resources(bool has_timers) {
-    auto physical = graph::Physical::create(context_, *compiled_, desc_.views);
-    if (!physical) return failure(std::move(physical));
-    physical_.emplace(std::move(*physical));
-    views_.resize(desc_.views);
-    for (View& view : views_) view.was_on.resize(program_.history_entries.size());
-
-    std::vector<VkDescriptorSetLayout> layouts;
-    set_at_.assign(program_.passes.size(), 0);
-    std::size_t pass_block_size = 16;
-    for (std::size_t i = 0; i < program_.passes.size(); ++i) {
-        if (!variants_[i]) continue;
-        const gpu::KernelSpec& spec = program_.passes[i].spec;
-        if (spec.images.size() > most_images || spec.custom_vectors > most_custom_vectors)
-            return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
-                                          spec.name, spec.images.size(), spec.custom_vectors, most_images,
-                                          most_custom_vectors));
-        set_at_[i] = static_cast<std::uint32_t>(layouts.size());
-        layouts.insert(layouts.end(), slots_, variants_[i]->complete().set_layout());
-        pass_block_size = std::max(pass_block_size, gpu::pass_block_size(spec));
-    }
-    auto sets = gpu::DescriptorSets::create(context_, layouts);
-    if (!sets) return failure(std::move(sets));
-    sets_ = std::move(*sets);
-    custom_.resize(most_custom_vectors);
-
-    // What every device binds as one uniform buffer.
-    constexpr std::uint32_t most_constants = 16384;
-    if (program_.constants_words * 4 > most_constants)
-        return user_error(fmt::format("the stack has {} bytes of parameters; at most {} are allowed",
-                                      program_.constants_words * 4, most_constants));
-    constants_stride_ = align(program_.constants_words * 4, context_.traits.uniform_alignment);
-    pass_block_stride_ = align(pass_block_size, context_.traits.uniform_alignment);
-    auto constants = gpu::Buffer::create(context_, constants_stride_ * slots_, gpu::constants_usage,
-                                         gpu::Memory::Kind::Constants, "constants");
-    if (!constants) return failure(std::move(constants));
-    constants_ = std::move(*constants);
-    auto blocks =
-        gpu::Buffer::create(context_, pass_block_stride_ * slots_ * std::max<std::size_t>(1, program_.passes.size()),
-                            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::Kind::Constants, "pass blocks");
-    if (!blocks) return failure(std::move(blocks));
-    pass_blocks_ = std::move(*blocks);
-
-    if (has_timers && context_.traits.timestamp_period_ns > 0) {
-        const auto marks = static_cast<std::uint32_t>(program_.passes.size() + 1);
-        auto timers = gpu::Timers::create(context_, slots_, marks);
-        if (!timers) return failure(std::move(timers));
-        timers_ = std::move(*timers);
-        timed_passes_.resize(slots_);
-        for (auto& passes : timed_passes_) passes.reserve(marks);
-        milliseconds_.resize(marks);
-        times_.reserve(marks);
-    }
-    return {};
-}
-
-Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<const Entry> stack) {
-    if (auto ok = check_frame(program_, desc_, frame); !ok) return ok;
+Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
+    if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
     const VkExtent2D extent = frame.color.used_region().extent;
     const PassContext context{.frame_extent = extent,
                               .output_extent = extent,
@@ -118,34 +37,76 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
                               .frame_index = frame.frame_index,
                               .camera = &frame.camera,
                               .lights = frame.lights};
-    slot_ = static_cast<std::uint32_t>(recordings_ % slots_);
-    tables_.upload(commands);
-    lit_.upload(commands);
-    evaluate(stack, context);
+    slot_ = static_cast<std::uint32_t>(recordings_ % desc_.slots);
+    has_missing_kernel_ = false;
+    tables_.upload(commands, recordings_);
+    lit_.upload(commands, recordings_);
+    values_.evaluate(program_of(), desc_.compile, entries_, context);
+    write_frame_block(frame);
+    lend_images(frame);
+    prepare_histories(commands, frame);
+    schedule_->derive(values_.gates(), import_states_, physical_->histories(frame.view).recordings);
 
-    auto* const block = reinterpret_cast<std::uint32_t*>(constants_.memory.mapped + constants_stride_ * slot_);
-    // Shaders get time in a float, so it wraps after an hour of the 1/60 s steps that effects think in.
-    const float time = static_cast<float>(std::fmod(frame.time, 3600.0));
-    const float delta = static_cast<float>(frame.delta_time);
-    const std::array<std::uint32_t, 4> frame_block{std::bit_cast<std::uint32_t>(time),
-                                                   std::bit_cast<std::uint32_t>(delta),
-                                                   static_cast<std::uint32_t>(frame.frame_index), frame.view};
-    std::copy(frame_block.begin(), frame_block.end(), block);
-    const CameraBlock camera = camera_block(frame.camera);
-    std::memcpy(block + frame_block.size(), camera.data(), sizeof camera);
-    for (std::size_t i = 0; i < stack.size(); ++i) {
-        const ParamTable& table = stack[i].info->parameters;
-        const std::span<std::uint32_t> words(block + program_.block_words[i], block_words(table));
-        words[0] = gates_.is_on(static_cast<std::uint32_t>(i)) ? 1 : 0;
-        words[1] = std::bit_cast<std::uint32_t>(stack[i].desc.opacity);
-        words[2] = static_cast<std::uint32_t>(stack[i].desc.blend);
-        write_block(table, {gates_.words_of(static_cast<std::uint32_t>(i)), table.words()}, words);
+    const bool is_timed = timers_.pool != VK_NULL_HANDLE;
+    if (is_timed) {
+        timed_[slot_].frame_index = frame.frame_index;
+        timed_[slot_].passes.clear();
+        timers_.begin(commands, slot_);
+        timers_.mark(commands, slot_, 0);
     }
-    block[program_.finish_word] = static_cast<std::uint32_t>(finish_);
+    const std::span<const graph::Barrier> barriers = schedule_->barriers();
+    for (const graph::Schedule::Step& step : schedule_->steps()) {
+        physical_->record_barriers(commands, context_.vk, barriers.subspan(step.first_barrier, step.barrier_count),
+                                   frame.view);
+        record_pass(commands, declared_pass_[step.pass], frame, context);
+        if (is_timed) {
+            timed_[slot_].passes.push_back(declared_pass_[step.pass]);
+            timers_.mark(commands, slot_, static_cast<std::uint32_t>(timed_[slot_].passes.size()));
+        }
+    }
+    physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
+    physical_->end(frame.view);
+    ++recordings_;
+    is_abandonable_ = true;
+    if (has_missing_kernel_) worker_.wake();
+    return {};
+}
 
-    for (std::size_t i = 0; i < program_.imports.size(); ++i) {
-        if (!program_.imports[i]) continue;
-        const ImageRef& image = image_of(frame, *program_.imports[i]);
+bool Chain::abandon() {
+    if (!is_abandonable_) return false;
+    is_abandonable_ = false;
+    --recordings_;
+    tables_.take_back(recordings_);
+    lit_.take_back(recordings_);
+    physical_->histories(before_.view_index) = before_.view;
+    for (std::uint32_t i = 0; i < before_.states.size(); ++i)
+        if (graph::HistoryImages* const history = physical_->history(i, before_.view_index))
+            history->state = before_.states[i];
+    return true;
+}
+
+const ImageRef& Chain::image_of(const Frame& frame, HostImage which) const {
+    if (plan::shadow_number(which) < 0) return host_image(frame, which);
+    const Light* const light = shadow_light(frame.lights, static_cast<std::uint32_t>(plan::shadow_number(which)));
+    return light != nullptr ? light->cascades : lit_.reference;
+}
+
+void Chain::write_frame_block(const Frame& frame) {
+    std::array<std::uint32_t, plan::frame_words> words;
+    // Shaders get time in a float, so it wraps after an hour of the 1/60 s steps that effects think in.
+    words[0] = std::bit_cast<std::uint32_t>(static_cast<float>(std::fmod(frame.time, 3600.0)));
+    words[1] = std::bit_cast<std::uint32_t>(static_cast<float>(frame.delta_time));
+    words[2] = static_cast<std::uint32_t>(frame.frame_index);
+    words[3] = frame.view;
+    const plan::CameraBlock camera = plan::camera_block(frame.camera);
+    std::memcpy(words.data() + 4, camera.data(), sizeof camera);
+    std::memcpy(blocks_.memory.mapped + slot_stride_ * slot_, words.data(), sizeof words);
+}
+
+void Chain::lend_images(const Frame& frame) {
+    for (std::size_t i = 0; i < program_of().imports.size(); ++i) {
+        if (!program_of().imports[i]) continue;
+        const ImageRef& image = image_of(frame, *program_of().imports[i]);
         import_states_[i] = {.layout = image.layout,
                              .stages = image.last_stages,
                              .access = image.last_access,
@@ -158,142 +119,184 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame, std::span<c
                                                         .base_array_layer = image.array_layer,
                                                         .array_layers = image.layer_count});
     }
-    reset_histories(frame);
-    physical_->begin(commands, context_.vk, extent, frame.view);
-    schedule_->derive(gates_.toggles(), import_states_,
-                      physical_->histories(frame.view).recordings);
-
-    const bool is_timed = timers_.pool != VK_NULL_HANDLE;
-    if (is_timed) {
-        timed_passes_[slot_].clear();
-        timers_.begin(commands, slot_);
-        timers_.mark(commands, slot_, 0);
-    }
-    const std::span<const graph::Barrier> barriers = schedule_->barriers();
-    for (const graph::Schedule::Step& step : schedule_->steps()) {
-        physical_->record_barriers(commands, context_.vk, barriers.subspan(step.first_barrier, step.barrier_count),
-                                   frame.view);
-        record_pass(commands, declared_pass_[step.pass], frame, context, stack);
-        if (is_timed) {
-            timed_passes_[slot_].push_back(declared_pass_[step.pass]);
-            timers_.mark(commands, slot_, static_cast<std::uint32_t>(timed_passes_[slot_].size()));
-        }
-    }
-    physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
-    physical_->end(frame.view);
-    ++recordings_;
-    return {};
 }
 
-const ImageRef& Chain::image_of(const Frame& frame, HostImage which) const {
-    if (shadow_number(which) < 0) return host_image(frame, which);
-    const Light* const light = shadow_light(frame.lights, static_cast<std::uint32_t>(shadow_number(which)));
-    return light != nullptr ? light->cascades : lit_.reference;
-}
-
-/// Histories start from zero where nothing of the last frame of the view can be used.
-void Chain::reset_histories(const Frame& frame) {
-    View& view = views_[frame.view];
-    bool is_related = !frame.camera.is_cut && frame.delta_time > 0;
-    for (std::size_t i = 0; i < program_.history_entries.size(); ++i) {
-        const bool is_on = gates_.is_on(program_.history_entries[i]);
-        if (is_on && !view.was_on[i]) is_related = false;
-        view.was_on[i] = is_on ? 1 : 0;
+/// Histories start from zero where nothing of the last frame of the view can be used, each by itself.
+void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
+    before_.view_index = frame.view;
+    before_.view = physical_->histories(frame.view);
+    const bool is_related = !frame.camera.is_cut && frame.delta_time > 0;
+    for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
+        graph::HistoryImages* const history = physical_->history(i, frame.view);
+        if (history == nullptr) continue;
+        before_.states[i] = history->state;
+        const bool is_on = values_.is_on(program_of().history_entries[i]);
+        if (!is_related || (is_on && !history->state.was_on)) history->state.needs_reset = true;
+        history->state.was_on = is_on;
     }
-    for (std::uint32_t i = 0; i < physical_->history_count() && !is_related; ++i) {
-        if (graph::HistoryImages* const history = physical_->history(i, frame.view)) history->state.needs_reset = true;
-    }
+    physical_->begin(commands, context_.vk, frame.color.used_region().extent, frame.view);
 }
 
 gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
                               VkExtent2D extent) const {
     const graph::Slot& image = compiled_->slots()[slot];
     if (image.kind == graph::Slot::Kind::Import) {
-        const HostImage which = *program_.imports[image.import_index];
+        const HostImage which = *program_of().imports[image.import_index];
         const ImageRef& host = image_of(frame, which);
         const VkRect2D region = host.used_region();
-        if (shadow_number(which) >= 0)
-            return {.view = host.view,
-                    .region = {region.offset, region.extent, host.extent},
-                    .sampler = context_.shadow_sampler,
-                    .layout = schedule_->read_layout(slot)};
         return {.view = host.view,
                 .region = {region.offset, region.extent, host.extent},
-                .is_nearest = is_nearest_[slot],
+                .is_nearest = is_nearest_[slot] != 0,
+                .is_lent = true,
+                .sampler = plan::shadow_number(which) >= 0 ? context_.shadow_sampler : VK_NULL_HANDLE,
                 .layout = schedule_->read_layout(slot)};
     }
     if (image.kind == graph::Slot::Kind::Constant) {
-        const auto constant = std::find_if(program_.constants.begin(), program_.constants.end(),
-                                           [&](const Constant& c) { return c.import_index == image.import_index; });
-        return tables_.binding(static_cast<std::size_t>(constant - program_.constants.begin()));
+        const auto& fixed = program_of().fixed_images;
+        const auto found = std::ranges::find(fixed, image.import_index, &FixedImage::import_index);
+        return tables_.binding(static_cast<std::size_t>(found - fixed.begin()));
     }
     const std::uint32_t mip = std::min(mip_level, image.desc.mip_levels - 1);
     return {.view = physical_->mip_view(slot, mip, frame.view),
             .region = {{},
                        graph::mip_extent(image.desc.size.of(extent), mip),
-                       graph::mip_extent(image.desc.size.of(desc_.max_extent), mip)},
-            .is_nearest = is_nearest_[slot]};
+                       graph::mip_extent(image.desc.size.of(desc_.compile.max_extent), mip)},
+            .is_nearest = is_nearest_[slot] != 0};
 }
 
 gpu::Binding Chain::bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const {
-    if (input.table != no_table) return tables_.binding(input.table);
-    return bind_slot(schedule_->slot_of(input.version), input.mip_level, frame, extent);
+    if (input.table != plan::no_table) return tables_.binding(input.table);
+    return bind_slot(schedule_->slot_of(input.version, input.instead), input.mip_level, frame, extent);
 }
 
-void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Frame& frame, const PassContext& context,
-                        std::span<const Entry> stack) {
-    const ProgramPass& pass = program_.passes[index];
-    std::array<gpu::Binding, most_images> images;
+/// The values of the members of the pass's own block.
+std::span<const std::uint32_t> Chain::write_words(const ProgramPass& pass) {
+    std::size_t count = 0;
+    if (pass.is_fused && pass.finish == plan::Finish::OfFrame)
+        words_[count++] = static_cast<std::uint32_t>(values_.finish());
+    for (const plan::FusedStep& step : pass.steps) {
+        const plan::Entry& entry = *entries_[step.entry];
+        if (pass.is_fused) {
+            words_[count++] = values_.is_on(step.entry) ? 1 : 0;
+            words_[count++] = std::bit_cast<std::uint32_t>(entry.desc.opacity);
+            words_[count++] = static_cast<std::uint32_t>(entry.desc.blend);
+        } else if (!step.text->asks_parameters) {
+            continue;
+        }
+        const ParamTable& table = entry.info->parameters;
+        const std::uint32_t words = plan::parameter_words(table);
+        plan::write_parameters(table, {values_.words(step.entry), table.words()},
+                               std::span(words_).subspan(count, words));
+        count += words;
+    }
+    return std::span(words_).first(count);
+}
+
+Shape Chain::shape_of(const ProgramPass& pass, std::span<const plan::Entry* const> entries, const gpu::Region& output,
+                      std::span<const gpu::Binding> inputs) const {
+    Shape shape;
+    if (!plan::has_lean(pass)) return shape;
+    if (is_whole(output) && std::ranges::all_of(inputs, [](const gpu::Binding& b) { return is_whole(b.region); }))
+        shape.steps |= Shape::is_whole;
+    if (pass.asks_input_is_twice && !inputs.empty() && inputs[0].region.extent.width == 2 * output.extent.width &&
+        inputs[0].region.extent.height == 2 * output.extent.height)
+        shape.steps |= Shape::input_is_twice;
+    if (pass.is_fused) {
+        if (pass.finish == plan::Finish::OfFrame)
+            shape.steps |= static_cast<std::uint64_t>(values_.finish()) << Shape::finish_bit;
+        for (std::size_t i = 0; i < pass.steps.size(); ++i) {
+            const std::uint32_t entry = pass.steps[i].entry;
+            if (!values_.is_on(entry)) continue;
+            shape.steps |= (entries[entry]->is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);
+        }
+    }
+    for (const plan::Literal& literal : pass.literals) {
+        const std::uint32_t entry = pass.steps[literal.step].entry;
+        // An entry that is off is not in the kernel; a pass of an effect that is off does not run, or for another one.
+        if (pass.is_fused && !values_.is_on(entry)) continue;
+        shape.choices |= (values_.words(entry)[literal.row->word] & literal.mask()) << literal.bit;
+    }
+    return shape;
+}
+
+const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& output,
+                                    std::span<const gpu::Binding> inputs) {
+    PassKernels& kernels = *desc_.program->kernels[pass];
+    last_shapes_[pass] = shape_of(program_of().passes[pass], entries_, output, inputs);
+    if (const gpu::Kernel* const kernel = kernels.find(last_shapes_[pass], recordings_, desc_.slots, worker_.garbage()))
+        return *kernel;
+    worker_.want(kernels, last_shapes_[pass]);
+    has_missing_kernel_ = true;
+    return kernels.complete();
+}
+
+/// The pass's set of this slot, written anew where a view changed. A host's view is always written: handles are given
+/// again, and one that is known may be another image now.
+VkDescriptorSet Chain::updated_set(std::uint32_t pass, const gpu::Kernel& kernel, std::span<const gpu::Binding> inputs,
+                                   const gpu::Binding& output) {
+    const Sets& sets = pass_sets_[pass];
+    const VkDescriptorSet set = sets_.sets[sets.first + slot_];
+    Written* const written = written_.data() + sets.first_written + std::size_t{slot_} * sets.images;
+    bool is_changed = false;
+    const auto note = [&](std::size_t at, const gpu::Binding& binding) {
+        const Written now{binding.view, binding.layout, binding.is_nearest};
+        is_changed |= binding.is_lent || written[at] != now;
+        written[at] = now;
+    };
+    for (std::size_t i = 0; i < inputs.size(); ++i) note(i, inputs[i]);
+    note(inputs.size(), output);
+    if (!is_changed) return set;
+    const VkDeviceSize start = slot_stride_ * slot_;
+    kernel.write_set({.set = set,
+                      .frame = {blocks_.handle, start, plan::frame_words * 4},
+                      .own = {blocks_.handle, start + block_at_[pass], gpu::own_block_size(kernel.spec())},
+                      .images = inputs,
+                      .outputs = {&output, 1}});
+    return set;
+}
+
+void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Frame& frame, const PassContext& context) {
+    const ProgramPass& pass = program_of().passes[index];
+    std::array<gpu::Binding, gpu::most_images> images;
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         images[i] = bind(pass.inputs[i], frame, context.frame_extent);
         if (!pass.spec.images[i].loads_by.empty()) images[i].layout = VK_IMAGE_LAYOUT_GENERAL;
     }
+    const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
     const gpu::Binding output =
         bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
 
     const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
     if (pass.constants != nullptr) {
         PassContext own = context;
-        own.frame_extent = program_.entry_sizes[pass.entry].of(context.frame_extent);
+        own.frame_extent = program_of().entry_sizes[pass.entry()].of(context.frame_extent);
         own.output_extent = output.region.extent;
-        pass.constants(gates_.words_of(pass.entry), own, custom);
+        pass.constants(values_.words(pass.entry()), own, custom);
     }
-    const VkDeviceSize block_offset = pass_block_stride_ * (slot_ * program_.passes.size() + index);
-    const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
-    gpu::write_pass_block(pass.spec, output.region, inputs, custom,
-                          {pass_blocks_.memory.mapped + block_offset, gpu::pass_block_size(pass.spec)});
-
-    last_shapes_[index] = shape_of(pass, stack, output.region, inputs);
-    const gpu::Kernel& kernel = variants_[index]->find(last_shapes_[index]);
-    if (variants_[index]->has_lean() && &kernel == &variants_[index]->complete()) builders_->wake();
+    gpu::write_own_block(pass.spec, output.region, inputs, custom, write_words(pass),
+                         {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index],
+                          gpu::own_block_size(pass.spec)});
+    const gpu::Kernel& kernel = kernel_of(index, output.region, inputs);
+    const VkDescriptorSet set = updated_set(index, kernel, inputs, output);
     gpu::begin_label(context_, commands, pass.name.c_str());
-    kernel.record(commands, {.set = sets_.sets[set_at_[index] + slot_],
-                             .constants = constants_.handle,
-                             .constants_offset = constants_stride_ * slot_,
-                             .constants_size = program_.constants_words * 4,
-                             .pass_block = pass_blocks_.handle,
-                             .pass_block_offset = block_offset,
-                             .images = inputs,
-                             .outputs = {&output, 1}});
+    kernel.record(commands, set, {&output, 1});
     gpu::end_label(context_, commands);
 }
 
-std::span<const PassTime> Chain::times() {
-    if (timers_.pool == VK_NULL_HANDLE || recordings_ == 0) return {};
-    for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(slots_, recordings_); ++back) {
-        const auto slot = static_cast<std::uint32_t>((recordings_ - back) % slots_);
-        const auto& passes = timed_passes_[slot];
-        if (timers_.read(slot, static_cast<std::uint32_t>(passes.size() + 1), milliseconds_) < passes.size()) continue;
+RecordingTimes Chain::times() {
+    if (timers_.pool == VK_NULL_HANDLE) return {};
+    for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(desc_.slots, recordings_); ++back) {
+        const auto slot = static_cast<std::uint32_t>((recordings_ - back) % desc_.slots);
+        const Timed& timed = timed_[slot];
+        if (timers_.read(slot, static_cast<std::uint32_t>(timed.passes.size() + 1), milliseconds_) <
+            timed.passes.size())
+            continue;
         times_.clear();
-        for (std::size_t i = 0; i < passes.size(); ++i)
-            times_.push_back({program_.passes[passes[i]].name, milliseconds_[i]});
-        return times_;
+        for (std::size_t i = 0; i < timed.passes.size(); ++i)
+            times_.push_back({program_of().passes[timed.passes[i]].name, milliseconds_[i]});
+        return {timed.frame_index, times_};
     }
     return {};
-}
-
-Plan Chain::describe(std::span<const Entry> stack) const {
-    return describe_program(program_, *compiled_, desc_, stack);
 }
 
 }  // namespace darkroom::compose

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// A compiled stack on a device: kernels, images, descriptor sets and the constants ring of one Program. Made by
-// Composer::compile; record() only writes into what is there.
+// A planned stack on a device, for frames up to an extent: images, descriptor sets and a ring of blocks around the
+// kernels of a StackProgram. Made when a stack is compiled, on any thread; record() only writes into what is there.
 
 #include <darkroom/composer.hpp>
 #include <memory>
@@ -9,92 +9,135 @@
 #include <span>
 #include <vector>
 
+#include "compose/stack_program.hpp"
 #include "compose/tables.hpp"
-#include "compose/variants.hpp"
+#include "compose/worker.hpp"
 #include "gpu/resources.hpp"
 #include "graph/physical.hpp"
-#include "plan/gates.hpp"
-#include "plan/program.hpp"
+#include "plan/frame_values.hpp"
 
 namespace darkroom::compose {
 
-using namespace plan;
+struct ChainDesc {
+    std::shared_ptr<StackProgram> program;
+    CompileDesc compile;
+    std::uint32_t slots = 1;        ///< recordings that may be unfinished
+    std::uint32_t max_threads = 0;  ///< that build kernels; 0: one a processor
+    bool has_timers = false;
+    /// The live entries in the program's order: their present values are what a recording uses.
+    std::vector<std::shared_ptr<const plan::Entry>> entries;
+};
 
-class Chain {
+class Chain final : public Garbage {
   public:
-    [[nodiscard]] static Result<std::unique_ptr<Chain>> create(gpu::Context& context, Program program,
-                                                               const CompileDesc& desc, std::uint32_t slots,
-                                                               bool has_timers, std::span<const Entry> stack);
-    ~Chain();
+    /// `values` are copies of the entries: the live ones may change meanwhile.
+    [[nodiscard]] static Result<std::unique_ptr<Chain>> create(gpu::Context& context, Worker& worker,
+                                                               graph::HistoryPool& histories, ChainDesc desc,
+                                                               std::span<const plan::Entry> values);
 
     /// Allocates nothing and waits for nothing. On error nothing is recorded.
-    [[nodiscard]] Result<> record(VkCommandBuffer commands, const Frame& frame, std::span<const Entry> stack);
-    /// Builds the lean kernels of the present toggles on the calling thread.
-    [[nodiscard]] Result<> build_lean(std::span<const Entry> stack);
-    /// Recordings of it may be unfinished, but there will be no more: ends its thread.
-    void retire() { builders_.reset(); }
-    [[nodiscard]] Plan describe(std::span<const Entry> stack) const;
-    [[nodiscard]] const Program& program() const { return program_; }
-    /// Times of the last finished recording.
-    [[nodiscard]] std::span<const PassTime> times();
+    [[nodiscard]] Result<> record(VkCommandBuffer commands, const Frame& frame);
+    /// Takes back the last recording. False: there is none, or it was taken back.
+    bool abandon();
+    /// Builds the lean kernels of the present values on the calling thread, which is the one that records.
+    [[nodiscard]] Result<> build_lean();
+    [[nodiscard]] const Plan& plan() const { return plan_; }
+    [[nodiscard]] const CompileDesc& compiled_for() const { return desc_.compile; }
+    [[nodiscard]] const std::shared_ptr<StackProgram>& program() const { return desc_.program; }
+    [[nodiscard]] std::uint32_t slots() const { return desc_.slots; }
+    /// Where the plan has the entry of this id.
+    [[nodiscard]] std::optional<std::uint32_t> index_of(std::uint32_t entry_id) const;
+    [[nodiscard]] RecordingTimes times();
+
+    // For the composer, of a chain that a newer one replaced: recordings that it has to outlive, and the next of them.
+    std::uint32_t recordings_left = 0;
+    Chain* next_retired = nullptr;
 
   private:
-    Chain(gpu::Context& context, Program program, const CompileDesc& desc, std::uint32_t slots);
-    [[nodiscard]] Result<> make_kernels(std::span<const Entry> stack);
-    [[nodiscard]] Result<> make_resources(bool has_timers);
-    [[nodiscard]] const ImageRef& image_of(const Frame& frame, HostImage which) const;
-    void reset_histories(const Frame& frame);
-    [[nodiscard]] Domain domain_behind(std::uint32_t entry) const {
-        return entry == no_entry ? Domain::SceneLinear : domains_[entry];
-    }
-    void evaluate(std::span<const Entry> stack, const PassContext& context);
-    [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry> stack, const gpu::Region& output,
-                                 std::span<const gpu::Binding> inputs) const;
-    [[nodiscard]] Shape expected_shape(const ProgramPass& pass, std::span<const Entry> stack) const;
-    [[nodiscard]] gpu::Binding bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const;
+    Chain(gpu::Context& context, Worker& worker, ChainDesc desc);
+    [[nodiscard]] const plan::Program& program_of() const { return desc_.program->program; }
+    [[nodiscard]] Result<> make_kernels(std::span<const plan::Entry> values);
+    [[nodiscard]] Result<> make_resources(graph::HistoryPool& histories);
+    [[nodiscard]] Result<> make_sets();
+    [[nodiscard]] Result<> make_timers();
+    [[nodiscard]] const ImageRef& image_of(const Frame& frame, plan::HostImage which) const;
+    void write_frame_block(const Frame& frame);
+    void lend_images(const Frame& frame);
+    void prepare_histories(VkCommandBuffer commands, const Frame& frame);
+    void derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame);
+    [[nodiscard]] plan::Shape shape_of(const plan::ProgramPass& pass, std::span<const plan::Entry* const> entries,
+                                       const gpu::Region& output, std::span<const gpu::Binding> inputs) const;
+    [[nodiscard]] plan::Shape expected_shape(const plan::ProgramPass& pass,
+                                             std::span<const plan::Entry* const> entries) const;
+    [[nodiscard]] gpu::Binding bind(const plan::PassInput& input, const Frame& frame, VkExtent2D extent) const;
     [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
                                          VkExtent2D extent) const;
-    void record_pass(VkCommandBuffer commands, std::uint32_t pass, const Frame& frame, const PassContext& context,
-                     std::span<const Entry> stack);
+    [[nodiscard]] std::span<const std::uint32_t> write_words(const plan::ProgramPass& pass);
+    [[nodiscard]] const gpu::Kernel& kernel_of(std::uint32_t pass, const gpu::Region& output,
+                                               std::span<const gpu::Binding> inputs);
+    [[nodiscard]] VkDescriptorSet updated_set(std::uint32_t pass, const gpu::Kernel& kernel,
+                                              std::span<const gpu::Binding> inputs, const gpu::Binding& output);
+    void record_pass(VkCommandBuffer commands, std::uint32_t pass, const Frame& frame, const PassContext& context);
 
     gpu::Context& context_;
-    Program program_;
-    CompileDesc desc_;
-    std::uint32_t slots_ = 1;
+    Worker& worker_;
+    ChainDesc desc_;
+    Plan plan_;
+    std::vector<const plan::Entry*> entries_;  ///< those of desc_, to be read
     std::uint64_t recordings_ = 0;
+    bool is_abandonable_ = false;
 
     std::optional<graph::Compiled> compiled_;
     std::optional<graph::Schedule> schedule_;
     std::optional<graph::Physical> physical_;
-    std::vector<bool> is_nearest_;              ///< per slot: its format is not filtered
     std::vector<std::uint32_t> declared_pass_;  ///< kept pass -> pass of the program
 
-    std::vector<Shape> last_shapes_;                   ///< per pass: of its last recording
-    std::vector<std::unique_ptr<Variants>> variants_;  ///< per pass of the program; null where the graph culled it
-    std::unique_ptr<Builders> builders_;
-    gpu::DescriptorSets sets_;
-    std::vector<std::uint32_t> set_at_;  ///< per pass: index of its first set, then one a slot
-    gpu::Buffer constants_, pass_blocks_;
-    VkDeviceSize constants_stride_ = 0, pass_block_stride_ = 0;
     Tables tables_;
     LitShadowMap lit_;
+    gpu::Buffer blocks_;  ///< for each slot the frame's block, then one a pass
+    VkDeviceSize slot_stride_ = 0;
+    std::vector<VkDeviceSize> block_at_;  ///< per pass: of its block, in a slot
     gpu::Timers timers_;
 
+    /// A pass's sets, one a slot, and what was last written to them: images, then outputs.
+    struct Written {
+        VkImageView view = VK_NULL_HANDLE;
+        VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        bool is_nearest = false;
+        friend bool operator==(const Written&, const Written&) = default;
+    };
+    struct Sets {
+        std::uint32_t first = ~0u;       ///< of the pool
+        std::uint32_t first_written = 0;
+        std::uint32_t images = 0;
+    };
+    std::vector<std::uint8_t> is_nearest_;  ///< per slot: its format cannot be filtered
+    gpu::DescriptorSets sets_;
+    std::vector<Sets> pass_sets_;
+    std::vector<Written> written_;
+
     // Scratch of a recording, sized at compile.
-    Gates gates_;
-    Finish finish_ = Finish::None;
+    plan::FrameValues values_;
+    std::vector<plan::Shape> last_shapes_;  ///< per pass
     std::vector<graph::ImportState> import_states_;
     std::vector<PassVector> custom_;
+    std::vector<std::uint32_t> words_;
     std::uint32_t slot_ = 0;
-
-    /// What the histories of a view were made from.
-    struct View {
-        std::vector<std::uint8_t> was_on;  ///< per entry with histories
+    bool has_missing_kernel_ = false;
+    /// What the histories of its view were before the last recording.
+    struct Before {
+        std::uint32_t view_index = 0;
+        graph::HistoryView view;
+        std::vector<graph::HistoryState> states;  ///< per history
     };
-    std::vector<View> views_;
+    Before before_;
 
     // Timers: what was recorded in each slot.
-    std::vector<std::vector<std::uint32_t>> timed_passes_;
+    struct Timed {
+        std::uint64_t frame_index = 0;
+        std::vector<std::uint32_t> passes;
+    };
+    std::vector<Timed> timed_;
     std::vector<double> milliseconds_;
     std::vector<PassTime> times_;
 };

@@ -169,11 +169,12 @@ TEST_F(ComposeFormat, DepthIsNeverFiltered) {
                        .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
         test::must(gpu::submit_and_wait(context, "readying the depth", [&](VkCommandBuffer commands) {
             const bool has_stencil = format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT;
-            const VkImageAspectFlags stencil = has_stencil ? VK_IMAGE_ASPECT_STENCIL_BIT : 0u;
+            VkImageAspectFlags aspects = VK_IMAGE_ASPECT_DEPTH_BIT;
+            if (has_stencil) aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
             const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
                                                 .newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                                 .image = depth.handle,
-                                                .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT | stencil, 0, 1, 0, 1}};
+                                                .subresourceRange = {aspects, 0, 1, 0, 1}};
             const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                                               .imageMemoryBarrierCount = 1,
                                               .pImageMemoryBarriers = &barrier};

@@ -90,9 +90,9 @@ class Graph {
     /// Empty, with a failure, where the stack cannot be compiled.
     [[nodiscard]] std::optional<Plan> compile(Composer& composer, KernelStage stage, bool is_fused) {
         CompileDesc desc = host_.compile_desc();
-        desc.target = surroundings_.format;
-        desc.target_usage = gpu::test::all_usage(host_.device.context(), desc.target) &
-                            (VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+        desc.target = {surroundings_.format,
+                       gpu::test::all_usage(host_.device.context(), surroundings_.format) &
+                           (VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT)};
         desc.target_domain = surroundings_.domain;
         desc.encodes_target = surroundings_.encodes_target;
         desc.kernels = stage;
@@ -103,7 +103,7 @@ class Graph {
             ADD_FAILURE() << plan.error().text;
             return std::nullopt;
         }
-        if (!target_) target_ = gpu::test::blank(host_.device.context(), plan->passes.back().extent, desc.target);
+        if (!target_) target_ = gpu::test::blank(host_.device.context(), plan->passes.back().extent, desc.target.format);
         return std::move(*plan);
     }
     [[nodiscard]] ReferenceImage show(Composer& composer) const {
@@ -119,7 +119,7 @@ class Graph {
     [[nodiscard]] std::optional<ReferenceImage> reference(const Composer& composer) const {
         if (scene_) return std::nullopt;
         for (std::size_t i = 0; i < composer.size(); ++i) {
-            const EffectInfo& info = composer.info(composer.entry(i));
+            const EffectInfo& info = *composer.info(composer.entry(i));
             // Passes of the library keep half floats, which references do not; and entries of two sizes meet through a
             // bilinear tap.
             const bool is_exact = info.build == nullptr || is_test_effect(info);

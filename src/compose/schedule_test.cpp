@@ -15,7 +15,7 @@ class ComposeSchedule : public test::StackTest {};
 Entry entry_of(std::string_view effect, std::vector<Entry>& stack, EntryDesc desc = {}) {
     const EffectInfo& info = *find_effect(effect);
     desc.name = std::string(effect) + std::to_string(stack.size());
-    Entry entry{.info = &info, .desc = std::move(desc)};
+    Entry entry{.id = static_cast<std::uint32_t>(stack.size() + 1), .info = &info, .desc = std::move(desc)};
     entry.base.assign(info.parameters.defaults.begin(), info.parameters.defaults.end());
     return entry;
 }
@@ -94,7 +94,7 @@ std::vector<std::uint8_t> random_toggles(std::mt19937& random, const Program& pr
     for (std::size_t i = 0; i < entries; ++i) is_on[i] = random() % 4 != 0;
     const auto limit = static_cast<std::uint32_t>(random() % 7);
     std::vector<std::uint8_t> out;
-    for (const Gate& toggle : program.toggles) {
+    for (const Gate& toggle : program.gates) {
         bool on = false;
         for (const std::uint32_t entry : toggle.entries) on = on || is_on[entry];
         out.push_back(on && (toggle.condition == nullptr || toggle.argument < limit) ? 1 : 0);
@@ -125,7 +125,7 @@ TEST_F(ComposeSchedule, TheCheckerAcceptsEveryFrameOfEveryStack) {
         graph::Schedule schedule(*compiled);
         std::vector<Copy> frames;
         for (std::uint64_t frame = 0; frame < 6; ++frame) {
-            const std::vector<std::uint8_t> on = frame == 0 ? std::vector<std::uint8_t>(program->toggles.size(), 1)
+            const std::vector<std::uint8_t> on = frame == 0 ? std::vector<std::uint8_t>(program->gates.size(), 1)
                                                             : random_toggles(random, *program, stack.size());
             const auto toggles = std::make_unique<bool[]>(on.size() + 1);
             std::ranges::copy(on, toggles.get());

@@ -7,12 +7,12 @@
 
 namespace darkroom::compose {
 
-Result<Tables> Tables::create(gpu::Context& context, std::span<const Constant> constants) {
+Result<Tables> Tables::create(gpu::Context& context, std::span<const plan::FixedImage> fixed) {
     Tables out;
     VkDeviceSize size = 0;
-    for (const Constant& constant : constants) {
-        const TableDesc& desc = constant.desc;
-        const bool is_neutral = constant.import_index != ~0u;
+    for (const plan::FixedImage& one : fixed) {
+        const TableDesc& desc = one.desc;
+        const bool is_neutral = one.import_index != ~0u;
         VkImageUsageFlags read = desc.is_load_only ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
         if (is_neutral) read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
         const VkImageLayout layout = (read & VK_IMAGE_USAGE_STORAGE_BIT) != 0
@@ -33,16 +33,20 @@ Result<Tables> Tables::create(gpu::Context& context, std::span<const Constant> c
         gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
     if (!staging) return failure(std::move(staging));
     out.staging_ = std::move(*staging);
-    for (std::size_t i = 0; i < constants.size(); ++i) {
-        const auto& data = constants[i].desc.data;
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+        const auto& data = fixed[i].desc.data;
         std::memcpy(out.staging_.memory.mapped + out.tables_[i].offset, data.data(), data.size());
     }
     return out;
 }
 
-void Tables::upload(VkCommandBuffer commands) {
-    if (is_uploaded_) return;
-    is_uploaded_ = true;
+void Tables::take_back(std::uint64_t recording) {
+    if (uploaded_by_ == recording) uploaded_by_.reset();
+}
+
+void Tables::upload(VkCommandBuffer commands, std::uint64_t recording) {
+    if (uploaded_by_) return;
+    uploaded_by_ = recording;
     for (const Table& table : tables_) {
         const gpu::Dispatch& vk = table.image.context->vk;
         VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
@@ -101,9 +105,13 @@ Result<LitShadowMap> LitShadowMap::create(gpu::Context& context) {
     return out;
 }
 
-void LitShadowMap::upload(VkCommandBuffer commands) {
-    if (is_uploaded_ || image_.handle == VK_NULL_HANDLE) return;
-    is_uploaded_ = true;
+void LitShadowMap::take_back(std::uint64_t recording) {
+    if (uploaded_by_ == recording) uploaded_by_.reset();
+}
+
+void LitShadowMap::upload(VkCommandBuffer commands, std::uint64_t recording) {
+    if (uploaded_by_ || image_.handle == VK_NULL_HANDLE) return;
+    uploaded_by_ = recording;
     gpu::transition(*image_.context, commands, image_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     constexpr VkClearDepthStencilValue lit{.depth = 1.0f};
     const VkImageSubresourceRange range{VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 2};

@@ -3,6 +3,7 @@
 // The constant images of a chain: tables of effects and 1x1 neutral ones. Made at compile, uploaded by the first
 // recording, never written again.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,13 +12,13 @@
 
 namespace darkroom::compose {
 
-using namespace plan;
-
 class Tables {
   public:
-    [[nodiscard]] static Result<Tables> create(gpu::Context& context, std::span<const Constant> constants);
-    /// The first time: copies and barriers. Later: nothing.
-    void upload(VkCommandBuffer commands);
+    [[nodiscard]] static Result<Tables> create(gpu::Context& context, std::span<const plan::FixedImage> images);
+    /// The first time: copies and barriers. Later: nothing. `recording` is the number of the recording it is for.
+    void upload(VkCommandBuffer commands, std::uint64_t recording);
+    /// That recording will not be submitted: what it uploaded is uploaded again.
+    void take_back(std::uint64_t recording);
     [[nodiscard]] gpu::Binding binding(std::size_t index) const;
 
   private:
@@ -29,7 +30,7 @@ class Tables {
     };
     std::vector<Table> tables_;
     gpu::Buffer staging_;
-    bool is_uploaded_ = false;
+    std::optional<std::uint64_t> uploaded_by_;
 };
 
 /// Stands in for the shadow map of a light that a frame does not have: lit everywhere.
@@ -38,12 +39,13 @@ class LitShadowMap {
     LitShadowMap() = default;
     [[nodiscard]] static Result<LitShadowMap> create(gpu::Context& context);
     /// The first time, records its clearing. Does nothing for one that was not created.
-    void upload(VkCommandBuffer commands);
+    void upload(VkCommandBuffer commands, std::uint64_t recording);
+    void take_back(std::uint64_t recording);
     ImageRef reference;
 
   private:
     gpu::Image image_;
-    bool is_uploaded_ = false;
+    std::optional<std::uint64_t> uploaded_by_;
 };
 
 }  // namespace darkroom::compose

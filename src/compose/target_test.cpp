@@ -68,7 +68,7 @@ TEST_F(ComposeTarget, EncodeIsDoneOnce) {
 
 void set_transfer(Composer& composer, std::string_view name) {
     const Handle encode = *composer.find("encode");
-    const auto& choices = composer.info(encode).parameters.find("transfer")->choices;
+    const auto& choices = composer.info(encode)->parameters.find("transfer")->choices;
     const auto number = static_cast<std::uint32_t>(std::ranges::find(choices, name) - choices.begin());
     test::set_word(composer, encode, "transfer", number);
 }

@@ -45,7 +45,7 @@ inline double random_value(std::mt19937& random, const ParamInfo& row, Values va
 }
 
 inline void set_random(std::mt19937& random, Composer& composer, Handle handle, Values values) {
-    for (const ParamInfo& row : composer.info(handle).parameters.rows) {
+    for (const ParamInfo& row : composer.info(handle)->parameters.rows) {
         std::array<std::uint32_t, 4> words{};
         for (std::uint32_t i = 0; i < std::min(row.words, 4u); ++i) {
             switch (row.kind) {
@@ -65,16 +65,16 @@ inline void set_random(std::mt19937& random, Composer& composer, Handle handle, 
         if (row.words <= 4) must(composer.set(handle, row.name, std::span(words).first(row.words)));
     }
     // Values that contradict each other are refused: take the defaults then.
-    const EffectInfo& info = composer.info(handle);
+    const EffectInfo& info = *composer.info(handle);
     if (info.conflict == nullptr || info.conflict(composer.words(handle).data()).empty()) return;
     for (const ParamInfo& row : info.parameters.rows)
         must(composer.set(handle, row.name, info.parameters.defaults.subspan(row.word, row.words)));
 }
 
 /// Any of the entries before, the scene, or (default) the entry before.
-inline Handle random_handle(std::mt19937& random, std::uint32_t entry) {
+inline Handle random_handle(std::mt19937& random, const Composer& composer, std::uint32_t entry) {
     const std::uint32_t pick = below(random, entry + 2);
-    return pick == 0 ? Handle{} : pick == 1 ? scene_color : Handle{pick - 1};
+    return pick == 0 ? Handle{} : pick == 1 ? scene_color : composer.entry(pick - 2);
 }
 
 struct StackDesc {
@@ -91,10 +91,10 @@ inline void fill_random(std::mt19937& random, Composer& composer, const StackDes
         const EffectInfo* info = desc.effects[below(random, static_cast<std::uint32_t>(desc.effects.size()))];
         if (i == place) info = desc.always;
         EntryDesc inputs;
-        if (one_in(random, desc.one_input_in)) inputs.input = random_handle(random, i);
-        if (one_in(random, 3)) inputs.source = random_handle(random, i);
-        if (one_in(random, 5)) inputs.mask = random_handle(random, i);
-        if (info->has_second) inputs.second = i == 0 ? scene_color : Handle{1 + below(random, i)};
+        if (one_in(random, desc.one_input_in)) inputs.input = random_handle(random, composer, i);
+        if (one_in(random, 3)) inputs.source = random_handle(random, composer, i);
+        if (one_in(random, 5)) inputs.mask = random_handle(random, composer, i);
+        if (info->has_second) inputs.second = i == 0 ? scene_color : composer.entry(below(random, i));
         if (one_in(random, 3)) inputs.opacity = static_cast<float>(between(random, 0, 1));
         if (one_in(random, 3)) inputs.blend = static_cast<BlendMode>(below(random, 9));
         inputs.enabled = !one_in(random, 8);
@@ -108,7 +108,7 @@ inline void edit_random(std::mt19937& random, Composer& composer, Values values)
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const Handle entry = composer.entry(i);
         if (one_in(random, 2)) set_random(random, composer, entry, values);
-        if (one_in(random, 3)) must(composer.set_enabled(entry, !composer.desc(entry).enabled));
+        if (one_in(random, 3)) must(composer.set_enabled(entry, !composer.desc(entry)->enabled));
         constexpr std::array opacities{0.0F, 0.25F, 1.0F};
         // An entry with passes of its own may have been planned without a mix: it refuses.
         if (one_in(random, 3)) (void)composer.set_opacity(entry, opacities[below(random, 3)]);
@@ -120,12 +120,12 @@ inline std::string described(const Composer& composer) {
     std::string out;
     const auto wire = [&](std::string_view key, Handle handle) {
         if (handle.is_given())
-            out += fmt::format("{} = \"{}\"\n", key, handle == scene_color ? "scene" : composer.desc(handle).name);
+            out += fmt::format("{} = \"{}\"\n", key, handle == scene_color ? "scene" : composer.desc(handle)->name);
     };
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const Handle entry = composer.entry(i);
-        const EntryDesc& inputs = composer.desc(entry);
-        out += fmt::format("\n[[stack]]\neffect = \"{0}\"\noutput = \"{1}\"\n", composer.info(entry).name, inputs.name);
+        const EntryDesc& inputs = *composer.desc(entry);
+        out += fmt::format("\n[[stack]]\neffect = \"{0}\"\noutput = \"{1}\"\n", composer.info(entry)->name, inputs.name);
         if (!inputs.enabled) out += "enabled = false\n";
         wire("input", inputs.input);
         wire("source", inputs.source);
@@ -134,7 +134,7 @@ inline std::string described(const Composer& composer) {
         if (inputs.opacity != 1) out += fmt::format("opacity = {}\n", inputs.opacity);
         if (inputs.blend != BlendMode::Mix) out += fmt::format("blend = {}\n", static_cast<int>(inputs.blend));
         const auto words = composer.words(entry);
-        for (const ParamInfo& row : composer.info(entry).parameters.rows) {
+        for (const ParamInfo& row : composer.info(entry)->parameters.rows) {
             std::string value;
             for (const std::uint32_t word : words.subspan(row.word, row.words)) {
                 if (!value.empty()) value += ", ";

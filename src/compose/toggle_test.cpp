@@ -80,11 +80,11 @@ TEST_F(ComposeToggles, NothingToDoIsOff) {
     const Handle negative = add(composer, "negative");
     test::must(composer.compile(host.compile_desc()));
     (void)host.run(composer);
-    EXPECT_GT(composer.times().size(), 1u);
+    EXPECT_GT(composer.times().passes.size(), 1u);
     test::must(composer.set(bloom, "intensity", 0.0));
     test::must(composer.set_opacity(negative, 0));
     EXPECT_EQ(test::worst_difference(host.run(composer), picture), 0);
-    EXPECT_EQ(composer.times().size(), 1u) << "the pyramid of a bloom of 0 is computed";
+    EXPECT_EQ(composer.times().passes.size(), 1u) << "the pyramid of a bloom of 0 is computed";
 }
 
 TEST_F(ComposeToggles, OpacityMixesInputAndResult) {
@@ -140,7 +140,7 @@ TEST_F(ComposeToggles, OpacityHasItsRules) {
         EXPECT_NE(refused.error().text.find("exposure: opacity"), std::string::npos);
         EXPECT_NE(refused.error().text.find("[0, 1]"), std::string::npos);
     }
-    EXPECT_EQ(composer.desc(exposure).opacity, 1.0f);
+    EXPECT_EQ(composer.desc(exposure)->opacity, 1.0f);
     test::must(composer.compile(host.compile_desc()));
     const ReferenceImage before = host.run(composer);
     const auto refused = composer.set_opacity(plain, 0.5f);
@@ -259,7 +259,7 @@ TEST_F(ComposeValues, NamesAndHandlesFindEntries) {
     EXPECT_FALSE(composer.find("exposure#3"));
     EXPECT_EQ(composer.entry(2), named);
     EXPECT_EQ(composer.size(), 3u);
-    EXPECT_EQ(composer.info(named).name, "exposure");
+    EXPECT_EQ(composer.info(named)->name, "exposure");
 }
 
 }  // namespace

@@ -78,24 +78,24 @@ ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayo
 }
 
 /// All of a CompileDesc that follows from the target alone.
-CompileDesc compile_desc_for(Device& device, const DevelopDesc& desc) {
+CompileDesc compile_desc_for(gpu::Context& context, const DevelopDesc& desc) {
     const bool is_bytes = desc.target == DevelopTarget::Encoded8;
     const VkFormat target = is_bytes ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
-    return {.target = {target, target_usage(device.context(), target)},
+    return {.target = {target, target_usage(context, target)},
             .target_domain = desc.target == DevelopTarget::SceneLinear ? Domain::SceneLinear : Domain::Encoded,
             .encodes_target = desc.target != DevelopTarget::SceneLinear,
             .kernels = desc.kernels,
             .fuse = desc.fuse};
 }
 
-CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const Layers& layers, const DevelopDesc& desc) {
+CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, const Layers& layers, const DevelopDesc& desc) {
     const auto use = [&](std::size_t i) {
         if (layers[i].values.empty()) return ImageUse{};
-        return ImageUse{layers[i].format, shader_usage(device.context(), layers[i].format)};
+        return ImageUse{layers[i].format, shader_usage(context, layers[i].format)};
     };
-    CompileDesc out = compile_desc_for(device, desc);
+    CompileDesc out = compile_desc_for(context, desc);
     out.max_extent = input.extent;
-    out.color = {layers[0].format, shader_usage(device.context(), layers[0].format)};
+    out.color = {layers[0].format, shader_usage(context, layers[0].format)};
     out.depth = use(1);
     out.is_depth_planar = out.depth.format != VK_FORMAT_UNDEFINED;
     out.normals = use(2);
@@ -143,12 +143,12 @@ void fill(const Layer& layer, std::byte* out) {
 }  // namespace
 
 CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const DevelopDesc& desc) {
-    return compile_desc_for(device, input, layers_of(input), desc);
+    return compile_desc_for(device.context(), input, layers_of(input), desc);
 }
 
-CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const DevelopDesc& desc) {
+CompileDesc compile_desc_for(gpu::Context& context, const DeviceFrame& input, const DevelopDesc& desc) {
     const Frame& frame = input.frame;
-    CompileDesc out = compile_desc_for(device, desc);
+    CompileDesc out = compile_desc_for(context, desc);
     out.max_extent = frame.color.used_region().extent;
     out.color = {frame.color.format, input.color_usage};
     out.depth = {frame.depth.format, input.layer_usage};
@@ -162,16 +162,22 @@ CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const Dev
     return out;
 }
 
-Result<> check_extent(Device& device, VkExtent2D extent) {
-    const std::uint32_t limit = device.context().traits.max_image_dimension;
+CompileDesc compile_desc_for(Device& device, const DeviceFrame& input, const DevelopDesc& desc) {
+    return compile_desc_for(device.context(), input, desc);
+}
+
+Result<> check_extent(const gpu::Context& context, VkExtent2D extent) {
+    const std::uint32_t limit = context.traits.max_image_dimension;
     const auto [width, height] = extent;
     if (width > 0 && height > 0 && width <= limit && height <= limit) return {};
     return user_error(
-        fmt::format("size {}x{}: {} allows 1x1 to {}x{}", width, height, device.info().name, limit, limit));
+        fmt::format("size {}x{}: {} allows 1x1 to {}x{}", width, height, context.info.name, limit, limit));
 }
 
+Result<> check_extent(Device& device, VkExtent2D extent) { return check_extent(device.context(), extent); }
+
 struct Developer::State {
-    Device* device = nullptr;
+    std::shared_ptr<gpu::Context> shared_context;
     DevelopDesc desc;
     std::optional<CompileDesc> compiled;
     const Composer* compiled_composer = nullptr;
@@ -182,10 +188,10 @@ struct Developer::State {
     gpu::Image target;
     std::optional<Readback> readback;
 
-    gpu::Context& context() const { return device->context(); }
+    gpu::Context& context() const { return *shared_context; }
 
     Result<> check(VkExtent2D extent, const Layers& layers) const {
-        if (Result<> done = check_extent(*device, extent); !done) return done;
+        if (Result<> done = check_extent(context(), extent); !done) return done;
         const auto [width, height] = extent;
         for (const Layer& layer : layers) {
             const std::size_t wanted = std::size_t{width} * height * layer.given;
@@ -198,7 +204,7 @@ struct Developer::State {
     }
 
     Result<> check(std::span<const ReferenceLight> given) const {
-        const std::uint32_t limit = device->context().traits.max_image_dimension;
+        const std::uint32_t limit = context().traits.max_image_dimension;
         for (std::size_t i = 0; i < given.size(); ++i) {
             const ReferenceLight& light = given[i];
             if (light.cascades.size() > Light::max_cascades)
@@ -206,7 +212,7 @@ struct Developer::State {
                                               Light::max_cascades));
             if (has_cascades(light) && (light.resolution < 1 || light.resolution > limit))
                 return user_error(fmt::format("light {}: cascades of {} texels a side: {} allows 1 to {}", i,
-                                              light.resolution, device->info().name, limit));
+                                              light.resolution, context().info.name, limit));
             const std::size_t wanted = std::size_t{light.resolution} * light.resolution;
             for (const std::vector<float>& cascade : light.cascades)
                 if (cascade.size() != wanted)
@@ -373,7 +379,7 @@ struct Developer::State {
 };
 
 Developer::Developer(Device& device, const DevelopDesc& desc) : state_(std::make_unique<State>()) {
-    state_->device = &device;
+    state_->shared_context = device.shared_context();
     state_->desc = desc;
 }
 Developer::Developer(Developer&&) noexcept = default;
@@ -385,7 +391,7 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DevelopInp
     const Layers layers = layers_of(input);
     if (Result<> done = state.check(input.extent, layers); !done) return failure(std::move(done));
     if (Result<> done = state.check(input.lights); !done) return failure(std::move(done));
-    const CompileDesc wanted = compile_desc_for(*state.device, input, layers, state.desc);
+    const CompileDesc wanted = compile_desc_for(state.context(), input, layers, state.desc);
     if (Result<> done = state.compile(composer, wanted); !done) return failure(std::move(done));
     if (Result<> done = state.make_uploads(input.extent, layers); !done) return failure(std::move(done));
     if (Result<> done = state.prepare_lights(input.lights); !done) return failure(std::move(done));
@@ -405,9 +411,9 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
     State& state = *state_;
     Frame frame = input.frame;
     DARKROOM_ASSERT(frame.color.is_given());
-    if (Result<> done = check_extent(*state.device, frame.color.used_region().extent); !done)
+    if (Result<> done = check_extent(state.context(), frame.color.used_region().extent); !done)
         return failure(std::move(done));
-    const CompileDesc wanted = compile_desc_for(*state.device, input, state.desc);
+    const CompileDesc wanted = compile_desc_for(state.context(), input, state.desc);
     if (Result<> done = state.compile(composer, wanted); !done) return failure(std::move(done));
     frame.target = reference_to(state.target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     std::optional<FrameReadback> readback;

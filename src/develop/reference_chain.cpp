@@ -65,19 +65,26 @@ class Chain {
     }
 
   private:
+    /// size() if it is no entry of the stack.
+    std::size_t index_of(Handle handle) const {
+        std::size_t index = 0;
+        while (index < composer_.size() && composer_.entry(index) != handle) ++index;
+        return index;
+    }
+
     std::size_t value_of(Handle handle, std::size_t entry) const {
         if (handle == scene_color) return 0;
-        if (handle.is_given()) return values_[handle.id - 1];
+        if (handle.is_given()) return values_[index_of(handle)];
         return entry == 0 ? 0 : values_[entry - 1];
     }
 
     Result<> add(std::size_t index) {
         const Handle handle = composer_.entry(index);
-        const EffectInfo& info = composer_.info(handle);
-        const EntryDesc& desc = composer_.desc(handle);
+        const EffectInfo& info = *composer_.info(handle);
+        const EntryDesc& desc = *composer_.desc(handle);
         for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
-            if (wire.is_given() && wire != scene_color && wire.id > index)
-                return user_error(fmt::format("stack entry '{}': it reads the output of a later entry", desc.name));
+            if (wire.is_given() && wire != scene_color && index_of(wire) >= index)
+                return user_error(fmt::format("stack entry '{}': it reads what is not the output of an earlier entry", desc.name));
         const std::size_t from = value_of(desc.input, index);
         values_.push_back(from);
         std::string why = missing_needs(info.needs, input_);

@@ -11,6 +11,7 @@
 #include "core/files.hpp"
 #include "core/hash.hpp"
 #include "gpu/device_facts.hpp"
+#include "gpu/kernel_store.hpp"
 #include "gpu/shader.hpp"
 
 namespace darkroom::gpu {
@@ -71,6 +72,7 @@ Context::Context() = default;
 Context::~Context() {
     if (device != VK_NULL_HANDLE) {
         if (is_owner) vk.DeviceWaitIdle(device);
+        kernels.reset();
         save_pipeline_cache_if_grown();
         if (owns_pipeline_cache_) vk.DestroyPipelineCache(device, pipeline_cache, allocator);
         vk.DestroySampler(device, linear_sampler, allocator);
@@ -152,6 +154,7 @@ Result<> Context::finish() {
     traits.timestamp_period_ns = traits.timestamp_valid_bits > 0 ? static_cast<double>(limits.timestampPeriod) : 0.0;
 
     shaders = std::make_unique<ShaderCompiler>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");
+    kernels = std::make_unique<KernelStore>(*this);
     if (Result<> samplers = create_samplers(); !samplers) return samplers;
     return pipeline_cache == VK_NULL_HANDLE ? create_pipeline_cache() : Result<>{};
 }

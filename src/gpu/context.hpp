@@ -24,6 +24,7 @@
 
 namespace darkroom::gpu {
 
+class KernelStore;
 class ShaderCompiler;
 
 struct Traits {
@@ -78,6 +79,7 @@ class Context {
     std::vector<std::uint32_t> full_screen_vertex;    ///< SPIR-V of the triangle, compiled by the first raster kernel
     std::filesystem::path cache_folder;               ///< empty: none
     std::unique_ptr<ShaderCompiler> shaders;
+    std::unique_ptr<KernelStore> kernels;
 
     /// To the log, from any thread; one thread at a time gets through.
     void say(Severity severity, std::string_view text) const;

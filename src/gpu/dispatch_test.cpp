@@ -64,16 +64,17 @@ TEST(GpuDispatch, AKernelNeedsNoDevice) {
     const KernelSpec spec{.name = "null",
                           .images = {{.name = "scene"}},
                           .outputs = {VK_FORMAT_R8G8B8A8_UNORM},
-                          .constants = "float gain;",
+                          .members = {{BlockMember::Type::Float, "gain"}},
                           .body = "vec4 shade(Pixel pixel) { return load(scene, pixel.texel) * gain; }"};
     const Result<std::unique_ptr<Kernel>> kernel = Kernel::create(context, spec, Stage::Compute);
     ASSERT_TRUE(kernel) << kernel.error().text;
     EXPECT_EQ(context.pipelines_created, 1U);
     const Binding scene;
     const Binding output{.region = {.extent = {33, 16}, .image = {33, 16}}};
-    (*kernel)->record(VK_NULL_HANDLE, {.images = {&scene, 1}, .outputs = {&output, 1}});
-    EXPECT_EQ(calls()["bindings"], 4);
-    EXPECT_EQ(calls()["writes"], 4);
+    (*kernel)->write_set({.images = {&scene, 1}, .outputs = {&output, 1}});
+    (*kernel)->record(VK_NULL_HANDLE, VK_NULL_HANDLE, {&output, 1});
+    EXPECT_EQ(calls()["bindings"], 3);
+    EXPECT_EQ(calls()["writes"], 3);
     EXPECT_EQ(calls()["bind"], 1);
     EXPECT_EQ(calls()["groups"], 301);
     EXPECT_EQ(calls()["module"], 0) << "modules are destroyed";

@@ -11,9 +11,8 @@
 // where IMAGE is a name from KernelSpec::images, and defines
 //     vec4 shade(Pixel pixel)                with one output
 //     void shade(Pixel pixel, out vec4 result[N])   with N
-// or, with KernelSpec::is_compute_only, void kernel(), which calls store_0(texel, value), store_1(...) itself or uses
-// the image2D result_0, result_1, ... and may use every built-in of a compute shader. output_size() is pixel.size.
-// and the constants, for choices that must not cost a branch,
+// It may read KernelSpec::frame and members by their names, custom[i], output_size(), which is pixel.size, and the
+// constants, for choices that must not cost a branch,
 //     bool loads_are_cheap                   this device loads an own texel for less than a linear tap
 //     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
 // Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
@@ -21,8 +20,11 @@
 // a region ends inside its image, a gather does not leave it either, but gives the last whole 2x2 block there.
 // kernel_source() writes the rest: preamble, bindings, region arithmetic, and main() of the stage.
 //
-// Set 0: binding 0 the constants (uniform buffer), binding 1 the pass block (uniform buffer), then the images in
+// Set 0: binding 0 the block of the frame, binding 1 the kernel's own block, both uniform buffers, then the images in
 // order, then, in compute, the outputs.
+//
+// The text depends on what the kernel does and on nothing else: names of passes and entries stay out of it, so that
+// equal kernels are one kernel (gpu/kernel_store.hpp).
 
 #include <vulkan/vulkan.h>
 
@@ -34,16 +36,20 @@
 #include <string>
 #include <vector>
 
+#include "gpu/block.hpp"
+
 namespace darkroom::gpu {
 
 class Context;
 
-/// Buffers of constants are made with this usage, and bound at multiples of Traits::uniform_alignment. Measured on the
+/// Buffers of blocks are made with this usage, and bound at multiples of Traits::uniform_alignment. Measured on the
 /// software driver, 16 scalars from a storage buffer cost 35 to 90 % more than the same ones from a uniform buffer.
-inline constexpr VkBufferUsageFlags constants_usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+inline constexpr VkBufferUsageFlags block_usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
 
-/// Limits of one kernel.
+/// Limits of one kernel: record() works in arrays of these sizes, on the stack. Vulkan promises 16 samplers a stage and 4
+/// attachments.
 inline constexpr std::uint32_t most_images = 16;
+inline constexpr std::uint32_t most_outputs = 8;
 
 enum class Stage : std::uint8_t { Compute, Raster };
 
@@ -59,19 +65,18 @@ struct KernelImage {
 };
 
 struct KernelSpec {
-    std::string name;  ///< debug label, pipeline name
+    std::string name;  ///< of the pipeline, and in errors; not part of the text
     std::vector<KernelImage> images;
     std::vector<VkFormat> outputs;
     bool is_whole = false;        ///< all regions are whole images: no region arithmetic
     bool input_is_twice = false;  ///< constants that the body may ask for, see the top of this file
     bool loads_are_cheap = false;
     bool is_additive = false;  ///< output 0 += result instead of = result
-    /// GLSL members of the constants block, laid out as std430: scalars, vectors, mat3, mat4, arrays of scalars and
-    /// vectors with a literal size. An array can only be indexed. Empty: none.
-    std::string constants;
-    std::uint32_t custom_vectors = 0;  ///< vec4 custom[n] at the end of the pass block: per-invocation constants
+    /// What all kernels of a frame read: laid out by its owner, who outlives the spec. Empty: no such block.
+    std::span<const BlockMember> frame;
+    std::vector<BlockMember> members;  ///< of the kernel's own block, behind what kernel_source() puts there
+    std::uint32_t custom_vectors = 0;  ///< vec4 custom[n] in the own block
     std::string body;                  ///< GLSL: helpers and shade(); may hold #line directives
-    bool is_compute_only = false;      ///< uses shared memory, atomics or barriers: the body is then main itself
     /// Measured for kernels of a pixel: rows suit the software driver, squares the GPUs.
     std::array<std::uint32_t, 2> workgroup{16, 16};
 };
@@ -89,38 +94,47 @@ struct Binding {
     VkImageView view = VK_NULL_HANDLE;  ///< of one mip level where sample_linear() is called
     Region region{};
     bool is_nearest = false;             ///< formats that cannot be filtered
+    bool is_lent = false;                ///< the host's: its handle may stand for another view than last time
     VkSampler sampler = VK_NULL_HANDLE;  ///< instead of the linear or nearest one, which clamp to the edge
     VkImageLayout layout =
         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;  ///< of a sampled image; storage images are GENERAL
 };
 
-/// Bytes of the pass block of a spec, and its content for one invocation: output region, one region an input, custom.
-[[nodiscard]] std::size_t pass_block_size(const KernelSpec& spec);
-void write_pass_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
-                      std::span<const std::array<float, 4>> custom, std::span<std::byte> out);
+/// Bytes of the own block of a spec, and its content for one invocation: output region, one region an input, custom
+/// vectors, and the words of the members.
+[[nodiscard]] std::size_t own_block_size(const KernelSpec& spec);
+void write_own_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
+                     std::span<const std::array<float, 4>> custom, std::span<const std::uint32_t> words,
+                     std::span<std::byte> out);
 
-/// Compiled for one stage: pipeline, layouts. Made at compile time of a chain or on a worker, never while recording.
+/// Compiled for one stage: pipeline, layouts. Made when a stack is compiled or on a worker, never while recording.
 class Kernel {
   public:
     [[nodiscard]] static Result<std::unique_ptr<Kernel>> create(Context& context, const KernelSpec& spec, Stage stage);
+    /// The same from text that kernel_source(spec, stage) gave.
+    [[nodiscard]] static Result<std::unique_ptr<Kernel>> create(Context& context, const KernelSpec& spec, Stage stage,
+                                                                std::string source);
     ~Kernel();
+    /// Without its body.
     [[nodiscard]] const KernelSpec& spec() const;
     [[nodiscard]] Stage stage() const;
+    /// The same for all kernels with the same images, outputs and stage.
     [[nodiscard]] VkDescriptorSetLayout set_layout() const;
 
+    struct Block {
+        VkBuffer buffer = VK_NULL_HANDLE;
+        VkDeviceSize offset = 0, size = 0;
+    };
     struct Invocation {
         VkDescriptorSet set = VK_NULL_HANDLE;  ///< of set_layout(), not in use by an unfinished frame
-        VkBuffer constants = VK_NULL_HANDLE;
-        VkDeviceSize constants_offset = 0, constants_size = 0;
-        VkBuffer pass_block = VK_NULL_HANDLE;
-        VkDeviceSize pass_block_offset = 0;  ///< the caller wrote it with write_pass_block
+        Block frame, own;                      ///< own: the caller wrote it with write_own_block
         std::span<const Binding> images;
         std::span<const Binding> outputs;  ///< all with the same region
-        std::array<std::uint32_t, 2> groups{
-            0, 0};  ///< workgroups of a compute-only kernel; 0: as many as cover the region
     };
-    /// Updates the set and records bind + dispatch (or begin rendering, draw, end). No allocation, no wait.
-    void record(VkCommandBuffer commands, const Invocation& invocation) const;
+    /// Writes all of the set.
+    void write_set(const Invocation& invocation) const;
+    /// Binds and dispatches (or begins rendering, draws, ends), with a set that was written. No allocation, no wait.
+    void record(VkCommandBuffer commands, VkDescriptorSet set, std::span<const Binding> outputs) const;
 
   private:
     Kernel();

@@ -5,7 +5,6 @@
 #include <iterator>
 
 #include "core/assert.hpp"
-#include "gpu/constants_source.hpp"
 #include "gpu/formats.hpp"
 #include "gpu/kernel.hpp"
 #include "gpu/rewrite.hpp"
@@ -17,6 +16,12 @@ namespace {
 constexpr std::array<std::string_view, 6> image_functions{"sample_linear", "load",         "load_clamped",
                                                           "gather_red",    "gather_green", "size"};
 constexpr std::uint32_t first_image_binding = 2;
+constexpr std::uint32_t vectors_per_image = 3;
+
+/// Words of the own block before its members.
+std::uint32_t first_member_word(const KernelSpec& spec) {
+    return 4 * (1 + vectors_per_image * static_cast<std::uint32_t>(spec.images.size()) + spec.custom_vectors);
+}
 
 constexpr std::string_view preamble = R"(#version 460
 #extension GL_GOOGLE_cpp_style_line_directive : require
@@ -55,15 +60,24 @@ bool is_plain_2d(std::string_view sampler_type) {
     return sampler_type == "sampler2D" || sampler_type == "usampler2D" || sampler_type == "isampler2D";
 }
 
-void write_pass_declaration(Text text, const KernelSpec& spec) {
-    fmt::format_to(text, "layout(std140, set = 0, binding = 1) uniform DarkroomPass {{\n    ivec4 darkroom_output;\n");
+void write_blocks(Text text, const KernelSpec& spec, const BlockSource& own) {
+    if (!spec.frame.empty()) {
+        fmt::format_to(text, "layout(std140, set = 0, binding = 0) uniform DarkroomFrame {{\n{}}};\n",
+                       block_source(spec.frame, 0).members);
+    }
+    fmt::format_to(text, "layout(std140, set = 0, binding = 1) uniform DarkroomOwn {{\n    ivec4 darkroom_output;\n");
     for (const KernelImage& image : spec.images) {
         fmt::format_to(text,
                        "    vec4 darkroom_uv_{0};\n    vec4 darkroom_bounds_{0};\n    ivec4 darkroom_region_{0};\n",
                        image.name);
     }
     if (spec.custom_vectors > 0) fmt::format_to(text, "    vec4 custom[{}];\n", spec.custom_vectors);
-    fmt::format_to(text, "}};\n");
+    fmt::format_to(text, "{}}};\n", own.members);
+    // Two blocks on one binding: Vulkan lets resources alias.
+    if (!own.arrays.empty()) {
+        fmt::format_to(text, "layout(std140, set = 0, binding = 1) uniform DarkroomWords {{ uvec4 darkroom_words[{}]; }};\n{}",
+                       own_block_size(spec) / 16, own.accessors);
+    }
 }
 
 void write_storage_input(Text text, const KernelImage& image, std::uint32_t binding, bool is_whole) {
@@ -116,8 +130,7 @@ void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index
     const bool has_qualifier = !traits.glsl_qualifier.empty();
     const auto binding = first_image_binding + static_cast<std::uint32_t>(spec.images.size()) + index;
     const std::string_view separator = has_qualifier ? ", " : "";
-    // A body that is main itself may use atomics on its outputs, which needs a format and forbids writeonly.
-    const std::string_view access = is_read || (spec.is_compute_only && has_qualifier) ? "" : "writeonly ";
+    const std::string_view access = is_read ? "" : "writeonly ";
     fmt::format_to(text, "layout(set = 0, binding = {}{}{}) uniform {}{}image2D result_{};\n", binding, separator,
                    traits.glsl_qualifier, access, prefix_of(traits.numeric), index);
     const std::string_view old = is_read ? " + imageLoad(result_0, place)" : "";
@@ -150,10 +163,6 @@ void write_shade_call(Text text, std::size_t output_count) {
 }
 
 void write_main(Text text, const KernelSpec& spec, Stage stage) {
-    if (spec.is_compute_only) {
-        fmt::format_to(text, "void main() {{ kernel(); }}\n");
-        return;
-    }
     const bool is_compute = stage == Stage::Compute;
     const std::string_view place =
         is_compute ? "ivec2(gl_GlobalInvocationID.xy)" : "ivec2(gl_FragCoord.xy) - darkroom_output.xy";
@@ -206,7 +215,6 @@ std::array<std::int32_t, 4> rectangle(const Region& region) {
 }  // namespace
 
 std::string kernel_source(const KernelSpec& spec, Stage stage) {
-    DARKROOM_ASSERT(!spec.is_compute_only || stage == Stage::Compute);
     std::string source(preamble);
     const Text text = std::back_inserter(source);
     if (stage == Stage::Compute) {
@@ -215,7 +223,8 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
     }
     fmt::format_to(text, "const bool loads_are_cheap = {};\nconst bool input_is_twice = {};\n", spec.loads_are_cheap,
                    spec.input_is_twice);
-    write_pass_declaration(text, spec);
+    const BlockSource own = block_source(spec.members, first_member_word(spec));
+    write_blocks(text, spec, own);
     source += pixel_functions;
     std::vector<std::string_view> names;
     for (const KernelImage& image : spec.images) {
@@ -228,26 +237,24 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
         names.emplace_back(image.name);
     }
     write_outputs(text, spec, stage);
-    const ConstantsSource constants = constants_source(spec.constants);
-    source += constants.text;
-    const std::string body = rewrite_indexing(rewrite_image_calls(spec.body, image_functions, names), constants.arrays);
-    fmt::format_to(text, "#line 1 \"{}\"\n{}\n", spec.name, body);
-    fmt::format_to(text, "#line 1 \"{}: main\"\n", spec.name);
+    const std::string body = rewrite_indexing(rewrite_image_calls(spec.body, image_functions, names), own.arrays);
+    fmt::format_to(text, "#line 1 \"kernel\"\n{}\n#line 1 \"kernel: main\"\n", body);
     write_main(text, spec, stage);
     return source;
 }
 
-std::size_t pass_block_size(const KernelSpec& spec) {
+std::size_t own_block_size(const KernelSpec& spec) {
     constexpr std::size_t vector_size = 16;
-    constexpr std::size_t vectors_per_image = 3;
-    return vector_size * (1 + vectors_per_image * spec.images.size() + spec.custom_vectors);
+    const std::size_t size = 4 * (std::size_t{first_member_word(spec)} + word_count(spec.members));
+    return (size + vector_size - 1) / vector_size * vector_size;
 }
 
-void write_pass_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
-                      std::span<const std::array<float, 4>> custom, std::span<std::byte> out) {
+void write_own_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
+                     std::span<const std::array<float, 4>> custom, std::span<const std::uint32_t> words,
+                     std::span<std::byte> out) {
     DARKROOM_ASSERT(images.size() == spec.images.size());
     DARKROOM_ASSERT(custom.size() == spec.custom_vectors);
-    DARKROOM_ASSERT(out.size() >= pass_block_size(spec));
+    DARKROOM_ASSERT(out.size() >= own_block_size(spec));
     append(out, rectangle(output));
     for (const Binding& image : images) {
         const Region& region = image.region;
@@ -258,6 +265,7 @@ void write_pass_block(const KernelSpec& spec, const Region& output, std::span<co
         append(out, rectangle(region));
     }
     for (const std::array<float, 4>& vector : custom) append(out, vector);
+    if (!words.empty()) std::memcpy(out.data(), words.data(), words.size_bytes());
 }
 
 }  // namespace darkroom::gpu

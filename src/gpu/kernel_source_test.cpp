@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "gpu/constants_source.hpp"
+#include "gpu/glsl_scan.hpp"
 #include "gpu/kernel.hpp"
 #include "gpu/rewrite.hpp"
 
@@ -42,23 +42,31 @@ TEST(GpuRewrite, LeavesEverythingElseAlone) {
 }
 
 TEST(GpuRewrite, TurnsIndexingIntoCalls) {
-    const std::vector<std::string> arrays{"curve", "weights"};
+    const std::vector<std::string_view> arrays{"curve", "weights"};
     EXPECT_EQ(rewrite_indexing("curve[i + weights[other[2]]] + x[1]", arrays),
               "curve_at(i + weights_at(other[2])) + x[1]");
     EXPECT_EQ(rewrite_indexing("// curve[1]\na.curve[1] curve", arrays), "// curve[1]\na.curve[1] curve");
 }
 
-TEST(GpuConstantsSource, FollowsTheLayoutOfStd430) {
-    const ConstantsSource source =
-        constants_source("float a; // first\nfloat curve[3];\nvec3 b;\nfloat c, d; /* e */ vec2 pairs[2]; uint f;");
-    for (const std::string_view part :
-         {"layout(offset = 0) float a;", "layout(offset = 16) vec3 b;", "layout(offset = 28) float c;",
-          "layout(offset = 32) float d;", "layout(offset = 56) uint f;", "uint word = 1u + index * 1u;",
-          "uint word = 10u + index * 2u;", "uvec4 darkroom_words[4]"}) {
-        EXPECT_TRUE(has(source.text, part)) << part << "\n" << source.text;
-    }
-    EXPECT_EQ(source.arrays, (std::vector<std::string>{"curve", "pairs"}));
-    EXPECT_TRUE(constants_source("").text.empty());
+TEST(GpuBlock, ScalarsFollowEachOtherAndArraysAreReadAsWords) {
+    using enum BlockMember::Type;
+    const std::vector<BlockMember> members{{Float, "a"}, {Float, "curve", 3}, {Vec4, "b"}, {Int, "c"}, {Uint, "flags", 2}};
+    const BlockSource source = block_source(members, 4);
+    for (const std::string_view part : {"layout(offset = 16) float a;", "layout(offset = 32) vec4 b;", "layout(offset = 48) int c;"})
+        EXPECT_TRUE(has(source.members, part)) << part << "\n" << source.members;
+    for (const std::string_view part : {"float curve_at(uint index) { uint word = 5u + index;", "uint flags_at(int index)", "word = 13u"})
+        EXPECT_TRUE(has(source.accessors, part)) << part << "\n" << source.accessors;
+    EXPECT_EQ(source.arrays, (std::vector<std::string_view>{"curve", "flags"}));
+    EXPECT_EQ(word_count(members), 11u);
+    EXPECT_EQ(word_count({}), 0u);
+}
+
+TEST(GpuKernelSource, DoesNotDependOnNames) {
+    KernelSpec one{.name = "bloom.downsample 1", .images = {{.name = "above"}}, .outputs = {VK_FORMAT_R8G8B8A8_UNORM}, .body = "body"};
+    KernelSpec other = one;
+    other.name = "bloom#2 \"quoted\"\n.downsample 2";
+    for (const Stage stage : {Stage::Compute, Stage::Raster})
+        EXPECT_EQ(kernel_source(one, stage), kernel_source(other, stage));
 }
 
 TEST(GpuKernelSource, DiffersByStageOnlyWhereItMust) {
@@ -77,7 +85,7 @@ TEST(GpuKernelSource, DiffersByStageOnlyWhereItMust) {
     EXPECT_TRUE(has(raster, "texture(scene, darkroom_place_scene(uv))"));
     EXPECT_TRUE(has(raster, "layout(location = 0) out vec4 result_0;"));
     EXPECT_TRUE(has(raster, "return sample_linear_scene(pixel.uv);"));
-    EXPECT_FALSE(has(raster, "DarkroomConstants"));
+    EXPECT_FALSE(has(raster, "DarkroomFrame"));
 }
 
 TEST(GpuKernelSource, FormatsWithoutAGlslNameAreWrittenWithoutOne) {
@@ -85,15 +93,19 @@ TEST(GpuKernelSource, FormatsWithoutAGlslNameAreWrittenWithoutOne) {
     EXPECT_TRUE(has(kernel_source(spec, Stage::Compute), "binding = 2) uniform writeonly image2D result_0;"));
 }
 
-TEST(GpuPassBlock, DescribesRegions) {
-    const KernelSpec spec{.name = "test", .images = {{.name = "scene"}}, .custom_vectors = 1};
-    ASSERT_EQ(pass_block_size(spec), 80U);
-    std::array<std::byte, 80> block{};
+TEST(GpuOwnBlock, DescribesRegionsAndHoldsMembers) {
+    const KernelSpec spec{.name = "test",
+                          .images = {{.name = "scene"}},
+                          .members = {{BlockMember::Type::Float, "gain"}, {BlockMember::Type::Uint, "mode"}},
+                          .custom_vectors = 1};
+    ASSERT_EQ(own_block_size(spec), 96U);
+    std::array<std::byte, 96> block{};
     const Binding scene{.region = {.offset = {16, 0}, .extent = {32, 64}, .image = {64, 64}}};
     const std::array<float, 4> custom{1, 2, 3, 4};
-    write_pass_block(spec, {.offset = {1, 2}, .extent = {3, 4}, .image = {9, 9}}, {&scene, 1}, {&custom, 1}, block);
-    std::array<std::int32_t, 20> integers{};
-    std::array<float, 20> floats{};
+    const std::array<std::uint32_t, 2> words{41, 42};
+    write_own_block(spec, {.offset = {1, 2}, .extent = {3, 4}, .image = {9, 9}}, {&scene, 1}, {&custom, 1}, words, block);
+    std::array<std::int32_t, 24> integers{};
+    std::array<float, 24> floats{};
     std::memcpy(integers.data(), block.data(), block.size());
     std::memcpy(floats.data(), block.data(), block.size());
     EXPECT_TRUE(std::ranges::equal(std::span(integers).first(4), std::array{1, 2, 3, 4}));
@@ -105,6 +117,8 @@ TEST(GpuPassBlock, DescribesRegions) {
     EXPECT_EQ(floats[11], 1.0F);
     EXPECT_TRUE(std::ranges::equal(std::span(integers).subspan(12, 4), std::array{16, 0, 32, 64}));
     EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(16, 4), custom));
+    EXPECT_EQ(integers[20], 41);
+    EXPECT_EQ(integers[21], 42);
 }
 
 }  // namespace

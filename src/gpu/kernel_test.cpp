@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <limits>
 
 #include "gpu/test_run.hpp"
@@ -125,30 +126,26 @@ TEST(GpuKernel, FilteringDoesNotSeeWhatLiesOutsideTheRegion) {
     }
 }
 
-TEST(GpuKernel, ReadsConstantsCustomVectorsAndStorageImages) {
-    const KernelSpec spec{.name = "constants",
+TEST(GpuKernel, ReadsMembersCustomVectorsAndStorageImages) {
+    const KernelSpec spec{.name = "members",
                           .images = {{.name = "scene", .storage_format = half4}},
                           .outputs = {half4, VK_FORMAT_R8G8B8A8_UNORM},
-                          .constants = "float gain; int count; float curve[5]; vec2 pair; uint flag;",
+                          .members = {{BlockMember::Type::Float, "gain"},
+                                      {BlockMember::Type::Int, "count"},
+                                      {BlockMember::Type::Float, "curve", 5},
+                                      {BlockMember::Type::Vec4, "pair"},
+                                      {BlockMember::Type::Uint, "flag"}},
                           .custom_vectors = 2,
                           .body =
                               "void shade(Pixel pixel, out vec4 result[2]) {\n"
                               "    float sum = 0.0;\n"
                               "    for (int i = 0; i < count; ++i) sum += curve[i];\n"
                               "    result[0] = load(scene, pixel.texel) * gain + custom[1];\n"
-                              "    result[1] = vec4(sum, pair, flag == 7u ? 1.0 : 0.0);\n"
+                              "    result[1] = vec4(sum, pair.yz, flag == 7u ? 1.0 : 0.0);\n"
                               "}"};
-    struct Constants {
-        float gain = 2.0F;
-        std::int32_t count = 5;
-        std::array<float, 5> curve{0.1F, 0.05F, 0.05F, 0.1F, 0.1F};
-        float padding = 0;
-        std::array<float, 2> pair{0.2F, 0.6F};
-        std::uint32_t flag = 7;
-    };
-    std::vector<std::byte> constants(sizeof(Constants));
-    const Constants values;
-    std::memcpy(constants.data(), &values, sizeof values);
+    const auto word = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+    const std::vector<std::uint32_t> words{word(2.0F),  5, word(0.1F), word(0.05F), word(0.05F), word(0.1F), word(0.1F), 0,
+                                           word(-1.0F), word(0.2F), word(0.6F), word(-1.0F), 7};
     for (const Stage stage : {Stage::Compute, Stage::Raster}) {
         Picture in = test::upload(context(),
                                   test::make_pixels(8, 8,
@@ -163,7 +160,7 @@ TEST(GpuKernel, ReadsConstantsCustomVectorsAndStorageImages) {
                          {.inputs = {&in},
                           .outputs = {&first, &second},
                           .custom = {{0, 0, 0, 0}, {10, 20, 30, 40}},
-                          .constants = constants});
+                          .words = words});
         EXPECT_EQ(test::download(context(), first).at(7, 7), (std::array{12.0F, 24.0F, 36.0F, 48.0F}));
         const std::array<float, 4> expected{0.4F, 0.2F, 0.6F, 1.0F};
         const std::array<float, 4> result = test::download(context(), second).at(3, 5);
@@ -171,29 +168,6 @@ TEST(GpuKernel, ReadsConstantsCustomVectorsAndStorageImages) {
             EXPECT_NEAR(result[channel], expected[channel], 0.5 / 255.0 + 1e-5);
         }
     }
-}
-
-TEST(GpuKernel, RunsComputeOnlyBodies) {
-    const KernelSpec spec{.name = "reverse",
-                          .images = {{.name = "scene"}},
-                          .outputs = {VK_FORMAT_R32G32B32A32_SFLOAT},
-                          .body =
-                              "shared vec4 row[16];\n"
-                              "void kernel() {\n"
-                              "    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);\n"
-                              "    row[gl_LocalInvocationID.x] = load(scene, texel);\n"
-                              "    barrier();\n"
-                              "    store_0(texel, row[15u - gl_LocalInvocationID.x]);\n"
-                              "}",
-                          .is_compute_only = true,
-                          .workgroup = {16, 1}};
-    const Pixels pixels = scene(16, 4);
-    Picture in = test::upload(context(), pixels, VK_FORMAT_R32G32B32A32_SFLOAT);
-    Picture out = test::blank(context(), {16, 4}, VK_FORMAT_R32G32B32A32_SFLOAT);
-    const std::unique_ptr<Kernel> kernel = must(Kernel::create(context(), spec, Stage::Compute));
-    test::run_kernel(context(), *kernel, {.inputs = {&in}, .outputs = {&out}});
-    EXPECT_EQ(test::download(context(), out).at(3, 2), pixels.at(12, 2));
-    EXPECT_FALSE(Kernel::create(context(), spec, Stage::Raster));
 }
 
 TEST(GpuKernel, ErrorsNameFileAndLineOfTheBody) {
@@ -208,8 +182,6 @@ TEST(GpuKernel, PrefersTheMeasuredStageOnTheSoftwareDriver) {
     if (!context().traits.is_software) GTEST_SKIP() << "not the software driver";
     KernelSpec spec = spec_of(bodies[0], VK_FORMAT_R8G8B8A8_UNORM);
     EXPECT_EQ(preferred_stage(context(), spec), Stage::Raster);
-    spec.is_compute_only = true;
-    EXPECT_EQ(preferred_stage(context(), spec), Stage::Compute);
     spec = {.name = "srgb", .outputs = {VK_FORMAT_R8G8B8A8_SRGB}};
     EXPECT_EQ(preferred_stage(context(), spec), Stage::Raster);
 }

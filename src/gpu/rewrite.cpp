@@ -2,72 +2,48 @@
 #include "gpu/rewrite.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <vector>
+
+#include "gpu/glsl_scan.hpp"
 
 namespace darkroom::gpu {
 
 namespace {
 
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-bool starts_word(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-bool continues_word(char c) { return starts_word(c) || is_digit(c); }
-bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
+using enum Token::Kind;
 
-enum class Kind { Blank, Word, Number, Mark };
-struct Token {
-    Kind kind = Kind::Mark;
-    std::size_t end = 0;
-};
-
-/// The token at `at`: a comment or one space, a word, a number (or its part before a dot), or one other character.
-Token token_at(std::string_view text, std::size_t at) {
-    if (text.substr(at, 2) == "//") return {Kind::Blank, std::min(text.find('\n', at), text.size())};
-    if (text.substr(at, 2) == "/*") {
-        const std::size_t close = text.find("*/", at + 2);
-        return {Kind::Blank, close == std::string_view::npos ? text.size() : close + 2};
-    }
-    if (is_space(text[at])) return {Kind::Blank, at + 1};
-    if (!continues_word(text[at])) return {Kind::Mark, at + 1};
-    std::size_t end = at;
-    while (end < text.size() && continues_word(text[end])) ++end;
-    return {is_digit(text[at]) ? Kind::Number : Kind::Word, end};
-}
-
-std::size_t skip_blank(std::string_view text, std::size_t at) {
-    while (at < text.size()) {
-        const Token token = token_at(text, at);
-        if (token.kind != Kind::Blank) break;
-        at = token.end;
-    }
-    return at;
-}
-
-char character_at(std::string_view text, std::size_t at) { return at < text.size() ? text[at] : '\0'; }
-
-bool contains(std::span<const std::string_view> words, std::string_view word) {
+template <class Range>
+bool contains(const Range& words, std::string_view word) {
     return std::ranges::find(words, word) != words.end();
 }
 
+/// Takes tokens up to one that is not blank, which it returns; what was blank is added to `blanks`.
+Token take_solid(GlslScanner& scanner, std::string& blanks) {
+    Token token = scanner.next();
+    for (; token.kind == Blank; token = scanner.next()) blanks += token.text;
+    return token;
+}
+
 struct Call {
-    std::string_view image;  ///< empty: not a call to rewrite
-    std::size_t image_begin = 0;
-    std::size_t image_end = 0;
-    std::size_t next = 0;  ///< the comma or parenthesis after the image
+    std::string_view image;    ///< empty: not a call to rewrite
+    std::string before_open;   ///< blanks between the function and its parenthesis
+    std::string inside;        ///< blanks around the image
+    GlslScanner after;         ///< behind what follows the image, a comma or parenthesis
+    bool has_more = false;     ///< it was a comma
 };
 
-/// A call of the function whose name ends at `at`.
-Call read_call(std::string_view text, std::size_t at, std::span<const std::string_view> images) {
-    const std::size_t open = skip_blank(text, at);
-    if (character_at(text, open) != '(') return {};
-    const std::size_t begin = skip_blank(text, open + 1);
-    if (begin >= text.size()) return {};
-    const std::size_t end = token_at(text, begin).end;
-    const std::string_view image = text.substr(begin, end - begin);
-    const std::size_t next = skip_blank(text, end);
-    const bool ends_argument = character_at(text, next) == ',' || character_at(text, next) == ')';
-    if (!contains(images, image) || !ends_argument) return {};
-    return {image, begin, end, next};
+/// A call of the function whose name `scanner` has just passed.
+Call read_call(GlslScanner scanner, std::span<const std::string_view> images) {
+    Call call{.after = scanner};
+    if (take_solid(scanner, call.before_open).text != "(") return call;
+    const Token image = take_solid(scanner, call.inside);
+    if (image.kind != Word || !contains(images, image.text)) return call;
+    const std::string_view mark = take_solid(scanner, call.inside).text;
+    if (mark != "," && mark != ")") return call;
+    call.has_more = mark == ",";
+    call.image = image.text;
+    call.after = scanner;
+    return call;
 }
 
 }  // namespace
@@ -75,51 +51,41 @@ Call read_call(std::string_view text, std::size_t at, std::span<const std::strin
 std::string rewrite_image_calls(std::string_view body, std::span<const std::string_view> functions,
                                 std::span<const std::string_view> images) {
     std::string result;
-    std::size_t at = 0;
-    bool is_member = false;  // after a dot: a field, not a function
-    while (at < body.size()) {
-        const Token token = token_at(body, at);
-        const std::string_view text = body.substr(at, token.end - at);
-        const bool may_call = token.kind == Kind::Word && !is_member && contains(functions, text);
-        const Call call = may_call ? read_call(body, token.end, images) : Call{};
-        if (token.kind != Kind::Blank) is_member = text == ".";
-        result += text;
-        at = token.end;
+    result.reserve(body.size() + body.size() / 4);
+    bool drops_spaces = false;  // after the comma that went
+    GlslScanner scanner(body);
+    for (Token token = scanner.next(); token.kind != End; token = scanner.next()) {
+        if (drops_spaces && token.kind == Blank) token.text.remove_prefix(std::min(token.text.find_first_not_of(' '), token.text.size()));
+        drops_spaces = false;
+        result += token.text;
+        if (token.kind != Word || !contains(functions, token.text)) continue;
+        const Call call = read_call(scanner, images);
         if (call.image.empty()) continue;
-        result += '_';
-        result += call.image;
-        result += body.substr(token.end, call.image_begin - token.end);
-        result += body.substr(call.image_end, call.next - call.image_end);
-        at = call.next;
-        if (body[at] != ',') continue;
-        ++at;
-        while (character_at(body, at) == ' ') ++at;
+        result.append("_").append(call.image).append(call.before_open).append("(").append(call.inside);
+        if (!call.has_more) result += ')';
+        drops_spaces = call.has_more;
+        scanner = call.after;
     }
     return result;
 }
 
-std::string rewrite_indexing(std::string_view body, std::span<const std::string> arrays) {
+std::string rewrite_indexing(std::string_view body, std::span<const std::string_view> arrays) {
+    if (arrays.empty()) return std::string(body);
     std::string result;
     std::vector<bool> brackets;  // of those open now: whether it was rewritten
-    bool is_member = false;
-    for (std::size_t at = 0; at < body.size();) {
-        const Token token = token_at(body, at);
-        const std::string_view text = body.substr(at, token.end - at);
-        at = token.end;
-        const bool is_array = token.kind == Kind::Word && !is_member &&
-                              std::ranges::find(arrays, text) != arrays.end() && character_at(body, at) == '[';
-        if (token.kind != Kind::Blank) is_member = text == ".";
-        if (is_array) {
-            result += text;
-            result += "_at(";
+    GlslScanner scanner(body);
+    for (Token token = scanner.next(); token.kind != End; token = scanner.next()) {
+        if (token.kind == Word && contains(arrays, token.text) && scanner.peek().text == "[") {
+            result.append(token.text).append("_at(");
+            std::string blanks;
+            take_solid(scanner, blanks);
             brackets.push_back(true);
-            ++at;
-        } else if (text == "]" && !brackets.empty()) {
+        } else if (token.text == "]" && !brackets.empty()) {
             result += brackets.back() ? ')' : ']';
             brackets.pop_back();
         } else {
-            if (text == "[") brackets.push_back(false);
-            result += text;
+            if (token.text == "[") brackets.push_back(false);
+            result += token.text;
         }
     }
     return result;

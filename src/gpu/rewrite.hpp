@@ -15,6 +15,6 @@ namespace darkroom::gpu {
                                               std::span<const std::string_view> images);
 
 /// curve[i + 1] becomes curve_at(i + 1), for each of `arrays`.
-[[nodiscard]] std::string rewrite_indexing(std::string_view body, std::span<const std::string> arrays);
+[[nodiscard]] std::string rewrite_indexing(std::string_view body, std::span<const std::string_view> arrays);
 
 }  // namespace darkroom::gpu

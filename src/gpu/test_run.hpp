@@ -102,7 +102,7 @@ struct Run {
     std::vector<Region> input_regions;  ///< empty: the whole pictures
     Region output_region{};             ///< extent 0: the whole picture
     std::vector<std::array<float, 4>> custom;
-    std::vector<std::byte> constants;
+    std::vector<std::uint32_t> words;  ///< of spec.members
 };
 
 /// Runs the kernel once and leaves every picture in the layout in which it was used.
@@ -123,15 +123,12 @@ inline void run_kernel(Context& context, const Kernel& kernel, const Run& run) {
     for (const Picture* picture : run.outputs) {
         outputs.push_back({.view = picture->image.mip_views[0], .region = region});
     }
-    const Buffer pass = must(Buffer::create(context, pass_block_size(spec), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-                                            Memory::Kind::Upload, "test pass block"));
-    write_pass_block(spec, region, images, run.custom, {pass.memory.mapped, pass_block_size(spec)});
-    const VkDeviceSize constants_size = std::max<VkDeviceSize>(run.constants.size(), 16);
-    const Buffer constants =
-        must(Buffer::create(context, constants_size, constants_usage, Memory::Kind::Upload, "test constants"));
-    std::ranges::copy(run.constants, constants.memory.mapped);
+    const std::size_t own_size = own_block_size(spec);
+    const Buffer own = must(Buffer::create(context, own_size, block_usage, Memory::Kind::Upload, "test block"));
+    write_own_block(spec, region, images, run.custom, run.words, {own.memory.mapped, own_size});
     const VkDescriptorSetLayout layout = kernel.set_layout();
     const DescriptorSets sets = must(DescriptorSets::create(context, {&layout, 1}));
+    kernel.write_set({.set = sets.sets[0], .own = {own.handle, 0, own_size}, .images = images, .outputs = outputs});
     must(submit_and_wait(context, "running " + spec.name, [&](VkCommandBuffer commands) {
         const auto use = [&](Picture& picture, VkImageLayout wanted) {
             transition(context, commands, picture.image, picture.layout, wanted);
@@ -144,12 +141,7 @@ inline void run_kernel(Context& context, const Kernel& kernel, const Run& run) {
         for (Picture* picture : run.outputs) {
             use(*picture, is_compute ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
         }
-        kernel.record(commands, {.set = sets.sets[0],
-                                 .constants = constants.handle,
-                                 .constants_size = constants_size,
-                                 .pass_block = pass.handle,
-                                 .images = images,
-                                 .outputs = outputs});
+        kernel.record(commands, sets.sets[0], outputs);
     }));
 }
 

@@ -41,12 +41,10 @@ class Runner {
             kernels_.push_back(must(gpu::Kernel::create(context_, spec, gpu::Stage::Compute)));
             layouts.push_back(kernels_.back()->set_layout());
             blocks_.push_back(
-                must(gpu::Buffer::create(context_, gpu::pass_block_size(spec), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
-                                         gpu::Memory::Kind::Upload, "test pass block")));
+                must(gpu::Buffer::create(context_, gpu::own_block_size(spec), gpu::block_usage,
+                                         gpu::Memory::Kind::Upload, "test block")));
         }
         sets_ = must(gpu::DescriptorSets::create(context_, layouts));
-        constants_ =
-            must(gpu::Buffer::create(context_, 16, gpu::constants_usage, gpu::Memory::Kind::Upload, "test constants"));
     }
 
     /// One frame; waits for it. `lent`: one an import, in the layout it has before and after.
@@ -92,18 +90,16 @@ class Runner {
         for (const Read& read : pass.reads)
             images.push_back(bind(schedule->slot_of(read.version, read.instead), view, extent));
         const gpu::Binding output = bind(schedule->slot_of(compiled->made(index)[0]), view, extent);
-        const bool adds = pass.reads.empty() || pass.name.starts_with("add");
         const float added = pass.reads.empty() || pass.name.starts_with("add") ? value : 0.0F;
         const std::array<std::array<float, 4>, 1> custom{{{added, added, added, added}}};
         const gpu::KernelSpec& spec = kernels_[index]->spec();
-        gpu::write_pass_block(spec, output.region, images, custom,
-                              {blocks_[index].memory.mapped, gpu::pass_block_size(spec)});
-        kernels_[index]->record(commands, {.set = sets_.sets[index],
-                                           .constants = constants_.handle,
-                                           .constants_size = 16,
-                                           .pass_block = blocks_[index].handle,
-                                           .images = images,
-                                           .outputs = {&output, 1}});
+        const std::size_t size = gpu::own_block_size(spec);
+        gpu::write_own_block(spec, output.region, images, custom, {}, {blocks_[index].memory.mapped, size});
+        kernels_[index]->write_set({.set = sets_.sets[index],
+                                    .own = {blocks_[index].handle, 0, size},
+                                    .images = images,
+                                    .outputs = {&output, 1}});
+        kernels_[index]->record(commands, sets_.sets[index], {&output, 1});
     }
 
     gpu::Context& context_ = gpu::test::context();
@@ -111,7 +107,6 @@ class Runner {
     std::vector<std::unique_ptr<gpu::Kernel>> kernels_;
     std::vector<gpu::Buffer> blocks_;
     gpu::DescriptorSets sets_;
-    gpu::Buffer constants_;
 };
 
 }  // namespace darkroom::graph::test

@@ -54,6 +54,13 @@ PassImage Builder::remember_new(graph::Version version, const graph::ImageDesc& 
     return remember({.version = version, .first_written = {}, .format = desc.format});
 }
 
+std::uint32_t Builder::from_max_extent(std::uint32_t (*question)(VkExtent2D)) {
+    const graph::Size size = planner_.values_[input_].size;
+    const std::uint32_t answer = question(size.of(planner_.desc_.max_extent));
+    planner_.program_.extent_answers.push_back({question, size, answer});
+    return answer;
+}
+
 PassImage Builder::create(const PassImageDesc& desc) {
     const graph::ImageDesc image = image_desc(desc);
     return remember_new(planner_.program_.graph.create(image), image);
@@ -61,9 +68,11 @@ PassImage Builder::create(const PassImageDesc& desc) {
 
 PassBuilder::History Builder::history(const PassImageDesc& desc) {
     const graph::ImageDesc image = image_desc(desc);
-    const graph::Graph::History made = planner_.program_.graph.history(image);
     auto& entries = planner_.program_.history_entries;
-    if (entries.empty() || entries.back() != entry_) entries.push_back(entry_);
+    const auto number = static_cast<std::uint32_t>(std::ranges::count(entries, entry_));
+    const graph::Graph::History made =
+        planner_.program_.graph.history(image, {planner_.stack_[entry_].history_owner, number});
+    entries.push_back(entry_);
     return {remember_new(made.current, image), remember_new(made.previous, image)};
 }
 
@@ -120,8 +129,8 @@ PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&)
     auto found = planner_.shared_.find(key);
     if (found == planner_.shared_.end()) {
         // A toggle of its own, which further effects join; what is shared may itself need something shared.
-        planner_.program_.toggles.push_back({});
-        const auto own = static_cast<std::int32_t>(planner_.program_.toggles.size() - 1);
+        planner_.program_.gates.push_back({});
+        const auto own = static_cast<std::int32_t>(planner_.program_.gates.size() - 1);
         const std::int32_t outer = std::exchange(shared_toggle_, own);
         const std::vector<std::int32_t> outer_needs = std::exchange(shared_needs_, {});
         const PassImage made = make(*this);
@@ -139,7 +148,7 @@ PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&)
     }
     const Planner::Shared& image = found->second;
     const auto join = [&](std::int32_t index) {
-        Gate& toggle = planner_.program_.toggles[static_cast<std::size_t>(index)];
+        Gate& toggle = planner_.program_.gates[static_cast<std::size_t>(index)];
         toggle.entries.push_back(entry_);
         toggle.conditions.push_back(condition);
         shared_needs_.push_back(index);
@@ -153,9 +162,9 @@ PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&)
 }
 
 PassImage Builder::table(const TableDesc& desc) {
-    planner_.program_.constants.push_back({.desc = desc});
+    planner_.program_.fixed_images.push_back({.desc = desc});
     return remember(
-        {.format = desc.format, .table = static_cast<std::uint32_t>(planner_.program_.constants.size() - 1)});
+        {.format = desc.format, .table = static_cast<std::uint32_t>(planner_.program_.fixed_images.size() - 1)});
 }
 
 PassInput Builder::input_of(const Image& image, std::uint32_t mip_level) const {
@@ -166,16 +175,16 @@ PassInput Builder::input_of(const Image& image, std::uint32_t mip_level) const {
 PassImage Builder::add(const KernelPassDesc& desc) {
     const Entry& entry = planner_.stack_[entry_];
     if (!error.empty() || desc.output.index >= images_.size()) return {};
-    ProgramPass pass{
-        .name = fmt::format("{}.{}", entry.desc.name, desc.name), .entry = entry_, .constants = desc.constants};
-    pass.boundary = fmt::format("{} has passes of its own", entry.desc.name);
-
-    std::vector<std::string> names;
+    ProgramPass pass{.name = fmt::format("{}.{}", entry.desc.name, desc.name),
+                     .boundary = fmt::format("{} has passes of its own", entry.desc.name),
+                     .is_fused = false,
+                     .constants = desc.constants};
+    FusedStep step{.info = entry.info, .entry = entry_, .name = entry.desc.name};
     for (const KernelPassDesc::Input& input : desc.inputs) {
         if (input.image.index >= images_.size()) return {};
-        names.push_back(input.name);
+        step.images.push_back(input.name);
         const PassInput from = input_of(images_[input.image.index], input.mip_level);
-        gpu::KernelImage image = planner_.kernel_image(input.name + entry_suffix(entry_), from);
+        gpu::KernelImage image = planner_.kernel_image(input.name + place_suffix(0), from);
         const VkFormat format = from.table == no_table ? planner_.storage_format(from.version) : VK_FORMAT_UNDEFINED;
         if (input.is_loaded && planner_.traits_.loads_are_cheap && format != VK_FORMAT_UNDEFINED) {
             image.loads_by = image.name + "_texels";
@@ -186,19 +195,19 @@ PassImage Builder::add(const KernelPassDesc& desc) {
         pass.spec.images.push_back(std::move(image));
     }
     Image written = images_[desc.output.index];
-    auto text = instance_text(*entry.info, desc.shader, entry_, names);
+    auto text = planner_.text_of(*entry.info, std::string(desc.shader), 0, step.images);
     if (!text) {
         error = text.error().text;
         return {};
     }
+    step.text = std::move(*text);
+    if (step.text->asks_parameters) append_parameter_members(*entry.info, 0, pass.spec.members);
+    pass.steps.push_back(std::move(step));
     pass.spec.name = pass.name;
     pass.spec.outputs = {written.format};
     pass.spec.is_additive = desc.is_additive;
     pass.spec.custom_vectors = desc.custom_vectors;
-    pass.spec.constants = frame_members() + entry_members(*entry.info, entry_, planner_.program_.block_words[entry_]);
-    pass.info = entry.info;
-    pass.text = std::move(*text);
-    pass.spec.body = effect_pass_body(pass, {});
+    pass.spec.frame = frame_members();
     pass.toggle = shared_toggle_;
     if (pass.toggle < 0) {
         pass.toggle =
@@ -227,7 +236,7 @@ void Builder::add_side(std::string name, PassImage image, const PassVector& neut
         const graph::Version constant = planner_.import_neutral(format, neutral);
         input.is_loaded = is_loaded && is_known && planner_.facts_.at(constant.index).format == format;
         if (is_known)
-            planner_.fall_back(images_[image.index].first_written, constant);
+            input.instead = constant;
         else
             input.version = constant;
     }

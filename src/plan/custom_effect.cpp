@@ -329,7 +329,7 @@ class Parser {
 
 struct CustomEffect::State : Parts {};
 
-CustomEffect::CustomEffect(std::unique_ptr<const State> state) : state_(std::move(state)) {}
+CustomEffect::CustomEffect(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 CustomEffect::CustomEffect(CustomEffect&&) noexcept = default;
 CustomEffect& CustomEffect::operator=(CustomEffect&&) noexcept = default;
 CustomEffect::~CustomEffect() = default;
@@ -337,7 +337,8 @@ CustomEffect::~CustomEffect() = default;
 const EffectInfo& CustomEffect::info() const { return state_->info; }
 
 Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view shown_name) {
-    auto state = std::make_unique<State>();
+    auto state = std::make_shared<State>();
+    state->info.owner = state;
     if (auto ok = Parser(*state, shown_name).run(text); !ok) return failure(std::move(ok));
     return CustomEffect(std::move(state));
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <array>
 #include <bit>
 
 #include "gpu/formats.hpp"
-#include "plan/gates.hpp"
+#include "plan/frame_values.hpp"
 
 namespace darkroom::plan {
 
@@ -29,23 +31,59 @@ std::array<Light, max_shadow_lights> example_lights(const CompileDesc& desc) {
     return lights;
 }
 
+const char* name_of(Domain domain) {
+    switch (domain) {
+        case Domain::SceneLinear:
+            return "scene_linear";
+        case Domain::DisplayLinear:
+            return "display_linear";
+        case Domain::Encoded:
+            return "encoded";
+    }
+    return "";
+}
+
+std::string accepted_domains(Domains accepts) {
+    std::string out;
+    for (const Domain domain : {Domain::SceneLinear, Domain::DisplayLinear, Domain::Encoded})
+        if (accepts.contains(domain)) out += fmt::format("{}{}", out.empty() ? "" : " or ", name_of(domain));
+    return out;
+}
+
+/// About colour domains, with the present values.
+void remark_domains(const Program& program, const FrameValues& values, std::span<const Entry* const> entries,
+                    std::vector<std::string>& remarks) {
+    for (std::uint32_t i = 0; i < entries.size(); ++i) {
+        const Domain domain = values.domain_before(program, i);
+        const Domains accepts = entries[i]->info->accepts;
+        if (program.is_left_out[i] || !entries[i]->desc.enabled || accepts.contains(domain)) continue;
+        remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", entries[i]->desc.name,
+                                      accepted_domains(accepts), name_of(domain)));
+    }
+    if (values.finish() == Finish::EncodeSrgb)
+        remarks.push_back(fmt::format(
+            "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
+            name_of(values.last_domain(program))));
+}
+
 }  // namespace
 
 Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
-                      std::span<const Entry> stack) {
+                      std::span<const Entry* const> entries) {
     Plan plan{.extent = desc.max_extent,
               .left_out = program.left_out,
               .remarks = program.remarks,
               .transient_bytes = compiled.transient_bytes(),
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
+    FrameValues values(program, entries);
     const Camera camera;
     const auto lights = example_lights(desc);
-    Gates gates(program, stack);
-    gates.evaluate(
-        program, stack,
+    values.evaluate(
+        program, desc, entries,
         {.frame_extent = desc.max_extent, .output_extent = desc.max_extent, .camera = &camera, .lights = lights});
+    remark_domains(program, values, entries, plan.remarks);
     graph::Schedule schedule(compiled);
-    schedule.derive(gates.toggles(), std::vector<graph::ImportState>(program.imports.size()), 0);
+    schedule.derive(values.gates(), std::vector<graph::ImportState>(program.imports.size()), 0);
 
     for (std::uint32_t i = 0; i < program.passes.size(); ++i) {
         const std::uint32_t kept = compiled.kept_pass_of({i});

@@ -6,37 +6,11 @@
 #include <algorithm>
 #include <set>
 
+#include "gpu/glsl_scan.hpp"
+
 namespace darkroom::plan {
 
 namespace {
-
-bool is_word_start(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_word(char c) { return is_word_start(c) || (c >= '0' && c <= '9'); }
-
-/// Calls `word` for every identifier outside comments and directives, and `other` for the text between.
-template <class Word, class Other>
-void scan(std::string_view text, const Word& word, const Other& other) {
-    std::size_t i = 0;
-    while (i < text.size()) {
-        std::size_t end = i + 1;
-        if (text[i] == '#' || text.substr(i, 2) == "//") {
-            end = std::min(text.find('\n', i), text.size());
-        } else if (text.substr(i, 2) == "/*") {
-            const std::size_t close = text.find("*/", i + 2);
-            end = close == std::string_view::npos ? text.size() : close + 2;
-        } else if (is_word_start(text[i])) {
-            while (end < text.size() && is_word(text[end])) ++end;
-            word(text.substr(i, end - i), i);
-            i = end;
-            continue;
-        } else if (is_word(text[i]) || text[i] == '.') {
-            // A number (1e5, 0x1f) or a member access: what follows is no name at file scope.
-            while (end < text.size() && (is_word(text[end]) || text[end] == '.')) ++end;
-        }
-        other(text.substr(i, end - i));
-        i = end;
-    }
-}
 
 std::string_view file_text(std::span<const EffectFile> files, std::string_view name) {
     for (const EffectFile& file : files)
@@ -45,13 +19,14 @@ std::string_view file_text(std::span<const EffectFile> files, std::string_view n
 }
 
 struct Scalar {
-    const char* type;
+    gpu::BlockMember::Type type;
     const char* suffix;
 };
 std::span<const Scalar> scalars_of(Kind kind) {
-    static constexpr Scalar real[] = {{"float", ""}}, integer[] = {{"int", ""}}, natural[] = {{"uint", ""}};
-    static constexpr Scalar vector[] = {{"float", "_x"}, {"float", "_y"}, {"float", "_z"}, {"float", "_w"}};
-    static constexpr Scalar rgb[] = {{"float", "_r"}, {"float", "_g"}, {"float", "_b"}};
+    using enum gpu::BlockMember::Type;
+    static constexpr Scalar real[] = {{Float, ""}}, integer[] = {{Int, ""}}, natural[] = {{Uint, ""}};
+    static constexpr Scalar vector[] = {{Float, "_x"}, {Float, "_y"}, {Float, "_z"}, {Float, "_w"}};
+    static constexpr Scalar rgb[] = {{Float, "_r"}, {Float, "_g"}, {Float, "_b"}};
     switch (kind) {
         case Kind::Float:
             return real;
@@ -99,80 +74,116 @@ const char* glsl_type(Kind kind) {
     return "";
 }
 
-std::string block_prefix(const EffectInfo& info, std::uint32_t entry) {
-    return fmt::format("{}{}_", info.name, entry_suffix(entry));
+std::string block_prefix(const EffectInfo& info, std::uint32_t place) {
+    return fmt::format("{}{}_", info.name, place_suffix(place));
+}
+
+/// The name in a line `#include "NAME"`, else nothing.
+std::string_view included_name(std::string_view line) {
+    constexpr std::string_view directive = "#include \"";
+    if (!line.starts_with(directive)) return {};
+    return line.substr(directive.size(), line.rfind('"') - directive.size());
+}
+
+/// Calls visit(line, number) for each line, without its end.
+template <class Visit>
+void for_each_line(std::string_view text, const Visit& visit) {
+    std::size_t number = 1;
+    for (std::size_t i = 0; i < text.size(); ++number) {
+        const std::size_t end = std::min(text.find('\n', i), text.size());
+        visit(text.substr(i, end - i), number);
+        i = end + 1;
+    }
 }
 
 Result<void> append_with_includes(std::string& out, std::string_view text, const std::string& shown_name, int depth) {
     out += fmt::format("#line 1 \"effects/{}\"\n", shown_name);
-    std::size_t line = 1;
-    for (std::size_t i = 0; i < text.size(); ++line) {
-        const std::size_t end = std::min(text.find('\n', i), text.size());
-        const std::string_view content = text.substr(i, end - i);
-        i = end + 1;
-        constexpr std::string_view directive = "#include \"";
-        if (!content.starts_with(directive)) {
-            out.append(content).push_back('\n');
-            continue;
+    Result<void> result;
+    for_each_line(text, [&](std::string_view line, std::size_t number) {
+        const std::string_view name = included_name(line);
+        if (!result) return;
+        if (name.empty()) {
+            out.append(line).push_back('\n');
+            return;
         }
-        const std::string_view name = content.substr(directive.size(), content.rfind('"') - directive.size());
         const std::string_view included = file_text(shared_files(), name);
-        if (included.empty() || depth > 8)
-            return user_error(fmt::format("effects/{}:{}: #include \"{}\": there is no such file in effects/shared",
-                                          shown_name, line, name));
-        if (const auto ok = append_with_includes(out, included, std::string(name), depth + 1); !ok) return ok;
-        out += fmt::format("#line {} \"effects/{}\"\n", line + 1, shown_name);
-    }
-    return {};
+        if (included.empty() || depth > 8) {
+            result = user_error(fmt::format("effects/{}:{}: #include \"{}\": there is no such file in effects/shared",
+                                            shown_name, number, name));
+            return;
+        }
+        result = append_with_includes(out, included, std::string(name), depth + 1);
+        out += fmt::format("#line {} \"effects/{}\"\n", number + 1, shown_name);
+    });
+    return result;
 }
 
 /// Lines that include a file of the effect's own folder, replaced by it.
 std::string with_own_files(const EffectInfo& info, std::string_view text, std::string_view shown_name) {
     std::string out;
-    std::size_t line = 1;
-    for (std::size_t i = 0; i < text.size(); ++line) {
-        const std::size_t end = std::min(text.find('\n', i), text.size());
-        const std::string_view content = text.substr(i, end - i);
-        i = end + 1;
-        constexpr std::string_view directive = "#include \"";
-        const std::string_view name = content.starts_with(directive)
-                                          ? content.substr(directive.size(), content.rfind('"') - directive.size())
-                                          : std::string_view{};
+    for_each_line(text, [&](std::string_view line, std::size_t number) {
+        const std::string_view name = included_name(line);
         const std::string_view included = file_text(info.files, name);
         if (included.empty())
-            out.append(content).push_back('\n');
+            out.append(line).push_back('\n');
         else
             out += fmt::format("#line 1 \"effects/{}/{}\"\n{}\n#line {} \"effects/{}\"\n", info.name, name, included,
-                               line + 1, shown_name);
-    }
+                               number + 1, shown_name);
+    });
     return out;
+}
+
+/// Names in the shared files keep theirs, even where they begin with an effect's name.
+const std::set<std::string_view>& shared_words() {
+    static const std::set<std::string_view> words = [] {
+        std::set<std::string_view> out;
+        for (const EffectFile& file : shared_files()) {
+            gpu::GlslScanner scanner(file.text);
+            for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next())
+                if (token.kind == gpu::Token::Kind::Word) out.insert(token.text);
+        }
+        return out;
+    }();
+    return words;
+}
+
+/// The struct that a curve is in GLSL.
+std::string curve_struct() {
+    return fmt::format("struct Curve {{\n    uint count;\n    float x[{0}];\n    float y[{0}];\n}};\n",
+                       Curve::capacity);
 }
 
 }  // namespace
 
-std::uint32_t block_words(const ParamTable& table) {
-    std::uint32_t words = entry_header_words;
+std::uint32_t parameter_words(const ParamTable& table) {
+    std::uint32_t words = 0;
     for (const ParamInfo& row : table.rows)
         if (row.kind != Kind::Resource) words += row.words;
     return words;
 }
 
-void write_block(const ParamTable& table, std::span<const std::uint32_t> words, std::span<std::uint32_t> block) {
-    std::size_t out = entry_header_words;
-    for (const ParamInfo& row : table.rows) {
-        if (row.kind == Kind::Resource) continue;
-        std::copy_n(words.begin() + row.word, row.words, block.begin() + static_cast<std::ptrdiff_t>(out));
-        out += row.words;
-    }
+void write_parameters(const ParamTable& table, std::span<const std::uint32_t> words, std::span<std::uint32_t> out) {
+    auto place = out.begin();
+    for (const ParamInfo& row : table.rows)
+        if (row.kind != Kind::Resource) place = std::copy_n(words.begin() + row.word, row.words, place);
 }
 
-std::string entry_suffix(std::uint32_t entry) { return fmt::format("_e{}", entry); }
+std::string place_suffix(std::uint32_t place) { return fmt::format("_e{}", place); }
 
-std::string frame_members() {
-    return "    layout(offset = 0) float frame_time;\n    float frame_delta_time;\n    uint frame_index;\n    uint "
-           "frame_view;\n    vec4 frame_projection_scale;\n    vec4 frame_projection_offset;\n"
-           "    vec4 frame_view_to_world_x;\n    vec4 frame_view_to_world_y;\n    vec4 frame_view_to_world_z;\n"
-           "    vec4 frame_ray;\n    vec4 frame_ray_flat;\n";
+std::span<const gpu::BlockMember> frame_members() {
+    using enum gpu::BlockMember::Type;
+    static const std::array<gpu::BlockMember, 11> members{{{Float, "frame_time"},
+                                                           {Float, "frame_delta_time"},
+                                                           {Uint, "frame_index"},
+                                                           {Uint, "frame_view"},
+                                                           {Vec4, "frame_projection_scale"},
+                                                           {Vec4, "frame_projection_offset"},
+                                                           {Vec4, "frame_view_to_world_x"},
+                                                           {Vec4, "frame_view_to_world_y"},
+                                                           {Vec4, "frame_view_to_world_z"},
+                                                           {Vec4, "frame_ray"},
+                                                           {Vec4, "frame_ray_flat"}}};
+    return members;
 }
 
 CameraBlock camera_block(const Camera& camera) {
@@ -202,30 +213,33 @@ CameraBlock camera_block(const Camera& camera) {
     return out;
 }
 
-std::string finish_member(std::uint32_t word) {
-    return fmt::format("    layout(offset = {}) uint finish_;\n", word * 4);
+gpu::BlockMember finish_member() { return {gpu::BlockMember::Type::Uint, "finish_"}; }
+
+void append_header_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
+    using enum gpu::BlockMember::Type;
+    const std::string prefix = block_prefix(info, place);
+    out.push_back({Uint, prefix + "enabled_"});
+    out.push_back({Float, prefix + "opacity_"});
+    out.push_back({Uint, prefix + "blend_"});
 }
 
-std::string entry_members(const EffectInfo& info, std::uint32_t entry, std::uint32_t first_word) {
-    const std::string prefix = block_prefix(info, entry);
-    std::string out =
-        fmt::format("    layout(offset = {}) uint {}enabled_;\n    float {}opacity_;\n    uint {}blend_;\n",
-                    first_word * 4, prefix, prefix, prefix);
+void append_parameter_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
+    using enum gpu::BlockMember::Type;
+    const std::string prefix = block_prefix(info, place);
     for (const ParamInfo& row : info.parameters.rows) {
-        if (row.kind == Kind::Curve)
-            out += fmt::format("    uint {0}{1}_count;\n    float {0}{1}_x[{2}];\n    float {0}{1}_y[{2}];\n", prefix,
-                               row.name, Curve::capacity);
-        for (const Scalar& scalar : scalars_of(row.kind))
-            out += fmt::format("    {} {}{}{};\n", scalar.type, prefix, row.name, scalar.suffix);
+        const std::string name = fmt::format("{}{}", prefix, row.name);
+        if (row.kind == Kind::Curve) {
+            out.push_back({Uint, name + "_count"});
+            out.push_back({Float, name + "_x", Curve::capacity});
+            out.push_back({Float, name + "_y", Curve::capacity});
+        }
+        for (const Scalar& scalar : scalars_of(row.kind)) out.push_back({scalar.type, name + scalar.suffix});
     }
-    return out;
 }
 
-std::string curve_struct() {
-    return fmt::format("struct Curve {{\n    uint count;\n    float x[{0}];\n    float y[{0}];\n}};\n",
-                       Curve::capacity);
-}
+namespace {
 
+/// `struct Bloom { float intensity; ... };` and a constant for every choice: Bloom_mode_additive.
 std::string parameter_struct(const ParamTable& table) {
     std::string members, constants;
     for (const ParamInfo& row : table.rows) {
@@ -238,8 +252,9 @@ std::string parameter_struct(const ParamTable& table) {
     return fmt::format("struct {} {{\n{}}};\n{}", table.struct_name, members, constants);
 }
 
-std::string parameter_loader(const EffectInfo& info, std::uint32_t entry, std::span<const Baked> baked) {
-    const std::string prefix = block_prefix(info, entry);
+/// `Bloom bloom_parameters_e3() { return Bloom(bloom_e3_intensity, ...); }`
+std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::span<const Baked> baked) {
+    const std::string prefix = block_prefix(info, place);
     std::string arguments;
     for (const ParamInfo& row : info.parameters.rows) {
         if (row.kind == Kind::Resource) continue;
@@ -264,38 +279,46 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t entry, std::s
     }
     if (arguments.empty()) arguments = "0u";
     return fmt::format("{0} {1}_parameters{2}() {{\n    return {0}({3});\n}}\n", info.parameters.struct_name, info.name,
-                       entry_suffix(entry), arguments);
+                       place_suffix(place), arguments);
 }
 
-Result<std::string> instance_text(const EffectInfo& info, std::string_view file, std::uint32_t entry,
-                                  std::span<const std::string> also) {
+}  // namespace
+
+Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, std::uint32_t place,
+                               std::span<const std::string> images) {
     std::string_view own = file_text(info.files, file);
-    if (own.empty()) own = file_text(shared_files(), file);
-    const std::string shown = fmt::format("{}/{}", info.name, file);
+    const bool is_shared = own.empty();
+    if (is_shared) own = file_text(shared_files(), file);
+    const std::string shown = is_shared && !own.empty() ? std::string(file) : fmt::format("{}/{}", info.name, file);
     const std::string expanded = with_own_files(info, own, shown);
-    own = expanded;
-    if (own.empty()) return user_error(fmt::format("effects/{}: there is no such file", shown));
+    if (expanded.empty()) return user_error(fmt::format("effects/{}: there is no such file", shown));
 
-    // Names that the shared files define keep them, even where they begin with the effect's name.
-    std::set<std::string_view> shared;
-    for (const EffectFile& other : shared_files())
-        scan(
-            other.text, [&](std::string_view word, std::size_t) { shared.insert(word); }, [](std::string_view) {});
-
-    const std::string prefix = std::string(info.name) + "_";
+    EffectText out;
+    std::set<std::string_view> members;
+    const std::string prefix = std::string(info.name) + "_", loader = prefix + "parameters";
     std::string renamed;
-    scan(
-        own,
-        [&](std::string_view word, std::size_t) {
-            renamed += word;
-            const bool is_own = (word == info.name || word.starts_with(prefix)) && !shared.contains(word);
-            if (is_own || std::find(also.begin(), also.end(), word) != also.end()) renamed += entry_suffix(entry);
-        },
-        [&](std::string_view text) { renamed += text; });
-
-    std::string out;
-    if (auto ok = append_with_includes(out, renamed, shown, 0); !ok) return failure(std::move(ok));
+    gpu::GlslScanner scanner(expanded);
+    for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next()) {
+        renamed += token.text;
+        if (token.kind == gpu::Token::Kind::Member) members.insert(token.text);
+        if (token.kind != gpu::Token::Kind::Word) continue;
+        const bool is_own = (token.text == info.name || token.text.starts_with(prefix)) && !shared_words().contains(token.text);
+        if (is_own || std::ranges::find(images, token.text) != images.end()) renamed += place_suffix(place);
+        out.asks_input_is_twice |= token.text == "input_is_twice";
+        out.asks_parameters |= token.text == loader;
+    }
+    for (const ParamInfo& row : info.parameters.rows) {
+        const bool may_be_literal = row.is_loop_count || row.kind == Kind::Choice || row.kind == Kind::Toggle;
+        if (may_be_literal && members.contains(row.name)) out.literal_rows.push_back(&row);
+    }
+    if (auto ok = append_with_includes(out.glsl, renamed, shown, 0); !ok) return failure(std::move(ok));
     return out;
+}
+
+std::string pass_body(const FusedStep& step) {
+    if (!step.text->asks_parameters) return step.text->glsl;
+    return curve_struct() + parameter_struct(step.info->parameters) +
+           parameter_loader(*step.info, step.place, step.baked) + step.text->glsl;
 }
 
 Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling) {
@@ -303,14 +326,12 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
     std::set<std::string_view> structs;
     bool has_merge = false;
     for (const FusedStep& step : steps) {
-        const std::string suffix = entry_suffix(step.entry), prefix = block_prefix(*step.info, step.entry);
+        const std::string suffix = place_suffix(step.place), prefix = block_prefix(*step.info, step.place);
         if (!step.is_merge) {
             if (structs.insert(step.info->parameters.struct_name).second)
                 declarations += parameter_struct(step.info->parameters);
-            declarations += parameter_loader(*step.info, step.entry, step.baked);
-            auto text = instance_text(*step.info, fmt::format("{}.glsl", step.info->name), step.entry, step.sides);
-            if (!text) return failure(std::move(text));
-            declarations += *text;
+            declarations += parameter_loader(*step.info, step.place, step.baked);
+            declarations += step.text->glsl;
         }
         std::string layer = step.is_merge ? fmt::format("load(layer{}, pixel.texel)", suffix)
                             : step.info->touch == Touch::Warp

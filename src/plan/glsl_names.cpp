@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "gpu/glsl_scan.hpp"
+
 namespace darkroom::plan {
 
 namespace {
@@ -38,7 +40,6 @@ static_assert(std::ranges::is_sorted(keywords) && std::ranges::is_sorted(functio
 
 bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_word(char c) { return is_letter(c) || is_digit(c) || c == '_' || (c >= 'A' && c <= 'Z'); }
 
 }  // namespace
 
@@ -52,23 +53,9 @@ bool is_glsl_keyword(std::string_view name) { return std::ranges::binary_search(
 bool is_function_name(std::string_view name) { return std::ranges::binary_search(functions, name); }
 
 bool calls_name(std::string_view text, std::string_view name) {
-    for (std::size_t i = 0; i < text.size();) {
-        const std::string_view rest = text.substr(i);
-        if (rest.starts_with("//")) {
-            i = std::min(text.find('\n', i), text.size());
-        } else if (rest.starts_with("/*")) {
-            const std::size_t close = text.find("*/", i + 2);
-            i = close == std::string_view::npos ? text.size() : close + 2;
-        } else if (is_word(text[i])) {
-            std::size_t end = i;
-            while (end < text.size() && is_word(text[end])) ++end;
-            const bool is_found = text.substr(i, end - i) == name;
-            i = std::min(text.find_first_not_of(" \t\r\n", end), text.size());
-            if (is_found && i < text.size() && text[i] == '(') return true;
-        } else {
-            ++i;
-        }
-    }
+    gpu::GlslScanner scanner(text);
+    for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next())
+        if (token.kind == gpu::Token::Kind::Word && token.text == name && scanner.peek().text == "(") return true;
     return false;
 }
 

@@ -292,7 +292,7 @@ TEST_F(ComposePlan, PassesThatThePresentValuesSwitchOffAreNotListed) {
     CompileDesc desc = hd();
     desc.depth.format = VK_FORMAT_D32_SFLOAT;
     const auto names = [&](std::string_view resolution) {
-        const auto& choices = composer.info(ssao).parameters.find("resolution")->choices;
+        const auto& choices = composer.info(ssao)->parameters.find("resolution")->choices;
         const auto at = std::ranges::find(choices, resolution) - choices.begin();
         test::set_word(composer, ssao, "resolution", static_cast<std::uint32_t>(at));
         return passes_of(plan(desc));
@@ -322,11 +322,11 @@ TEST_F(ComposePlan, PassesThatWaitForALightAreListed) {
 }
 
 TEST_F(ComposePlan, HandlesMustNameEarlierEntries) {
-    add(composer, "exposure", {}, {.input = Handle{2}});
+    add(composer, "exposure", {}, {.input = Handle{~0u - 1}});
     add(composer, "negative");
     EXPECT_NE(error().find("'exposure': its input"), std::string::npos) << error();
     composer.clear();
-    add(composer, "exposure", {}, {.mask = Handle{1}});
+    add(composer, "exposure", {}, {.mask = composer.entry(0)});
     EXPECT_NE(error().find("mask"), std::string::npos) << error();
     composer.clear();
     add(composer, "blend");

@@ -14,18 +14,6 @@ namespace darkroom::plan {
 
 namespace {
 
-const char* name_of(Domain domain) {
-    switch (domain) {
-        case Domain::SceneLinear:
-            return "scene_linear";
-        case Domain::DisplayLinear:
-            return "display_linear";
-        case Domain::Encoded:
-            return "encoded";
-    }
-    return "";
-}
-
 graph::Size scaled(graph::Size size, std::uint32_t numerator, std::uint32_t denominator) {
     return {.numerator = size.numerator * numerator, .denominator = size.denominator * denominator};
 }
@@ -54,10 +42,11 @@ Planner::Planner(std::span<const Entry> stack, const CompileDesc& desc, const Pl
 
 Result<Program> Planner::run() {
     if (auto ok = check_handles(); !ok) return failure(std::move(ok));
-    lay_out_constants();
+    program_.is_left_out.assign(stack_.size(), false);
+    program_.is_mixable.assign(stack_.size(), true);
 
     const graph::Version color = import_host(HostImage::Color, "color", desc_.color, {});
-    values_.push_back({.image = color, .domain = Domain::SceneLinear, .why = "the scene colour starts here"});
+    values_.push_back({.image = color, .why = "the scene colour starts here"});
     entry_values_.assign(stack_.size(), 0);
     leave_out();
     resolve_inputs();
@@ -70,7 +59,6 @@ Result<Program> Planner::run() {
             entry_values_[i] = input;
             continue;
         }
-        remark_domain(i, values_[input].domain);
         auto value = add_entry(i, input);
         if (!value) return failure(std::move(value));
         entry_values_[i] = *value;
@@ -81,9 +69,12 @@ Result<Program> Planner::run() {
 
 Result<> Planner::check_handles() const {
     const auto check = [&](std::uint32_t entry, Handle handle, std::string_view which) -> Result<> {
-        if (!handle.is_given() || handle == scene_color || handle.id - 1 < entry) return {};
-        return user_error(fmt::format("stack entry '{}': its {} is not the output of an earlier entry",
-                                      stack_[entry].desc.name, which));
+        if (!handle.is_given() || handle == scene_color) return {};
+        const std::uint32_t from = index_of(handle);
+        if (from < entry) return {};
+        return user_error(fmt::format("stack entry '{}': its {} is {}", stack_[entry].desc.name, which,
+                                      from == no_entry ? "no entry of this stack; it may have been removed"
+                                                       : "not the output of an earlier entry"));
     };
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const EntryDesc& desc = stack_[i].desc;
@@ -98,16 +89,9 @@ Result<> Planner::check_handles() const {
     return {};
 }
 
-void Planner::lay_out_constants() {
-    std::uint32_t word = frame_words;
-    for (const Entry& entry : stack_) {
-        program_.block_words.push_back(word);
-        word += block_words(entry.info->parameters);
-    }
-    program_.finish_word = word++;
-    program_.constants_words = word;
-    program_.is_left_out.assign(stack_.size(), false);
-    program_.is_mixable.assign(stack_.size(), true);
+std::uint32_t Planner::index_of(Handle handle) const {
+    const auto found = std::ranges::find(stack_, handle.id, &Entry::id);
+    return found == stack_.end() ? no_entry : static_cast<std::uint32_t>(found - stack_.begin());
 }
 
 void Planner::leave_out() {
@@ -126,7 +110,7 @@ void Planner::leave_out() {
 
 std::uint32_t Planner::resolved(Handle handle, std::uint32_t entry) const {
     if (handle == scene_color || (entry == 0 && !handle.is_given())) return no_entry;
-    const std::uint32_t from = handle.is_given() ? handle.id - 1 : entry - 1;
+    const std::uint32_t from = handle.is_given() ? index_of(handle) : entry - 1;
     return program_.is_left_out[from] ? program_.entry_inputs[from] : from;
 }
 
@@ -136,25 +120,9 @@ void Planner::resolve_inputs() {
     program_.last_entry = resolved({}, static_cast<std::uint32_t>(stack_.size()));
 }
 
-Domain Planner::present_domain(std::uint32_t entry, Domain before) const {
-    std::vector<std::uint32_t> words(stack_[entry].info->parameters.words());
-    stack_[entry].evaluate(words);
-    return stack_[entry].domain_after(before, words.data(), stack_[entry].is_on(words.data()));
-}
-
-void Planner::remark_domain(std::uint32_t entry, Domain domain) {
-    const EffectInfo& info = *stack_[entry].info;
-    if (!stack_[entry].desc.enabled || info.accepts.contains(domain)) return;
-    std::string accepted;
-    for (const Domain d : {Domain::SceneLinear, Domain::DisplayLinear, Domain::Encoded})
-        if (info.accepts.contains(d)) accepted += fmt::format("{}{}", accepted.empty() ? "" : " or ", name_of(d));
-    program_.remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", stack_[entry].desc.name,
-                                           accepted, name_of(domain)));
-}
-
 std::size_t Planner::value_of(Handle handle, std::uint32_t entry) const {
     if (handle == scene_color) return 0;
-    if (handle.is_given()) return entry_values_[handle.id - 1];
+    if (handle.is_given()) return entry_values_[index_of(handle)];
     return entry == 0 ? 0 : entry_values_[entry - 1];
 }
 std::size_t Planner::input_of(std::uint32_t entry) const { return value_of(stack_[entry].desc.input, entry); }
@@ -180,7 +148,6 @@ void Planner::count_readers() {
 
 Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
     const EffectInfo& info = *stack_[entry].info;
-    const Domain domain = present_domain(entry, values_[input].domain);
 
     Builder builder(*this, entry, input);
     if (info.build != nullptr) {
@@ -188,25 +155,25 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
         if (!builder.error.empty()) return user_error(builder.error);
     }
     if (info.touch == Touch::Neighbourhood || info.touch == Touch::History)
-        return add_result(entry, input, builder, domain);
+        return add_result(entry, input, builder);
 
     FusedStep step{.info = &info, .entry = entry, .name = stack_[entry].desc.name};
     std::vector<PassInput> side_inputs;
     for (Builder::Side& side : builder.sides) {
-        step.sides.push_back(side.name);
+        step.images.push_back(side.name);
         side_inputs.push_back(side.input);
     }
     if (info.has_second) {
         auto second = materialise(value_of(stack_[entry].desc.second, entry),
                                   fmt::format("{} reads it as its second picture", stack_[entry].desc.name));
         if (!second) return failure(std::move(second));
-        step.sides.emplace_back("second");
+        step.images.emplace_back("second");
         side_inputs.push_back({.version = *second});
     }
-    return append(entry, input, std::move(step), std::move(side_inputs), domain);
+    return append(entry, input, std::move(step), std::move(side_inputs));
 }
 
-Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, Builder& builder, Domain domain) {
+Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, Builder& builder) {
     if (!builder.output.is_valid())
         return user_error(fmt::format("effect '{}': its build() names no result", stack_[entry].info->name));
     auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].desc.name));
@@ -220,16 +187,16 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
     fall_back(builder.output, *picture);
     if (stack_[entry].is_plain()) {
         program_.is_mixable[entry] = false;
-        values_.push_back({.image = builder.output, .size = size, .domain = domain, .why = why});
+        values_.push_back({.image = builder.output, .size = size, .why = why});
         return values_.size() - 1;
     }
-    values_.push_back({.image = *picture, .size = size, .domain = domain, .why = why});
+    values_.push_back({.image = *picture, .size = size, .why = why});
     FusedStep step{.info = stack_[entry].info, .entry = entry, .name = stack_[entry].desc.name, .is_merge = true};
-    return append(entry, values_.size() - 1, std::move(step), {{.version = builder.output}}, domain);
+    return append(entry, values_.size() - 1, std::move(step), {{.version = builder.output}});
 }
 
 Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, FusedStep step,
-                                    std::vector<PassInput> sides, Domain domain) {
+                                    std::vector<PassInput> sides) {
     const std::string& name = stack_[entry].desc.name;
     const Value from = values_[input];
     std::size_t kernel = from.kernel;
@@ -251,25 +218,33 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
             kernel = open_kernel(input, std::move(why));
         }
     }
+    step.place = static_cast<std::uint32_t>(kernels_[kernel].steps.size());
+    const std::string suffix = place_suffix(step.place);
+    if (!step.is_merge) {
+        auto text = text_of(*step.info, fmt::format("{}.glsl", step.info->name), step.place, step.images);
+        if (!text) return failure(std::move(text));
+        step.text = std::move(*text);
+    }
     if (stack_[entry].desc.mask.is_given()) {
-        auto mask = materialise(value_of(stack_[entry].desc.mask, entry), fmt::format("{} reads it as its mask", name));
+        auto mask =
+            materialise(value_of(stack_[entry].desc.mask, entry), fmt::format("{} reads it as its mask", name));
         if (mask) mask = at_size(*mask, from.size, fmt::format("{}.mask", name));
         if (!mask) return failure(std::move(mask));
         step.has_mask = true;
-        kernels_[kernel].images.push_back({"mask" + entry_suffix(entry), {.version = *mask}});
+        kernels_[kernel].images.push_back({"mask" + suffix, {.version = *mask}});
     }
     for (std::size_t i = 0; i < sides.size(); ++i) {
-        const bool is_read_by_texel = step.is_merge || step.sides[i] == "second";
+        const bool is_read_by_texel = step.is_merge || step.images[i] == "second";
         if (is_read_by_texel) {
             auto version = at_size(sides[i].version, from.size, fmt::format("{}.resampled", name));
             if (!version) return failure(std::move(version));
             sides[i].version = *version;
         }
-        const std::string shown = step.is_merge ? "layer" : step.sides[i];
-        kernels_[kernel].images.push_back({shown + entry_suffix(entry), sides[i]});
+        const std::string shown = step.is_merge ? "layer" : step.images[i];
+        kernels_[kernel].images.push_back({shown + suffix, sides[i]});
     }
     kernels_[kernel].steps.push_back(std::move(step));
-    values_.push_back({.kernel = kernel, .size = from.size, .domain = domain, .reader = image_reader_[entry]});
+    values_.push_back({.kernel = kernel, .size = from.size, .reader = image_reader_[entry]});
     return values_.size() - 1;
 }
 
@@ -312,13 +287,8 @@ Result<graph::Version> Planner::at_size(graph::Version version, graph::Size size
 
 Result<> Planner::finish() {
     std::size_t last = stack_.empty() ? 0 : entry_values_.back();
-    const Domain domain = values_[last].domain;
-    Finish finish = finish_of(domain, desc_);
-    if (finish == Finish::EncodeSrgb)
-        program_.remarks.push_back(fmt::format(
-            "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
-            name_of(domain)));
     // Values change after compile, and with them the domain.
+    Finish finish = finish_of(Domain::SceneLinear, desc_);
     const bool is_open = finish_of(Domain::Encoded, desc_) != finish_of(Domain::SceneLinear, desc_);
     for (std::uint32_t i = program_.last_entry; is_open && i != no_entry; i = program_.entry_inputs[i])
         if (stack_[i].info->makes != nullptr) finish = Finish::OfFrame;
@@ -360,12 +330,13 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         const std::string& name = stack_[step.entry].desc.name;
         pass.name += (pass.name.empty() ? "" : "+") + name;
         toggle.entries.push_back(step.entry);
-        pass.spec.constants += entry_members(*stack_[step.entry].info, step.entry, program_.block_words[step.entry]);
+        append_header_members(*step.info, step.place, pass.spec.members);
+        append_parameter_members(*step.info, step.place, pass.spec.members);
     }
     if (pass.name.empty()) pass.name = "copy";
     pass.spec.name = pass.name;
-    if (finish == Finish::OfFrame) pass.spec.constants += finish_member(program_.finish_word);
-    pass.spec.constants = frame_members() + pass.spec.constants;
+    if (finish == Finish::OfFrame) pass.spec.members.insert(pass.spec.members.begin(), finish_member());
+    pass.spec.frame = frame_members();
     pass.spec.outputs = {format};
     // imageLoad needs GENERAL, sampling the other layout: one image can be in one of them.
     const bool is_shared = std::ranges::any_of(kernel.images, [&](const auto& image) {
@@ -381,9 +352,6 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         if (is_storage_side(kernel, input)) pass.spec.images.back().storage_format = storage_format(input.version);
         pass.inputs.push_back(input);
     }
-    auto body = fused_body(pass.steps, finish, pass.resampling);
-    if (!body) return failure(std::move(body));
-    pass.spec.body = std::move(*body);
     // Unfused, a kernel whose entry is off copies: else every picture would live as long as those it may stand in for.
     const bool has_toggle = !is_always_on && desc_.fuse;
     if (has_toggle) pass.toggle = toggle_index(std::move(toggle));
@@ -398,6 +366,9 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
 Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level) {
     pass.spec.loads_are_cheap = traits_.loads_are_cheap;
     pass.spec.workgroup = traits_.workgroup;
+    lay_out_literals(pass);
+    pass.asks_input_is_twice = std::ranges::any_of(
+        pass.steps, [](const FusedStep& step) { return step.text && step.text->asks_input_is_twice; });
     const auto stage = traits_.stage_of(pass.spec);
     if (!stage) return failure(stage.error());
     pass.stage = *stage;
@@ -415,7 +386,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
             is_storage   ? (is_raster ? graph::Use::StorageReadFragment : graph::Use::StorageRead)
             : is_general ? (is_raster ? graph::Use::SampledGeneralFragment : graph::Use::SampledGeneralCompute)
                          : (is_raster ? graph::Use::SampledFragment : graph::Use::SampledCompute);
-        desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}});
+        desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}, pass.inputs[i].instead});
     }
     const graph::Use use = pass.spec.is_additive ? (is_raster ? graph::Use::ColorBlend : graph::Use::StorageReadWrite)
                                                  : (is_raster ? graph::Use::ColorWrite : graph::Use::StorageWrite);
@@ -434,15 +405,15 @@ bool Planner::is_shared_toggle(std::size_t index) const {
 }
 
 std::int32_t Planner::toggle_index(Gate toggle) {
-    for (std::size_t i = 0; i < program_.toggles.size(); ++i) {
-        const Gate& other = program_.toggles[i];
+    for (std::size_t i = 0; i < program_.gates.size(); ++i) {
+        const Gate& other = program_.gates[i];
         if (!is_shared_toggle(i) && other.entries == toggle.entries && other.condition == toggle.condition &&
             other.argument == toggle.argument)
             return static_cast<std::int32_t>(i);
     }
-    const auto index = static_cast<std::int32_t>(program_.toggles.size());
+    const auto index = static_cast<std::int32_t>(program_.gates.size());
     for (std::int32_t i = 0; i < index; ++i) {
-        const Gate& other = program_.toggles[static_cast<std::size_t>(i)];
+        const Gate& other = program_.gates[static_cast<std::size_t>(i)];
         if (is_shared_toggle(static_cast<std::size_t>(i)) || other.entries != toggle.entries ||
             other.condition != toggle.condition)
             continue;
@@ -452,7 +423,7 @@ std::int32_t Planner::toggle_index(Gate toggle) {
         else
             program_.graph.imply(i, index);
     }
-    program_.toggles.push_back(std::move(toggle));
+    program_.gates.push_back(std::move(toggle));
     return index;
 }
 
@@ -470,9 +441,13 @@ Finish finish_of(Domain domain, const CompileDesc& desc) {
     return is_encoded_here ? Finish::EncodeSrgb : Finish::None;
 }
 
-std::string effect_pass_body(const ProgramPass& pass, std::span<const Baked> baked) {
-    return curve_struct() + parameter_struct(pass.info->parameters) + parameter_loader(*pass.info, pass.entry, baked) +
-           pass.text;
+Result<std::shared_ptr<const EffectText>> Planner::text_of(const EffectInfo& info, const std::string& file,
+                                                           std::uint32_t place, std::span<const std::string> images) {
+    const auto key = std::tuple(&info, file, place, std::vector<std::string>(images.begin(), images.end()));
+    if (const auto found = texts_.find(key); found != texts_.end()) return found->second;
+    auto text = effect_text(info, file, place, images);
+    if (!text) return failure(std::move(text));
+    return texts_[key] = std::make_shared<const EffectText>(std::move(*text));
 }
 
 Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits) {

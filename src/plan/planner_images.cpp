@@ -48,7 +48,7 @@ graph::Version Planner::import_neutral(VkFormat format, const PassVector& value)
     }
     constexpr VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
     const graph::ImageDesc image{.name = desc.name, .format = desc.format, .size = {.width = 1, .height = 1}};
-    program_.constants.push_back(
+    program_.fixed_images.push_back(
         {.desc = std::move(desc), .import_index = static_cast<std::uint32_t>(program_.imports.size())});
     program_.imports.emplace_back(std::nullopt);
     const graph::Version version = program_.graph.import({.image = image, .usage = usage, .is_constant = true});
@@ -64,7 +64,7 @@ void Planner::fall_back(graph::Version version, graph::Version instead) {
 gpu::KernelImage Planner::kernel_image(std::string name, const PassInput& input) const {
     if (input.is_shadow_map) return {.name = std::move(name), .sampler_type = "sampler2DArrayShadow"};
     if (input.table == no_table) return {.name = std::move(name)};
-    const TableDesc& desc = program_.constants[input.table].desc;
+    const TableDesc& desc = program_.fixed_images[input.table].desc;
     return {.name = std::move(name),
             .storage_format = desc.is_load_only ? desc.format : VK_FORMAT_UNDEFINED,
             .sampler_type = desc.extent.depth > 1 ? "sampler3D" : "sampler2D"};

@@ -5,6 +5,7 @@
 #include <darkroom/effect.hpp>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -35,7 +36,6 @@ class Planner {
         graph::Version image;
         std::size_t kernel = no_kernel;
         graph::Size size{};
-        Domain domain = Domain::SceneLinear;
         std::string why;     ///< of an image: why a new kernel starts from it
         std::string reader;  ///< of an open kernel: who else reads this picture, so that it must become an image
     };
@@ -56,21 +56,19 @@ class Planner {
     };
 
     [[nodiscard]] Result<> check_handles() const;
-    void lay_out_constants();
+    /// Where the entry is in the stack; no_entry: it is not there.
+    [[nodiscard]] std::uint32_t index_of(Handle handle) const;
     void leave_out();
     /// Who gets what from whom, past the entries that are left out.
     void resolve_inputs();
     [[nodiscard]] std::uint32_t resolved(Handle handle, std::uint32_t entry) const;
-    [[nodiscard]] Domain present_domain(std::uint32_t entry, Domain before) const;
-    void remark_domain(std::uint32_t entry, Domain domain);
     [[nodiscard]] std::size_t value_of(Handle handle, std::uint32_t entry) const;
     [[nodiscard]] std::size_t input_of(std::uint32_t entry) const;
     void count_readers();
     [[nodiscard]] Result<std::size_t> add_entry(std::uint32_t entry, std::size_t input);
-    [[nodiscard]] Result<std::size_t> add_result(std::uint32_t entry, std::size_t input, Builder& builder,
-                                                 Domain domain);
+    [[nodiscard]] Result<std::size_t> add_result(std::uint32_t entry, std::size_t input, Builder& builder);
     [[nodiscard]] Result<std::size_t> append(std::uint32_t entry, std::size_t input, FusedStep step,
-                                             std::vector<PassInput> sides, Domain domain);
+                                             std::vector<PassInput> sides);
     [[nodiscard]] std::size_t open_kernel(std::size_t input, std::string why);
     /// Makes the picture an image, if it is not one yet, by closing its kernel.
     [[nodiscard]] Result<graph::Version> materialise(std::size_t value, const std::string& why);
@@ -97,6 +95,10 @@ class Planner {
     [[nodiscard]] bool may_share(graph::Version a, graph::Version b) const;
     [[nodiscard]] VkFormat storage_format(graph::Version version) const;
     [[nodiscard]] Result<> finish();
+    /// Kept for the passes that share it.
+    [[nodiscard]] Result<std::shared_ptr<const EffectText>> text_of(const EffectInfo& info, const std::string& file,
+                                                                    std::uint32_t place,
+                                                                    std::span<const std::string> images);
 
     std::span<const Entry> stack_;
     const CompileDesc& desc_;
@@ -109,6 +111,9 @@ class Planner {
     std::vector<OpenKernel> kernels_;
     std::map<std::uint32_t, Facts> facts_;  ///< by version
     std::map<HostImage, graph::Version> host_images_;
+    std::map<std::tuple<const EffectInfo*, std::string, std::uint32_t, std::vector<std::string>>,
+             std::shared_ptr<const EffectText>>
+        texts_;
 
     std::map<std::pair<FrameImage, std::string>, graph::Version> resampled_;  ///< by size
 
@@ -136,10 +141,11 @@ class Builder final : public PassBuilder {
 
     [[nodiscard]] PassImage picture() override;
     [[nodiscard]] PassImage source() override;
-    [[nodiscard]] VkExtent2D max_extent() const override {
-        return planner_.values_[input_].size.of(planner_.desc_.max_extent);
+    [[nodiscard]] std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) override;
+    [[nodiscard]] const void* parameters() const override {
+        planner_.program_.reads_values = true;
+        return planner_.stack_[entry_].base.data();
     }
-    [[nodiscard]] const void* parameters() const override { return planner_.stack_[entry_].base.data(); }
     [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
     [[nodiscard]] History history(const PassImageDesc& desc) override;
     [[nodiscard]] PassImage frame_image(FrameImage which) override;

@@ -11,12 +11,16 @@
 #include "gpu/kernel.hpp"
 #include "graph/graph.hpp"
 #include "plan/glsl.hpp"
+#include "plan/shape.hpp"
 
 namespace darkroom::plan {
 
 /// A stack entry as the Composer keeps it.
 struct Entry {
+    std::uint32_t id = 0;             ///< of its Handle: never given twice
+    std::uint64_t history_owner = 0;  ///< whose histories it goes on with; 0: nobody's
     const EffectInfo* info = nullptr;
+    std::shared_ptr<const void> effect_owner{};  ///< keeps `info` alive where it is not static
     EntryDesc desc;
     std::vector<std::uint32_t> base;  ///< parameter words
     struct Override {
@@ -54,36 +58,39 @@ inline constexpr std::uint32_t no_table = ~0u;
 /// An image that a pass reads: a version of the graph, or a table, which never changes and needs no graph.
 struct PassInput {
     graph::Version version;
+    graph::Version instead{};  ///< what this pass alone gets while nobody makes the version: a neutral image
     std::uint32_t mip_level = 0;
-    std::uint32_t table = no_table;  ///< index of Program::constants
+    std::uint32_t table = no_table;  ///< index of Program::fixed_images
     bool is_shadow_map = false;
     bool is_loaded = false;  ///< a side image that is read by load() alone
 };
 
 struct ProgramPass {
     std::string name;
-    gpu::KernelSpec spec;
+    gpu::KernelSpec spec;  ///< without its body: see plan/shape.hpp
     gpu::Stage stage = gpu::Stage::Compute;
     std::vector<PassInput> inputs;  ///< one per spec.images
     graph::Version output;          ///< the version that this pass makes
     std::uint32_t output_mip_level = 0;
     std::int32_t toggle = -1;
     std::string boundary;
-
-    // A pass of an effect:
-    std::uint32_t entry = ~0u;
-    const EffectInfo* info = nullptr;
+    std::vector<FusedStep> steps;  ///< of an effect's pass: one
+    std::vector<Literal> literals;
+    bool is_fused = true;  ///< made by the planner from entries; else by an effect's build
+    bool asks_input_is_twice = false;
+    // Of an effect's pass:
     ConstantsFunction constants = nullptr;
-    std::string text;  ///< the body without the parameter loader
-    // A fused kernel:
-    std::vector<FusedStep> steps;
+    // Of a fused kernel:
     Finish finish = Finish::None;
     Resampling resampling = Resampling::None;
+
+    /// Of an effect's pass.
+    [[nodiscard]] std::uint32_t entry() const { return steps.front().entry; }
 };
 
 /// A table, or a neutral image that stands in for a version: uploaded once, constant after. A neutral image may be
 /// sampled and loaded.
-struct Constant {
+struct FixedImage {
     TableDesc desc;
     std::uint32_t import_index = ~0u;  ///< in the graph; tables have none
 };
@@ -101,20 +108,25 @@ inline constexpr std::uint32_t no_entry = ~0u;
 struct Program {
     graph::Graph graph;
     std::vector<ProgramPass> passes;  ///< in the order they were added to the graph
-    std::vector<Gate> toggles;
-    std::vector<Constant> constants;
-    std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a constant
-    std::vector<std::uint32_t> block_words;         ///< per entry: first word of its block in the constants
-    std::uint32_t constants_words = 0;
-    std::uint32_t finish_word = 0;            ///< of finish_ in the constants
+    std::vector<Gate> gates;
+    std::vector<FixedImage> fixed_images;
+    std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a fixed image
     std::vector<std::uint32_t> entry_inputs;  ///< per entry: whose output it gets, past what is left out
     std::uint32_t last_entry = no_entry;      ///< whose output the target gets
     std::vector<graph::Size> entry_sizes;     ///< per entry: of the picture that it gets
     graph::Size target_size;
-    std::vector<std::uint32_t> history_entries;  ///< entries with histories
+    std::vector<std::uint32_t> history_entries;  ///< per history of the graph: the entry that declared it
     std::vector<bool> is_left_out;               ///< per entry
     std::vector<bool> is_mixable;                ///< per entry: opacity and blending may change while recording
     std::vector<std::string> left_out, remarks;
+    /// What effects asked of the largest extent: the program serves every extent with the same answers.
+    struct ExtentAnswer {
+        std::uint32_t (*question)(VkExtent2D) = nullptr;
+        graph::Size size;  ///< of the picture that the effect gets
+        std::uint32_t answer = 0;
+    };
+    std::vector<ExtentAnswer> extent_answers;
+    bool reads_values = false;  ///< an effect's build() asked for parameters
 };
 
 struct PlannerTraits {
@@ -134,15 +146,9 @@ struct PlannerTraits {
 [[nodiscard]] Finish finish_of(Domain domain, const CompileDesc& desc);
 [[nodiscard]] Domain target_domain(const CompileDesc& desc);
 
-/// The body of an effect's pass, with choices as literals where they are known.
-[[nodiscard]] std::string effect_pass_body(const ProgramPass& pass, std::span<const Baked> baked);
-
-/// Made by the planner from entries; else by an effect's build.
-[[nodiscard]] inline bool is_fused(const ProgramPass& pass) { return pass.entry == ~0u; }
-
-/// The program as users read it: the passes that run with the stack's present values, in a frame that brings all that
+/// The program as users read it: the passes that run with the entries' present values, in a frame that brings all that
 /// `desc` promises and a light to look at.
 [[nodiscard]] Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
-                                    std::span<const Entry> stack);
+                                    std::span<const Entry* const> entries);
 
 }  // namespace darkroom::plan

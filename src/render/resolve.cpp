@@ -20,7 +20,8 @@ gpu::KernelSpec spec_of(const TargetFormats& formats) {
                          .images = {},
                          .outputs = {VK_FORMAT_R32_SFLOAT},
                          .is_whole = true,
-                         .constants = {},
+                         .frame = {},
+                         .members = {},
                          .custom_vectors = 1,
                          .body = body_of("resolve.glsl")};
     if (formats.samples == VK_SAMPLE_COUNT_1_BIT) {
@@ -75,10 +76,9 @@ Result<Resolve> Resolve::create(gpu::Context& context, const TargetFormats& form
     if (!sets) return failure(std::move(sets));
     out.sets_ = std::move(*sets);
     const VkDeviceSize alignment = context.traits.uniform_alignment;
-    out.block_stride_ = (gpu::pass_block_size(spec) + alignment - 1) / alignment * alignment;
-    Result<gpu::Buffer> blocks =
-        gpu::Buffer::create(context, out.block_stride_ * slots, gpu::constants_usage, gpu::Memory::Kind::Constants,
-                            "pass blocks of the scene's resolve");
+    out.block_stride_ = (gpu::own_block_size(spec) + alignment - 1) / alignment * alignment;
+    Result<gpu::Buffer> blocks = gpu::Buffer::create(context, out.block_stride_ * slots, gpu::block_usage,
+                                                     gpu::Memory::Kind::Constants, "blocks of the scene's resolve");
     if (!blocks) return failure(std::move(blocks));
     out.blocks_ = std::move(*blocks);
     return out;
@@ -96,17 +96,18 @@ void Resolve::prepare(const scene::CameraState& camera, const Targets& targets, 
     const std::array<std::array<float, 4>, 1> custom{std::array{
         camera.near_distance, camera.far_distance, camera.kind == scene::Projection::Perspective ? 1.0F : 0.0F, 0.0F}};
     const std::vector<gpu::Binding> inputs = inputs_of(targets);
-    gpu::write_pass_block(kernel_->spec(), whole(targets), inputs, custom,
-                          {blocks_.memory.mapped + slot * block_stride_, gpu::pass_block_size(kernel_->spec())});
+    gpu::write_own_block(kernel_->spec(), whole(targets), inputs, custom, {},
+                          {blocks_.memory.mapped + slot * block_stride_, gpu::own_block_size(kernel_->spec())});
 }
 
 void Resolve::record(VkCommandBuffer commands, const Targets& targets, std::uint32_t slot) const {
     const std::vector<gpu::Binding> inputs = inputs_of(targets), outputs = outputs_of(targets);
-    kernel_->record(commands, {.set = sets_.sets[slot],
-                               .pass_block = blocks_.handle,
-                               .pass_block_offset = slot * block_stride_,
-                               .images = inputs,
-                               .outputs = outputs});
+    const VkDescriptorSet set = sets_.sets[slot];
+    kernel_->write_set({.set = set,
+                        .own = {blocks_.handle, slot * block_stride_, gpu::own_block_size(kernel_->spec())},
+                        .images = inputs,
+                        .outputs = outputs});
+    kernel_->record(commands, set, outputs);
 }
 
 }  // namespace darkroom::render

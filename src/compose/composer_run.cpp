@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// Compiling a stack, now or later, and recording it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "compose/composer_state.hpp"
+#include "compose/frame_check.hpp"
+#include "gpu/context.hpp"
+
+namespace darkroom {
+
+namespace {
+
+/// Errors, plans and looks call an entry by its name.
+Result<> check_names(std::span<const plan::Entry> stack) {
+    for (std::size_t i = 0; i < stack.size(); ++i) {
+        const std::string& name = stack[i].desc.name;
+        if (name.empty()) return user_error(fmt::format("stack entry {}: its name is empty", i + 1));
+        const auto control = std::ranges::find_if(
+            name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) == 0x7f; });
+        if (control != name.end())
+            return user_error(
+                fmt::format("stack entry {}: its name holds the control character {:#04x} at place {}; "
+                            "allowed is text",
+                            i + 1, static_cast<unsigned>(*control), control - name.begin()));
+        for (std::size_t other = 0; other < i; ++other)
+            if (stack[other].desc.name == name)
+                return user_error(
+                    fmt::format("stack entries {} and {}: both are named '{}'; allowed is a name of "
+                                "their own for each",
+                                other + 1, i + 1, name));
+    }
+    return {};
+}
+
+Result<> check_target_extent(VkExtent2D extent, std::uint32_t limit) {
+    if (extent.width <= limit && extent.height <= limit && (extent.width == 0) == (extent.height == 0)) return {};
+    return user_error(fmt::format("target_extent {}x{}: this device allows 1x1 to {}x{}, and 0x0 for the picture's",
+                                  extent.width, extent.height, limit, limit));
+}
+
+}  // namespace
+
+Composer::State::State(std::shared_ptr<gpu::Context> device_context, const ComposerDesc& composer_desc)
+    : context(std::move(device_context)), desc(composer_desc) {
+    desc.frames_in_flight = std::max(1u, desc.frames_in_flight);
+    worker = std::make_unique<compose::Worker>(*context, desc.max_threads > 0);
+}
+
+Composer::State::~State() {
+    worker.reset();  // its task works on the rest
+    delete ready.exchange(nullptr);
+    while (retired != nullptr) delete std::exchange(retired, retired->next_retired);
+}
+
+Result<Composer::State::Snapshot> Composer::State::snapshot(const CompileDesc& compile_desc) const {
+    const std::uint32_t limit = context->traits.max_image_dimension;
+    const auto [width, height] = compile_desc.max_extent;
+    if (width == 0 || height == 0 || width > limit || height > limit)
+        return user_error(fmt::format("size {}x{}: this device allows 1x1 to {}x{}", width, height, limit, limit));
+    if (auto ok = check_target_extent(compile_desc.target_extent, limit); !ok) return failure(std::move(ok));
+    if (auto ok = compose::check_images(*context, compile_desc); !ok) return failure(std::move(ok));
+    if (compile_desc.views == 0) return user_error("views = 0: allowed is 1 and more");
+    Snapshot out{.desc = compile_desc};
+    for (const auto& entry : stack) {
+        if (auto ok = check_values(*entry, entry->base); !ok) return failure(std::move(ok));
+        out.values.push_back(*entry);
+        out.entries.push_back(entry);
+    }
+    if (auto ok = check_names(out.values); !ok) return failure(std::move(ok));
+    return out;
+}
+
+Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot snapshot) {
+    if (!program || !program->serves(snapshot.values, snapshot.desc)) {
+        auto planned = compose::plan_stack(*context, snapshot.values, snapshot.desc);
+        if (!planned) return failure(std::move(planned));
+        program = std::move(*planned);
+    }
+    auto made = compose::Chain::create(*context, *worker, histories,
+                                       {.program = program,
+                                        .compile = snapshot.desc,
+                                        .slots = desc.frames_in_flight * snapshot.desc.views,
+                                        .max_threads = std::max(1u, desc.max_threads),
+                                        .has_timers = desc.has_timers,
+                                        .entries = std::move(snapshot.entries)},
+                                       snapshot.values);
+    histories.trim();
+    context->save_pipeline_cache_if_grown();
+    return made;
+}
+
+void Composer::State::take(std::unique_ptr<compose::Chain> newer) {
+    // With more views than before, more recordings may be made before the oldest one has finished.
+    const std::uint32_t recordings = std::max(chain ? chain->slots() : 0u, newer->slots());
+    for (compose::Chain* old = retired; old != nullptr; old = old->next_retired)
+        old->recordings_left = std::max(old->recordings_left, recordings);
+    if (chain) {
+        chain->recordings_left = recordings;
+        chain->next_retired = std::exchange(retired, chain.get());
+        static_cast<void>(chain.release());
+    }
+    chain = std::move(newer);
+}
+
+/// By the contract the recordings that used a retired chain have finished once as many newer ones are made.
+void Composer::State::put_away_retired() {
+    bool is_any = false;
+    for (compose::Chain** link = &retired; *link != nullptr;) {
+        compose::Chain* const old = *link;
+        if (old->recordings_left > 0) {
+            link = &old->next_retired;
+            continue;
+        }
+        *link = old->next_retired;
+        worker->discard(*old);
+        is_any = true;
+    }
+    if (is_any) worker->wake();
+}
+
+std::unique_lock<std::mutex> Composer::State::stop_compiling() {
+    worker->cancel();
+    {
+        const std::scoped_lock lock(pending_mutex);
+        ++requests;
+        is_compiling = false;
+        pending_error.reset();
+    }
+    std::unique_lock lock(compile_mutex);
+    delete ready.exchange(nullptr);
+    worker->clean_up();
+    return lock;
+}
+
+Result<Plan> Composer::plan(const CompileDesc& desc) const {
+    auto snapshot = state_->snapshot(desc);
+    if (!snapshot) return failure(std::move(snapshot));
+    auto program = plan::plan_program(snapshot->values, desc, compose::planner_traits(*state_->context, desc.kernels));
+    if (!program) return failure(std::move(program));
+    auto compiled = program->graph.compile(desc.max_extent, graph::measure_on(*state_->context));
+    if (!compiled) return failure(std::move(compiled));
+    std::vector<const plan::Entry*> entries;
+    for (const plan::Entry& entry : snapshot->values) entries.push_back(&entry);
+    return plan::describe_program(*program, *compiled, desc, entries);
+}
+
+Result<Plan> Composer::compile(const CompileDesc& desc) {
+    auto snapshot = state_->snapshot(desc);
+    if (!snapshot) return failure(std::move(snapshot));
+    const auto lock = state_->stop_compiling();
+    auto chain = state_->make_chain(std::move(*snapshot));
+    if (!chain) return failure(std::move(chain));
+    state_->take(std::move(*chain));
+    return state_->chain->plan();
+}
+
+void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
+    const std::scoped_lock lock(compile_mutex);
+    const auto is_outdated = [&] {
+        const std::scoped_lock guard(pending_mutex);
+        return number != requests;
+    };
+    if (is_outdated()) return;
+    auto made = make_chain(std::move(wanted));
+    const std::scoped_lock guard(pending_mutex);
+    if (number != requests) return;
+    is_compiling = false;
+    if (!made) {
+        pending_error = made.error();
+        return;
+    }
+    delete ready.exchange(made->release());
+}
+
+Result<> Composer::compile_later(const CompileDesc& desc) {
+    auto snapshot = state_->snapshot(desc);
+    if (!snapshot) return failure(std::move(snapshot));
+    State& state = *state_;
+    std::uint64_t number = 0;
+    {
+        const std::scoped_lock lock(state.pending_mutex);
+        number = ++state.requests;
+        state.is_compiling = true;
+        state.pending_error.reset();
+    }
+    if (state.worker->is_running()) {
+        // std::function copies what it holds.
+        auto shared = std::make_shared<State::Snapshot>(std::move(*snapshot));
+        state.worker->run([&state, shared, number] { state.compile_now(std::move(*shared), number); });
+        return {};
+    }
+    state.worker->clean_up();
+    state.compile_now(std::move(*snapshot), number);
+    return {};
+}
+
+PendingCompile Composer::pending() const {
+    const std::scoped_lock lock(state_->pending_mutex);
+    return {.is_pending = state_->is_compiling || state_->ready.load() != nullptr, .error = state_->pending_error};
+}
+
+const Plan* Composer::current_plan() const { return state_->chain ? &state_->chain->plan() : nullptr; }
+
+Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {
+    const auto start = std::chrono::steady_clock::now();
+    State& state = *state_;
+    if (state.ready.load(std::memory_order_relaxed) != nullptr)
+        state.take(std::unique_ptr<compose::Chain>(state.ready.exchange(nullptr, std::memory_order_acquire)));
+    if (!state.chain) return user_error("record: the composer has no plan; compile it first");
+    if (state.retired != nullptr) state.put_away_retired();
+    auto ok = state.chain->record(commands, frame);
+    for (compose::Chain* old = state.retired; ok && old != nullptr; old = old->next_retired) --old->recordings_left;
+    state.record_microseconds =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+    return ok;
+}
+
+Result<> Composer::abandon() {
+    if (!state_->chain || !state_->chain->abandon())
+        return user_error("abandon: the composer has no last recording that could be taken back");
+    for (compose::Chain* old = state_->retired; old != nullptr; old = old->next_retired) ++old->recordings_left;
+    return {};
+}
+
+void Composer::wait_for_kernels() {
+    if (!state_->chain) return;
+    if (const auto ok = state_->chain->build_lean(); !ok) state_->context->say(Severity::Warning, ok.error().text);
+}
+
+RecordingTimes Composer::times() { return state_->chain ? state_->chain->times() : RecordingTimes{}; }
+double Composer::record_microseconds() const { return state_->record_microseconds; }
+
+Result<Plan> Composer::rebind(const Device& device) {
+    if (!state_->chain) return user_error("rebind: the composer was never compiled");
+    const CompileDesc desc = state_->chain->compiled_for();
+    auto newer = std::make_unique<State>(device.shared_context(), state_->desc);
+    newer->stack = std::move(state_->stack);
+    state_ = std::move(newer);
+    return compile(desc);
+}
+
+}  // namespace darkroom

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a Composer is made of, for composer.cpp (the stack and its values) and composer_run.cpp (compiling, recording).
+
+#include <atomic>
+#include <darkroom/composer.hpp>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "compose/chain.hpp"
+
+namespace darkroom {
+
+/// All values of an entry, and what they are together: a struct that a host filled may hold anything.
+[[nodiscard]] Result<> check_values(const plan::Entry& entry, std::span<const std::uint32_t> words);
+
+struct Composer::State {
+    State(std::shared_ptr<gpu::Context> device_context, const ComposerDesc& composer_desc);
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State();
+
+    // The stack; composer.cpp.
+    [[nodiscard]] std::size_t index_of(Handle handle) const;  ///< size() if it names no entry
+    [[nodiscard]] plan::Entry* entry(Handle handle) const;    ///< null if it names no entry
+    [[nodiscard]] Result<plan::Entry*> checked(Handle handle) const;
+    [[nodiscard]] std::shared_ptr<plan::Entry> make_entry(const EffectInfo& info, const void* parameters,
+                                                          const EntryDesc& entry_desc) const;
+    /// Which of the entry's rows; the error names the nearest.
+    [[nodiscard]] static Result<const ParamInfo*> row(const plan::Entry& entry, std::string_view parameter);
+
+    // Compiling; composer_run.cpp.
+    struct Snapshot {
+        CompileDesc desc;
+        std::vector<plan::Entry> values;
+        std::vector<std::shared_ptr<const plan::Entry>> entries;
+    };
+    [[nodiscard]] Result<Snapshot> snapshot(const CompileDesc& compile_desc) const;
+    /// With compile_mutex held.
+    [[nodiscard]] Result<std::unique_ptr<compose::Chain>> make_chain(Snapshot snapshot);
+    /// For the task of compile_later(): `number` is that of its request.
+    void compile_now(Snapshot snapshot, std::uint64_t number);
+    /// Ends what compile_later() began: with the lock, nothing runs, and nothing will be taken.
+    [[nodiscard]] std::unique_lock<std::mutex> stop_compiling();
+
+    // Recording.
+    void take(std::unique_ptr<compose::Chain> newer);
+    void put_away_retired();
+
+    std::shared_ptr<gpu::Context> context;
+    ComposerDesc desc;
+    std::vector<std::shared_ptr<plan::Entry>> stack;
+
+    std::unique_ptr<compose::Chain> chain;
+    compose::Chain* retired = nullptr;  ///< that unfinished recordings may still use; owned
+    double record_microseconds = 0;
+
+    std::mutex compile_mutex;  ///< guards the next two; record() never takes it
+    graph::HistoryPool histories;
+    std::shared_ptr<compose::StackProgram> program;  ///< of the last compile
+
+    mutable std::mutex pending_mutex;  ///< guards the next three; record() never takes it
+    std::uint64_t requests = 0;
+    bool is_compiling = false;
+    std::optional<Error> pending_error;
+    std::atomic<compose::Chain*> ready{nullptr};  ///< for record() to take; owned
+
+    std::unique_ptr<compose::Worker> worker;
+};
+
+}  // namespace darkroom

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "compose/stack_program.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "gpu/context.hpp"
+#include "gpu/format_use.hpp"
+
+namespace darkroom::compose {
+
+namespace {
+
+/// All but the extent, which a program is independent of, as far as its answers are the same.
+auto facts_of(const CompileDesc& desc) {
+    return std::tie(desc.color, desc.depth, desc.is_depth_planar, desc.normals, desc.velocity,
+                    desc.is_velocity_plain, desc.ui,
+                    desc.has_shadows, desc.target, desc.target_extent.width,
+                    desc.target_extent.height, desc.target_domain, desc.encodes_target, desc.kernels, desc.fuse,
+                    desc.intermediate);
+}
+/// Of an entry what the planner looks at; the rest are values of a frame.
+auto wiring_of(const plan::Entry& entry) {
+    const EntryDesc& desc = entry.desc;
+    return std::tuple(entry.id, entry.info, desc.input.id, desc.source.id, desc.second.id, desc.mask.id, desc.name,
+                      entry.is_plain());
+}
+
+/// The stage the user asked for where it can run the kernel, else the other one.
+Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& spec, KernelStage wanted) {
+    if (wanted == KernelStage::Auto) return gpu::preferred_stage(context, spec);
+    const gpu::Stage first = wanted == KernelStage::Compute ? gpu::Stage::Compute : gpu::Stage::Raster;
+    const gpu::Stage second = wanted == KernelStage::Compute ? gpu::Stage::Raster : gpu::Stage::Compute;
+    auto ok = gpu::usable(context, spec, first);
+    if (ok) return first;
+    if (gpu::usable(context, spec, second)) return second;
+    return failure(std::move(ok));
+}
+
+}  // namespace
+
+bool StackProgram::serves(std::span<const plan::Entry> other_stack, const CompileDesc& other_desc) const {
+    const auto is_same = [&](const plan::Entry& a, const plan::Entry& b) {
+        return wiring_of(a) == wiring_of(b) && (!program.reads_values || a.base == b.base);
+    };
+    return facts_of(desc) == facts_of(other_desc) && std::ranges::equal(stack, other_stack, is_same) &&
+           std::ranges::all_of(program.extent_answers, [&](const plan::Program::ExtentAnswer& asked) {
+               return asked.question(asked.size.of(other_desc.max_extent)) == asked.answer;
+           });
+}
+
+plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kernels) {
+    const bool is_software = context.traits.is_software;
+    return {.stage_of = [&context, kernels](const gpu::KernelSpec& spec) { return stage_of(context, spec, kernels); },
+            .can_load = [&context](VkFormat format) { return gpu::can_load(context, format); },
+            .loads_are_cheap = is_software,
+            .workgroup = is_software ? std::array{64u, 4u} : std::array{16u, 16u}};
+}
+
+Result<std::shared_ptr<StackProgram>> plan_stack(const gpu::Context& context, std::span<const plan::Entry> stack,
+                                                 const CompileDesc& desc) {
+    auto program = plan::plan_program(stack, desc, planner_traits(context, desc.kernels));
+    if (!program) return failure(std::move(program));
+    auto out = std::make_shared<StackProgram>();
+    out->program = std::move(*program);
+    out->stack.assign(stack.begin(), stack.end());
+    out->desc = desc;
+    for (const plan::ProgramPass& pass : out->program.passes)
+        out->kernels.push_back(std::make_unique<PassKernels>(pass));
+    return out;
+}
+
+}  // namespace darkroom::compose

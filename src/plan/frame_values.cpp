@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "plan/frame_values.hpp"
+
+#include <algorithm>
+
+namespace darkroom::plan {
+
+void Entry::evaluate(std::span<std::uint32_t> out) const {
+    std::copy(base.begin(), base.end(), out.begin());
+    for (const Override& o : overrides) std::copy_n(o.value.begin(), o.words, out.begin() + o.word);
+}
+
+FrameValues::FrameValues(const Program& program, std::span<const Entry* const> entries)
+    : is_on_(entries.size()),
+      domains_(entries.size()),
+      gates_(std::make_unique<bool[]>(program.gates.size() + 1)),
+      gate_count_(program.gates.size()) {
+    std::uint32_t words = 0;
+    for (const Entry* const entry : entries) {
+        first_word_.push_back(words);
+        words += static_cast<std::uint32_t>(entry->info->parameters.words());
+    }
+    words_.resize(words + 1);
+}
+
+void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
+                           const PassContext& context) {
+    for (std::uint32_t i = 0; i < entries.size(); ++i) {
+        const Entry& entry = *entries[i];
+        std::uint32_t* const words = words_.data() + first_word_[i];
+        entry.evaluate({words, entry.info->parameters.words()});
+        is_on_[i] = !program.is_left_out[i] && entry.is_on(words) ? 1 : 0;
+        domains_[i] = entry.domain_after(domain_before(program, i), words, is_on(i));
+    }
+    finish_ = finish_of(last_domain(program), desc);
+    for (std::size_t i = 0; i < gate_count_; ++i) gates_[i] = is_open(program, program.gates[i], context);
+}
+
+bool FrameValues::is_open(const Program& program, const Gate& gate, const PassContext& context) const {
+    const auto holds = [&](std::uint32_t entry, ConditionFunction condition) {
+        if (condition == nullptr) return true;
+        PassContext own = context;
+        own.frame_extent = program.entry_sizes[entry].of(context.frame_extent);
+        return condition(words(entry), own, gate.argument);
+    };
+    bool is_wanted = false;
+    for (std::size_t i = 0; i < gate.entries.size() && !is_wanted; ++i)
+        is_wanted = is_on(gate.entries[i]) && (gate.conditions.empty() || holds(gate.entries[i], gate.conditions[i]));
+    return is_wanted && holds(gate.entries.front(), gate.condition);
+}
+
+}  // namespace darkroom::plan

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a program does in one frame: the values of its entries, which of them are on, what the picture is behind each,
+// and which passes run. A function of the entries and the frame, worked out in storage that is made beforehand.
+
+#include <memory>
+
+#include "plan/program.hpp"
+
+namespace darkroom::plan {
+
+class FrameValues {
+  public:
+    FrameValues() = default;
+    FrameValues(const Program& program, std::span<const Entry* const> entries);
+
+    /// Allocates nothing. The entries are those that the program was planned from, in their order.
+    void evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
+                  const PassContext& context);
+
+    /// The parameters of an entry, overrides included.
+    [[nodiscard]] const std::uint32_t* words(std::uint32_t entry) const { return words_.data() + first_word_[entry]; }
+    /// Does it change anything? What is left out never does.
+    [[nodiscard]] bool is_on(std::uint32_t entry) const { return is_on_[entry] != 0; }
+    /// What the picture is that an entry gets, and that the target gets.
+    [[nodiscard]] Domain domain_before(const Program& program, std::uint32_t entry) const {
+        return domain_behind(program.entry_inputs[entry]);
+    }
+    [[nodiscard]] Domain last_domain(const Program& program) const { return domain_behind(program.last_entry); }
+    [[nodiscard]] Finish finish() const { return finish_; }
+    [[nodiscard]] std::span<const bool> gates() const { return {gates_.get(), gate_count_}; }
+
+  private:
+    [[nodiscard]] Domain domain_behind(std::uint32_t entry) const {
+        return entry == no_entry ? Domain::SceneLinear : domains_[entry];
+    }
+    [[nodiscard]] bool is_open(const Program& program, const Gate& gate, const PassContext& context) const;
+
+    std::vector<std::uint32_t> words_, first_word_;
+    std::vector<std::uint8_t> is_on_;
+    std::vector<Domain> domains_;  ///< behind each entry
+    Finish finish_ = Finish::None;
+    std::unique_ptr<bool[]> gates_;
+    std::size_t gate_count_ = 0;
+};
+
+}  // namespace darkroom::plan
