@@ -324,24 +324,6 @@ TEST_F(ComposeHost, ErrorsNameTheImageAndRecordNothing) {
     test::must(host.record(composer, host.frame()));
 }
 
-TEST_F(ComposeHost, AChangedStackMustBeCompiled) {
-    const Host host(small_picture());
-    Composer composer(host.device);
-    add(composer, "exposure");
-    test::must(composer.compile(host.compile_desc()));
-    add(composer, "negative");
-    EXPECT_FALSE(host.record(composer, host.frame()));
-    test::must(composer.compile(host.compile_desc()));
-    test::must(host.record(composer, host.frame()));
-    // As many entries as before, but other ones.
-    composer.clear();
-    add(composer, "gaussian_blur");
-    add(composer, "bloom");
-    const auto refused = host.record(composer, host.frame());
-    ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().text.find("compile"), std::string::npos) << refused.error().text;
-}
-
 TEST_F(ComposeHost, AComposerCanBeMoved) {
     const Host host(small_picture());
     Composer composer(host.device);

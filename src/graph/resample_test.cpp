@@ -14,12 +14,13 @@ constexpr float junk = 50.0F;  ///< beyond the region: the rest of some larger f
 
 /// A history of `format`, half the frame's size, with whatever the test puts into it.
 struct Bed {
-    gpu::Context& context = gpu::test::context();
+    gpu::Context& context;
     VkFormat format;
     std::uint32_t mip_levels;
     Physical physical;
 
-    Bed(VkFormat of_format, std::uint32_t levels) : format(of_format), mip_levels(levels) {
+    Bed(VkFormat of_format, std::uint32_t levels, gpu::Context& on = gpu::test::context())
+        : context(on), format(of_format), mip_levels(levels) {
         Graph graph;
         const Graph::History history = graph.history(
             {.name = "trail", .format = format, .size = Size::fraction(2), .mip_levels = mip_levels}, {.owner = 1});
@@ -168,14 +169,16 @@ TEST(GraphPhysicalResample, IntegersKeepTheirNearestTexel) {
 
 TEST(GraphPhysicalResample, WhatCannotBeBlittedStartsFromZero) {
     static PFN_vkGetPhysicalDeviceFormatProperties ask;
-    gpu::Context& context = gpu::test::context();
+    // Of its own: a context asks for a format once.
+    const Device device = gpu::test::must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
+    gpu::Context& context = device.context();
     ask = context.vk.GetPhysicalDeviceFormatProperties;
     context.vk.GetPhysicalDeviceFormatProperties = [](VkPhysicalDevice device, VkFormat format,
                                                       VkFormatProperties* properties) {
         ask(device, format, properties);
         properties->optimalTilingFeatures &= ~VkFormatFeatureFlags{VK_FORMAT_FEATURE_BLIT_DST_BIT};
     };
-    const Bed bed(VK_FORMAT_R32_SFLOAT, 2);
+    const Bed bed(VK_FORMAT_R32_SFLOAT, 2, context);
     context.vk.GetPhysicalDeviceFormatProperties = ask;
     EXPECT_EQ(bed.physical.history(0)->images[0].info.usage & VK_IMAGE_USAGE_TRANSFER_SRC_BIT, 0u);
     // Its images cannot be copied from, so the commands show what is done.

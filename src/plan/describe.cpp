@@ -101,10 +101,11 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
             // An image that is both loaded and sampled stands there twice.
             if (input.table != no_table || !pass.spec.images[k].loads_by.empty()) continue;
             out.bytes_read +=
-                bytes_of(compiled.slots()[schedule.slot_of(input.version)], desc.max_extent, input.mip_level);
+                bytes_of(compiled.slots()[schedule.slot_of(input.version, input.instead)], desc.max_extent, input.mip_level);
         }
         if (pass.spec.is_additive) out.bytes_read += out.bytes_written;
-        for (const FusedStep& step : pass.steps) out.entries.push_back(step.name);
+        if (pass.is_fused)
+            for (const FusedStep& step : pass.steps) out.entries.push_back(step.name);
         plan.passes.push_back(std::move(out));
     }
     return plan;
