@@ -87,8 +87,8 @@ Result<> fill(Bed& bed, KernelRun& run, const gpu::KernelSpec& spec, gpu::Stage 
     auto sets = gpu::DescriptorSets::create(bed.context, {&layout, 1});
     if (!sets) return failure(std::move(sets));
     run.sets = std::move(*sets);
-    const std::size_t size = gpu::own_block_size(spec);
-    auto block = gpu::Buffer::create(bed.context, size, gpu::block_usage, gpu::Memory::Kind::Upload, "block");
+    const std::size_t bytes = gpu::own_block_size(spec);
+    auto block = gpu::Buffer::create(bed.context, bytes, gpu::block_usage, gpu::Memory::Kind::Upload, "block");
     if (!block) return failure(std::move(block));
     run.block = std::move(*block);
 
@@ -99,9 +99,9 @@ Result<> fill(Bed& bed, KernelRun& run, const gpu::KernelSpec& spec, gpu::Stage 
         const VkExtent2D size{run.table.info.extent.width, run.table.info.extent.height};
         run.images.push_back({.view = run.table.mip_views[0], .region = {.extent = size, .image = size}});
     }
-    gpu::write_own_block(spec, region, run.images, {}, words, {run.block.memory.mapped, size});
+    gpu::write_own_block(spec, region, run.images, {}, words, {run.block.memory.mapped, bytes});
     run.kernel->write_set({.set = run.sets.sets[0],
-                           .own = {run.block.handle, 0, size},
+                           .own = {run.block.handle, 0, bytes},
                            .images = run.images,
                            .outputs = {&run.output, 1}});
     return {};
@@ -117,17 +117,17 @@ gpu::KernelSpec calibration_spec() {
 }
 
 gpu::KernelSpec tail_spec() {
-    return {
-        .name = "hand-written tail",
-        .images = {{.name = "scene", .storage_format = scene_format},
-                   {.name = "tile", .storage_format = VK_FORMAT_R32G32B32A32_SFLOAT}},
-        .outputs = {target_format},
-        .members = {{gpu::BlockMember::Type::Float, "exposure"},
-                    {gpu::BlockMember::Type::Float, "vignette_intensity"},
-                    {gpu::BlockMember::Type::Float, "vignette_smoothness"},
-                    {gpu::BlockMember::Type::Float, "dither_intensity"},
-                    {gpu::BlockMember::Type::Uint, "frame"}},
-        .body = std::string(tail_body)};
+    return {.name = "hand-written tail",
+            .images = {{.name = "scene", .storage_format = scene_format},
+                       {.name = "tile", .storage_format = VK_FORMAT_R32G32B32A32_SFLOAT}},
+            .outputs = {target_format},
+            .members = {{gpu::BlockMember::Type::Float, "exposure"},
+                        {gpu::BlockMember::Type::Float, "vignette_intensity"},
+                        {gpu::BlockMember::Type::Float, "vignette_smoothness"},
+                        {gpu::BlockMember::Type::Float, "dither_intensity"},
+                        {gpu::BlockMember::Type::Uint, "frame"}},
+            .body = std::string(tail_body),
+            .workgroup = {16, 16}};
 }
 
 std::optional<TableDesc> only_table_of(const EffectInfo& effect) {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "plan/program.hpp"
 #include "gpu/shader.hpp"
+#include "plan/program.hpp"
 
 namespace {
 

@@ -109,12 +109,12 @@ ReferenceImage references_in_turn(const Composer& composer, const LitFloor& floo
         const std::size_t taken = i == swapped ? i + 1 : i == swapped + 1 ? i - 1 : i;
         const Handle entry = composer.entry(taken);
         picture = composer.info(entry)->reference(composer.words(entry).data(), {.picture = &picture,
-                                                                                .source = &floor.picture,
-                                                                                .depth = &floor.depth,
-                                                                                .lights = {&floor.light, 1},
-                                                                                .camera = floor.camera,
-                                                                                .time = 2.5,
-                                                                                .frame_index = 150});
+                                                                                 .source = &floor.picture,
+                                                                                 .depth = &floor.depth,
+                                                                                 .lights = {&floor.light, 1},
+                                                                                 .camera = floor.camera,
+                                                                                 .time = 2.5,
+                                                                                 .frame_index = 150});
     }
     return picture;
 }

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "develop/developer.hpp"
 #include "core/param_text.hpp"
+#include "develop/developer.hpp"
 #include "device_flags.hpp"
 #include "frames.hpp"
 #include "image/resize.hpp"

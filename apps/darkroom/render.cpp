@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "commands.hpp"
-#include "develop/developer.hpp"
 #include "core/param_text.hpp"
+#include "develop/developer.hpp"
 #include "frames.hpp"
 #include "outputs.hpp"
 #include "render_flags.hpp"

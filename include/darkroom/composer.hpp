@@ -132,8 +132,8 @@ class Composer {
     Composer& operator=(Composer&&) noexcept;
     ~Composer();
 
-    // The stack. Edits keep the values, overrides and histories of the entries that stay; record() goes on with the plan
-    // it has, and the present values of that plan's entries, until a compile has made another.
+    // The stack. Edits keep the values, overrides and histories of the entries that stay; record() goes on with the
+    // plan it has, and the present values of that plan's entries, until a compile has made another.
     /// Appends an effect; no input named means the output of the entry before.
     template <class Effect>
     Handle add(const Effect& parameters, const EntryDesc& desc = {}) {
@@ -207,8 +207,8 @@ class Composer {
     /// Records the whole stack. Errors (a missing or mismatching image, an extent beyond the compiled maximum, no plan)
     /// record nothing; they name the image and the field, such as frame.depth.layout.
     Result<> record(VkCommandBuffer commands, const Frame& frame);
-    /// The last recording will not be submitted: what it did to histories, uploads and the ring of frames is taken back.
-    /// An error: there is none, or it was taken back.
+    /// The last recording will not be submitted: what it did to histories, uploads and the ring of frames is taken
+    /// back. An error: there is none, or it was taken back.
     Result<> abandon();
 
     /// Waits for kernels that are being built for the present toggles. For headless work and tests, not for frame

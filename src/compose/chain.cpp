@@ -273,9 +273,9 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
         own.output_extent = output.region.extent;
         pass.constants(values_.words(pass.entry()), own, custom);
     }
-    gpu::write_own_block(pass.spec, output.region, inputs, custom, write_words(pass),
-                         {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index],
-                          gpu::own_block_size(pass.spec)});
+    gpu::write_own_block(
+        pass.spec, output.region, inputs, custom, write_words(pass),
+        {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index], gpu::own_block_size(pass.spec)});
     const gpu::Kernel& kernel = kernel_of(index, output.region, inputs);
     const VkDescriptorSet set = updated_set(index, kernel, inputs, output);
     gpu::begin_label(context_, commands, pass.name.c_str());

@@ -107,7 +107,7 @@ class Chain final : public Garbage {
         friend bool operator==(const Written&, const Written&) = default;
     };
     struct Sets {
-        std::uint32_t first = ~0u;       ///< of the pool
+        std::uint32_t first = ~0u;  ///< of the pool
         std::uint32_t first_written = 0;
         std::uint32_t images = 0;
     };

@@ -107,16 +107,16 @@ plan::Shape Chain::expected_shape(const plan::ProgramPass& pass, std::span<const
         // A pass that is off has no slot: any region does.
         if (slot >= compiled_->slots().size()) return gpu::Region{{}, largest, largest};
         const graph::ImageDesc& desc = compiled_->slots()[slot].desc;
-        const VkExtent2D extent =
-            graph::mip_extent(desc.size.of(largest), std::min(mip_level, desc.mip_levels - 1));
+        const VkExtent2D extent = graph::mip_extent(desc.size.of(largest), std::min(mip_level, desc.mip_levels - 1));
         return gpu::Region{{}, extent, extent};
     };
     std::array<gpu::Binding, gpu::most_images> inputs;
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         const plan::PassInput& input = pass.inputs[i];
-        inputs[i] = input.table != plan::no_table
-                        ? tables_.binding(input.table)
-                        : gpu::Binding{.region = region(schedule_->slot_of(input.version, input.instead), input.mip_level)};
+        inputs[i] =
+            input.table != plan::no_table
+                ? tables_.binding(input.table)
+                : gpu::Binding{.region = region(schedule_->slot_of(input.version, input.instead), input.mip_level)};
     }
     return shape_of(pass, entries, region(schedule_->slot_of(pass.output), pass.output_mip_level),
                     {inputs.data(), pass.inputs.size()});
@@ -156,8 +156,8 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
                                           pass.name, pass.spec.images.size(), pass.spec.custom_vectors,
                                           gpu::most_images, most_custom_vectors));
         if (size > most_bytes)
-            return user_error(fmt::format("pass '{}': {} bytes of parameters; at most {} are allowed", pass.name, size,
-                                          most_bytes));
+            return user_error(
+                fmt::format("pass '{}': {} bytes of parameters; at most {} are allowed", pass.name, size, most_bytes));
         block_at_.push_back(at);
         at += align(size, context_.traits.uniform_alignment);
         most_words = std::max<std::size_t>(most_words, gpu::word_count(pass.spec.members));
@@ -165,8 +165,8 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     slot_stride_ = at;
     words_.resize(most_words + 1);
     custom_.resize(most_custom_vectors);
-    auto blocks = gpu::Buffer::create(context_, slot_stride_ * desc_.slots, gpu::block_usage, gpu::Memory::Kind::Constants,
-                                      "blocks");
+    auto blocks = gpu::Buffer::create(context_, slot_stride_ * desc_.slots, gpu::block_usage,
+                                      gpu::Memory::Kind::Constants, "blocks");
     if (!blocks) return failure(std::move(blocks));
     blocks_ = std::move(*blocks);
     if (auto ok = make_sets(); !ok) return ok;

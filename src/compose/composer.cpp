@@ -152,7 +152,9 @@ Result<> Composer::move(Handle handle, Handle before) {
     if (before.is_given())
         if (auto ok = check(before); !ok) return ok;
     if (handle == before) return {};
-    const auto at = [&](Handle which) { return state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(which)); };
+    const auto at = [&](Handle which) {
+        return state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(which));
+    };
     const auto from = at(handle), to = before.is_given() ? at(before) : state_->stack.end();
     if (from < to)
         std::rotate(from, from + 1, to);

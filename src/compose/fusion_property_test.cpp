@@ -90,9 +90,8 @@ class Graph {
     /// Empty, with a failure, where the stack cannot be compiled.
     [[nodiscard]] std::optional<Plan> compile(Composer& composer, KernelStage stage, bool is_fused) {
         CompileDesc desc = host_.compile_desc();
-        desc.target = {surroundings_.format,
-                       gpu::test::all_usage(host_.device.context(), surroundings_.format) &
-                           (VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT)};
+        desc.target = {surroundings_.format, gpu::test::all_usage(host_.device.context(), surroundings_.format) &
+                                                 (VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT)};
         desc.target_domain = surroundings_.domain;
         desc.encodes_target = surroundings_.encodes_target;
         desc.kernels = stage;
@@ -103,7 +102,8 @@ class Graph {
             ADD_FAILURE() << plan.error().text;
             return std::nullopt;
         }
-        if (!target_) target_ = gpu::test::blank(host_.device.context(), plan->passes.back().extent, desc.target.format);
+        if (!target_)
+            target_ = gpu::test::blank(host_.device.context(), plan->passes.back().extent, desc.target.format);
         return std::move(*plan);
     }
     [[nodiscard]] ReferenceImage show(Composer& composer) const {
@@ -195,11 +195,13 @@ void expect_one_picture(std::uint32_t seed, Effort effort, Count& count) {
         const ReferenceImage picture = graph.show(fused);
         const ReferenceImage apart = graph.show(unfused);
         EXPECT_LE(test::worst_codes(apart, picture), 1) << "unfused differs";
-        if (plan->passes.size() == unfused_plan->passes.size() && graph.is_software())
+        if (plan->passes.size() == unfused_plan->passes.size() && graph.is_software()) {
             EXPECT_EQ(test::worst_difference(apart, picture), 0) << "unfused differs where nothing was fused";
-        if (tries_raster)
+        }
+        if (tries_raster) {
             EXPECT_LE(test::worst_codes(graph.show(raster), picture), graph.is_software() ? 0 : 1)
                 << "the stages differ";
+        }
         if (const auto expected = graph.reference(fused)) {
             ++count.references;
             EXPECT_LE(test::worst_codes(picture, *expected), 1) << "the reference differs";

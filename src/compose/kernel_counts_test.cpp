@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Kernels are what they do and nothing else: how many pipelines and compiler calls compiling, resizing and editing take.
-// Every test has a device of its own, whose store begins empty.
+// Kernels are what they do and nothing else: how many pipelines and compiler calls compiling, resizing and editing
+// take. Every test has a device of its own, whose store begins empty.
 
 #include <fmt/format.h>
 

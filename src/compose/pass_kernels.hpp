@@ -53,7 +53,8 @@ class PassKernels {
         Arrival* next = nullptr;
     };
     void take_arrivals(std::uint64_t recording, std::uint64_t unfinished, AtomicStack<Garbage>& garbage);
-    /// Where a further kernel goes: behind the last, or over the one that was used longest ago, if no recording uses it.
+    /// Where a further kernel goes: behind the last, or over the one that was used longest ago, if no recording uses
+    /// it.
     [[nodiscard]] Lean* place_for_another(std::uint64_t recording, std::uint64_t unfinished);
     [[nodiscard]] Lean* known(const plan::Shape& shape);
 

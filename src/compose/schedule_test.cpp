@@ -145,6 +145,38 @@ TEST_F(ComposeSchedule, TheCheckerAcceptsEveryFrameOfEveryStack) {
     EXPECT_GT(toggled, 1000u);
 }
 
+TEST_F(ComposeSchedule, KernelsKeepToTheStorageImagesOfTheDevice) {
+    std::size_t most = 0;
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+        std::mt19937 random(seed * 31 + 7);
+        const std::vector<Entry> stack = random_stack(random);
+        CompileDesc desc{.max_extent = {640, 360}};
+        desc.color.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+        const auto count = [&](std::uint32_t limit) {
+            const auto program = plan_program(
+                stack, desc,
+                {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Compute; },
+                 .can_load = [](VkFormat) { return true; },
+                 .loads_are_cheap = true,
+                 .max_storage_images = limit});
+            EXPECT_TRUE(program);
+            std::size_t worst = 0;
+            for (const ProgramPass& pass : program->passes) {
+                EXPECT_EQ(pass.inputs.size(), pass.spec.images.size());
+                std::size_t storage = 1;
+                for (std::size_t i = 0; i < pass.inputs.size(); ++i)
+                    if (pass.inputs[i].table == no_table && pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED)
+                        ++storage;
+                worst = std::max(worst, storage);
+            }
+            return worst;
+        };
+        most = std::max(most, count(64));
+        EXPECT_EQ(count(1), 1u) << "seed " << seed;
+    }
+    EXPECT_GT(most, 1u) << "nothing had to be limited";
+}
+
 TEST_F(ComposeSchedule, TheDefaultStackHasOneTransientImage) {
     std::vector<Entry> stack;
     stack.push_back(entry_of("bloom", stack, {.source = scene_color}));

@@ -39,7 +39,8 @@ ReferenceImage shown(Composer& composer, const test::Host& host, CompileDesc des
     const auto plan = composer.compile(desc);
     EXPECT_TRUE(plan) << plan.error().text;
     if (!plan) return {};
-    const gpu::test::Picture target = gpu::test::blank(host.device.context(), plan->passes.back().extent, desc.target.format);
+    const gpu::test::Picture target =
+        gpu::test::blank(host.device.context(), plan->passes.back().extent, desc.target.format);
     frame.target = test::image_ref(target);
     test::must(host.record(composer, frame));
     return test::image_of(gpu::test::download(host.device.context(), target));

@@ -13,11 +13,9 @@ namespace {
 
 /// All but the extent, which a program is independent of, as far as its answers are the same.
 auto facts_of(const CompileDesc& desc) {
-    return std::tie(desc.color, desc.depth, desc.is_depth_planar, desc.normals, desc.velocity,
-                    desc.is_velocity_plain, desc.ui,
-                    desc.has_shadows, desc.target, desc.target_extent.width,
-                    desc.target_extent.height, desc.target_domain, desc.encodes_target, desc.kernels, desc.fuse,
-                    desc.intermediate);
+    return std::tie(desc.color, desc.depth, desc.is_depth_planar, desc.normals, desc.velocity, desc.is_velocity_plain,
+                    desc.ui, desc.has_shadows, desc.target, desc.target_extent.width, desc.target_extent.height,
+                    desc.target_domain, desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate);
 }
 /// Of an entry what the planner looks at; the rest are values of a frame.
 auto wiring_of(const plan::Entry& entry) {
@@ -50,11 +48,11 @@ bool StackProgram::serves(std::span<const plan::Entry> other_stack, const Compil
 }
 
 plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kernels) {
-    const bool is_software = context.traits.is_software;
     return {.stage_of = [&context, kernels](const gpu::KernelSpec& spec) { return stage_of(context, spec, kernels); },
             .can_load = [&context](VkFormat format) { return gpu::can_load(context, format); },
-            .loads_are_cheap = is_software,
-            .workgroup = is_software ? std::array{64u, 4u} : std::array{16u, 16u}};
+            .loads_are_cheap = context.traits.is_software,
+            .max_storage_images = context.traits.max_storage_images,
+            .workgroup = gpu::usual_workgroup(context)};
 }
 
 Result<std::shared_ptr<StackProgram>> plan_stack(const gpu::Context& context, std::span<const plan::Entry> stack,
@@ -63,7 +61,7 @@ Result<std::shared_ptr<StackProgram>> plan_stack(const gpu::Context& context, st
     if (!program) return failure(std::move(program));
     auto out = std::make_shared<StackProgram>();
     out->program = std::move(*program);
-    out->stack.assign(stack.begin(), stack.end());
+    for (const plan::Entry& entry : stack) out->stack.push_back(entry);
     out->desc = desc;
     for (const plan::ProgramPass& pass : out->program.passes)
         out->kernels.push_back(std::make_unique<PassKernels>(pass));

@@ -125,7 +125,8 @@ inline std::string described(const Composer& composer) {
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const Handle entry = composer.entry(i);
         const EntryDesc& inputs = *composer.desc(entry);
-        out += fmt::format("\n[[stack]]\neffect = \"{0}\"\noutput = \"{1}\"\n", composer.info(entry)->name, inputs.name);
+        out +=
+            fmt::format("\n[[stack]]\neffect = \"{0}\"\noutput = \"{1}\"\n", composer.info(entry)->name, inputs.name);
         if (!inputs.enabled) out += "enabled = false\n";
         wire("input", inputs.input);
         wire("source", inputs.source);

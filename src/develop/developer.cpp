@@ -88,7 +88,8 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopDesc& desc) {
             .fuse = desc.fuse};
 }
 
-CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, const Layers& layers, const DevelopDesc& desc) {
+CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, const Layers& layers,
+                             const DevelopDesc& desc) {
     const auto use = [&](std::size_t i) {
         if (layers[i].values.empty()) return ImageUse{};
         return ImageUse{layers[i].format, shader_usage(context, layers[i].format)};

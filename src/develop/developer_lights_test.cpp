@@ -6,10 +6,10 @@
 
 #include <darkroom/effects.hpp>
 
-#include "develop/developer.hpp"
-#include "develop/reference_chain.hpp"
 #include "compose/test_host.hpp"
 #include "compose/test_shadow_map.hpp"
+#include "develop/developer.hpp"
+#include "develop/reference_chain.hpp"
 
 namespace darkroom {
 namespace {

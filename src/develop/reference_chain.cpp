@@ -84,7 +84,8 @@ class Chain {
         const EntryDesc& desc = *composer_.desc(handle);
         for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
             if (wire.is_given() && wire != scene_color && index_of(wire) >= index)
-                return user_error(fmt::format("stack entry '{}': it reads what is not the output of an earlier entry", desc.name));
+                return user_error(
+                    fmt::format("stack entry '{}': it reads what is not the output of an earlier entry", desc.name));
         const std::size_t from = value_of(desc.input, index);
         values_.push_back(from);
         std::string why = missing_needs(info.needs, input_);

@@ -76,7 +76,7 @@ TEST(GpuDispatch, AKernelNeedsNoDevice) {
     EXPECT_EQ(calls()["bindings"], 3);
     EXPECT_EQ(calls()["writes"], 3);
     EXPECT_EQ(calls()["bind"], 1);
-    EXPECT_EQ(calls()["groups"], 301);
+    EXPECT_EQ(calls()["groups"], 302);
     EXPECT_EQ(calls()["module"], 0) << "modules are destroyed";
 
     const Result<std::unique_ptr<Kernel>> failing = Kernel::create(context, spec, Stage::Raster);

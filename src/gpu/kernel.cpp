@@ -13,7 +13,6 @@ namespace darkroom::gpu {
 
 namespace {
 
-
 constexpr std::uint32_t first_image_binding = 2;
 
 VkShaderStageFlagBits stage_flag(Stage stage) {

@@ -46,8 +46,8 @@ class Context;
 /// software driver, 16 scalars from a storage buffer cost 35 to 90 % more than the same ones from a uniform buffer.
 inline constexpr VkBufferUsageFlags block_usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
 
-/// Limits of one kernel: record() works in arrays of these sizes, on the stack. Vulkan promises 16 samplers a stage and 4
-/// attachments.
+/// Limits of one kernel: record() works in arrays of these sizes, on the stack. Vulkan promises 16 samplers a stage and
+/// 4 attachments.
 inline constexpr std::uint32_t most_images = 16;
 inline constexpr std::uint32_t most_outputs = 8;
 
@@ -77,8 +77,7 @@ struct KernelSpec {
     std::vector<BlockMember> members;  ///< of the kernel's own block, behind what kernel_source() puts there
     std::uint32_t custom_vectors = 0;  ///< vec4 custom[n] in the own block
     std::string body;                  ///< GLSL: helpers and shade(); may hold #line directives
-    /// Measured for kernels of a pixel: rows suit the software driver, squares the GPUs.
-    std::array<std::uint32_t, 2> workgroup{16, 16};
+    std::array<std::uint32_t, 2> workgroup{16, 8};  ///< 128 invocations are what every device allows
 };
 
 /// The whole shader for one stage. Pure text: tested without a device.
@@ -144,6 +143,9 @@ class Kernel {
 
 /// Whether `stage` can run `spec` on this device; the error names the output or image and its format.
 [[nodiscard]] Result<> usable(const Context& context, const KernelSpec& spec, Stage stage);
+
+/// Rows suit the software driver, squares the GPUs; never more invocations than the device allows.
+[[nodiscard]] std::array<std::uint32_t, 2> usual_workgroup(const Context& context);
 
 /// Which stage runs `spec` best on this device, from the measurements in docs/architecture.md: GPUs compute; the
 /// software driver rasterises. Formats that the stage cannot write force the other one.

@@ -30,7 +30,8 @@ class ShaderModule {
             .pCode = words.data(),
         };
         ShaderModule module(context);
-        const VkResult result = context.vk.CreateShaderModule(context.device, &create_info, context.allocator, &module.handle_);
+        const VkResult result =
+            context.vk.CreateShaderModule(context.device, &create_info, context.allocator, &module.handle_);
         Result<> checked = context.check(result, fmt::format("creating the shader module of \"{}\"", name));
         if (!checked) return failure(std::move(checked));
         return module;
@@ -74,8 +75,7 @@ Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& s
         .layout = layout,
     };
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result =
-        context.vk.CreateComputePipelines(context.device, context.pipeline_cache, 1, &create_info,
+    const VkResult result = context.vk.CreateComputePipelines(context.device, context.pipeline_cache, 1, &create_info,
                                                               context.allocator, &pipeline);
     Result<> checked = context.check(result, fmt::format("creating the compute pipeline of \"{}\"", spec.name));
     if (!checked) return failure(std::move(checked));
@@ -152,9 +152,8 @@ Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& sp
         .layout = layout,
     };
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result =
-        context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &create_info,
-                                                              context.allocator, &pipeline);
+    const VkResult result = context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &create_info,
+                                                               context.allocator, &pipeline);
     Result<> checked = context.check(result, fmt::format("creating the raster pipeline of \"{}\"", spec.name));
     if (!checked) return failure(std::move(checked));
     return pipeline;

@@ -75,8 +75,9 @@ void write_blocks(Text text, const KernelSpec& spec, const BlockSource& own) {
     fmt::format_to(text, "{}}};\n", own.members);
     // Two blocks on one binding: Vulkan lets resources alias.
     if (!own.arrays.empty()) {
-        fmt::format_to(text, "layout(std140, set = 0, binding = 1) uniform DarkroomWords {{ uvec4 darkroom_words[{}]; }};\n{}",
-                       own_block_size(spec) / 16, own.accessors);
+        fmt::format_to(
+            text, "layout(std140, set = 0, binding = 1) uniform DarkroomWords {{ uvec4 darkroom_words[{}]; }};\n{}",
+            own_block_size(spec) / 16, own.accessors);
     }
 }
 

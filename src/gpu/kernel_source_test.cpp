@@ -50,11 +50,14 @@ TEST(GpuRewrite, TurnsIndexingIntoCalls) {
 
 TEST(GpuBlock, ScalarsFollowEachOtherAndArraysAreReadAsWords) {
     using enum BlockMember::Type;
-    const std::vector<BlockMember> members{{Float, "a"}, {Float, "curve", 3}, {Vec4, "b"}, {Int, "c"}, {Uint, "flags", 2}};
+    const std::vector<BlockMember> members{
+        {Float, "a"}, {Float, "curve", 3}, {Vec4, "b"}, {Int, "c"}, {Uint, "flags", 2}};
     const BlockSource source = block_source(members, 4);
-    for (const std::string_view part : {"layout(offset = 16) float a;", "layout(offset = 32) vec4 b;", "layout(offset = 48) int c;"})
+    for (const std::string_view part :
+         {"layout(offset = 16) float a;", "layout(offset = 32) vec4 b;", "layout(offset = 48) int c;"})
         EXPECT_TRUE(has(source.members, part)) << part << "\n" << source.members;
-    for (const std::string_view part : {"float curve_at(uint index) { uint word = 5u + index;", "uint flags_at(int index)", "word = 13u"})
+    for (const std::string_view part :
+         {"float curve_at(uint index) { uint word = 5u + index;", "uint flags_at(int index)", "word = 13u"})
         EXPECT_TRUE(has(source.accessors, part)) << part << "\n" << source.accessors;
     EXPECT_EQ(source.arrays, (std::vector<std::string_view>{"curve", "flags"}));
     EXPECT_EQ(word_count(members), 11u);
@@ -62,7 +65,10 @@ TEST(GpuBlock, ScalarsFollowEachOtherAndArraysAreReadAsWords) {
 }
 
 TEST(GpuKernelSource, DoesNotDependOnNames) {
-    KernelSpec one{.name = "bloom.downsample 1", .images = {{.name = "above"}}, .outputs = {VK_FORMAT_R8G8B8A8_UNORM}, .body = "body"};
+    KernelSpec one{.name = "bloom.downsample 1",
+                   .images = {{.name = "above"}},
+                   .outputs = {VK_FORMAT_R8G8B8A8_UNORM},
+                   .body = "body"};
     KernelSpec other = one;
     other.name = "bloom#2 \"quoted\"\n.downsample 2";
     for (const Stage stage : {Stage::Compute, Stage::Raster})
@@ -76,7 +82,7 @@ TEST(GpuKernelSource, DiffersByStageOnlyWhereItMust) {
         .outputs = {VK_FORMAT_R8G8B8A8_UNORM},
         .body = "vec4 shade(Pixel pixel) { return sample_linear(scene, pixel.uv); }"};
     const std::string compute = kernel_source(spec, Stage::Compute);
-    EXPECT_TRUE(has(compute, "local_size_x = 16, local_size_y = 16"));
+    EXPECT_TRUE(has(compute, "local_size_x = 16, local_size_y = 8"));
     EXPECT_TRUE(has(compute, "textureLod(scene, darkroom_place_scene(uv), 0.0)"));
     EXPECT_TRUE(has(compute, "binding = 3, rgba16f) uniform readonly image2D own;"));
     EXPECT_TRUE(has(compute, "binding = 4, rgba8) uniform writeonly image2D result_0;"));
@@ -103,7 +109,8 @@ TEST(GpuOwnBlock, DescribesRegionsAndHoldsMembers) {
     const Binding scene{.region = {.offset = {16, 0}, .extent = {32, 64}, .image = {64, 64}}};
     const std::array<float, 4> custom{1, 2, 3, 4};
     const std::array<std::uint32_t, 2> words{41, 42};
-    write_own_block(spec, {.offset = {1, 2}, .extent = {3, 4}, .image = {9, 9}}, {&scene, 1}, {&custom, 1}, words, block);
+    write_own_block(spec, {.offset = {1, 2}, .extent = {3, 4}, .image = {9, 9}}, {&scene, 1}, {&custom, 1}, words,
+                    block);
     std::array<std::int32_t, 24> integers{};
     std::array<float, 24> floats{};
     std::memcpy(integers.data(), block.data(), block.size());

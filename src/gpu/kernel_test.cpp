@@ -144,8 +144,9 @@ TEST(GpuKernel, ReadsMembersCustomVectorsAndStorageImages) {
                               "    result[1] = vec4(sum, pair.yz, flag == 7u ? 1.0 : 0.0);\n"
                               "}"};
     const auto word = [](float value) { return std::bit_cast<std::uint32_t>(value); };
-    const std::vector<std::uint32_t> words{word(2.0F),  5, word(0.1F), word(0.05F), word(0.05F), word(0.1F), word(0.1F), 0,
-                                           word(-1.0F), word(0.2F), word(0.6F), word(-1.0F), 7};
+    const std::vector<std::uint32_t> words{word(2.0F), 5,           word(0.1F), word(0.05F), word(0.05F),
+                                           word(0.1F), word(0.1F),  0,          word(-1.0F), word(0.2F),
+                                           word(0.6F), word(-1.0F), 7};
     for (const Stage stage : {Stage::Compute, Stage::Raster}) {
         Picture in = test::upload(context(),
                                   test::make_pixels(8, 8,

@@ -84,6 +84,12 @@ Result<> usable(const Context& context, const KernelSpec& spec, Stage stage) {
     return {};
 }
 
+std::array<std::uint32_t, 2> usual_workgroup(const Context& context) {
+    const Traits& traits = context.traits;
+    if (traits.max_workgroup_invocations < 256) return {16, 8};
+    return traits.is_software ? std::array{64U, 4U} : std::array{16U, 16U};
+}
+
 Stage preferred_stage(const Context& context, const KernelSpec& spec) {
     if (!usable(context, spec, Stage::Raster)) return Stage::Compute;
     if (!usable(context, spec, Stage::Compute)) return Stage::Raster;

@@ -25,11 +25,11 @@ Token take_solid(GlslScanner& scanner, std::string& blanks) {
 }
 
 struct Call {
-    std::string_view image;    ///< empty: not a call to rewrite
-    std::string before_open;   ///< blanks between the function and its parenthesis
-    std::string inside;        ///< blanks around the image
-    GlslScanner after;         ///< behind what follows the image, a comma or parenthesis
-    bool has_more = false;     ///< it was a comma
+    std::string_view image;   ///< empty: not a call to rewrite
+    std::string before_open;  ///< blanks between the function and its parenthesis
+    std::string inside;       ///< blanks around the image
+    GlslScanner after;        ///< behind what follows the image, a comma or parenthesis
+    bool has_more = false;    ///< it was a comma
 };
 
 /// A call of the function whose name `scanner` has just passed.
@@ -55,7 +55,8 @@ std::string rewrite_image_calls(std::string_view body, std::span<const std::stri
     bool drops_spaces = false;  // after the comma that went
     GlslScanner scanner(body);
     for (Token token = scanner.next(); token.kind != End; token = scanner.next()) {
-        if (drops_spaces && token.kind == Blank) token.text.remove_prefix(std::min(token.text.find_first_not_of(' '), token.text.size()));
+        if (drops_spaces && token.kind == Blank)
+            token.text.remove_prefix(std::min(token.text.find_first_not_of(' '), token.text.size()));
         drops_spaces = false;
         result += token.text;
         if (token.kind != Word || !contains(functions, token.text)) continue;

@@ -170,8 +170,8 @@ TEST(GraphPhysicalResample, IntegersKeepTheirNearestTexel) {
 TEST(GraphPhysicalResample, WhatCannotBeBlittedStartsFromZero) {
     static PFN_vkGetPhysicalDeviceFormatProperties ask;
     // Of its own: a context asks for a format once.
-    const Device device = gpu::test::must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
-    gpu::Context& context = device.context();
+    const Device own = gpu::test::must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
+    gpu::Context& context = own.context();
     ask = context.vk.GetPhysicalDeviceFormatProperties;
     context.vk.GetPhysicalDeviceFormatProperties = [](VkPhysicalDevice device, VkFormat format,
                                                       VkFormatProperties* properties) {

@@ -40,9 +40,8 @@ class Runner {
             spec.body = fmt::format("vec4 shade(Pixel pixel) {{ return {}; }}\n", sum);
             kernels_.push_back(must(gpu::Kernel::create(context_, spec, gpu::Stage::Compute)));
             layouts.push_back(kernels_.back()->set_layout());
-            blocks_.push_back(
-                must(gpu::Buffer::create(context_, gpu::own_block_size(spec), gpu::block_usage,
-                                         gpu::Memory::Kind::Upload, "test block")));
+            blocks_.push_back(must(gpu::Buffer::create(context_, gpu::own_block_size(spec), gpu::block_usage,
+                                                       gpu::Memory::Kind::Upload, "test block")));
         }
         sets_ = must(gpu::DescriptorSets::create(context_, layouts));
     }

@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "plan/glsl_names.hpp"
 #include "core/files.hpp"
 #include "core/param_text.hpp"
+#include "plan/glsl_names.hpp"
 
 namespace darkroom {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "plan/glsl_names.hpp"
 #include "compose/test_support.hpp"
 #include "core/files.hpp"
+#include "plan/glsl_names.hpp"
 
 namespace darkroom {
 namespace {

@@ -100,8 +100,8 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
             const PassInput& input = pass.inputs[k];
             // An image that is both loaded and sampled stands there twice.
             if (input.table != no_table || !pass.spec.images[k].loads_by.empty()) continue;
-            out.bytes_read +=
-                bytes_of(compiled.slots()[schedule.slot_of(input.version, input.instead)], desc.max_extent, input.mip_level);
+            out.bytes_read += bytes_of(compiled.slots()[schedule.slot_of(input.version, input.instead)],
+                                       desc.max_extent, input.mip_level);
         }
         if (pass.spec.is_additive) out.bytes_read += out.bytes_written;
         if (pass.is_fused)

@@ -45,8 +45,8 @@ struct Baked {
     std::uint32_t value = 0;
 };
 
-/// An effect's text as one kernel holds it: includes expanded, #line directives set, and its own names (and those of its
-/// images) given the suffix of its place, so that two entries of one effect fit one kernel.
+/// An effect's text as one kernel holds it: includes expanded, #line directives set, and its own names (and those of
+/// its images) given the suffix of its place, so that two entries of one effect fit one kernel.
 struct EffectText {
     std::string glsl;
     std::vector<const ParamInfo*> literal_rows;  ///< that it names and a lean kernel may hold as literals
@@ -59,10 +59,10 @@ struct EffectText {
 /// One step of a fused kernel; a pass of an effect has one, itself.
 struct FusedStep {
     const EffectInfo* info = nullptr;
-    std::uint32_t entry = 0;          ///< in the stack
-    std::uint32_t place = 0;          ///< in the kernel
-    std::string name;                 ///< of the entry
-    std::vector<std::string> images;  ///< names that the effect's text calls its images
+    std::uint32_t entry = 0;                 ///< in the stack
+    std::uint32_t place = 0;                 ///< in the kernel
+    std::string name;                        ///< of the entry
+    std::vector<std::string> images;         ///< names that the effect's text calls its images
     std::shared_ptr<const EffectText> text;  ///< none of a merge
     bool is_merge = false;                   ///< only lays image layer_e<place> over the picture
     bool has_mask = false;                   ///< image mask_e<place>

@@ -326,7 +326,8 @@ TEST_F(ComposePlan, HandlesMustNameEarlierEntries) {
     add(composer, "negative");
     EXPECT_NE(error().find("'exposure': its input"), std::string::npos) << error();
     composer.clear();
-    add(composer, "exposure", {}, {.mask = composer.entry(0)});
+    const Handle own = add(composer, "exposure");
+    test::must(composer.rewire(own, {.mask = own}));
     EXPECT_NE(error().find("mask"), std::string::npos) << error();
     composer.clear();
     add(composer, "blend");

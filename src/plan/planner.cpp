@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "gpu/formats.hpp"
 #include "plan/planner_state.hpp"
@@ -154,8 +155,7 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
         info.build(builder);
         if (!builder.error.empty()) return user_error(builder.error);
     }
-    if (info.touch == Touch::Neighbourhood || info.touch == Touch::History)
-        return add_result(entry, input, builder);
+    if (info.touch == Touch::Neighbourhood || info.touch == Touch::History) return add_result(entry, input, builder);
 
     FusedStep step{.info = &info, .entry = entry, .name = stack_[entry].desc.name};
     std::vector<PassInput> side_inputs;
@@ -226,8 +226,7 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         step.text = std::move(*text);
     }
     if (stack_[entry].desc.mask.is_given()) {
-        auto mask =
-            materialise(value_of(stack_[entry].desc.mask, entry), fmt::format("{} reads it as its mask", name));
+        auto mask = materialise(value_of(stack_[entry].desc.mask, entry), fmt::format("{} reads it as its mask", name));
         if (mask) mask = at_size(*mask, from.size, fmt::format("{}.mask", name));
         if (!mask) return failure(std::move(mask));
         step.has_mask = true;
@@ -363,7 +362,27 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     return version;
 }
 
+void Planner::limit_storage_images(ProgramPass& pass) const {
+    std::vector<gpu::KernelImage>& images = pass.spec.images;
+    const auto is_storage = [](const gpu::KernelImage& image) { return image.storage_format != VK_FORMAT_UNDEFINED; };
+    if (std::ranges::count_if(images, is_storage) + 1 <= traits_.max_storage_images) return;
+    // An image that is both loaded and sampled stands there twice: the sampled one stays.
+    for (gpu::KernelImage& image : images) {
+        if (image.loads_by.empty()) continue;
+        const auto loaded = std::ranges::find(images, std::exchange(image.loads_by, {}), &gpu::KernelImage::name);
+        loaded->name.clear();
+    }
+    for (std::size_t i = images.size(); i-- > 0;) {
+        if (pass.inputs[i].table != no_table) continue;
+        images[i].storage_format = VK_FORMAT_UNDEFINED;
+        if (!images[i].name.empty()) continue;
+        images.erase(images.begin() + static_cast<std::ptrdiff_t>(i));
+        pass.inputs.erase(pass.inputs.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+}
+
 Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level) {
+    limit_storage_images(pass);
     pass.spec.loads_are_cheap = traits_.loads_are_cheap;
     pass.spec.workgroup = traits_.workgroup;
     lay_out_literals(pass);

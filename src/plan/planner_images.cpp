@@ -109,7 +109,8 @@ VkFormat Planner::storage_format(graph::Version version) const {
 
 Result<graph::Version> Planner::frame_image_at_size(FrameImage which, graph::Version version, graph::Size size) {
     if (has_size(version, size)) return version;
-    if (const auto found = resampled_.find({which, fraction_text(size)}); found != resampled_.end()) return found->second;
+    if (const auto found = resampled_.find({which, fraction_text(size)}); found != resampled_.end())
+        return found->second;
     // Between two distances, directions or motions there is none that is true of either.
     const bool is_nearest = which != FrameImage::Ui;
     const VkFormat format = which == FrameImage::Depth ? VK_FORMAT_R32_SFLOAT

@@ -80,6 +80,9 @@ class Planner {
     [[nodiscard]] bool has_size(graph::Version version, graph::Size size) const;
     [[nodiscard]] Result<graph::Version> close_kernel(std::size_t kernel, graph::Version target, VkFormat format,
                                                       Finish finish, bool is_always_on);
+    /// Reads images by sampling where the device has no more storage images for a kernel. Tables that are only loaded
+    /// stay.
+    void limit_storage_images(ProgramPass& pass) const;
     [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
     [[nodiscard]] bool is_shared_toggle(std::size_t index) const;
     [[nodiscard]] std::int32_t toggle_index(Gate toggle);

@@ -111,9 +111,9 @@ struct Program {
     std::vector<Gate> gates;
     std::vector<FixedImage> fixed_images;
     std::vector<std::optional<HostImage>> imports;  ///< per import; empty: a fixed image
-    std::vector<std::uint32_t> entry_inputs;  ///< per entry: whose output it gets, past what is left out
-    std::uint32_t last_entry = no_entry;      ///< whose output the target gets
-    std::vector<graph::Size> entry_sizes;     ///< per entry: of the picture that it gets
+    std::vector<std::uint32_t> entry_inputs;        ///< per entry: whose output it gets, past what is left out
+    std::uint32_t last_entry = no_entry;            ///< whose output the target gets
+    std::vector<graph::Size> entry_sizes;           ///< per entry: of the picture that it gets
     graph::Size target_size;
     std::vector<std::uint32_t> history_entries;  ///< per history of the graph: the entry that declared it
     std::vector<bool> is_left_out;               ///< per entry
@@ -134,8 +134,9 @@ struct PlannerTraits {
     std::function<Result<gpu::Stage>(const gpu::KernelSpec&)> stage_of;
     /// Whether the device reads this format by imageLoad; null: every one.
     std::function<bool(VkFormat)> can_load{};
-    bool loads_are_cheap = false;  ///< see gpu/kernel.hpp
-    std::array<std::uint32_t, 2> workgroup{16, 16};
+    bool loads_are_cheap = false;          ///< see gpu/kernel.hpp
+    std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
+    std::array<std::uint32_t, 2> workgroup{16, 8};
 };
 
 /// Turns a stack into a program. Errors: a handle that names no earlier entry, a shader that is missing.

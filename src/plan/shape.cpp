@@ -58,7 +58,8 @@ Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
         std::erase_if(steps, [](const FusedStep& step) { return !step.is_certain; });
     }
     const bool is_of_frame = pass.finish == Finish::OfFrame;
-    auto spec = spec_of(pass, steps, is_of_frame ? static_cast<Finish>(shape.steps >> Shape::finish_bit & 3) : pass.finish);
+    auto spec =
+        spec_of(pass, steps, is_of_frame ? static_cast<Finish>(shape.steps >> Shape::finish_bit & 3) : pass.finish);
     if (!spec) return spec;
     spec->is_whole = (shape.steps & Shape::is_whole) != 0;
     spec->input_is_twice = (shape.steps & Shape::input_is_twice) != 0;

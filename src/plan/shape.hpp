@@ -13,8 +13,9 @@ namespace darkroom::plan {
 
 struct ProgramPass;
 
-/// What a lean kernel is made for. `steps`: two bits a step, whether it is on and whether it has an opacity, a blend mode
-/// or a mask; then what it does for the target. `choices`: the values of the literals that the pass's text names, as far as they fit.
+/// What a lean kernel is made for. `steps`: two bits a step, whether it is on and whether it has an opacity, a blend
+/// mode or a mask; then what it does for the target. `choices`: the values of the literals that the pass's text names,
+/// as far as they fit.
 struct Shape {
     std::uint64_t steps = 0;
     std::uint64_t choices = 0;

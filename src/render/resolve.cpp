@@ -15,7 +15,7 @@ std::string body_of(std::string_view name) {
     return text.substr(text.find("#line"));
 }
 
-gpu::KernelSpec spec_of(const TargetFormats& formats) {
+gpu::KernelSpec spec_of(const TargetFormats& formats, std::array<std::uint32_t, 2> workgroup) {
     gpu::KernelSpec spec{.name = "scene resolve",
                          .images = {},
                          .outputs = {VK_FORMAT_R32_SFLOAT},
@@ -24,6 +24,7 @@ gpu::KernelSpec spec_of(const TargetFormats& formats) {
                          .members = {},
                          .custom_vectors = 1,
                          .body = body_of("resolve.glsl")};
+    spec.workgroup = workgroup;
     if (formats.samples == VK_SAMPLE_COUNT_1_BIT) {
         spec.images = {{.name = "drawn_depth"}};
         spec.body += body_of("resolve_one.glsl");
@@ -66,7 +67,7 @@ std::vector<gpu::Binding> outputs_of(const Targets& targets) {
 Result<Resolve> Resolve::create(gpu::Context& context, const TargetFormats& formats, std::uint32_t slots) {
     Resolve out;
     out.context_ = &context;
-    const gpu::KernelSpec spec = spec_of(formats);
+    const gpu::KernelSpec spec = spec_of(formats, gpu::usual_workgroup(context));
     Result<std::unique_ptr<gpu::Kernel>> kernel =
         gpu::Kernel::create(context, spec, gpu::preferred_stage(context, spec));
     if (!kernel) return failure(std::move(kernel));
@@ -97,7 +98,7 @@ void Resolve::prepare(const scene::CameraState& camera, const Targets& targets, 
         camera.near_distance, camera.far_distance, camera.kind == scene::Projection::Perspective ? 1.0F : 0.0F, 0.0F}};
     const std::vector<gpu::Binding> inputs = inputs_of(targets);
     gpu::write_own_block(kernel_->spec(), whole(targets), inputs, custom, {},
-                          {blocks_.memory.mapped + slot * block_stride_, gpu::own_block_size(kernel_->spec())});
+                         {blocks_.memory.mapped + slot * block_stride_, gpu::own_block_size(kernel_->spec())});
 }
 
 void Resolve::record(VkCommandBuffer commands, const Targets& targets, std::uint32_t slot) const {
