@@ -2,7 +2,7 @@
 #pragma once
 // A Device is what Darkroom runs on: created by the library (headless), or adopted from a host that already has one.
 // An adopted Device owns nothing the host made, submits nothing and waits for nothing. Device functions may be called
-// from any thread; a Device outlives the Composers made on it.
+// from any thread.
 // Needs Vulkan 1.3 with synchronization2 and dynamicRendering, or Vulkan 1.2 with the extensions that these came from,
 // VK_KHR_synchronization2 and VK_KHR_dynamic_rendering.
 

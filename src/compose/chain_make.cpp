@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <utility>
 
 #include "compose/chain.hpp"
 #include "core/parallel.hpp"
@@ -91,12 +92,18 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     last_shapes_.resize(program.passes.size());
     for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(program.passes[i], entries);
 
-    // The complete kernel and the one of the expected shape, for every pass.
-    return for_all(kept.size() * 2, desc_.max_threads, [&](std::size_t i) -> Result<> {
-        const std::uint32_t pass = kept[i / 2];
+    // The complete kernel and the one of the expected shape, for every pass, unless this program has them.
+    std::vector<std::pair<std::uint32_t, bool>> missing;
+    for (const std::uint32_t i : kept) {
+        const PassKernels& kernels = *desc_.program->kernels[i];
+        if (!kernels.has_complete()) missing.emplace_back(i, true);
+        if (!kernels.was_built(last_shapes_[i])) missing.emplace_back(i, false);
+    }
+    return for_all(missing.size(), desc_.max_threads, [&](std::size_t i) -> Result<> {
+        const auto [pass, is_complete] = missing[i];
         PassKernels& kernels = *desc_.program->kernels[pass];
-        return i % 2 == 0 ? kernels.build_complete(*context_.kernels)
-                          : kernels.build(*context_.kernels, last_shapes_[pass]);
+        return is_complete ? kernels.build_complete(*context_.kernels)
+                           : kernels.build(*context_.kernels, last_shapes_[pass]);
     });
 }
 

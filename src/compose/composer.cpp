@@ -181,7 +181,9 @@ Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* pa
 Result<> Composer::rewire(Handle handle, const EntryDesc& desc) {
     auto entry = state_->checked(handle);
     if (!entry) return failure(std::move(entry));
-    EntryDesc& own = (*entry)->desc;
+    // A new entry under the old number: the present plan goes on as it was wired.
+    auto made = std::make_shared<plan::Entry>(**entry);
+    EntryDesc& own = made->desc;
     own.input = desc.input;
     own.source = desc.source;
     own.second = desc.second;
@@ -189,6 +191,7 @@ Result<> Composer::rewire(Handle handle, const EntryDesc& desc) {
     own.blend = desc.blend;
     own.output = desc.output;
     if (!desc.name.empty()) own.name = desc.name;
+    state_->stack[state_->index_of(handle)] = std::move(made);
     return {};
 }
 

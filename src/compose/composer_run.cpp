@@ -41,6 +41,11 @@ Result<> check_target_extent(VkExtent2D extent, std::uint32_t limit) {
                                   extent.width, extent.height, limit, limit));
 }
 
+/// For parallel_for(): as many as processors by default, and at least the one that asks.
+std::uint32_t threads_of(const ComposerDesc& desc) {
+    return desc.max_threads == ComposerDesc{}.max_threads ? 0 : desc.max_threads + 1;
+}
+
 }  // namespace
 
 Composer::State::State(std::shared_ptr<gpu::Context> device_context, const ComposerDesc& composer_desc)
@@ -83,7 +88,7 @@ Result<std::unique_ptr<compose::Chain>> Composer::State::make_chain(Snapshot sna
                                        {.program = program,
                                         .compile = snapshot.desc,
                                         .slots = desc.frames_in_flight * snapshot.desc.views,
-                                        .max_threads = std::max(1u, desc.max_threads),
+                                        .max_threads = threads_of(desc),
                                         .has_timers = desc.has_timers,
                                         .entries = std::move(snapshot.entries)},
                                        snapshot.values);

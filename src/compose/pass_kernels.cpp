@@ -34,7 +34,14 @@ Result<> PassKernels::build(gpu::KernelStore& store, const plan::Shape& shape) {
     else
         arrival->lean.kernel = std::move(*kernel);
     arrivals_.push(*arrival.release());
+    const std::scoped_lock lock(built_mutex_);
+    if (std::ranges::find(built_, shape) == built_.end()) built_.push_back(shape);
     return result;
+}
+
+bool PassKernels::was_built(const plan::Shape& shape) const {
+    const std::scoped_lock lock(built_mutex_);
+    return !plan::has_lean(pass_) || std::ranges::find(built_, shape) != built_.end();
 }
 
 std::optional<plan::Shape> PassKernels::take_wanted() {

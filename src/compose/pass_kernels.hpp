@@ -6,7 +6,9 @@
 #include <array>
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <vector>
 
 #include "compose/atomic_stack.hpp"
 #include "gpu/kernel_store.hpp"
@@ -26,7 +28,10 @@ class PassKernels {
     /// Gets the kernel of a shape; find() has it from then on. One that cannot be built is remembered: the complete one
     /// takes its place.
     [[nodiscard]] Result<> build(gpu::KernelStore& store, const plan::Shape& shape);
+    [[nodiscard]] bool has_complete() const { return complete_ != nullptr; }
     [[nodiscard]] const gpu::Kernel& complete() const { return *complete_; }
+    /// Was it built before? It may have made room for others since; then recordings want it again.
+    [[nodiscard]] bool was_built(const plan::Shape& shape) const;
     /// The shape that was last missing, once.
     [[nodiscard]] std::optional<plan::Shape> take_wanted();
 
@@ -60,6 +65,8 @@ class PassKernels {
 
     const plan::ProgramPass& pass_;
     std::shared_ptr<const gpu::Kernel> complete_;
+    mutable std::mutex built_mutex_;  ///< never taken while recording
+    std::vector<plan::Shape> built_;
     AtomicStack<Arrival> arrivals_;
     std::array<Lean, 64> lean_{};
     std::size_t count_ = 0;
