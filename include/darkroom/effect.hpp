@@ -152,7 +152,8 @@ class PassBuilder {
 
     [[nodiscard]] virtual PassImage create(const PassImageDesc& desc) = 0;
     /// An image that outlives the frame: `current` is to be written, `previous` is what the last frame of this view
-    /// wrote, zero after a cut, a change of size, or a frame in which the effect was off.
+    /// wrote, zero after a cut or a frame in which the effect was off,
+    /// and resampled where the frame has another extent.
     struct History {
         PassImage current, previous;
     };
