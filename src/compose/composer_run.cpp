@@ -55,7 +55,7 @@ Composer::State::State(std::shared_ptr<gpu::Context> device_context, const Compo
 }
 
 Composer::State::~State() {
-    worker.reset();  // its task works on the rest
+    worker->stop();  // its task works on all of this
     delete ready.exchange(nullptr);
     while (retired != nullptr) delete std::exchange(retired, retired->next_retired);
 }

@@ -54,8 +54,7 @@ class ComposeFormat : public test::StackTest {
     }
     /// A device asks for a format once: another one sees what is missing now.
     void renew() {
-        device = test::must(
-            Device::create({.validate = true, .cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
+        device = test::must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
         gpu::Context& context = device.context();
         fake = {.real = context.vk, .linear = context.linear_sampler};
         context.vk.GetPhysicalDeviceFormatProperties = fake_properties;
@@ -71,8 +70,7 @@ class ComposeFormat : public test::StackTest {
         test::add(composer, "negative");
     }
 
-    Device device =
-        test::must(Device::create({.validate = true, .cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
+    Device device = test::must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
 };
 
 constexpr VkFormat half = VK_FORMAT_R16G16B16A16_SFLOAT, whole = VK_FORMAT_R32G32B32A32_SFLOAT,

@@ -45,7 +45,8 @@ bool PassKernels::was_built(const plan::Shape& shape) const {
 }
 
 std::optional<plan::Shape> PassKernels::take_wanted() {
-    if (!is_wanted_.exchange(false, std::memory_order_acquire)) return std::nullopt;
+    // Also a release: whoever wants something next may link it anew, after the worker has read the link.
+    if (!is_wanted_.exchange(false, std::memory_order_acq_rel)) return std::nullopt;
     return plan::Shape{wanted_steps_.load(std::memory_order_relaxed), wanted_choices_.load(std::memory_order_relaxed)};
 }
 

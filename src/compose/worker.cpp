@@ -11,10 +11,14 @@ Worker::Worker(gpu::Context& context, bool may_start) : context_(context) {
     if (may_start) thread_ = start_thread([this] { work(); });
 }
 
-Worker::~Worker() {
+void Worker::stop() {
     is_ending_ = true;
     wake();
     thread_.reset();
+}
+
+Worker::~Worker() {
+    stop();
     free_garbage(garbage_.take_all());
 }
 

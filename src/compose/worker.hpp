@@ -21,6 +21,8 @@ class Worker {
     ~Worker();
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
+    /// Waits for what runs now; nothing runs after it.
+    void stop();
     [[nodiscard]] bool is_running() const { return thread_.has_value(); }
 
     // While recording: never waits.
