@@ -7,7 +7,13 @@ tree=$1 build=$2 compiler=$3 kind=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 flags=(-O0)
-[[ $kind == sanitize ]] && flags+=(-fsanitize=address,undefined)
+kept=""
+if [[ $kind == sanitize ]]; then
+    flags+=(-fsanitize=address,undefined)
+    # Leaks are traced back to the driver, which must still be loaded then, as in our own programs.
+    kept=$work/keep_libraries.o
+    "$compiler" -c "${flags[@]}" "$tree/tests/keep_libraries.cpp" -o "$kept"
+fi
 
 DESTDIR=$work/stage cmake --install "$build" --prefix /opt/darkroom >"$work/install.log" || { cat "$work/install.log" && exit 1; }
 mv "$work/stage/opt/darkroom" "$work/moved here"
@@ -21,13 +27,13 @@ fi
 
 library=$(dirname "$(find "$prefix" -name libdarkroom.so)")
 export LD_LIBRARY_PATH=$library${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-CXXFLAGS=${flags[*]} cmake -S "$tree/tests/package" -B "$work/cmake" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
+CXXFLAGS=${flags[*]} LDFLAGS=$kept cmake -S "$tree/tests/package" -B "$work/cmake" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" \
     -DCMAKE_PREFIX_PATH="$prefix" >"$work/log" || { cat "$work/log" && exit 1; }
 cmake --build "$work/cmake" >"$work/log" || { cat "$work/log" && exit 1; }
 "$work/cmake/package"
 
 export PKG_CONFIG_PATH=$library/pkgconfig
 # pkg-config escapes the blank of the path, and eval reads it so.
-eval "'$compiler' -std=c++20 ${flags[*]} '$tree/tests/package/main.cpp' $(pkg-config --cflags --libs darkroom-looks) -o '$work/pkg'"
+eval "'$compiler' -std=c++20 ${flags[*]} '$tree/tests/package/main.cpp' $kept $(pkg-config --cflags --libs darkroom-looks) -o '$work/pkg'"
 "$work/pkg"
 "$prefix/bin/darkroom" --version
