@@ -92,6 +92,4 @@ const gpu::Kernel* PassKernels::find(const plan::Shape& shape, std::uint64_t rec
     return lean->kernel ? lean->kernel.get() : complete_.get();
 }
 
-bool PassKernels::knows(const plan::Shape& shape) { return !plan::has_lean(pass_) || known(shape) != nullptr; }
-
 }  // namespace darkroom::compose

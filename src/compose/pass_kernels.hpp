@@ -40,8 +40,6 @@ class PassKernels {
     /// what they found. What must go goes to `garbage`.
     [[nodiscard]] const gpu::Kernel* find(const plan::Shape& shape, std::uint64_t recording, std::uint64_t unfinished,
                                           AtomicStack<Garbage>& garbage);
-    /// Has build() been asked for this shape before?
-    [[nodiscard]] bool knows(const plan::Shape& shape);
     /// True: it was not wanted yet, so the worker has to be told.
     [[nodiscard]] bool want(const plan::Shape& shape);
 
