@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -58,23 +59,38 @@ Result<> write_and_close(Descriptor& file, const fs::path& path, std::span<const
 
 }  // namespace
 
-Result<std::vector<std::byte>> read_file(const fs::path& path) {
+Result<std::vector<std::byte>> read_file(const fs::path& path, const ReadFileOptions& options) {
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.number < 0) return open_error(path, errno);
     struct stat status {};
     if (::fstat(file.number, &status) != 0) return io_error(path, "read", errno);
     if (S_ISDIR(status.st_mode)) return user_error(fmt::format("{}: is a folder, a file is needed", path.string()));
+    const bool is_regular = S_ISREG(status.st_mode);
+    const auto too_long = [&] {
+        return user_error(fmt::format("{}: more than {} bytes, which is the limit", path.string(), options.max_size));
+    };
 
-    // One byte more than the file says it has, so that the usual file ends without another round of growing.
-    std::vector<std::byte> content(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : 65536);
+    std::vector<std::byte> content(16);
     std::size_t size = 0;
-    for (;;) {
-        if (size == content.size()) content.resize(content.size() * 2);
+    bool is_start_checked = !options.check_start;
+    for (bool is_end = false; !is_end;) {
         const ssize_t count = ::read(file.number, content.data() + size, content.size() - size);
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) return io_error(path, "read", errno);
-        if (count == 0) break;
+        is_end = count == 0;
         size += static_cast<std::size_t>(count);
+        if (!is_end && size < content.size()) continue;
+        if (!is_start_checked) {
+            is_start_checked = true;
+            const Result<> checked = options.check_start({content.data(), size});
+            if (!checked)
+                return failure({checked.error().fault, fmt::format("{}: {}", path.string(), checked.error().text)});
+        }
+        if (size > options.max_size || (is_regular && static_cast<std::uintmax_t>(status.st_size) > options.max_size))
+            return too_long();
+        // One byte more than the file says it has, so that the usual file ends without another round of growing.
+        if (!is_end)
+            content.resize(std::max(size * 2, is_regular ? static_cast<std::size_t>(status.st_size) + 1 : 65536));
     }
     content.resize(size);
     return content;

@@ -5,15 +5,25 @@
 // the promise covers errors and kills of this process, not a power cut.
 
 #include <cstddef>
+#include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace darkroom {
 
+struct ReadFileOptions {
+    std::uintmax_t max_size = std::numeric_limits<std::uintmax_t>::max();  ///< bytes; longer ones are refused
+    /// Is asked about the first bytes, at most 16, before the others are read. The path is put before its error.
+    std::function<Result<>(std::span<const std::byte> start)> check_start;
+};
+
 /// The content of a file. Refuses folders; reads pipes and devices to their end.
-[[nodiscard]] Result<std::vector<std::byte>> read_file(const std::filesystem::path& path);
+[[nodiscard]] Result<std::vector<std::byte>> read_file(const std::filesystem::path& path,
+                                                       const ReadFileOptions& options = {});
 
 /// Writes the file whole or not at all; on failure an existing file stays as it was. A link is followed. A target that
 /// is no regular file (a pipe, /dev/stdout) is written in place, since there is nothing to replace.

@@ -4,77 +4,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 #include "core/assert.hpp"
+#include "develop/upload.hpp"
 #include "gpu/context.hpp"
 #include "gpu/resources.hpp"
-#include "plan/half.hpp"
 
 namespace darkroom {
 
 namespace {
 
-/// A layer of the frame: what it is made of and where it goes.
-struct Layer {
-    const char* name = "";
-    std::span<const float> values;
-    std::uint32_t given = 0;  ///< numbers a pixel in `values`
-    std::uint32_t kept = 0;   ///< numbers a pixel in the image; three-component formats are rarely sampled
-    VkFormat format = VK_FORMAT_UNDEFINED;
-    bool is_half = false;
-
-    [[nodiscard]] VkDeviceSize texel() const { return VkDeviceSize{kept} * (is_half ? 2 : 4); }
-};
-using Layers = std::array<Layer, 4>;
-
 bool has_cascades(const ReferenceLight& light) { return !light.cascades.empty(); }
-
-bool is_all_half(std::span<const float> values) {
-    return std::all_of(values.begin(), values.end(), [](float value) { return exact_half(value).has_value(); });
-}
-
-Layers layers_of(const DevelopInput& input) {
-    const auto layer = [](const char* name, std::span<const float> values, std::uint32_t given, std::uint32_t kept,
-                          VkFormat half, VkFormat whole) -> Layer {
-        const bool is_half = half != whole && is_all_half(values);
-        return {name, values, given, kept, is_half ? half : whole, is_half};
-    };
-    constexpr VkFormat half4 = VK_FORMAT_R16G16B16A16_SFLOAT, float4 = VK_FORMAT_R32G32B32A32_SFLOAT;
-    // Depth stays whole: a renderer's planar distance is, too.
-    return {layer("color", input.color, 4, 4, half4, float4),
-            layer("depth", input.depth, 1, 1, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32_SFLOAT),
-            layer("normals", input.normals, 3, 4, half4, float4),
-            layer("velocity", input.velocity, 2, 2, VK_FORMAT_R16G16_SFLOAT, VK_FORMAT_R32G32_SFLOAT)};
-}
-
-VkImageUsageFlags shader_usage(const gpu::Context& context, VkFormat format) {
-    VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-    if (context.supports(format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
-    return usage;
-}
 
 VkImageUsageFlags target_usage(const gpu::Context& context, VkFormat format) {
     VkImageUsageFlags usage = 0;
     if (context.supports(format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
     if (context.supports(format, VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT)) usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     return usage;
-}
-
-VkBufferImageCopy whole(VkExtent2D extent) {
-    return {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {extent.width, extent.height, 1}};
-}
-
-ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayout after) {
-    return {.image = image.handle,
-            .view = image.mip_views[0],
-            .format = image.info.format,
-            .extent = {image.info.extent.width, image.info.extent.height},
-            .layer_count = image.info.array_layers,
-            .layout = before,
-            .last_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
-            .final_layout = after};
 }
 
 /// All of a CompileDesc that follows from the target alone.
@@ -88,10 +35,10 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopDesc& desc) {
             .fuse = desc.fuse};
 }
 
-CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, const Layers& layers,
+CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, const UploadLayers& layers,
                              const DevelopDesc& desc) {
     const auto use = [&](std::size_t i) {
-        if (layers[i].values.empty()) return ImageUse{};
+        if (!layers[i].is_given()) return ImageUse{};
         return ImageUse{layers[i].format, shader_usage(context, layers[i].format)};
     };
     CompileDesc out = compile_desc_for(context, desc);
@@ -112,33 +59,6 @@ bool is_same(const CompileDesc& a, const CompileDesc& b) {
            a.color == b.color && a.depth == b.depth && a.is_depth_planar == b.is_depth_planar &&
            a.is_velocity_plain == b.is_velocity_plain && a.normals == b.normals && a.velocity == b.velocity &&
            a.ui == b.ui && a.has_shadows == b.has_shadows;
-}
-
-/// The cascades of one light, an array, and the buffer that fills it.
-struct ShadowUpload {
-    gpu::Image image;
-    gpu::Buffer buffer;
-    std::uint32_t resolution = 0, count = 0;
-};
-
-/// Images of one size for pictures from main memory, and the buffers that fill them.
-struct Uploads {
-    std::array<std::optional<gpu::Image>, 4> images;
-    std::array<std::optional<gpu::Buffer>, 4> buffers;
-};
-
-void fill(const Layer& layer, std::byte* out) {
-    std::array<float, 4> texel{0, 0, 0, 1};
-    for (std::size_t at = 0; at < layer.values.size(); at += layer.given, out += layer.texel()) {
-        std::copy_n(layer.values.begin() + static_cast<std::ptrdiff_t>(at), layer.given, texel.begin());
-        if (!layer.is_half) {
-            std::memcpy(out, texel.data(), layer.texel());
-            continue;
-        }
-        std::array<std::uint16_t, 4> halves{};
-        for (std::uint32_t i = 0; i < layer.kept; ++i) halves[i] = *exact_half(texel[i]);
-        std::memcpy(out, halves.data(), layer.texel());
-    }
 }
 
 }  // namespace
@@ -177,29 +97,47 @@ Result<> check_extent(const gpu::Context& context, VkExtent2D extent) {
 
 Result<> check_extent(Device& device, VkExtent2D extent) { return check_extent(device.context(), extent); }
 
+namespace {
+
+/// What one picture that is under way has for itself.
+struct Slot {
+    FrameUpload upload;
+    gpu::Image target;
+    std::optional<Readback> readback;
+    gpu::Submission submission;
+    std::optional<Result<DevelopedPicture>> picture;  ///< once it was waited for
+};
+
+}  // namespace
+
 struct Developer::State {
     std::shared_ptr<gpu::Context> shared_context;
     DevelopDesc desc;
     std::optional<CompileDesc> compiled;
     const Composer* compiled_composer = nullptr;
     Plan plan;
-    std::optional<Uploads> uploads;
-    std::vector<ShadowUpload> shadows;  ///< of the lights that have some
-    std::vector<Light> lights;          ///< of the frame that is being developed
-    gpu::Image target;
-    std::optional<Readback> readback;
+    std::vector<Slot> slots;  ///< a ring
+    std::uint32_t oldest = 0, in_flight = 0;
+    std::vector<Light> lights;  ///< of the device frame that is being developed
 
     gpu::Context& context() const { return *shared_context; }
+    Slot& next_slot() { return slots[(oldest + in_flight) % slots.size()]; }
 
-    Result<> check(VkExtent2D extent, const Layers& layers) const {
+    Result<> check(VkExtent2D extent, const UploadLayers& layers) const {
         if (Result<> done = check_extent(context(), extent); !done) return done;
         const auto [width, height] = extent;
-        for (const Layer& layer : layers) {
-            const std::size_t wanted = std::size_t{width} * height * layer.given;
+        const std::size_t pixels = std::size_t{width} * height;
+        for (const UploadLayer& layer : layers) {
             const bool is_required = layer.given == 4;
-            if (layer.values.size() != wanted && (is_required || !layer.values.empty()))
+            const auto is_wrong = [&](std::size_t count, std::size_t per_pixel) {
+                return count > 0 && count != pixels * per_pixel;
+            };
+            if (is_wrong(layer.values.size(), layer.given) || (is_required && !layer.is_given()))
                 return user_error(fmt::format("{}: {} numbers, {}x{} pixels need {}", layer.name, layer.values.size(),
-                                              width, height, wanted));
+                                              width, height, pixels * layer.given));
+            if (is_wrong(layer.halves.size(), layer.kept))
+                return user_error(fmt::format("{}: {} halves, {}x{} pixels need {}", layer.name, layer.halves.size(),
+                                              width, height, pixels * layer.kept));
         }
         return {};
     }
@@ -223,158 +161,89 @@ struct Developer::State {
         return {};
     }
 
-    /// Plan, kernels, target and read-back.
+    /// Plan and kernels, and room for what comes of them.
     Result<> compile(Composer& composer, const CompileDesc& wanted) {
         if (compiled && compiled_composer == &composer && is_same(*compiled, wanted)) return {};
+        wait_for_all();
         compiled.reset();
-        uploads.reset();
         Result<Plan> made = composer.compile(wanted);
         if (!made) return failure(std::move(made));
         plan = std::move(*made);
         composer.wait_for_kernels();
-        auto image = gpu::Image::create(context(), {.name = "target",
-                                                    .format = wanted.target.format,
-                                                    .extent = {wanted.max_extent.width, wanted.max_extent.height, 1},
-                                                    .usage = wanted.target.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-        if (!image) return failure(std::move(image));
-        target = std::move(*image);
-        auto read = Readback::create(context(), target_before_reading());
-        if (!read) return failure(std::move(read));
-        readback = std::move(*read);
+        for (Slot& slot : slots) {
+            slot.upload.reset();
+            slot.readback.reset();
+        }
         compiled = wanted;
         compiled_composer = &composer;
         return {};
     }
 
-    [[nodiscard]] ImageRef target_before_reading() const {
-        return reference_to(target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-    }
-
-    Result<> make_uploads(VkExtent2D extent, const Layers& layers) {
-        if (uploads) return {};
-        Uploads made;
-        for (std::size_t i = 0; i < layers.size(); ++i) {
-            const Layer& layer = layers[i];
-            if (layer.values.empty()) continue;
-            auto image = gpu::Image::create(
-                context(), {.name = layer.name,
-                            .format = layer.format,
-                            .extent = {extent.width, extent.height, 1},
-                            .usage = shader_usage(context(), layer.format) | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-            if (!image) return failure(std::move(image));
-            auto buffer = gpu::Buffer::create(context(), VkDeviceSize{extent.width} * extent.height * layer.texel(),
-                                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, layer.name);
-            if (!buffer) return failure(std::move(buffer));
-            made.images[i] = std::move(*image);
-            made.buffers[i] = std::move(*buffer);
-        }
-        uploads = std::move(made);
-        return {};
-    }
-
-    Result<ShadowUpload> make_shadow(const ReferenceLight& light) const {
-        ShadowUpload made{.resolution = light.resolution, .count = static_cast<std::uint32_t>(light.cascades.size())};
+    /// Target and read-back of a picture as it was compiled.
+    Result<> make_target(Slot& slot) const {
+        if (slot.readback) return {};
         auto image =
-            gpu::Image::create(context(), {.name = "shadows",
-                                           .format = VK_FORMAT_D32_SFLOAT,
-                                           .extent = {light.resolution, light.resolution, 1},
-                                           .array_layers = std::max(made.count, 2U),  // a view of one would be no array
-                                           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+            gpu::Image::create(context(), {.name = "target",
+                                           .format = compiled->target.format,
+                                           .extent = {compiled->max_extent.width, compiled->max_extent.height, 1},
+                                           .usage = compiled->target.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
         if (!image) return failure(std::move(image));
-        const VkDeviceSize bytes = VkDeviceSize{light.resolution} * light.resolution * made.count * sizeof(float);
-        auto buffer = gpu::Buffer::create(context(), bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload,
-                                          "shadows");
-        if (!buffer) return failure(std::move(buffer));
-        made.image = std::move(*image);
-        made.buffer = std::move(*buffer);
-        return made;
-    }
-
-    /// Images and filled buffers for the cascades, and the lights that refer to them as record_uploads leaves them.
-    Result<> prepare_lights(std::span<const ReferenceLight> given) {
-        lights.clear();
-        std::size_t used = 0;
-        for (const ReferenceLight& source : given) {
-            Light& light = lights.emplace_back(source.light);
-            light.cascades = {};
-            light.cascade_count = static_cast<std::uint32_t>(source.cascades.size());
-            if (!has_cascades(source)) continue;
-            if (used == shadows.size()) shadows.emplace_back();
-            ShadowUpload& shadow = shadows[used++];
-            if (shadow.resolution != source.resolution || shadow.count != light.cascade_count) {
-                shadow = {};
-                Result<ShadowUpload> made = make_shadow(source);
-                if (!made) return failure(std::move(made));
-                shadow = std::move(*made);
-            }
-            std::byte* to = shadow.buffer.memory.mapped;
-            for (const std::vector<float>& cascade : source.cascades) {
-                std::memcpy(to, cascade.data(), cascade.size() * sizeof(float));
-                to += cascade.size() * sizeof(float);
-            }
-            light.cascades = reference_to(shadow.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-            light.cascades.view = shadow.image.view;
-        }
-        shadows.resize(used);
+        slot.target = std::move(*image);
+        auto read = Readback::create(context(), reference_to(slot.target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL));
+        if (!read) return failure(std::move(read));
+        slot.readback = std::move(*read);
         return {};
-    }
-
-    void record_uploads(VkExtent2D extent, VkCommandBuffer commands) const {
-        const VkBufferImageCopy copy = whole(extent);
-        for (std::size_t i = 0; i < uploads->images.size(); ++i) {
-            if (!uploads->images[i]) continue;
-            const gpu::Image& image = *uploads->images[i];
-            gpu::transition(context(), commands, image, VK_IMAGE_LAYOUT_UNDEFINED,
-                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-            context().vk.CmdCopyBufferToImage(commands, uploads->buffers[i]->handle, image.handle,
-                                              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
-        }
-        for (const ShadowUpload& shadow : shadows) {
-            const VkBufferImageCopy copy_of_all{.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, shadow.count},
-                                                .imageExtent = {shadow.resolution, shadow.resolution, 1}};
-            gpu::transition(context(), commands, shadow.image, VK_IMAGE_LAYOUT_UNDEFINED,
-                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-            context().vk.CmdCopyBufferToImage(commands, shadow.buffer.handle, shadow.image.handle,
-                                              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy_of_all);
-        }
-    }
-
-    /// The frame's images as record_uploads leaves them.
-    [[nodiscard]] Frame uploaded_frame(const DevelopInput& input) const {
-        Frame frame{.camera = input.camera,
-                    .lights = lights,
-                    .time = input.time,
-                    .delta_time = input.delta_time,
-                    .frame_index = input.frame_index};
-        frame.camera.depth = DepthKind::Planar;
-        ImageRef* const slots[] = {&frame.color, &frame.depth, &frame.normals, &frame.velocity};
-        for (std::size_t i = 0; i < uploads->images.size(); ++i)
-            if (uploads->images[i])
-                *slots[i] =
-                    reference_to(*uploads->images[i], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
-        return frame;
     }
 
     /// `before`, the composer and the read-back in one submission.
-    Result<> run(Composer& composer, const Frame& frame, const RecordBefore& before, const FrameReadback* layers) {
+    Result<> begin(Slot& slot, Composer& composer, Frame& frame, const RecordBefore& before,
+                   const FrameReadback* layers) {
+        if (Result<> done = make_target(slot); !done) return done;
+        frame.target = reference_to(slot.target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
         Result<> recorded{};
-        Result<> submitted = gpu::submit_and_wait(context(), "developing a picture", [&](VkCommandBuffer commands) {
+        auto submission = gpu::Submission::begin(context(), "developing a picture", [&](VkCommandBuffer commands) {
             if (before) recorded = before(commands);
             if (!recorded) return;
             if (layers != nullptr) layers->record(commands);
             recorded = composer.record(commands, frame);
-            if (recorded) readback->record(commands);
+            if (recorded) slot.readback->record(commands);
         });
-        return recorded ? submitted : recorded;
+        if (!recorded) return recorded;
+        if (!submission) return failure(std::move(submission));
+        slot.submission = std::move(*submission);
+        slot.picture.reset();
+        ++in_flight;
+        return {};
     }
 
-    [[nodiscard]] DevelopedPicture picture() const {
-        DevelopedPicture out{.extent = {target.info.extent.width, target.info.extent.height}};
+    void wait(Slot& slot) const {
+        if (slot.picture) return;
+        const Result<> done = slot.submission.wait();
+        slot.picture = done ? Result<DevelopedPicture>(picture(slot)) : failure(done.error());
+    }
+
+    void wait_for_all() {
+        for (std::uint32_t i = 0; i < in_flight; ++i) wait(slots[(oldest + i) % slots.size()]);
+    }
+
+    Result<DevelopedPicture> finish() {
+        DARKROOM_ASSERT(in_flight > 0);
+        Slot& slot = slots[oldest];
+        wait(slot);
+        oldest = (oldest + 1) % static_cast<std::uint32_t>(slots.size());
+        --in_flight;
+        Result<DevelopedPicture> out = std::move(*slot.picture);
+        slot.picture.reset();
+        return out;
+    }
+
+    [[nodiscard]] DevelopedPicture picture(const Slot& slot) const {
+        DevelopedPicture out{.extent = {slot.target.info.extent.width, slot.target.info.extent.height}};
         if (desc.target == DevelopTarget::Encoded8)
-            out.bytes = readback->bytes();
+            out.bytes = slot.readback->bytes();
         else
-            out.pixels = readback->floats(4);
+            out.pixels = slot.readback->floats(4);
         return out;
     }
 };
@@ -382,30 +251,37 @@ struct Developer::State {
 Developer::Developer(Device& device, const DevelopDesc& desc) : state_(std::make_unique<State>()) {
     state_->shared_context = device.shared_context();
     state_->desc = desc;
+    state_->slots.resize(std::max(1U, desc.frames_in_flight));
 }
 Developer::Developer(Developer&&) noexcept = default;
 Developer& Developer::operator=(Developer&&) noexcept = default;
 Developer::~Developer() = default;
 
-Result<DevelopedPicture> Developer::develop(Composer& composer, const DevelopInput& input) {
+Result<> Developer::submit(Composer& composer, const DevelopInput& input) {
     State& state = *state_;
-    const Layers layers = layers_of(input);
-    if (Result<> done = state.check(input.extent, layers); !done) return failure(std::move(done));
-    if (Result<> done = state.check(input.lights); !done) return failure(std::move(done));
+    DARKROOM_ASSERT(state.in_flight < state.slots.size());
+    const UploadLayers layers = layers_of(input);
+    if (Result<> done = state.check(input.extent, layers); !done) return done;
+    if (Result<> done = state.check(input.lights); !done) return done;
     const CompileDesc wanted = compile_desc_for(state.context(), input, layers, state.desc);
-    if (Result<> done = state.compile(composer, wanted); !done) return failure(std::move(done));
-    if (Result<> done = state.make_uploads(input.extent, layers); !done) return failure(std::move(done));
-    if (Result<> done = state.prepare_lights(input.lights); !done) return failure(std::move(done));
-    for (std::size_t i = 0; i < layers.size(); ++i)
-        if (state.uploads->buffers[i]) fill(layers[i], state.uploads->buffers[i]->memory.mapped);
-    Frame frame = state.uploaded_frame(input);
-    frame.target = reference_to(state.target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    if (Result<> done = state.compile(composer, wanted); !done) return done;
+    Slot& slot = state.next_slot();
+    if (Result<> done = slot.upload.prepare(state.context(), input, layers); !done) return done;
+    Frame frame = slot.upload.frame(input);
     const RecordBefore upload = [&](VkCommandBuffer commands) -> Result<> {
-        state.record_uploads(input.extent, commands);
+        slot.upload.record(state.context(), commands);
         return {};
     };
-    if (Result<> done = state.run(composer, frame, upload, nullptr); !done) return failure(std::move(done));
-    return state.picture();
+    return state.begin(slot, composer, frame, upload, nullptr);
+}
+
+Result<DevelopedPicture> Developer::finish() { return state_->finish(); }
+
+std::uint32_t Developer::in_flight() const { return state_->in_flight; }
+
+Result<DevelopedPicture> Developer::develop(Composer& composer, const DevelopInput& input) {
+    if (Result<> done = submit(composer, input); !done) return failure(std::move(done));
+    return finish();
 }
 
 Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFrame& input, FrameLayers* layers) {
@@ -416,7 +292,6 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
         return failure(std::move(done));
     const CompileDesc wanted = compile_desc_for(state.context(), input, state.desc);
     if (Result<> done = state.compile(composer, wanted); !done) return failure(std::move(done));
-    frame.target = reference_to(state.target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     std::optional<FrameReadback> readback;
     if (layers != nullptr) {
         Result<FrameReadback> made = FrameReadback::create(state.context(), frame);
@@ -433,10 +308,12 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
         image->last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  // the read-back's
         image->last_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     }
-    Result<> done = state.run(composer, frame, input.record_before, readback ? &*readback : nullptr);
+    Result<> done =
+        state.begin(state.next_slot(), composer, frame, input.record_before, readback ? &*readback : nullptr);
     if (!done) return failure(std::move(done));
-    if (readback) *layers = readback->layers();
-    return state.picture();
+    Result<DevelopedPicture> picture = state.finish();
+    if (picture && readback) *layers = readback->layers();
+    return picture;
 }
 
 const Plan& Developer::plan() const { return state_->plan; }

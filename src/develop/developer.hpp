@@ -16,13 +16,15 @@
 
 namespace darkroom {
 
-/// Row-major, top row first. Empty spans: not given.
+/// Row-major, top row first. Empty spans: not given. Of a layer either the floats or the halves are given.
 struct DevelopInput {
     VkExtent2D extent{};
-    std::span<const float> color;     ///< red, green, blue, alpha; scene-linear Rec. 709
-    std::span<const float> depth;     ///< planar distance
-    std::span<const float> normals;   ///< x, y, z
-    std::span<const float> velocity;  ///< x, y
+    std::span<const float> color;                                ///< red, green, blue, alpha; scene-linear Rec. 709
+    std::span<const float> depth;                                ///< planar distance
+    std::span<const float> normals;                              ///< x, y, z
+    std::span<const float> velocity;                             ///< x, y
+    std::span<const std::uint16_t> color_halves, normal_halves;  ///< four a pixel, x, y, z, 1 of normals
+    std::span<const std::uint16_t> velocity_halves;              ///< two a pixel
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
@@ -46,6 +48,8 @@ struct DevelopDesc {
     DevelopTarget target = DevelopTarget::Encoded8;
     KernelStage kernels = KernelStage::Auto;
     bool fuse = true;
+    /// Of DevelopInput: how many may be submitted before the first is finished. The Composer has as many.
+    std::uint32_t frames_in_flight = 1;
 };
 
 /// What the Composer is compiled for, given an input and a target: also what `darkroom plan` plans. Layers whose
@@ -65,14 +69,19 @@ class Developer {
     Developer& operator=(Developer&&) noexcept;
     ~Developer();
 
-    /// Develops one picture. Compiles the composer first where size or layers differ from the last one's, and waits for
-    /// its leaner kernels.
+    /// Develops one picture: submit() and finish(). Nothing is in flight before.
     [[nodiscard]] Result<DevelopedPicture> develop(Composer& composer, const DevelopInput& input);
+    /// Uploads and begins one; fewer than frames_in_flight are under way. Compiles the composer first where size or
+    /// layers differ from the last one's, and waits for its leaner kernels. Where it fails, nothing was begun.
+    [[nodiscard]] Result<> submit(Composer& composer, const DevelopInput& input);
+    /// Waits for the oldest one that was begun, of at least one.
+    [[nodiscard]] Result<DevelopedPicture> finish();
+    [[nodiscard]] std::uint32_t in_flight() const;
     /// The same for images on the device: what draws them, the composer and the read-back are one submission. `layers`:
     /// where what the composer was given goes, if it is wanted.
     [[nodiscard]] Result<DevelopedPicture> develop(Composer& composer, const DeviceFrame& input,
                                                    FrameLayers* layers = nullptr);
-    /// The plan of the last develop().
+    /// The plan of the last develop() or submit().
     [[nodiscard]] const Plan& plan() const;
 
   private:

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -112,6 +113,24 @@ class Timers {
     std::uint32_t marks = 0;
     std::vector<std::uint64_t> ticks;  ///< what read() reads, `marks` of them
     Context* context = nullptr;
+};
+
+/// Commands on the context's own queue that may not have finished yet.
+class Submission {
+  public:
+    Submission();  ///< nothing to wait for
+    /// Records with `body` and submits.
+    [[nodiscard]] static Result<Submission> begin(Context&, std::string_view what,
+                                                  const std::function<void(VkCommandBuffer)>& body);
+    Submission(Submission&&) noexcept;
+    Submission& operator=(Submission&&) noexcept;
+    ~Submission();  ///< waits
+    [[nodiscard]] Result<> wait();
+
+  private:
+    struct State;
+    explicit Submission(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
 };
 
 /// Records with `body`, submits on the context's own queue and waits. For uploads, read-back, and headless work.

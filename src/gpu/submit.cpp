@@ -2,44 +2,54 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <memory>
 #include <mutex>
+#include <string>
 
 #include "gpu/formats.hpp"
 #include "gpu/resources.hpp"
 
 namespace darkroom::gpu {
 
-namespace {
-
-/// Pool and fence of one submission.
-struct Submission {
-    explicit Submission(Context& owner) : context(owner) {}
-    Submission(const Submission&) = delete;
-    Submission& operator=(const Submission&) = delete;
-    ~Submission() {
+/// Pool and fence.
+struct Submission::State {
+    explicit State(Context& owner, std::string_view doing) : context(owner), what(doing) {}
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    // What was begun is finished, whoever looks at it.
+    ~State() {
+        if (is_running) static_cast<void>(wait());
         context.vk.DestroyFence(context.device, fence, context.allocator);
         context.vk.DestroyCommandPool(context.device, pool, context.allocator);
     }
+    VkResult run(const std::function<void(VkCommandBuffer)>& body);
+    VkResult wait() {
+        is_running = false;
+        return context.vk.WaitForFences(context.device, 1, &fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+    }
+
     Context& context;
+    std::string what;
     VkCommandPool pool = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
+    bool is_running = false;
 };
 
-VkResult run(Context& context, Submission& submission, const std::function<void(VkCommandBuffer)>& body) {
+VkResult Submission::State::run(const std::function<void(VkCommandBuffer)>& body) {
     const Dispatch& vk = context.vk;
     const VkCommandPoolCreateInfo pool_info{
         .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
         .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
         .queueFamilyIndex = context.queue_family,
     };
-    VkResult result = vk.CreateCommandPool(context.device, &pool_info, context.allocator, &submission.pool);
+    VkResult result = vk.CreateCommandPool(context.device, &pool_info, context.allocator, &pool);
     if (result != VK_SUCCESS) return result;
     const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    result = vk.CreateFence(context.device, &fence_info, context.allocator, &submission.fence);
+    result = vk.CreateFence(context.device, &fence_info, context.allocator, &fence);
     if (result != VK_SUCCESS) return result;
     const VkCommandBufferAllocateInfo allocate_info{
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-        .commandPool = submission.pool,
+        .commandPool = pool,
         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
         .commandBufferCount = 1,
     };
@@ -64,22 +74,37 @@ VkResult run(Context& context, Submission& submission, const std::function<void(
         .commandBufferInfoCount = 1,
         .pCommandBufferInfos = &command_info,
     };
-    {
-        const std::lock_guard lock(context.queue_mutex);
-        result = vk.QueueSubmit2(context.queue, 1, &submit_info, submission.fence);
-    }
-    if (result != VK_SUCCESS) return result;
-    return vk.WaitForFences(context.device, 1, &submission.fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+    const std::lock_guard lock(context.queue_mutex);
+    result = vk.QueueSubmit2(context.queue, 1, &submit_info, fence);
+    is_running = result == VK_SUCCESS;
+    return result;
 }
 
-}  // namespace
+Submission::Submission() = default;
+Submission::Submission(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Submission::Submission(Submission&&) noexcept = default;
+Submission& Submission::operator=(Submission&&) noexcept = default;
+Submission::~Submission() = default;
+
+Result<Submission> Submission::begin(Context& context, std::string_view what,
+                                     const std::function<void(VkCommandBuffer)>& body) {
+    if (context.queue == VK_NULL_HANDLE) {
+        return machine_error(fmt::format("{}: an adopted device has no queue of ours to submit to", what));
+    }
+    auto state = std::make_unique<State>(context, what);
+    if (Result<> done = context.check(state->run(body), what); !done) return failure(std::move(done));
+    return Submission(std::move(state));
+}
+
+Result<> Submission::wait() {
+    if (!state_) return {};
+    const std::unique_ptr<State> state = std::move(state_);
+    return state->context.check(state->wait(), state->what);
+}
 
 Result<> submit_and_wait(Context& context, std::string_view what, const std::function<void(VkCommandBuffer)>& body) {
-    if (context.queue == VK_NULL_HANDLE) {
-        return user_error(fmt::format("{}: an adopted device has no queue of ours to submit to", what));
-    }
-    Submission submission(context);
-    return context.check(run(context, submission, body), what);
+    Result<Submission> submission = Submission::begin(context, what, body);
+    return submission ? submission->wait() : failure(std::move(submission));
 }
 
 void transition(const Context& context, VkCommandBuffer commands, const Image& image, VkImageLayout from,

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -68,8 +69,13 @@ struct FrameOptions {
     /// See read_camera; goes before what the frame's own file says. Of a camera that is not the file's, the previous
     /// place and the distances are not known either.
     std::filesystem::path camera_file;
-    /// False: the depths of cascades stay in the file, for those who need no shadows; they are most of it.
+    /// False: these stay in the file, for those who do not need them.
+    bool has_depth = true, has_normals = true, has_velocity = true;
+    /// False: so do the depths of cascades, which are most of a file.
     bool has_shadow_depths = true;
+    /// Layers that are halves in the file, and are what they should be, come in FrameFile::halves.
+    bool keeps_halves = false;
+    std::size_t max_threads = 0;  ///< that decode, 0: as many as there are processors
 };
 
 /// Pixels that were not finite, and are now: NaN became 0, an infinity +-65504 (the largest half); alpha 1.
@@ -83,6 +89,14 @@ struct PixelCounts {
     [[nodiscard]] bool operator==(const PixelCounts&) const = default;
 };
 
+/// Layers as halves, row-major, top row first. Those that are not empty stand for the numbers of the frame's layer of
+/// that name, which has its size and no numbers then.
+struct HalfLayers {
+    std::vector<std::uint16_t> color;     ///< red, green, blue, alpha
+    std::vector<std::uint16_t> normals;   ///< x, y, z, 1
+    std::vector<std::uint16_t> velocity;  ///< x, y
+};
+
 struct FrameFile {
     /// Scene-linear Rec. 709. As large as the display window; pixels outside the data window are 0, alpha included.
     /// Alpha is carried as the file has it: colour is neither multiplied nor divided by it.
@@ -92,15 +106,20 @@ struct FrameFile {
     std::optional<Plane<3>> normals;   ///< world space; 0 where there is no surface
     std::optional<Plane<2>> velocity;  ///< previous minus current position, pixels, y down
     FrameCamera camera;
+    HalfLayers halves;  ///< see FrameOptions::keeps_halves
     std::vector<FrameLight> lights;
     std::optional<double> time, delta_time;    ///< seconds
     std::optional<std::uint64_t> frame_index;  ///< at most 2^53
     FileKind kind = FileKind::OpenExr;
     SampleKind samples = SampleKind::Half;  ///< of the colour, in the file
     PixelCounts counts;
-    std::vector<std::string> warnings;  ///< one line each, without the file name
-    std::vector<std::string> channels;  ///< all that the file has, used or not
+    std::vector<std::string> warnings;                ///< one line each, without the file name
+    std::vector<std::string> channels;                ///< all that the file has, used or not
+    std::shared_ptr<const ExrAttributes> attributes;  ///< what else an OpenEXR file says; else null
 };
+
+/// Gives the layers of `halves` their numbers as floats, and leaves no halves.
+void widen(FrameFile& frame);
 
 /// Reads any known image file. Integers are decoded as sRGB; floats are linear, and converted if the file names
 /// primaries other than Rec. 709. The error text begins with the path.
@@ -111,7 +130,9 @@ struct FrameFile {
 /// deltaTime and frameIndex, bit for bit. Colour is half, or float if `frame.samples` is; depth and motion are float,
 /// normals half. Lights are attributes as well, and their cascades parts of their own beside the frame's: see
 /// docs/conventions.md.
-[[nodiscard]] Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame);
+/// `max_threads`: that compress, 0: as many as there are processors.
+[[nodiscard]] Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame,
+                                   std::size_t max_threads = 0);
 
 /// A camera in a TOML file: `world_to_camera` or `camera_to_world` (16 numbers, row by row as one writes a matrix for
 /// column vectors), `projection` (16 numbers) or `fov` (vertical, degrees). All are optional; other keys are refused.

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "image/frame_lights.hpp"
 
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -210,53 +215,47 @@ Result<> check_lights(std::span<const FrameLight> lights) {
     return check_total(texels);
 }
 
-void add_lights(OIIO::ImageSpec& frame, std::span<const FrameLight> lights) {
+void add_lights(Imf::Header& frame, std::span<const FrameLight> lights) {
     if (lights.empty()) return;
-    frame.attribute(count_name, static_cast<int>(lights.size()));
+    frame.insert(count_name, Imf::IntAttribute(static_cast<int>(lights.size())));
     int shadow = 0;
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const FrameLight& light = lights[i];
-        const auto add = [&](std::string_view what, OIIO::TypeDesc type, const void* value) {
-            frame.attribute(attribute_name(i, what), type, value);
+        const auto add = [&](std::string_view what, const Imf::Attribute& value) {
+            frame.insert(attribute_name(i, what), value);
         };
-        add("direction", OIIO::TypeVector, light.direction.data());
-        add("color", OIIO::TypeVector, light.color.data());
-        add("volumetricColor", OIIO::TypeVector, light.volumetric_color.data());
-        add("volumetricIntensity", OIIO::TypeFloat, &light.volumetric_intensity);
+        const auto vector = [](const std::array<float, 3>& v) {
+            return Imf::V3fAttribute(Imath::V3f(v[0], v[1], v[2]));
+        };
+        add("direction", vector(light.direction));
+        add("color", vector(light.color));
+        add("volumetricColor", vector(light.volumetric_color));
+        add("volumetricIntensity", Imf::FloatAttribute(light.volumetric_intensity));
         if (light.cascades.empty()) continue;
-        add("shadow", OIIO::TypeInt, &shadow);
-        ++shadow;
+        add("shadow", Imf::IntAttribute(shadow++));
         std::vector<float> splits;
         for (std::size_t c = 0; c < light.cascades.size(); ++c) {
             splits.push_back(light.cascades[c].split);
-            add(matrix_name(c), OIIO::TypeMatrix44, light.cascades[c].world_to_cascade.data());
+            Imath::M44f matrix;
+            std::copy_n(light.cascades[c].world_to_cascade.begin(), 16, matrix.getValue());
+            add(matrix_name(c), Imf::M44fAttribute(matrix));
         }
-        add("splits", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, static_cast<int>(splits.size())), splits.data());
+        add("splits", Imf::FloatVectorAttribute(splits));
     }
 }
 
-std::vector<EncodedPart> shadow_parts(const OIIO::ImageSpec& frame, std::span<const FrameLight> lights) {
-    std::vector<EncodedPart> parts;
+std::vector<ExrPart> shadow_parts(const Imf::Header& frame, std::span<const FrameLight> lights) {
+    std::vector<ExrPart> parts;
     for (const FrameLight& light : lights) {
         if (light.cascades.empty()) continue;
-        const auto side = static_cast<int>(light.cascades.front().depth.width);
-        OIIO::ImageSpec spec(side, side, static_cast<int>(light.cascades.size()), OIIO::TypeFloat);
-        spec.full_width = frame.width;
-        spec.full_height = frame.height;
-        spec.channelnames.clear();
-        for (std::size_t i = 0; i < light.cascades.size(); ++i) spec.channelnames.push_back(channel_name(i));
-        spec.alpha_channel = spec.z_channel = -1;
-        spec.attribute("DateTime", frame.get_string_attribute("DateTime"));
-        spec.attribute("compression", "zip");
-        spec.attribute("oiio:subimagename", part_name(parts.size()));
-        parts.push_back({std::move(spec), [&light] {
-                             const std::size_t count = light.cascades.size();
-                             std::vector<float> samples(light.cascades.front().depth.values.size() * count);
-                             for (std::size_t c = 0; c < count; ++c)
-                                 for (std::size_t i = 0; i * count < samples.size(); ++i)
-                                     samples[i * count + c] = light.cascades[c].depth.values[i];
-                             return samples;
-                         }});
+        const std::uint32_t side = light.cascades.front().depth.width;
+        ExrPart part{.header = exr_header(side, side)};
+        part.header.displayWindow() = frame.displayWindow();
+        part.header.setName(part_name(parts.size()));
+        for (std::size_t c = 0; c < light.cascades.size(); ++c)
+            part.channels.push_back(
+                {.name = channel_name(c), .kind = SampleKind::Float, .values = light.cascades[c].depth.values.data()});
+        parts.push_back(std::move(part));
     }
     return parts;
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "image/encoder.hpp"
+#include "image/exr_write.hpp"
 #include "image/frame_file.hpp"
 
 namespace darkroom {
@@ -14,9 +14,9 @@ namespace darkroom {
 /// Could read_lights give these back? An error is without the file name.
 [[nodiscard]] Result<> check_lights(std::span<const FrameLight> lights);
 /// The numbers, as attributes of the frame's part.
-void add_lights(OIIO::ImageSpec& frame, std::span<const FrameLight> lights);
-/// The cascades, a part for each light that has some. The samples refer to `lights`.
-[[nodiscard]] std::vector<EncodedPart> shadow_parts(const OIIO::ImageSpec& frame, std::span<const FrameLight> lights);
+void add_lights(Imf::Header& frame, std::span<const FrameLight> lights);
+/// The cascades, a part for each light that has some. Their channels refer to `lights`.
+[[nodiscard]] std::vector<ExrPart> shadow_parts(const Imf::Header& frame, std::span<const FrameLight> lights);
 
 /// `part`: that of the frame. Fills lights, counts and warnings of `frame`. An error may lack the file name.
 [[nodiscard]] Result<> read_lights(Decoder& decoder, std::size_t part, const FrameOptions& options, FrameFile& frame);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+#include <half.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,54 +9,42 @@
 
 #include "image/frame_file.hpp"
 #include "image/frame_lights.hpp"
+#include "image/layer_read.hpp"
 #include "image/primaries.hpp"
 
 namespace darkroom {
 namespace {
 
 constexpr float largest_half = 65504.0f;
-
-// Where a channel of the file goes: `value(pixel, component)` of a plane as large as the display window.
-struct Destination {
-    ChannelSet source;
-    std::uint32_t component_count = 0;
-    float* values = nullptr;
-    std::uint32_t stride = 0;  // floats from one pixel to the next
-};
-
-// Copies the channels of one set into place: the data window into the display window, what is outside of it cropped.
-Result<> read_set(Decoder& decoder, const Destination& to) {
-    const FilePart& part = decoder.parts()[to.source.part];
-    int first = std::numeric_limits<int>::max();
-    int last = -1;
-    for (std::uint32_t i = 0; i < to.component_count; ++i) {
-        if (to.source.channels[i] < 0) continue;
-        first = std::min(first, to.source.channels[i]);
-        last = std::max(last, to.source.channels[i]);
-    }
-    const auto count = static_cast<std::uint32_t>(last - first + 1);
-    const std::int64_t left = std::max<std::int64_t>(0, -std::int64_t{part.x});
-    const std::int64_t right = std::min<std::int64_t>(part.width, std::int64_t{part.display_width} - part.x);
-    return decoder.read(to.source.part, static_cast<std::uint32_t>(first), count,
-                        [&](std::uint32_t row, std::uint32_t rows, std::span<const float> samples) {
-                            for (std::uint32_t i = 0; i < rows; ++i) {
-                                const std::int64_t y = std::int64_t{row} + i + part.y;
-                                if (y < 0 || y >= part.display_height) continue;
-                                const float* in = &samples[std::size_t{i} * part.width * count];
-                                float* out = to.values + static_cast<std::size_t>(y) * part.display_width * to.stride;
-                                for (std::int64_t x = left; x < right; ++x)
-                                    for (std::uint32_t c = 0; c < to.component_count; ++c)
-                                        if (to.source.channels[c] >= 0)
-                                            out[(x + part.x) * to.stride + c] =
-                                                in[x * count + (to.source.channels[c] - first)];
-                            }
-                        });
-}
+constexpr std::uint16_t half_one = 0x3c00;
 
 bool is_inside(const FilePart& part, std::uint32_t x, std::uint32_t y) {
     const std::int64_t column = std::int64_t{x} - part.x;
     const std::int64_t row = std::int64_t{y} - part.y;
     return column >= 0 && row >= 0 && column < part.width && row < part.height;
+}
+
+bool is_finite(std::uint16_t half) { return (half & 0x7c00u) != 0x7c00u; }
+bool is_nan(std::uint16_t half) { return !is_finite(half) && (half & 0x3ffu) != 0; }
+
+void make_finite(std::span<std::uint16_t> color, PixelCounts& counts) {
+    constexpr std::uint16_t largest = 0x7bff;
+    for (std::size_t i = 0; i < color.size(); i += 4) {
+        std::uint16_t* const pixel = &color[i];
+        if (is_finite(pixel[0]) && is_finite(pixel[1]) && is_finite(pixel[2]) && is_finite(pixel[3])) continue;
+        bool has_nan = false;
+        bool has_infinity = false;
+        for (int c = 0; c < 3; ++c) {
+            if (is_finite(pixel[c])) continue;
+            (is_nan(pixel[c]) ? has_nan : has_infinity) = true;
+            pixel[c] = is_nan(pixel[c]) ? std::uint16_t{0} : static_cast<std::uint16_t>((pixel[c] & 0x8000u) | largest);
+        }
+        counts.nan_color += has_nan;
+        counts.infinite_color += has_infinity;
+        if (is_finite(pixel[3])) continue;
+        ++(is_nan(pixel[3]) ? counts.nan_alpha : counts.infinite_alpha);
+        pixel[3] = half_one;
+    }
 }
 
 void make_finite(Picture& color, PixelCounts& counts) {
@@ -88,8 +77,6 @@ void decode_srgb(Picture& color, SampleKind samples) {
 }
 
 void convert(Picture& color, const ColorMatrix& matrix) {
-    // Not even the sign of a zero may change in a picture that is in our primaries.
-    if (matrix == ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) return;
     constexpr double largest = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i < color.pixels.size(); i += 4) {
         float* pixel = &color.pixels[i];
@@ -107,13 +94,20 @@ class FrameReader {
     Result<FrameFile> read();
 
   private:
-    Result<> read_color();
-    Result<> read_depth();
-    Result<> read_normals();
-    Result<> read_velocity();
+    Result<> make_color();
+    Result<> make_depth();
+    Result<> make_normals();
+    Result<> make_velocity();
+    void finish_color();
+    void finish_depth();
+    void finish_normals();
+    void finish_velocity();
     Result<> read_camera_of_file();
     void read_time_of_file();
-    void convert_color();
+    [[nodiscard]] std::optional<ColorMatrix> conversion_of_color();
+    [[nodiscard]] bool are_halves(const ChannelSet& set, std::uint32_t components) const;
+    void add_place(const ChannelSet& set, std::uint32_t components, std::vector<float>& plane);
+    void add_half_place(const ChannelSet& set, std::uint32_t components, std::vector<std::uint16_t>& plane);
     [[nodiscard]] Result<> check(const ChannelSet& set, std::uint32_t components, const char* what) const;
     [[nodiscard]] const FilePart& part(const ChannelSet& set) const { return decoder_.parts()[set.part]; }
 
@@ -121,7 +115,10 @@ class FrameReader {
     const FrameOptions& options_;
     FrameChannels found_;
     FrameFile frame_;
+    std::vector<LayerPlace> places_;  // of what is read
     bool is_vray_ = false;
+    std::optional<ColorMatrix> to_rec709_;  // of the colour
+    std::vector<float> world_to_camera_;    // of V-Ray normals
 };
 
 // All parts of an OpenEXR file should have one display window; a plane of another size than the picture has no meaning.
@@ -141,106 +138,191 @@ Result<> FrameReader::check(const ChannelSet& set, std::uint32_t components, con
     return {};
 }
 
-Result<> FrameReader::read_color() {
-    const FilePart& source = part(found_.color);
-    // 2^28 pixels are 4 GiB here, and more than any device takes as one image.
-    if (std::uint64_t{source.display_width} * source.display_height > (std::uint64_t{1} << 28))
-        return user_error(fmt::format("the picture is {}x{}, at most {} pixels are allowed", source.display_width,
-                                      source.display_height, 1u << 28));
-    frame_.color = Picture(source.display_width, source.display_height);
-    if (auto checked = check(found_.color, 4, "the color"); !checked) return checked;
-    frame_.samples = source.kinds[static_cast<std::size_t>(found_.color.channels[0])];
-    frame_.has_alpha = found_.color.channels[3] >= 0;
-    if (!frame_.has_alpha)
-        for (std::uint32_t y = 0; y < frame_.color.height; ++y)
-            for (std::uint32_t x = 0; x < frame_.color.width; ++x)
-                frame_.color.at(x, y)[3] = is_inside(source, x, y) ? 1.0f : 0.0f;
-    if (auto read = read_set(decoder_, {found_.color, 4, frame_.color.pixels.data(), 4}); !read) return read;
-    convert_color();
-    return {};
+bool FrameReader::are_halves(const ChannelSet& set, std::uint32_t components) const {
+    if (!options_.keeps_halves || decoder_.kind() != FileKind::OpenExr) return false;
+    for (std::uint32_t i = 0; i < components; ++i)
+        if (set.channels[i] >= 0 && part(set).kinds[static_cast<std::size_t>(set.channels[i])] != SampleKind::Half)
+            return false;
+    return true;
 }
 
-void FrameReader::convert_color() {
-    make_finite(frame_.color, frame_.counts);
-    if (frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16) {
-        decode_srgb(frame_.color, frame_.samples);
-        return;
-    }
+void FrameReader::add_place(const ChannelSet& set, std::uint32_t components, std::vector<float>& plane) {
+    places_.push_back({.source = set, .components = components, .plane = reinterpret_cast<std::byte*>(plane.data())});
+}
+
+void FrameReader::add_half_place(const ChannelSet& set, std::uint32_t components, std::vector<std::uint16_t>& plane) {
+    places_.push_back({.source = set,
+                       .components = components,
+                       .kind = SampleKind::Half,
+                       .plane = reinterpret_cast<std::byte*>(plane.data())});
+}
+
+// What turns the colour into Rec. 709, if that is anything.
+std::optional<ColorMatrix> FrameReader::conversion_of_color() {
+    if (frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16) return {};
     const std::vector<float> values = decoder_.numbers(found_.color.part, "chromaticities");
     if (values.size() != 8) {
         const std::string& red = part(found_.color).channels[static_cast<std::size_t>(found_.color.channels[0])];
         if (red.ends_with("X") || red.ends_with("x"))
             frame_.warnings.push_back(
                 "the color is in X, Y, Z and no chromaticities are given: taken as linear Rec. 709");
-        return;
+        return {};
     }
-    if (found_.is_gray) return;
+    if (found_.is_gray) return {};
     const Chromaticities primaries{.red = {values[0], values[1]},
                                    .green = {values[2], values[3]},
                                    .blue = {values[4], values[5]},
                                    .white = {values[6], values[7]}};
-    if (const auto matrix = to_rec709(primaries))
-        convert(frame_.color, *matrix);
-    else
-        frame_.warnings.push_back("the chromaticities span no color space: taken as linear Rec. 709");
+    const auto matrix = to_rec709(primaries);
+    if (!matrix) frame_.warnings.push_back("the chromaticities span no color space: taken as linear Rec. 709");
+    // Not even the sign of a zero may change in a picture that is in our primaries.
+    if (!matrix || *matrix == ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) return {};
+    return *matrix;
 }
 
-Result<> FrameReader::read_depth() {
-    if (!found_.depth) return {};
-    if (auto checked = check(*found_.depth, 1, "the depth"); !checked) return checked;
-    Plane<1> depth(frame_.color.width, frame_.color.height);
-    std::fill(depth.values.begin(), depth.values.end(), sky_depth);
-    if (auto read = read_set(decoder_, {*found_.depth, 1, depth.values.data(), 1}); !read) return read;
-    for (float& distance : depth.values) {
-        frame_.counts.not_finite_other += std::isnan(distance) || distance == -std::numeric_limits<float>::infinity();
-        if (!(distance < 1e9f) || std::isinf(distance)) distance = sky_depth;
+Result<> FrameReader::make_color() {
+    const FilePart& source = part(found_.color);
+    // 2^28 pixels are 4 GiB here, and more than any device takes as one image.
+    if (std::uint64_t{source.display_width} * source.display_height > (std::uint64_t{1} << 28))
+        return user_error(fmt::format("the picture is {}x{}, at most {} pixels are allowed", source.display_width,
+                                      source.display_height, 1u << 28));
+    frame_.color.width = source.display_width;
+    frame_.color.height = source.display_height;
+    const std::size_t pixels = std::size_t{source.display_width} * source.display_height;
+    if (auto checked = check(found_.color, 4, "the color"); !checked) return checked;
+    frame_.samples = source.kinds[static_cast<std::size_t>(found_.color.channels[0])];
+    frame_.has_alpha = found_.color.channels[3] >= 0;
+    to_rec709_ = conversion_of_color();
+    const auto fill_alpha = [&](auto& values, auto one) {
+        for (std::size_t i = 0; i < pixels; ++i)
+            if (is_inside(source, static_cast<std::uint32_t>(i % source.display_width),
+                          static_cast<std::uint32_t>(i / source.display_width)))
+                values[i * 4 + 3] = one;
+    };
+    if (!to_rec709_ && are_halves(found_.color, 4)) {
+        frame_.halves.color.resize(pixels * 4);
+        if (!frame_.has_alpha) fill_alpha(frame_.halves.color, half_one);
+        add_half_place(found_.color, 4, frame_.halves.color);
+        return {};
     }
-    frame_.depth = std::move(depth);
+    frame_.color.pixels.resize(pixels * 4);
+    if (!frame_.has_alpha) fill_alpha(frame_.color.pixels, 1.0f);
+    add_place(found_.color, 4, frame_.color.pixels);
     return {};
 }
 
+void FrameReader::finish_color() {
+    if (!frame_.halves.color.empty()) {
+        make_finite(frame_.halves.color, frame_.counts);
+        return;
+    }
+    make_finite(frame_.color, frame_.counts);
+    if (frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16)
+        decode_srgb(frame_.color, frame_.samples);
+    else if (to_rec709_)
+        convert(frame_.color, *to_rec709_);
+}
+
+Result<> FrameReader::make_depth() {
+    if (!found_.depth || !options_.has_depth) return {};
+    if (auto checked = check(*found_.depth, 1, "the depth"); !checked) return checked;
+    frame_.depth.emplace(frame_.color.width, frame_.color.height);
+    std::fill(frame_.depth->values.begin(), frame_.depth->values.end(), sky_depth);
+    add_place(*found_.depth, 1, frame_.depth->values);
+    return {};
+}
+
+void FrameReader::finish_depth() {
+    if (!frame_.depth) return;
+    for (float& distance : frame_.depth->values) {
+        if (distance < 1e9f && std::isfinite(distance)) continue;
+        frame_.counts.not_finite_other += std::isnan(distance) || distance == -std::numeric_limits<float>::infinity();
+        distance = sky_depth;
+    }
+}
+
 // V-Ray writes normals in the space of its camera (x right, y down, z forward), others in that of the world.
-Result<> FrameReader::read_normals() {
-    if (!found_.normals) return {};
+Result<> FrameReader::make_normals() {
+    if (!found_.normals || !options_.has_normals) return {};
     if (auto checked = check(*found_.normals, 3, "the normals"); !checked) return checked;
-    Plane<3> normals(frame_.color.width, frame_.color.height);
-    if (auto read = read_set(decoder_, {*found_.normals, 3, normals.values.data(), 3}); !read) return read;
-    const bool is_in_camera_space = is_vray_ && !options_.names.contains("normals");
-    const std::vector<float> vray = decoder_.numbers(found_.color.part, "worldtocamera");
-    if (is_in_camera_space && vray.size() != 16) {
-        frame_.warnings.push_back("V-Ray normals without worldToCamera cannot be turned to world space: left out");
+    if (is_vray_ && !options_.names.contains("normals")) {
+        world_to_camera_ = decoder_.numbers(found_.color.part, "worldtocamera");
+        if (world_to_camera_.size() != 16) {
+            frame_.warnings.push_back("V-Ray normals without worldToCamera cannot be turned to world space: left out");
+            return {};
+        }
+    }
+    frame_.normals.emplace();
+    frame_.normals->width = frame_.color.width;
+    frame_.normals->height = frame_.color.height;
+    const std::size_t pixels = std::size_t{frame_.color.width} * frame_.color.height;
+    if (world_to_camera_.empty() && are_halves(*found_.normals, 3)) {
+        frame_.halves.normals.resize(pixels * 4);
+        for (std::size_t i = 3; i < pixels * 4; i += 4) frame_.halves.normals[i] = half_one;
+        add_half_place(*found_.normals, 4, frame_.halves.normals);
+        places_.back().read = 3;
         return {};
     }
-    for (std::size_t i = 0; i < normals.values.size(); i += 3) {
-        float* normal = &normals.values[i];
+    frame_.normals->values.resize(pixels * 3);
+    add_place(*found_.normals, 3, frame_.normals->values);
+    return {};
+}
+
+void FrameReader::finish_normals() {
+    std::vector<std::uint16_t>& halves = frame_.halves.normals;
+    for (std::size_t i = 0; i < halves.size(); i += 4) {
+        if (is_finite(halves[i]) && is_finite(halves[i + 1]) && is_finite(halves[i + 2])) continue;
+        ++frame_.counts.not_finite_other;
+        std::fill_n(&halves[i], 3, std::uint16_t{0});
+    }
+    if (!frame_.normals) return;
+    for (std::size_t i = 0; i < frame_.normals->values.size(); i += 3) {
+        float* normal = &frame_.normals->values[i];
         if (!std::isfinite(normal[0]) || !std::isfinite(normal[1]) || !std::isfinite(normal[2])) {
             ++frame_.counts.not_finite_other;
             std::fill_n(normal, 3, 0.0f);
         }
-        if (!is_in_camera_space) continue;
+        if (world_to_camera_.empty()) continue;
         const std::array<float, 3> in{normal[0], normal[1], normal[2]};
         for (std::size_t row = 0; row < 3; ++row)
-            normal[row] = vray[row * 4] * in[0] + vray[row * 4 + 1] * in[1] + vray[row * 4 + 2] * in[2];
+            normal[row] = world_to_camera_[row * 4] * in[0] + world_to_camera_[row * 4 + 1] * in[1] +
+                          world_to_camera_[row * 4 + 2] * in[2];
     }
-    frame_.normals = std::move(normals);
+}
+
+Result<> FrameReader::make_velocity() {
+    if (!found_.velocity || !options_.has_velocity) return {};
+    if (auto checked = check(*found_.velocity, 2, "the motion"); !checked) return checked;
+    frame_.velocity.emplace();
+    frame_.velocity->width = frame_.color.width;
+    frame_.velocity->height = frame_.color.height;
+    const std::size_t values = std::size_t{frame_.color.width} * frame_.color.height * 2;
+    if (!found_.is_velocity_y_up && are_halves(*found_.velocity, 2)) {
+        frame_.halves.velocity.resize(values);
+        add_half_place(*found_.velocity, 2, frame_.halves.velocity);
+        return {};
+    }
+    frame_.velocity->values.resize(values);
+    add_place(*found_.velocity, 2, frame_.velocity->values);
     return {};
 }
 
-Result<> FrameReader::read_velocity() {
-    if (!found_.velocity) return {};
-    if (auto checked = check(*found_.velocity, 2, "the motion"); !checked) return checked;
-    Plane<2> velocity(frame_.color.width, frame_.color.height);
-    if (auto read = read_set(decoder_, {*found_.velocity, 2, velocity.values.data(), 2}); !read) return read;
-    for (std::size_t i = 0; i < velocity.values.size(); i += 2) {
-        float* motion = &velocity.values[i];
+void FrameReader::finish_velocity() {
+    std::vector<std::uint16_t>& halves = frame_.halves.velocity;
+    for (std::size_t i = 0; i < halves.size(); i += 2) {
+        if (is_finite(halves[i]) && is_finite(halves[i + 1])) continue;
+        ++frame_.counts.not_finite_other;
+        halves[i] = halves[i + 1] = 0;
+    }
+    if (!frame_.velocity) return;
+    for (std::size_t i = 0; i < frame_.velocity->values.size(); i += 2) {
+        float* motion = &frame_.velocity->values[i];
         if (!std::isfinite(motion[0]) || !std::isfinite(motion[1])) {
             ++frame_.counts.not_finite_other;
             std::fill_n(motion, 2, 0.0f);
         }
         if (found_.is_velocity_y_up) motion[1] = -motion[1];
     }
-    frame_.velocity = std::move(velocity);
-    return {};
 }
 
 Result<> FrameReader::read_camera_of_file() {
@@ -325,10 +407,16 @@ Result<FrameFile> FrameReader::read() {
     if (!found) return failure(std::move(found));
     found_ = std::move(*found);
     is_vray_ = decoder_.has_attribute_starting(found_.color.part, "vrayInfo/");
-    if (auto done = read_color(); !done) return failure(std::move(done));
-    if (auto done = read_depth(); !done) return failure(std::move(done));
-    if (auto done = read_normals(); !done) return failure(std::move(done));
-    if (auto done = read_velocity(); !done) return failure(std::move(done));
+    frame_.attributes = decoder_.attributes(found_.color.part);
+    if (auto done = make_color(); !done) return failure(std::move(done));
+    if (auto done = make_depth(); !done) return failure(std::move(done));
+    if (auto done = make_normals(); !done) return failure(std::move(done));
+    if (auto done = make_velocity(); !done) return failure(std::move(done));
+    if (auto done = read_layers(decoder_, places_); !done) return failure(std::move(done));
+    finish_color();
+    finish_depth();
+    finish_normals();
+    finish_velocity();
     if (auto done = read_camera_of_file(); !done) return failure(std::move(done));
     read_time_of_file();
     if (auto done = read_lights(decoder_, found_.color.part, options_, frame_); !done) return failure(std::move(done));
@@ -347,8 +435,20 @@ Result<FrameFile> FrameReader::read() {
 
 }  // namespace
 
+void widen(FrameFile& frame) {
+    const auto take = [](std::vector<std::uint16_t>& from, std::size_t kept, std::size_t of, std::vector<float>& to) {
+        if (from.empty()) return;
+        to.resize(from.size() / of * kept);
+        for (std::size_t i = 0; i < to.size(); ++i) to[i] = imath_half_to_float(from[i / kept * of + i % kept]);
+        from = {};
+    };
+    take(frame.halves.color, 4, 4, frame.color.pixels);
+    if (frame.normals) take(frame.halves.normals, 3, 4, frame.normals->values);
+    if (frame.velocity) take(frame.halves.velocity, 2, 2, frame.velocity->values);
+}
+
 Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options) {
-    auto decoder = Decoder::open(path);
+    auto decoder = Decoder::open(path, options.max_threads);
     if (!decoder) return failure(std::move(decoder));
     auto frame = FrameReader(*decoder, options).read();
     const std::string place = path.string() + ": ";

@@ -1,31 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include "image/resize.hpp"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
+
+#include "image/codecs.hpp"
 
 namespace darkroom {
 
 namespace {
 
-OIIO::ImageSpec spec_of(std::uint32_t width, std::uint32_t height) {
-    return {static_cast<int>(width), static_cast<int>(height), 4, OIIO::TypeDesc::FLOAT};
-}
-
 Result<Picture> filtered(Picture& picture, std::uint32_t width, std::uint32_t height) {
+    const Result<const Codecs*> library = codecs();
+    if (!library) return failure(library.error());
     Picture out(width, height);
-    try {
-        const OIIO::ImageBuf from(spec_of(picture.width, picture.height), picture.pixels.data());
-        OIIO::ImageBuf to(spec_of(width, height), out.pixels.data());
-        if (!OIIO::ImageBufAlgo::resize(to, from, "triangle", 0.0f, to.roi()))
-            return machine_error(fmt::format("resizing to {}x{} failed: {}", width, height, to.geterror()));
-    } catch (const std::exception& error) {
-        return machine_error(fmt::format("resizing to {}x{} failed: {}", width, height, error.what()));
-    }
+    auto done = (*library)->resample({picture.width, picture.height, picture.pixels.data()},
+                                     {width, height, out.pixels.data()});
+    if (!done) return failure(std::move(done));
     return out;
 }
 
@@ -51,6 +43,7 @@ Result<FrameFile> resize(FrameFile frame, std::uint32_t width, std::uint32_t hei
         return user_error(fmt::format("size {}x{}: a picture has at least 1x1", width, height));
     const std::uint32_t old_width = frame.color.width, old_height = frame.color.height;
     if (width == old_width && height == old_height) return frame;
+    widen(frame);
     Result<Picture> color = filtered(frame.color, width, height);
     if (!color) return failure(std::move(color));
     frame.color = std::move(*color);

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "image/write.hpp"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <string>
 
 #include "core/assert.hpp"
 #include "core/files.hpp"
-#include "image/encoder.hpp"
-#include "image/exr_check.hpp"
+#include "image/codecs.hpp"
+#include "image/exr_write.hpp"
+#include "image/png_write.hpp"
 
 namespace darkroom {
 namespace {
@@ -30,9 +29,9 @@ constexpr std::array<std::pair<std::string_view, FileKind>, 7> extensions{{{".pn
                                                                            {".hdr", FileKind::Radiance}}};
 
 struct Format {
-    const char* writer;
     std::span<const SampleKind> samples;  // the first is the default
     bool has_alpha;
+    std::span<const std::string_view> compressions;  // by name
 };
 
 Format format_of(FileKind kind) {
@@ -42,33 +41,23 @@ Format format_of(FileKind kind) {
     static constexpr std::array tiff{Integer8, Integer16, Float};
     static constexpr std::array exr{Half, Float};
     static constexpr std::array radiance{Float};
+    static constexpr std::array<std::string_view, 13> levels{"0", "1", "2", "3",  "4",  "5", "6",
+                                                             "7", "8", "9", "10", "11", "12"};
+    static constexpr std::array<std::string_view, 4> tiff_names{"none", "packbits", "lzw", "zip"};
     switch (kind) {
         case FileKind::Png:
-            return {"png", png, true};
+            return {png, true, levels};
         case FileKind::Jpeg:
-            return {"jpeg", jpeg, false};
+            return {jpeg, false, {}};
         case FileKind::Tiff:
-            return {"tiff", tiff, true};
+            return {tiff, true, tiff_names};
         case FileKind::OpenExr:
-            return {"openexr", exr, true};
+            return {exr, true, exr_compressions};
         case FileKind::Radiance:
-            return {"hdr", radiance, false};
+            return {radiance, false, {}};
     }
     DARKROOM_ASSERT(false);
     return {};
-}
-
-OIIO::TypeDesc type_of(SampleKind samples) {
-    switch (samples) {
-        case SampleKind::Integer8:
-            return OIIO::TypeUInt8;
-        case SampleKind::Integer16:
-            return OIIO::TypeUInt16;
-        case SampleKind::Half:
-            return OIIO::TypeHalf;
-        default:
-            return OIIO::TypeFloat;
-    }
 }
 
 // JPEG has 16 bits for a side (ITU-T T.81); libpng refuses more than a million; the others have 31.
@@ -77,18 +66,6 @@ Result<> check_size(const std::filesystem::path& path, FileKind kind, std::uint3
     if (width >= 1 && height >= 1 && width <= most && height <= most) return {};
     return user_error(fmt::format("{}: a picture of {}x{}; 1 to {} a side is allowed in {}", path.string(), width,
                                   height, most, name_of(kind)));
-}
-
-OIIO::ImageSpec describe(FileKind kind, SampleKind samples, std::uint32_t width, std::uint32_t height,
-                         const WriteOptions& options) {
-    OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), options.alpha ? 4 : 3, type_of(samples));
-    // OpenImageIO would write the time of day, and no file would be the same twice.
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-    // Alpha is carried, never applied: without this, writers divide colour by it.
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (kind == FileKind::Jpeg) spec.attribute("Compression", fmt::format("jpeg:{}", options.jpeg_quality));
-    if (kind == FileKind::OpenExr) spec.attribute("compression", "zip");
-    return spec;
 }
 
 template <class T>
@@ -117,10 +94,17 @@ std::vector<float> floats(const Picture& picture, std::uint32_t channels, float 
     return values;
 }
 
-Result<> check_quality(const std::filesystem::path& path, const WriteOptions& options) {
-    if (options.jpeg_quality >= 1 && options.jpeg_quality <= 100) return {};
-    return user_error(
-        fmt::format("{}: a JPEG quality of {}; 1 to 100 is allowed", path.string(), options.jpeg_quality));
+Result<> check_coding(const std::filesystem::path& path, FileKind kind, const WriteOptions& options) {
+    if (options.quality && kind != FileKind::Jpeg)
+        return user_error(fmt::format("{}: {} has no quality; .jpg has", path.string(), name_of(kind)));
+    if (options.quality && (*options.quality < 1 || *options.quality > 100))
+        return user_error(
+            fmt::format("{}: a JPEG quality of {}; 1 to 100 is allowed", path.string(), *options.quality));
+    const std::span<const std::string_view> known = format_of(kind).compressions;
+    if (options.compression.empty() || std::ranges::find(known, options.compression) != known.end()) return {};
+    return user_error(fmt::format("{}: compression {} in {}; allowed: {}", path.string(),
+                                  one_printable_line(options.compression), name_of(kind),
+                                  known.empty() ? "none can be chosen" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
 }  // namespace
@@ -140,6 +124,7 @@ Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOpt
     const Format format = format_of(*kind);
     if (options.alpha && !format.has_alpha)
         return user_error(fmt::format("{}: {} has no alpha; .png .tif .exr have", path.string(), name_of(*kind)));
+    if (auto checked = check_coding(path, *kind, options); !checked) return failure(std::move(checked));
     const SampleKind samples = options.samples.value_or(format.samples.front());
     if (std::find(format.samples.begin(), format.samples.end(), samples) != format.samples.end()) return samples;
     std::string allowed;
@@ -151,83 +136,73 @@ Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOpt
 
 namespace {
 
-Failure encode_error(const std::filesystem::path& path, FileKind kind, std::string_view why) {
-    return machine_error(fmt::format("{}: cannot be written as {}: {}", path.string(), name_of(kind),
-                                     why.empty() ? "unknown reason" : one_printable_line(why)));
+/// Samples of 8 or 16 bits, or floats, into any kind of file but OpenEXR.
+Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc, const WriteOptions& options) {
+    const auto encode = [&]() -> Result<std::vector<std::byte>> {
+        if (desc.file == FileKind::Png) {
+            PngDesc png{.width = desc.width,
+                        .height = desc.height,
+                        .channels = desc.channels,
+                        .bytes = static_cast<std::uint32_t>(size_of(desc.kind)),
+                        .samples = desc.samples};
+            if (!options.compression.empty()) png.level = std::stoi(options.compression);
+            return encode_png(png);
+        }
+        const Result<const Codecs*> others = codecs();
+        if (!others) return failure(others.error());
+        return (*others)->encode(desc);
+    };
+    const auto bytes = encode();
+    if (!bytes) return failure({bytes.error().fault, fmt::format("{}: {}", path.string(), bytes.error().text)});
+    return write_file(path, *bytes);
+}
+
+Result<> write_floats(const std::filesystem::path& path, const Picture& picture, SampleKind samples,
+                      const WriteOptions& options) {
+    ExrPart part{.header = exr_header(picture.width, picture.height, options.compression)};
+    add_rec709(part.header);
+    if (options.attributes) options.attributes->add_to(part.header);
+    constexpr std::array names{"R", "G", "B", "A"};
+    for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)
+        part.channels.push_back({.name = names[c], .kind = samples, .values = picture.pixels.data() + c, .stride = 4});
+    return write_exr(path, {&part, 1}, options.max_threads);
+}
+
+/// What the path and the options ask for, checked.
+Result<EncodeDesc> describe(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                            const WriteOptions& options) {
+    const auto samples = sample_kind(path, options);
+    if (!samples) return failure(samples.error());
+    const FileKind kind = *file_kind(path);
+    if (auto checked = check_size(path, kind, width, height); !checked) return failure(std::move(checked));
+    return EncodeDesc{.file = kind,
+                      .kind = *samples,
+                      .width = width,
+                      .height = height,
+                      .channels = options.alpha ? 4U : 3U,
+                      .quality = options.quality,
+                      .compression = options.compression};
 }
 
 }  // namespace
 
-Result<> encode_to_file(const std::filesystem::path& path, FileKind kind, const OIIO::ImageSpec& spec,
-                        OIIO::TypeDesc type, const void* samples) {
-    const char* writer = format_of(kind).writer;
-    const auto error = [&](std::string_view why) { return encode_error(path, kind, why); };
-    OIIO::Filesystem::IOVecOutput memory;
-    try {
-        auto output = OIIO::ImageOutput::create(writer);
-        if (!output) return error("OpenImageIO was built without it");
-        if (!output->set_ioproxy(&memory)) return error("not into memory");
-        if (!output->open(fmt::format("memory.{}", writer), spec)) return error(output->geterror());
-        if (!output->write_image(type, samples)) return error(output->geterror());
-        if (!output->close()) return error(output->geterror());
-    } catch (const std::exception& exception) {
-        return error(exception.what());
-    }
-    return write_file(path, std::as_bytes(std::span(memory.buffer())));
-}
-
-// OpenImageIO before 2.5.12 writes several parts to a path alone. OpenEXR swallows errors when it closes a file, and
-// leaves places of chunks unwritten then: the check finds them.
-Result<> encode_parts_to_file(const std::filesystem::path& path, std::span<const EncodedPart> parts) {
-    const auto error = [&](std::string_view why) { return encode_error(path, FileKind::OpenExr, why); };
-    auto temporary = AtomicPath::beside(path);
-    if (!temporary) return failure(std::move(temporary));
-    const std::string name = temporary->path().string();
-    std::vector<OIIO::ImageSpec> specs;
-    for (const EncodedPart& part : parts) specs.push_back(part.spec);
-    try {
-        auto output = OIIO::ImageOutput::create(format_of(FileKind::OpenExr).writer);
-        if (!output) return error("OpenImageIO was built without it");
-        if (!output->open(name, static_cast<int>(specs.size()), specs.data())) return error(output->geterror());
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            if (i > 0 && !output->open(name, specs[i], OIIO::ImageOutput::AppendSubimage))
-                return error(output->geterror());
-            const std::vector<float> samples = parts[i].samples();
-            if (!output->write_image(OIIO::TypeFloat, samples.data())) return error(output->geterror());
-        }
-        if (!output->close()) return error(output->geterror());
-    } catch (const std::exception& exception) {
-        return error(exception.what());
-    }
-    const auto written = read_file(temporary->path());
-    if (!written) return failure(written.error());
-    if (const auto checked = check_exr(*written); !checked) return error(checked.error().text);
-    return temporary->commit();
-}
-
 Result<> write_picture(const std::filesystem::path& path, const Picture& picture, const WriteOptions& options) {
     DARKROOM_ASSERT(picture.pixels.size() == std::size_t{picture.width} * picture.height * 4);
-    const auto samples = sample_kind(path, options);
-    if (!samples) return failure(samples.error());
-    const FileKind kind = *file_kind(path);
-    if (auto checked = check_size(path, kind, picture.width, picture.height); !checked) return checked;
-    if (auto checked = check_quality(path, options); !checked) return checked;
-    const OIIO::ImageSpec spec = describe(kind, *samples, picture.width, picture.height, options);
-    const std::uint32_t channels = options.alpha ? 4 : 3;
-    if (*samples == SampleKind::Integer8)
-        return encode_to_file(path, kind, spec, OIIO::TypeUInt8, integers<std::uint8_t>(picture, channels).data());
-    if (*samples == SampleKind::Integer16)
-        return encode_to_file(path, kind, spec, OIIO::TypeUInt16, integers<std::uint16_t>(picture, channels).data());
+    Result<EncodeDesc> desc = describe(path, picture.width, picture.height, options);
+    if (!desc) return failure(std::move(desc));
+    if (desc->file == FileKind::OpenExr) return write_floats(path, picture, desc->kind, options);
+    const auto write = [&](const auto& samples) {
+        desc->samples = samples.data();
+        return write_samples(path, *desc, options);
+    };
+    if (desc->kind == SampleKind::Integer8) return write(integers<std::uint8_t>(picture, desc->channels));
+    if (desc->kind == SampleKind::Integer16) return write(integers<std::uint16_t>(picture, desc->channels));
     // Radiance: no negative values, and a shared exponent of at most 2^127.
-    constexpr float largest_half = 65504.0f;
     constexpr float largest_radiance = 1.7e38f;
-    float largest = *samples == SampleKind::Half ? largest_half : std::numeric_limits<float>::max();
-    float smallest = -largest;
-    if (kind == FileKind::Radiance) {
-        largest = largest_radiance;
-        smallest = 0;
-    }
-    return encode_to_file(path, kind, spec, OIIO::TypeFloat, floats(picture, channels, smallest, largest).data());
+    constexpr float largest_float = std::numeric_limits<float>::max();
+    const bool is_radiance = desc->file == FileKind::Radiance;
+    return write(floats(picture, desc->channels, is_radiance ? 0 : -largest_float,
+                        is_radiance ? largest_radiance : largest_float));
 }
 
 Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
@@ -235,17 +210,14 @@ Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std
     DARKROOM_ASSERT(rgba.size() == std::size_t{width} * height * 4);
     WriteOptions bytes = options;
     bytes.samples = SampleKind::Integer8;
-    const auto samples = sample_kind(path, bytes);
-    if (!samples) return failure(samples.error());
-    const FileKind kind = *file_kind(path);
-    if (auto checked = check_size(path, kind, width, height); !checked) return checked;
-    if (auto checked = check_quality(path, options); !checked) return checked;
-    const OIIO::ImageSpec spec = describe(kind, *samples, width, height, options);
-    if (options.alpha) return encode_to_file(path, kind, spec, OIIO::TypeUInt8, rgba.data());
-    std::vector<std::uint8_t> opaque;
-    opaque.reserve(rgba.size() / 4 * 3);
-    for (std::size_t i = 0; i < rgba.size(); i += 4) opaque.insert(opaque.end(), &rgba[i], &rgba[i] + 3);
-    return encode_to_file(path, kind, spec, OIIO::TypeUInt8, opaque.data());
+    Result<EncodeDesc> desc = describe(path, width, height, bytes);
+    if (!desc) return failure(std::move(desc));
+    desc->samples = rgba.data();
+    if (options.alpha) return write_samples(path, *desc, options);
+    std::vector<std::uint8_t> opaque(rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < rgba.size() / 4; ++i) std::copy_n(&rgba[4 * i], 3, &opaque[3 * i]);
+    desc->samples = opaque.data();
+    return write_samples(path, *desc, options);
 }
 
 }  // namespace darkroom

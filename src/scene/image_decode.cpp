@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <exception>
+#include <memory>
 #include <optional>
 
 #include "core/files.hpp"
 #include "core/parallel.hpp"
-#include "image/memory_input.hpp"
+#include "image/picture_source.hpp"
 #include "scene/assets.hpp"
 #include "scene/image_batch.hpp"
 
@@ -15,7 +16,7 @@ namespace darkroom::scene {
 namespace {
 
 // GPUs take no larger textures.
-constexpr int most_texture_side = 16384;
+constexpr std::uint32_t most_texture_side = 16384;
 
 // What a batch may become, in pixels: a few bytes of a damaged file must not ask for gigabytes.
 constexpr std::size_t free_pixels = std::size_t{1} << 27;
@@ -36,38 +37,32 @@ std::uint8_t unencoded(float value) {
 class OpenedImage {
   public:
     [[nodiscard]] static Result<OpenedImage> open(std::span<const std::byte> bytes) {
-        auto memory = MemoryInput::open(bytes);
-        if (!memory) return failure(std::move(memory));
-        const OIIO::ImageSpec& spec = memory->input().spec();
-        if (spec.deep || spec.nchannels < 1 || spec.depth > 1) return user_error("is no flat picture");
-        if (spec.width < 1 || spec.height < 1 || spec.width > most_texture_side || spec.height > most_texture_side)
-            return user_error(fmt::format("the picture is {}x{}, 1 to {} a side is allowed", spec.width, spec.height,
+        auto opened = open_source(bytes, 1);
+        if (!opened) return failure(std::move(opened));
+        const FilePart& part = opened->source->parts().front();
+        if (part.channels.empty()) return user_error("is no flat picture");
+        if (part.width > most_texture_side || part.height > most_texture_side)
+            return user_error(fmt::format("the picture is {}x{}, 1 to {} a side is allowed", part.width, part.height,
                                           most_texture_side));
-        return OpenedImage(std::move(*memory), bytes.size());
+        return OpenedImage(std::move(opened->source), bytes.size());
     }
 
-    [[nodiscard]] std::size_t pixel_count() const {
-        return static_cast<std::size_t>(input().spec().width) * static_cast<std::size_t>(input().spec().height);
-    }
+    [[nodiscard]] std::size_t pixel_count() const { return std::size_t{part().width} * part().height; }
     [[nodiscard]] std::size_t byte_count() const { return byte_count_; }
 
     [[nodiscard]] Result<Image> decode() {
-        const OIIO::ImageSpec& spec = input().spec();
-        Image image{.width = static_cast<std::uint32_t>(spec.width), .height = static_cast<std::uint32_t>(spec.height)};
-        try {
-            const bool is_float = spec.format.is_floating_point();
-            const bool is_read = is_float ? read_floats(image) : read_integers(image);
-            if (!is_read) return user_error(fmt::format("damaged or truncated: {}", memory_.reason()));
-        } catch (const std::exception& exception) {
-            return user_error(fmt::format("cannot be decoded: {}", exception.what()));
-        }
+        Image image{.width = part().width, .height = part().height};
+        const SampleKind kind = part().kinds.front();
+        const bool is_float = kind == SampleKind::Half || kind == SampleKind::Float;
+        if (auto done = is_float ? read_floats(image) : read_integers(image); !done) return failure(std::move(done));
         return image;
     }
 
   private:
-    OpenedImage(MemoryInput memory, std::size_t byte_count) : memory_(std::move(memory)), byte_count_(byte_count) {}
-    [[nodiscard]] OIIO::ImageInput& input() const { return memory_.input(); }
-    [[nodiscard]] int channel_count() const { return std::min(input().spec().nchannels, 4); }
+    OpenedImage(std::unique_ptr<PictureSource> source, std::size_t byte_count)
+        : source_(std::move(source)), byte_count_(byte_count) {}
+    [[nodiscard]] const FilePart& part() const { return source_->parts().front(); }
+    [[nodiscard]] std::size_t channel_count() const { return std::min<std::size_t>(part().channels.size(), 4); }
 
     // One channel is grey, two are grey and alpha.
     template <class T, class ToColor, class ToAlpha>
@@ -83,27 +78,40 @@ class OpenedImage {
         }
     }
 
-    [[nodiscard]] bool read_integers(Image& image) {
-        const int channels = channel_count();
-        std::vector<std::uint8_t> samples(pixel_count() * static_cast<std::size_t>(channels));
-        if (!input().read_image(0, 0, 0, channels, OIIO::TypeUInt8, samples.data())) return false;
+    /// All samples of the first channels, interleaved.
+    template <class T>
+    [[nodiscard]] Result<> read(SampleKind kind, std::vector<T>& samples) {
+        const std::size_t channels = channel_count();
+        samples.resize(pixel_count() * channels);
+        std::vector<SamplePlace> places;
+        for (std::size_t c = 0; c < channels; ++c)
+            places.push_back({.channel = c,
+                              .kind = kind,
+                              .first = reinterpret_cast<std::byte*>(samples.data() + c),
+                              .pixel_bytes = static_cast<std::ptrdiff_t>(channels * sizeof(T)),
+                              .row_bytes = static_cast<std::ptrdiff_t>(channels * sizeof(T) * part().width)});
+        return source_->read_rows(0, 0, part().height, places);
+    }
+
+    [[nodiscard]] Result<> read_integers(Image& image) {
+        std::vector<std::uint8_t> samples;
+        if (auto done = read(SampleKind::Integer8, samples); !done) return done;
         const auto same = [](std::uint8_t value) { return value; };
-        if (channels == 4)
+        if (channel_count() == 4)
             image.rgba = std::move(samples);
         else
-            spread<std::uint8_t>(samples, static_cast<std::size_t>(channels), same, same, image.rgba);
-        return true;
+            spread<std::uint8_t>(samples, channel_count(), same, same, image.rgba);
+        return {};
     }
 
-    [[nodiscard]] bool read_floats(Image& image) {
-        const int channels = channel_count();
-        std::vector<float> samples(pixel_count() * static_cast<std::size_t>(channels));
-        if (!input().read_image(0, 0, 0, channels, OIIO::TypeFloat, samples.data())) return false;
-        spread<float>(samples, static_cast<std::size_t>(channels), encoded, unencoded, image.rgba);
-        return true;
+    [[nodiscard]] Result<> read_floats(Image& image) {
+        std::vector<float> samples;
+        if (auto done = read(SampleKind::Float, samples); !done) return done;
+        spread<float>(samples, channel_count(), encoded, unencoded, image.rgba);
+        return {};
     }
 
-    MemoryInput memory_;
+    std::unique_ptr<PictureSource> source_;
     std::size_t byte_count_ = 0;
 };
 

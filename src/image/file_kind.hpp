@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What image files and their samples are called, and what is known of a file before its samples are taken out.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace darkroom {
+
+enum class FileKind { OpenExr, Png, Jpeg, Tiff, Radiance };
+enum class SampleKind { Integer8, Integer16, Integer32, Half, Float };
+
+[[nodiscard]] std::string_view name_of(FileKind kind);
+[[nodiscard]] std::string_view name_of(SampleKind kind);
+/// Bytes of one sample.
+[[nodiscard]] std::size_t size_of(SampleKind kind);
+
+/// One picture in a file. Only OpenEXR has several, and only there the data window differs from the display window.
+struct FilePart {
+    std::string name;
+    std::string view;                   ///< of a stereo pair: "left", "right"; else empty
+    std::string compression;            ///< "zip", as OpenEXR calls it; else empty
+    std::vector<std::string> channels;  ///< by layer; red, green, blue, alpha first, the others by name
+    std::vector<SampleKind> kinds;      ///< one per channel
+    int x = 0;                          ///< of the data window, relative to the display window
+    int y = 0;
+    std::uint32_t width = 0;  ///< of the data window
+    std::uint32_t height = 0;
+    std::uint32_t display_width = 0;
+    std::uint32_t display_height = 0;
+};
+
+/// The text with everything but printable ASCII replaced, one line, at most 300 characters: names and messages out of
+/// files are not to be trusted on a terminal.
+[[nodiscard]] std::string one_printable_line(std::string_view text);
+
+}  // namespace darkroom
