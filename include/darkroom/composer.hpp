@@ -201,7 +201,7 @@ class Composer {
     [[nodiscard]] PendingCompile pending() const;
     /// What record() works by; null: nothing yet. Valid until the Composer records or compiles again.
     [[nodiscard]] const Plan* current_plan() const;
-    /// The same as compile() without a device's objects: for `darkroom plan`.
+    /// The same as compile() without a device's objects, so on Device::assumed(), too: for `darkroom plan`.
     [[nodiscard]] Result<Plan> plan(const CompileDesc& desc) const;
 
     /// Records the whole stack. Errors (a missing or mismatching image, an extent beyond the compiled maximum, no plan)

@@ -95,6 +95,10 @@ class Device {
     [[nodiscard]] static Result<std::vector<DeviceInfo>> list();
     /// Creates a headless device. Errors: no such device (names those there are), a missing feature, VkResult.
     [[nodiscard]] static Result<Device> create(const DeviceDesc& desc = {});
+    /// No device: what an ordinary GPU can do, for who plans stacks or only holds them, and needs no driver for it.
+    /// Plans say that they were made so. Of a Composer on it, compile() and compile_later() are errors; images may be
+    /// up to 16384 a side.
+    [[nodiscard]] static Device assumed();
     /// Takes the host's. Errors name every missing feature, extension and queue capability in one line.
     [[nodiscard]] static Result<Device> adopt(const AdoptDesc& desc);
 

@@ -7,7 +7,7 @@
 
 #include "compose/composer_state.hpp"
 #include "compose/frame_check.hpp"
-#include "gpu/context.hpp"
+#include "gpu/assumed_device.hpp"
 
 namespace darkroom {
 
@@ -51,13 +51,20 @@ std::uint32_t threads_of(const ComposerDesc& desc) {
 Composer::State::State(std::shared_ptr<gpu::Context> device_context, const ComposerDesc& composer_desc)
     : context(std::move(device_context)), desc(composer_desc) {
     desc.frames_in_flight = std::max(1u, desc.frames_in_flight);
-    worker = std::make_unique<compose::Worker>(*context, desc.max_threads > 0);
+    worker = std::make_unique<compose::Worker>(*context, desc.max_threads > 0 && !context->is_assumed);
 }
 
 Composer::State::~State() {
     worker->stop();  // its task works on all of this
     delete ready.exchange(nullptr);
     while (retired != nullptr) delete std::exchange(retired, retired->next_retired);
+}
+
+Result<> Composer::State::check_device() const {
+    if (!context->is_assumed) return {};
+    return user_error(
+        "compile: the composer is on an assumed device, for which stacks are planned; allowed is a device that was "
+        "created or adopted");
 }
 
 Result<Composer::State::Snapshot> Composer::State::snapshot(const CompileDesc& compile_desc) const {
@@ -149,10 +156,13 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const {
     if (!compiled) return failure(std::move(compiled));
     std::vector<const plan::Entry*> entries;
     for (const plan::Entry& entry : snapshot->values) entries.push_back(&entry);
-    return plan::describe_program(*program, *compiled, desc, entries);
+    Plan plan = plan::describe_program(*program, *compiled, desc, entries);
+    if (state_->context->is_assumed) plan.remarks.emplace_back(gpu::assumed_device_remark);
+    return plan;
 }
 
 Result<Plan> Composer::compile(const CompileDesc& desc) {
+    if (auto ok = state_->check_device(); !ok) return failure(std::move(ok));
     auto snapshot = state_->snapshot(desc);
     if (!snapshot) return failure(std::move(snapshot));
     const auto lock = state_->stop_compiling();
@@ -181,6 +191,7 @@ void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
 }
 
 Result<> Composer::compile_later(const CompileDesc& desc) {
+    if (auto ok = state_->check_device(); !ok) return ok;
     auto snapshot = state_->snapshot(desc);
     if (!snapshot) return failure(std::move(snapshot));
     State& state = *state_;

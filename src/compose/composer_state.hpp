@@ -31,6 +31,8 @@ struct Composer::State {
     [[nodiscard]] static Result<const ParamInfo*> row(const plan::Entry& entry, std::string_view parameter);
 
     // Compiling; composer_run.cpp.
+    /// Is there one to compile on?
+    [[nodiscard]] Result<> check_device() const;
     struct Snapshot {
         CompileDesc desc;
         std::vector<plan::Entry> values;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // A whole stack by its CPU references alone, in double precision: the truth that the chain on the GPU is compared with,
-// and what `develop --reference` runs. It needs no device beyond the Composer that holds the stack, and it is slow.
+// and what `develop --reference` runs. It needs no device, since Device::assumed() does for the Composer that holds the
+// stack, and it is slow.
 
 #include <darkroom/composer.hpp>
 #include <darkroom/reference.hpp>

@@ -10,6 +10,7 @@
 
 #include "core/files.hpp"
 #include "core/hash.hpp"
+#include "gpu/assumed_device.hpp"
 #include "gpu/device_facts.hpp"
 #include "gpu/kernel_store.hpp"
 #include "gpu/shader.hpp"
@@ -97,6 +98,7 @@ Result<> Context::check(VkResult result, std::string_view what) const {
 }
 
 VkFormatFeatureFlags Context::features_of(VkFormat format) const {
+    if (is_assumed) return assumed_features(format);
     {
         const std::shared_lock lock(formats_mutex_);
         if (const auto known = formats_.find(format); known != formats_.end()) return known->second;

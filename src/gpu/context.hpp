@@ -62,6 +62,7 @@ class Context {
     VkQueue queue = VK_NULL_HANDLE;  ///< only where the library created the device
     std::mutex queue_mutex;          ///< held while something is submitted to it
     bool is_owner = false;           ///< of instance, device and messenger
+    bool is_assumed = false;         ///< there is no device: gpu/assumed_device.hpp
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     const VkAllocationCallbacks* allocator = nullptr;  ///< of every object that is created or destroyed
     DeviceMemoryHooks memory_hooks{};                  ///< empty: vkAllocateMemory

@@ -8,6 +8,7 @@
 #include <darkroom/device.hpp>
 #include <string_view>
 
+#include "gpu/assumed_device.hpp"
 #include "gpu/context.hpp"
 #include "gpu/device_facts.hpp"
 #include "gpu/loader.hpp"
@@ -264,6 +265,8 @@ Result<std::vector<DeviceInfo>> Device::list() {
     if (!candidates) return failure(candidates.error());
     return infos_of(*candidates);
 }
+
+Device Device::assumed() { return Device(gpu::assumed_context()); }
 
 Result<Device> Device::create(const DeviceDesc& desc) {
     auto context = std::make_shared<Context>();
