@@ -36,6 +36,10 @@ Result<darkroom::Device> DeviceFlags::create() const {
     return darkroom::Device::create({.select = device_, .log = log_sink()});
 }
 
+Result<darkroom::Device> DeviceFlags::create_if_named() const {
+    return device_.empty() ? darkroom::Device::assumed() : create();
+}
+
 Result<VkExtent2D> parse_size(const std::string& text) {
     std::array<std::uint32_t, 2> sides{};
     const char* at = text.data();

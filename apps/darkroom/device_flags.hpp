@@ -17,6 +17,8 @@ class DeviceFlags {
     void add_to(CLI::App& command);
     [[nodiscard]] darkroom::Result<darkroom::KernelStage> stage() const;
     [[nodiscard]] darkroom::Result<darkroom::Device> create() const;
+    /// For what runs no kernel: an assumed device, unless --device names one.
+    [[nodiscard]] darkroom::Result<darkroom::Device> create_if_named() const;
     [[nodiscard]] bool is_fused() const { return !is_unfused_; }
 
   private:

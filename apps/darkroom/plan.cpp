@@ -45,7 +45,7 @@ Result<std::string> text_of(const Options& options) {
         if (!size) return failure(size.error());
         input.extent = *size;
     }
-    Result<darkroom::Device> device = options.device.create();
+    Result<darkroom::Device> device = options.device.create_if_named();
     if (!device) return failure(std::move(device));
     if (Result<> done = darkroom::check_extent(*device, input.extent); !done) return failure(std::move(done));
     darkroom::Composer composer(*device);
