@@ -191,6 +191,10 @@ class Composer {
     void drop_overrides(std::string_view owner);
     /// The values that the next record uses; empty: the handle names no entry.
     [[nodiscard]] std::vector<std::uint32_t> current(Handle) const;
+    /// How many frames to develop before the first that is wanted, so that a run which begins in the middle gives the
+    /// picture of an unbroken one: the sum of EffectInfo::pre_roll over the entries that are on, with their current
+    /// values, because a history that is made from a picture with a history settles after it. Needs no compile.
+    [[nodiscard]] std::uint32_t pre_roll() const;
 
     /// Plans the stack, makes the kernels that the device does not have yet, allocates what it needs. The previous plan
     /// stays alive until the recordings made with it have finished. Waits for a compile_later() that has begun.

@@ -219,6 +219,9 @@ struct EffectInfo {
     std::string (*conflict)(const void* parameters) = nullptr;
     /// For a frame's parameters: does the effect change nothing? Such an entry is treated as switched off.
     bool (*is_identity)(const void* parameters) = nullptr;
+    /// Of effects with a history: how many frames before a frame must have been developed so that its picture is within
+    /// half a code of 8 bits of an unbroken run, given that what the effect reads is. Null: none.
+    std::uint32_t (*pre_roll)(const void* parameters) = nullptr;
     /// Of a description that was made at run time: who keeps it longer than its maker holds this.
     std::weak_ptr<const void> owner{};
 };

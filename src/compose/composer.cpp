@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "compose/composer_state.hpp"
 #include "core/param_text.hpp"
@@ -319,6 +320,16 @@ std::vector<std::uint32_t> Composer::current(Handle handle) const {
     std::vector<std::uint32_t> out(entry->base.size());
     entry->evaluate(out);
     return out;
+}
+
+std::uint32_t Composer::pre_roll() const {
+    std::uint64_t frames = 0;
+    for (const auto& entry : state_->stack) {
+        if (entry->info->pre_roll == nullptr) continue;
+        const std::vector<std::uint32_t> words = current({entry->id});
+        if (entry->is_on(words.data())) frames += entry->info->pre_roll(words.data());
+    }
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(frames, std::numeric_limits<std::uint32_t>::max()));
 }
 
 }  // namespace darkroom
