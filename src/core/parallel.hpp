@@ -17,7 +17,8 @@ using StartThread = std::function<std::jthread(const std::function<void()>& run)
 [[nodiscard]] std::optional<std::jthread> start_thread(const std::function<void()>& run, const StartThread& start = {});
 
 /// Calls `work(i)` once for every i below `count`, in no certain order, on at most `max_threads` threads, and waits.
-/// The calling thread is one of them. 0 stands for the number of processors. `work` must not throw.
+/// The calling thread is one of them. 0 stands for the number of processors. The first exception that leaves `work`, on
+/// whichever thread, is thrown to the caller once all threads have ended; no further call is begun after it.
 void parallel_for(std::size_t count, std::size_t max_threads, const std::function<void(std::size_t)>& work,
                   const StartThread& start = {});
 

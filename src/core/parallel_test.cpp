@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
+#include <new>
 #include <set>
 #include <system_error>
 #include <vector>
@@ -61,6 +63,23 @@ TEST(CoreParallel, NeverMoreThreadsThanAllowedOrItems) {
     parallel_for(
         2, 16, [](std::size_t) {}, counted);
     EXPECT_EQ(started, 1);
+}
+
+TEST(CoreParallel, TheFirstExceptionReachesTheCallerAndEndsTheWork) {
+    for (const std::size_t threads : {1U, 4U}) {
+        std::atomic<std::size_t> begun{0}, ended{0};
+        const auto work = [&](std::size_t i) {
+            ++begun;
+            // All that are beside it are at work when it throws.
+            while (begun < threads) std::this_thread::yield();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            ++ended;
+            if (i == 1) throw std::bad_alloc();
+        };
+        EXPECT_THROW(parallel_for(100'000, threads, work), std::bad_alloc) << threads;
+        EXPECT_LT(begun, 1000U);
+        EXPECT_EQ(begun, ended) << "all threads have ended";
+    }
 }
 
 }  // namespace
