@@ -84,6 +84,7 @@ struct Part {
     std::optional<unsigned> compression;
     std::string type;
     Wide bytes_per_pixel = 0;
+    Wide bytes = 0;  // of all pixels, at full resolution
     Wide channel_count = 0;
     Wide chunk_count = 0;
 };
@@ -97,6 +98,12 @@ struct Compression {
 };
 constexpr std::array<Compression, 10> compressions{
     {{1, 1}, {1, 64}, {1, 1100}, {16, 1100}, {32, 512}, {16, 1100}, {32, 11}, {32, 11}, {32, 70000}, {256, 70000}}};
+
+// A chunk is unpacked in one piece, with its packed bytes and a copy beside it. 4096x4096 pixels of RGBA in floats.
+constexpr Wide largest_chunk = Wide{1} << 28;
+
+constexpr std::uint64_t always_decoded = std::uint64_t{1} << 30;
+constexpr std::uint64_t decoded_per_byte = 128;
 
 Result<> malformed(std::string_view what) { return user_error(fmt::format("malformed header: {}", what)); }
 Result<> cut_off() { return user_error("truncated: unexpected end of file in the header"); }
@@ -203,6 +210,13 @@ Wide count_tiles(const Window& data, const Tiles& tiles) {
     return total;
 }
 
+Result<> check_chunk(Wide width, Wide height, const Part& part) {
+    const Wide bytes = width * height * part.bytes_per_pixel;
+    if (bytes <= largest_chunk) return {};
+    return user_error(fmt::format("chunks of {}x{} pixels need {} bytes each, at most {} are allowed", width, height,
+                                  bytes, largest_chunk));
+}
+
 Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
     if (!part.data || !part.display || !part.compression) return malformed("a window or the compression is missing");
     if (auto checked = check_window(*part.display, "display window"); !checked) return checked;
@@ -212,7 +226,7 @@ Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
         return malformed(fmt::format("compression {}, 0 to 9 is allowed", *part.compression));
     const Compression compression = compressions[*part.compression];
 
-    const Wide bytes = part.data->width() * part.data->height() * part.bytes_per_pixel;
+    const Wide bytes = part.bytes = part.data->width() * part.data->height() * part.bytes_per_pixel;
     if (bytes / compression.largest_ratio > static_cast<Wide>(file_size))
         return user_error(
             fmt::format("the data window is {} and needs {} bytes of pixels, which a file of {} bytes "
@@ -220,7 +234,7 @@ Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
                         part.data->text(), bytes, file_size));
     if (!is_tiled) {
         part.chunk_count = divide_up(part.data->height(), compression.lines);
-        return {};
+        return check_chunk(part.data->width(), std::min(compression.lines, part.data->height()), part);
     }
     if (!part.tiles) return malformed("a tiled part without a tile description");
     const Tiles& tiles = *part.tiles;
@@ -228,7 +242,7 @@ Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
         return malformed(fmt::format("tiles of {}x{}, 1 to 8192 a side is allowed", tiles.width, tiles.height));
     if (tiles.level_mode > 2) return malformed(fmt::format("tile level mode {}, 0 to 2 is allowed", tiles.level_mode));
     part.chunk_count = count_tiles(*part.data, tiles);
-    return {};
+    return check_chunk(tiles.width, tiles.height, part);
 }
 
 // Pixels outside the data window cost no file but memory all the same: up to 8K is always fine, beyond that the display
@@ -266,6 +280,12 @@ Result<> check_chunks(Reader table, const Part& part, bool is_tiled, bool is_mul
 
 }  // namespace
 
+Result<> check_decoded_size(std::uint64_t bytes, std::size_t file_size) {
+    const std::uint64_t most = std::max<std::uint64_t>(always_decoded, file_size * decoded_per_byte);
+    if (bytes <= most) return {};
+    return user_error(fmt::format("its pixels need {} bytes, a file of {} bytes may need {}", bytes, file_size, most));
+}
+
 Result<> check_exr(std::span<const std::byte> file) {
     Reader reader(file);
     if (reader.number<std::uint32_t>() != 0x01312f76) return user_error("is no OpenEXR file");
@@ -291,6 +311,7 @@ Result<> check_exr(std::span<const std::byte> file) {
     }
 
     Wide total = 0;
+    std::uint64_t decoded = 0;
     std::vector<bool> is_tiled;
     for (Part& part : parts) {
         is_tiled.push_back(is_multi_part ? part.type.starts_with("tiledimage") : (version & tiled_flag) != 0);
@@ -303,7 +324,9 @@ Result<> check_exr(std::span<const std::byte> file) {
                                          is_tiled.back() ? "tiled" : "scan lines"));
         if (auto checked = check_part(part, is_tiled.back(), file.size()); !checked) return checked;
         total += part.chunk_count;
+        decoded += static_cast<std::uint64_t>(part.bytes);
     }
+    if (auto checked = check_decoded_size(decoded, file.size()); !checked) return checked;
     if (auto checked = check_proportions(parts); !checked) return checked;
     if (static_cast<Wide>(reader.left() / 8) < total)
         return user_error(fmt::format("truncated: unexpected end of file in the table of {} chunks", total));

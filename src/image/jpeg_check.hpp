@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Follows the markers of a JPEG file to its end: libjpeg fills what is missing of a file that was cut off with gray and
-// calls that success.
+// calls that success. Pictures out of proportion to the file are refused on the way (exr_check.hpp).
 
 #include <cstddef>
 #include <darkroom/result.hpp>

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include "image/exr_check.hpp"
 #include "image/frame_file.hpp"
+#include "image/jpeg_check.hpp"
+#include "image/png_check.hpp"
 #include "image/test_files.hpp"
 #include "image/write.hpp"
 
@@ -117,6 +121,103 @@ TEST_F(ImageTruncated, WhatIsNoImageIsRefused) {
                                      ": is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)");
     EXPECT_FALSE(read_frame(folder_));
     EXPECT_FALSE(read_frame(file("missing.exr")));
+}
+
+template <class T>
+std::string little_endian(T value) {
+    return {reinterpret_cast<const char*>(&value), sizeof(T)};
+}
+
+std::string attribute(const std::string& name, const std::string& type, const std::string& value) {
+    return name + '\0' + type + '\0' + little_endian(static_cast<std::int32_t>(value.size())) + value;
+}
+
+/// An OpenEXR file whose header asks for a picture, and zeros where its chunks should be.
+struct EmptyExr {
+    std::int32_t width = 1, height = 1;
+    int float_channels = 4;
+    char compression = 3;  // ZIP
+    std::uint32_t tile = 0;
+    std::size_t size = std::size_t{2} << 20;
+
+    [[nodiscard]] std::string text() const {
+        std::string channels;
+        for (int i = 0; i < float_channels; ++i)
+            channels += std::string(1, static_cast<char>('A' + i)) + '\0' + little_endian(2U) + little_endian(0U) +
+                        little_endian(1U) + little_endian(1U);
+        const std::string window =
+            little_endian(0) + little_endian(0) + little_endian(width - 1) + little_endian(height - 1);
+        std::string out = little_endian(0x01312f76U) + little_endian(tile > 0 ? 0x202U : 2U) +
+                          attribute("channels", "chlist", channels + '\0') +
+                          attribute("compression", "compression", std::string(1, compression)) +
+                          attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window);
+        if (tile > 0)
+            out += attribute("tiles", "tiledesc", little_endian(tile) + little_endian(tile) + std::string(1, '\0'));
+        out += '\0';
+        out.resize(std::max(out.size(), size));
+        return out;
+    }
+};
+
+template <class Check>
+std::string refusal(const Check& check, const std::string& file) {
+    const auto checked = check(std::as_bytes(std::span(file)));
+    return checked ? "none" : checked.error().text;
+}
+
+TEST(ImageProportions, AnExrOfZerosIsRefusedForWhatItAsksFor) {
+    const auto told = [](const EmptyExr& file) { return refusal(check_exr, file.text()); };
+    const std::string unfinished = "unfinished: chunk 1 of";
+    EXPECT_TRUE(told({.width = 7680, .height = 4320}).starts_with(unfinished)) << "8K in floats";
+    EXPECT_TRUE(told({.width = 7680, .height = 4320, .compression = 9, .size = 17000}).starts_with(unfinished));
+    EXPECT_TRUE(told({.width = 8192, .height = 8192}).starts_with(unfinished)) << "1 GiB";
+    EXPECT_EQ(told({.width = 8192, .height = 8193}),
+              "its pixels need 1073872896 bytes, a file of 2097152 bytes may need 1073741824");
+    EXPECT_TRUE(told({.width = 8192, .height = 8193, .size = 9 << 20}).starts_with(unfinished)) << "a larger file";
+}
+
+TEST(ImageProportions, AChunkOfAnExrIsBounded) {
+    const auto told = [](const EmptyExr& file) { return refusal(check_exr, file.text()); };
+    EXPECT_TRUE(told({.tile = 4096}).starts_with("unfinished"));
+    EXPECT_EQ(told({.tile = 4097}),
+              "chunks of 4097x4097 pixels need 268566544 bytes each, at most 268435456 are allowed");
+    EXPECT_EQ(told({.width = 65536, .height = 128, .float_channels = 16, .compression = 9}).substr(0, 25),
+              "chunks of 65536x128 pixel");
+}
+
+std::string big_endian(std::uint32_t value, int bytes) {
+    std::string out;
+    for (int shift = bytes * 8 - 8; shift >= 0; shift -= 8) out += static_cast<char>(value >> shift & 0xff);
+    return out;
+}
+
+std::uint32_t crc_of(const std::string& text) {
+    std::uint32_t crc = 0xffffffffU;
+    for (const char c : text) {
+        crc ^= static_cast<unsigned char>(c);
+        for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? 0xedb88320U ^ (crc >> 1) : crc >> 1;
+    }
+    return ~crc;
+}
+
+TEST(ImageProportions, PngAndJpegAreRefusedForWhatTheyAskFor) {
+    const auto png = [](std::uint32_t width, std::uint32_t height) {
+        const std::string header =
+            "IHDR" + big_endian(width, 4) + big_endian(height, 4) + "\x10\x06" + std::string(3, 0);
+        std::string file = "\x89PNG\r\n\x1a\n" + big_endian(13, 4) + header + big_endian(crc_of(header), 4);
+        file.resize(4 << 20);
+        return refusal(check_png, file);
+    };
+    EXPECT_NE(png(11585, 11585).find("checksum"), std::string::npos) << "it goes on to what follows";
+    EXPECT_TRUE(png(16384, 16384).starts_with("its pixels need 2147483648 bytes")) << png(16384, 16384);
+    const auto jpeg = [](std::uint32_t width, std::uint32_t height) {
+        std::string file = "\xff\xd8\xff\xc0" + big_endian(17, 2) + '\x08' + big_endian(height, 2) +
+                           big_endian(width, 2) + '\x03' + std::string(9, 0);
+        file.resize(2 << 20);
+        return refusal(check_jpeg, file);
+    };
+    EXPECT_TRUE(jpeg(16000, 16000).starts_with("truncated"));
+    EXPECT_TRUE(jpeg(65000, 65000).starts_with("its pixels need 12675000000 bytes")) << jpeg(65000, 65000);
 }
 
 }  // namespace

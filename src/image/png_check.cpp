@@ -52,7 +52,7 @@ Result<> check_header(std::span<const std::byte> data, std::size_t file_size) {
         return user_error(
             fmt::format("a picture of {}x{} cannot be in a file of {} bytes: truncated, or a damaged header", width,
                         height, file_size));
-    return {};
+    return check_decoded_size(bytes, file_size);
 }
 
 }  // namespace
