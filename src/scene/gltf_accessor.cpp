@@ -197,8 +197,8 @@ Result<Numbers> Document::numbers(int accessor) {
     if (!found) return failure(std::move(found));
     const Layout& layout = **found;
     const std::size_t size = layout.count * layout.components;
-    if (auto charged = charge(fmt::format("/accessors/{}", accessor), size * sizeof(float)); !charged)
-        return failure(std::move(charged));
+    if (auto taken = budget_.take(fmt::format("/accessors/{}", accessor), "numbers", size, sizeof(float)); !taken)
+        return failure(std::move(taken));
     Numbers out{.values = std::vector<float>(size), .components = layout.components, .count = layout.count};
     if (!layout.data.empty())
         for (std::size_t i = 0; i < layout.count; ++i)
@@ -218,9 +218,9 @@ void Document::check_extent(int index) {
     const Layout& layout = *layouts_[static_cast<std::size_t>(index)];
     const bool is_padded = padding_of_element(accessor.type, size_of_component(accessor.componentType)) != 0;
     if ((layout.data.empty() && layout.sparse_count == 0) || is_padded) return;
-    const std::size_t budget = budget_;
+    const std::uint64_t taken = budget_.taken();
     const auto numbers = this->numbers(index);
-    budget_ = budget;
+    budget_.give_back_to(taken);
     if (!numbers) return;
     const std::size_t components = layout.components;
     std::vector<float> low(components, std::numeric_limits<float>::infinity());
@@ -257,8 +257,9 @@ Result<std::vector<std::uint32_t>> Document::integers(int accessor) {
     if (!is_unsigned || layout.is_normalized)
         return user_error(fmt::format("/accessors/{}: unsigned integers are needed here", accessor));
     const std::size_t size = layout.count * layout.components;
-    if (auto charged = charge(fmt::format("/accessors/{}", accessor), size * sizeof(std::uint32_t)); !charged)
-        return failure(std::move(charged));
+    if (auto taken = budget_.take(fmt::format("/accessors/{}", accessor), "numbers", size, sizeof(std::uint32_t));
+        !taken)
+        return failure(std::move(taken));
     std::vector<std::uint32_t> out(size);
     const std::size_t component = size_of_component(layout.component_type);
     const auto take = [&](const std::byte* from, std::size_t element) {

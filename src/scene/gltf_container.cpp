@@ -31,7 +31,17 @@ std::uint32_t little_endian(std::span<const std::byte> bytes, std::size_t offset
     return value;
 }
 
-bool is_too_deep(std::string_view text) {
+// What a value takes in the tree, in the text made from it for the library, and in the library's own tree.
+constexpr std::uint64_t bytes_per_value = 256;
+
+/// Told from the text, before anything is made of it.
+struct JsonShape {
+    std::uint64_t values = 1;
+    bool is_too_deep = false;
+};
+
+JsonShape shape_of(std::string_view text) {
+    JsonShape shape;
     int depth = 0;
     bool is_in_string = false;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -44,14 +54,18 @@ bool is_too_deep(std::string_view text) {
         if (c == '"') is_in_string = true;
         if (c == '{' || c == '[') ++depth;
         if (c == '}' || c == ']') --depth;
-        if (depth > most_nesting) return true;
+        if (c == '{' || c == '[' || c == ',') ++shape.values;
+        shape.is_too_deep = shape.is_too_deep || depth > most_nesting;
     }
-    return false;
+    return shape;
 }
 
-Result<nlohmann::json> parse_json(std::span<const std::byte> bytes) {
+Result<nlohmann::json> parse_json(std::span<const std::byte> bytes, Budget& budget) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (is_too_deep(text)) return user_error(fmt::format("JSON nested deeper than {} levels", most_nesting));
+    const JsonShape shape = shape_of(text);
+    if (shape.is_too_deep) return user_error(fmt::format("JSON nested deeper than {} levels", most_nesting));
+    if (auto taken = budget.take("the JSON", "values", shape.values, bytes_per_value); !taken)
+        return failure(std::move(taken));
     try {
         auto json = nlohmann::json::parse(text);
         if (!json.is_object()) return user_error("the JSON is no object");
@@ -66,7 +80,7 @@ Result<nlohmann::json> parse_json(std::span<const std::byte> bytes) {
     }
 }
 
-Result<Container> split_binary(std::span<const std::byte> file) {
+Result<Container> split_binary(std::span<const std::byte> file, Budget& budget) {
     if (file.size() < header_size)
         return user_error(fmt::format("GLB header cut off: {} bytes, {} are needed", file.size(), header_size));
     Container container;
@@ -110,7 +124,7 @@ Result<Container> split_binary(std::span<const std::byte> file) {
             container.has_binary = true;
         }
     }
-    auto parsed = parse_json(*json);
+    auto parsed = parse_json(*json, budget);
     if (!parsed) return failure(std::move(parsed));
     container.json = std::move(*parsed);
     return container;
@@ -146,11 +160,11 @@ bool has_scheme(std::string_view uri) {
 
 }  // namespace
 
-Result<Container> split_container(std::span<const std::byte> file) {
+Result<Container> split_container(std::span<const std::byte> file, Budget& budget) {
     if (file.empty()) return user_error("is empty");
     const std::string_view start(reinterpret_cast<const char*>(file.data()), std::min<std::size_t>(file.size(), 4));
-    if (start == "glTF") return split_binary(file);
-    auto json = parse_json(file);
+    if (start == "glTF") return split_binary(file, budget);
+    auto json = parse_json(file, budget);
     if (!json) return failure(std::move(json));
     Container container;
     container.json = std::move(*json);

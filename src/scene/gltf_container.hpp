@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/budget.hpp"
+
 namespace darkroom::scene::gltf {
 
 struct Container {
@@ -21,8 +23,9 @@ struct Container {
     std::vector<std::string> warnings;
 };
 
-/// The content of a .glb or .gltf file, told apart by the content. Errors are without the file's name.
-[[nodiscard]] Result<Container> split_container(std::span<const std::byte> file);
+/// The content of a .glb or .gltf file, told apart by the content. The budget is for the JSON. Errors are without the
+/// file's name.
+[[nodiscard]] Result<Container> split_container(std::span<const std::byte> file, Budget& budget);
 
 /// The file that a URI names. Refused are schemes, absolute paths and whatever leaves `folder`, also by percent-encoded
 /// characters or by symbolic links. The error names the URI; a file that does not exist is one.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <tuple>
 
 #include "core/files.hpp"
 #include "image/decoder.hpp"
@@ -19,27 +20,24 @@ using nlohmann::json;
 constexpr std::size_t most_missing_bytes = std::size_t{1} << 20;
 constexpr std::size_t most_file_bytes = std::size_t{1} << 32;
 
-// Quantised vertices grow sixfold, and primitives may share accessors.
-constexpr std::size_t free_bytes = std::size_t{1} << 28;
-constexpr std::size_t bytes_per_file_byte = 16;
-constexpr std::size_t free_work = std::size_t{1} << 30;
-constexpr std::size_t work_per_file_byte = 64;
-
 }  // namespace
 
-Result<Document> Document::open(const std::filesystem::path& path) {
+Result<Document> Document::open(const std::filesystem::path& path, Budget budget) {
     Document document;
+    document.budget_ = std::move(budget);
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return user_error("not found");
     auto file = read_bounded(path, most_file_bytes, true);
     if (!file) return failure(std::move(file));
     document.file_ = std::move(*file);
+    document.budget_.add_file(document.file_.size());
     try {
-        auto container = split_container(document.file_);
+        auto container = split_container(document.file_, document.budget_);
         if (!container) return failure(std::move(container));
         for (std::string& warning : container->warnings) document.faults_.warn(std::move(warning));
         json& root = container->json;
-        if (auto checked = check_structure(root, document.faults_); !checked) return failure(std::move(checked));
+        if (auto checked = check_structure(root, document.faults_, document.budget_); !checked)
+            return failure(std::move(checked));
         const std::filesystem::path folder = path.parent_path();
         auto loaded = document.load_buffers(root, container->binary, container->has_binary, folder);
         if (!loaded) return failure(std::move(loaded));
@@ -50,79 +48,85 @@ Result<Document> Document::open(const std::filesystem::path& path) {
     } catch (const std::exception& exception) {
         return user_error(fmt::format("cannot be read: {}", exception.what()));
     }
+    if (auto checked = document.budget_.check(); !checked) return failure(std::move(checked));
     return document;
 }
 
-Result<std::vector<std::byte>> Document::load_buffer(const json& buffer, std::size_t index,
-                                                     const std::filesystem::path& folder) {
+Result<std::span<const std::byte>> Document::file_of_buffer(const std::filesystem::path& path, std::size_t most) {
+    const auto [found, is_new] = buffer_files_.try_emplace(path);
+    if (!is_new) return std::span<const std::byte>(found->second);
+    auto bytes = read_bounded(path, most, false);
+    if (!bytes) return failure(std::move(bytes));
+    found->second = std::move(*bytes);
+    budget_.add_file(found->second.size());
+    return std::span<const std::byte>(found->second);
+}
+
+Result<> Document::load_buffer(const json& buffer, std::size_t index, std::size_t largest,
+                               const std::filesystem::path& folder) {
     const std::string pointer = fmt::format("/buffers/{}", index);
     const auto size = buffer["byteLength"].get<std::size_t>();
     const auto uri = buffer["uri"].get<std::string>();
     const auto wrong = [&](std::string_view what) { return user_error(fmt::format("{}: {}", pointer, what)); };
-    Result<std::vector<std::byte>> bytes;
+    std::span<const std::byte> bytes;
     if (is_data_uri(uri)) {
-        bytes = decode_data_uri(uri);
-        if (!bytes) return wrong(bytes.error().text);
+        auto decoded = decode_data_uri(uri);
+        if (!decoded) return wrong(decoded.error().text);
+        bytes = data_uris_.emplace_back(std::move(*decoded));
+        if (bytes.size() > size)
+            faults_.warn(fmt::format("{}: has {} bytes, byteLength is {}", pointer, bytes.size(), size));
     } else {
         const auto path = resolve_uri(folder, uri);
         if (!path) return wrong(path.error().text);
-        bytes = read_bounded(*path, std::min(size, most_file_bytes), false);
-        if (!bytes) return wrong(fmt::format("{}: {}", uri, bytes.error().text));
+        const auto file = file_of_buffer(*path, largest);
+        if (!file) return wrong(fmt::format("{}: {}", uri, file.error().text));
+        bytes = *file;
     }
-    if (bytes->size() < size) return wrong(fmt::format("has {} bytes, byteLength is {}", bytes->size(), size));
-    if (bytes->size() > size)
-        faults_.warn(fmt::format("{}: has {} bytes, byteLength is {}", pointer, bytes->size(), size));
-    bytes->resize(size);
-    return bytes;
+    if (bytes.size() < size) return wrong(fmt::format("has {} bytes, byteLength is {}", bytes.size(), size));
+    buffers_[index] = bytes.first(size);
+    return {};
 }
 
 Result<> Document::load_buffers(json& root, std::span<const std::byte> binary, bool has_binary,
                                 const std::filesystem::path& folder) {
     const json buffers = root.contains("buffers") ? std::move(root["buffers"]) : json::array();
     root.erase("buffers");
-    std::size_t total = file_.size();
+    std::size_t largest = 0;
+    for (const json& buffer : buffers) largest = std::max(largest, buffer["byteLength"].get<std::size_t>());
+    largest = std::min(largest, most_file_bytes);
+    zeros_.resize(std::min(largest, most_missing_bytes));
+    buffers_.resize(buffers.size());
     bool is_binary_used = false;
     for (std::size_t i = 0; i < buffers.size(); ++i) {
         const std::string pointer = fmt::format("/buffers/{}", i);
-        buffers_.emplace_back();
-        owned_buffers_.emplace_back();
         if (!faults_.check(pointer)) continue;
+        if (buffers[i].contains("uri")) {
+            if (auto loaded = load_buffer(buffers[i], i, largest, folder); !loaded)
+                faults_.add(pointer, loaded.error().text);
+            if (budget_.file_bytes() > most_file_bytes)
+                return user_error(fmt::format("{}: the buffers have more than {} bytes", pointer, most_file_bytes));
+            continue;
+        }
         const auto size = buffers[i]["byteLength"].get<std::size_t>();
-        if (!buffers[i].contains("uri")) {
-            if (i != 0 || !has_binary) {
-                // Its data were to come from elsewhere, which is allowed; without them they are zeros.
-                if (size > most_missing_bytes)
-                    faults_.add(pointer, fmt::format("{}: has neither a URI nor a BIN chunk", pointer));
-                else
-                    faults_.warn(fmt::format("{}: has neither a URI nor a BIN chunk; it is all zeros", pointer));
-                owned_buffers_[i].resize(std::min(size, most_missing_bytes));
-                buffers_[i] = owned_buffers_[i];
-            } else if (size > binary.size()) {
-                faults_.add(pointer,
-                            fmt::format("{}/byteLength: {}, the BIN chunk has {} bytes", pointer, size, binary.size()));
-            } else {
-                if (binary.size() - size > 3)
-                    faults_.warn(
+        is_binary_used = is_binary_used || i == 0;
+        if (i != 0 || !has_binary) {
+            // Its data were to come from elsewhere, which is allowed; without them they are zeros.
+            if (size > most_missing_bytes)
+                faults_.add(pointer, fmt::format("{}: has neither a URI nor a BIN chunk", pointer));
+            else
+                faults_.warn(fmt::format("{}: has neither a URI nor a BIN chunk; it is all zeros", pointer));
+            buffers_[i] = std::span(zeros_).first(std::min(size, zeros_.size()));
+        } else if (size > binary.size()) {
+            faults_.add(pointer,
                         fmt::format("{}/byteLength: {}, the BIN chunk has {} bytes", pointer, size, binary.size()));
-                buffers_[i] = binary.first(size);
-            }
-            is_binary_used = is_binary_used || i == 0;
-            continue;
+        } else {
+            if (binary.size() - size > 3)
+                faults_.warn(
+                    fmt::format("{}/byteLength: {}, the BIN chunk has {} bytes", pointer, size, binary.size()));
+            buffers_[i] = binary.first(size);
         }
-        auto bytes = load_buffer(buffers[i], i, folder);
-        if (!bytes) {
-            faults_.add(pointer, bytes.error().text);
-            continue;
-        }
-        owned_buffers_[i] = std::move(*bytes);
-        buffers_[i] = owned_buffers_[i];
-        total += owned_buffers_[i].size();
-        if (total > most_file_bytes)
-            return user_error(fmt::format("{}: the buffers have more than {} bytes", pointer, most_file_bytes));
     }
     if (has_binary && !is_binary_used) faults_.warn("the BIN chunk is not used");
-    budget_ = free_bytes + total * bytes_per_file_byte;
-    work_ = free_work + total * work_per_file_byte;
     return {};
 }
 
@@ -181,6 +185,7 @@ Result<> Document::parse(json& root) {
 }
 
 void Document::load_images(const json& images, const std::filesystem::path& folder) {
+    std::map<std::tuple<const std::byte*, std::size_t, std::filesystem::path>, std::size_t> known;
     for (std::size_t i = 0; i < images.size(); ++i) {
         const json& image = images[i];
         const std::string pointer = fmt::format("/images/{}", i);
@@ -215,7 +220,11 @@ void Document::load_images(const json& images, const std::filesystem::path& fold
             source.shown = fmt::format("{}: {}", pointer, uri);
             if (source.name.empty()) source.name = uri;
         }
-        images_.push_back(std::move(source));
+        const std::span<const std::byte> bytes = source.own_bytes.empty() ? source.bytes : std::span(source.own_bytes);
+        const auto [found, is_new] = known.try_emplace({bytes.data(), bytes.size(), source.file}, images_.size());
+        const bool is_same = !is_new && source.fault.empty();
+        image_of_.push_back(is_same ? found->second : images_.size());
+        if (!is_same) images_.push_back(std::move(source));
     }
     for (ImageSource& source : images_)
         if (!source.own_bytes.empty()) source.bytes = source.own_bytes;
@@ -223,14 +232,6 @@ void Document::load_images(const json& images, const std::filesystem::path& fold
 
 bool Document::uses_extension(std::string_view name) const {
     return std::find(model_.extensionsUsed.begin(), model_.extensionsUsed.end(), name) != model_.extensionsUsed.end();
-}
-
-Result<> Document::charge(const std::string& pointer, std::size_t bytes) {
-    if (bytes > budget_ || bytes > work_)
-        return user_error(fmt::format("{}: the file stands for more data than one of its size can need", pointer));
-    budget_ -= bytes;
-    work_ -= bytes;
-    return {};
 }
 
 Result<std::span<const std::byte>> Document::view(int index) {

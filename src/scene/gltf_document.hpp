@@ -8,7 +8,9 @@
 
 #include <cstddef>
 #include <darkroom/result.hpp>
+#include <deque>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,29 +53,31 @@ struct ImageSource {
 class Document {
   public:
     /// Errors are without the path.
-    [[nodiscard]] static Result<Document> open(const std::filesystem::path& path);
+    [[nodiscard]] static Result<Document> open(const std::filesystem::path& path, Budget budget);
 
     [[nodiscard]] const tinygltf::Model& model() const { return model_; }
     [[nodiscard]] Faults& faults() { return faults_; }
+    /// Each once, however many images of the file have the same bytes.
     [[nodiscard]] std::vector<ImageSource>& images() { return images_; }
+    /// Which of them is an image of the file.
+    [[nodiscard]] std::size_t image_of(int index) const { return image_of_[static_cast<std::size_t>(index)]; }
 
     /// The error names the accessor and what is wrong with it.
     [[nodiscard]] Result<const Layout*> layout(int accessor);
     [[nodiscard]] Result<Numbers> numbers(int accessor);
     /// Unsigned integers as they are; refuses other types.
     [[nodiscard]] Result<std::vector<std::uint32_t>> integers(int accessor);
-    /// What accessors become must stay in proportion to the file: many of them may name the same bytes, or none.
-    [[nodiscard]] Result<> charge(const std::string& pointer, std::size_t bytes);
-    /// For giving back what a conversion took for a time.
-    [[nodiscard]] std::size_t budget() const { return budget_; }
-    void set_budget(std::size_t budget) { budget_ = budget; }
+    /// Accessors are charged to it as they are read: many of them may name the same bytes, or none.
+    [[nodiscard]] Budget& budget() { return budget_; }
     [[nodiscard]] bool uses_extension(std::string_view name) const;
 
   private:
     [[nodiscard]] Result<> load_buffers(nlohmann::json& root, std::span<const std::byte> binary, bool has_binary,
                                         const std::filesystem::path& folder);
-    [[nodiscard]] Result<std::vector<std::byte>> load_buffer(const nlohmann::json& buffer, std::size_t index,
-                                                             const std::filesystem::path& folder);
+    [[nodiscard]] Result<> load_buffer(const nlohmann::json& buffer, std::size_t index, std::size_t largest,
+                                       const std::filesystem::path& folder);
+    [[nodiscard]] Result<std::span<const std::byte>> file_of_buffer(const std::filesystem::path& path,
+                                                                    std::size_t most);
     [[nodiscard]] Result<> parse(nlohmann::json& root);
     [[nodiscard]] Result<std::span<const std::byte>> view(int index);
     [[nodiscard]] Result<Layout> make_layout(int accessor);
@@ -84,12 +88,14 @@ class Document {
     tinygltf::Model model_;
     Faults faults_;
     std::vector<std::byte> file_;
-    std::vector<std::vector<std::byte>> owned_buffers_;
+    std::map<std::filesystem::path, std::vector<std::byte>> buffer_files_;  ///< each once, however many name it
+    std::deque<std::vector<std::byte>> data_uris_;
+    std::vector<std::byte> zeros_;  ///< what buffers that are nowhere share
     std::vector<std::span<const std::byte>> buffers_;
     std::vector<std::optional<Layout>> layouts_;
     std::vector<ImageSource> images_;
-    std::size_t budget_ = 0;  ///< bytes that may still be taken
-    std::size_t work_ = 0;    ///< bytes that may still be converted; never given back
+    std::vector<std::size_t> image_of_;
+    Budget budget_;
 };
 
 }  // namespace darkroom::scene::gltf

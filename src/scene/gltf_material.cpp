@@ -55,8 +55,9 @@ class MaterialReader {
             faults.warn(fmt::format("/textures/{}: has no image that is read here", info.index));
             return texture;
         }
-        if (is_broken_[static_cast<std::size_t>(source.source)]) return texture;
-        texture.image = static_cast<std::uint32_t>(source.source);
+        const std::size_t image = document_.image_of(source.source);
+        if (is_broken_[image]) return texture;
+        texture.image = static_cast<std::uint32_t>(image);
         if (source.sampler >= 0) {
             if (auto checked = faults.check(fmt::format("/samplers/{}", source.sampler)); !checked)
                 return failure(std::move(checked));

@@ -103,7 +103,8 @@ Result<> read_vertices(Document& document, AttributeReader& reader, const tinygl
                        Primitive& primitive) {
     auto positions = reader.read("POSITION", 3, Integers::Quantized);
     if (!positions) return failure(std::move(positions));
-    if (auto charged = document.charge("/meshes", reader.count() * sizeof(Vertex)); !charged) return charged;
+    if (auto charged = document.budget().take("/meshes", "vertices", reader.count(), sizeof(Vertex)); !charged)
+        return charged;
     primitive.vertices.resize(reader.count());
     for (std::size_t i = 0; i < reader.count(); ++i) {
         primitive.vertices[i].position = vec3_at(**positions, i);
@@ -165,6 +166,9 @@ VertexSkin largest_influences(std::array<std::pair<float, std::uint32_t>, 8>& in
 
 Result<> read_skin(Document& document, AttributeReader& reader, const std::string& pointer, Primitive& primitive) {
     if (!reader.has("JOINTS_0") && !reader.has("WEIGHTS_0")) return {};
+    constexpr std::uint64_t size = sizeof(VertexSkin) + sizeof(std::array<std::pair<float, std::uint32_t>, 8>);
+    if (auto charged = document.budget().take("/meshes", "skinned vertices", reader.count(), size); !charged)
+        return charged;
     std::vector<std::array<std::pair<float, std::uint32_t>, 8>> influences(reader.count());
     for (std::size_t set = 0; set < 2; ++set) {
         const std::string joints_name = fmt::format("JOINTS_{}", set);
@@ -185,7 +189,6 @@ Result<> read_skin(Document& document, AttributeReader& reader, const std::strin
             influences[i / 4][set * 4 + i % 4] = {weight, joint};
         }
     }
-    if (auto charged = document.charge("/meshes", reader.count() * sizeof(VertexSkin)); !charged) return charged;
     primitive.skin.reserve(reader.count());
     for (auto& influence : influences) primitive.skin.push_back(largest_influences(influence));
     return {};
@@ -205,7 +208,9 @@ Result<> read_targets(Document& document, const tinygltf::Primitive& source, con
         if (*positions) warn_without_extent(document, source.targets[t].at("POSITION"));
         auto normals = reader.read("NORMAL", 3, Integers::Quantized);
         if (!normals) return failure(std::move(normals));
-        if (auto charged = document.charge("/meshes", primitive.vertices.size() * 2 * sizeof(vec3)); !charged)
+        if (auto charged = document.budget().take("/meshes", "vertices of morph targets", primitive.vertices.size(),
+                                                  2 * sizeof(vec3));
+            !charged)
             return charged;
         MorphTarget target;
         target.positions.resize(primitive.vertices.size());
@@ -223,7 +228,7 @@ Result<> read_targets(Document& document, const tinygltf::Primitive& source, con
 Result<std::vector<std::uint32_t>> read_corners(Document& document, const tinygltf::Primitive& source,
                                                 const std::string& pointer, std::size_t vertex_count) {
     if (source.indices < 0) {
-        if (auto charged = document.charge(pointer, vertex_count * sizeof(std::uint32_t)); !charged)
+        if (auto charged = document.budget().take(pointer, "corners", vertex_count, sizeof(std::uint32_t)); !charged)
             return failure(std::move(charged));
         std::vector<std::uint32_t> corners(vertex_count);
         for (std::size_t i = 0; i < vertex_count; ++i) corners[i] = static_cast<std::uint32_t>(i);
@@ -279,7 +284,8 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
         document.faults().warn(fmt::format("{}: has no positions and is not drawn", pointer));
         return std::nullopt;
     }
-    const std::size_t budget = document.budget();
+    Budget& budget = document.budget();
+    const std::uint64_t taken = budget.taken();
     AttributeReader reader(document, source.attributes, fmt::format("{}/attributes", pointer));
     Primitive primitive;
     if (auto read = read_vertices(document, reader, source, primitive); !read) return failure(std::move(read));
@@ -292,19 +298,19 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
     if (!corners) return failure(std::move(corners));
     if (source.mode < TINYGLTF_MODE_TRIANGLES) {
         document.faults().warn(fmt::format("{}: points and lines are not drawn", pointer));
-        document.set_budget(budget);
+        budget.give_back_to(taken);
         return std::nullopt;
     }
     if (source.material >= 0) primitive.material = static_cast<std::uint32_t>(source.material);
     if (source.mode == TINYGLTF_MODE_TRIANGLES && corners->size() % 3 != 0)
         document.faults().warn(fmt::format("{}: {} corners do not make whole triangles; the last are passed over",
                                            pointer, corners->size()));
-    if (auto charged = document.charge(pointer, corners->size() * 3 * sizeof(std::uint32_t)); !charged)
+    if (auto charged = budget.take(pointer, "corners", corners->size(), 3 * sizeof(std::uint32_t)); !charged)
         return failure(std::move(charged));
     primitive.indices = triangles_of(*corners, source.mode);
     if (!has_normals) {
         const std::size_t vertex_size = sizeof(Vertex) + sizeof(VertexSkin) + primitive.targets.size() * sizeof(vec3);
-        if (auto charged = document.charge(pointer, primitive.indices.size() * vertex_size); !charged)
+        if (auto charged = budget.take(pointer, "vertices", primitive.indices.size(), vertex_size); !charged)
             return failure(std::move(charged));
         make_flat(primitive);
     } else {
@@ -312,14 +318,14 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
     }
     if (primitive.indices.empty()) {
         document.faults().warn(fmt::format("{}: has no triangles", pointer));
-        document.set_budget(budget);
+        budget.give_back_to(taken);
         return std::nullopt;
     }
     primitive.bounds = {};
     for (const Vertex& vertex : primitive.vertices) primitive.bounds.add(vertex.position);
     // From here on only the result takes memory.
-    document.set_budget(budget);
-    if (auto charged = document.charge(pointer, size_in_memory(primitive)); !charged)
+    budget.give_back_to(taken);
+    if (auto charged = budget.take(pointer, "bytes", size_in_memory(primitive), 1); !charged)
         return failure(std::move(charged));
     return std::optional<Primitive>(std::move(primitive));
 }

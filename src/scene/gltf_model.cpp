@@ -65,17 +65,14 @@ Result<> convert_drawn(Document& document, const NodeOrder& order, Model& model)
 // Cameras and lights do not depend on anything else, and animations only move what is drawn: a faulty one is left out.
 Result<> convert_rest(Document& document, const NodeOrder& order, Model& model) {
     const tinygltf::Model& source = document.model();
-    for (std::size_t i = 0; i < source.cameras.size(); ++i) {
-        if (!document.faults().check(fmt::format("/cameras/{}", i)))
-            for (Node& node : model.nodes)
-                if (node.camera == i) node.camera = no_index;
-        model.cameras.push_back(convert_camera(document, i));
-    }
+    for (std::size_t i = 0; i < source.cameras.size(); ++i) model.cameras.push_back(convert_camera(document, i));
+    for (Node& node : model.nodes)
+        if (node.camera != no_index && !document.faults().check(fmt::format("/cameras/{}", node.camera)))
+            node.camera = no_index;
+    const std::vector<bool> is_light_needed = needed(source.lights.size(), model.nodes, &Node::light);
     for (std::size_t i = 0; i < source.lights.size(); ++i) {
         const auto checked = document.faults().check(fmt::format("/extensions/KHR_lights_punctual/lights/{}", i));
-        const bool is_needed =
-            std::any_of(model.nodes.begin(), model.nodes.end(), [&](const Node& node) { return node.light == i; });
-        if (!checked && is_needed) return user_error(checked.error().text);
+        if (!checked && is_light_needed[i]) return user_error(checked.error().text);
         model.lights.push_back(convert_light(document, i));
     }
     for (std::size_t i = 0; i < source.animations.size(); ++i) {
@@ -88,8 +85,19 @@ Result<> convert_rest(Document& document, const NodeOrder& order, Model& model) 
     return {};
 }
 
+// Of a mesh that many nodes may draw, each with another skin: the highest joint that it names.
+std::uint32_t highest_joint(const Mesh& mesh) {
+    std::uint32_t highest = 0;
+    for (const Primitive& primitive : mesh.primitives)
+        for (const VertexSkin& vertex : primitive.skin)
+            for (const std::uint16_t joint : vertex.joints) highest = std::max<std::uint32_t>(highest, joint);
+    return highest;
+}
+
 // What only nodes, meshes and skins together tell.
 Result<> check_nodes(Document& document, const NodeOrder& order, Model& model) {
+    std::vector<std::uint32_t> highest_joints;
+    for (const Mesh& mesh : model.meshes) highest_joints.push_back(highest_joint(mesh));
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
         Node& node = model.nodes[i];
         const std::string pointer = fmt::format("/nodes/{}", order.file_index[i]);
@@ -105,22 +113,19 @@ Result<> check_nodes(Document& document, const NodeOrder& order, Model& model) {
             continue;
         }
         const std::size_t joint_count = model.skins[node.skin].joints.size();
-        for (const Primitive& primitive : mesh->primitives) {
-            if (primitive.skin.empty())
-                document.faults().warn(
-                    fmt::format("{}/skin: a primitive of mesh {} has no joints", pointer, node.mesh));
-            for (const VertexSkin& vertex : primitive.skin)
-                for (const std::uint16_t joint : vertex.joints)
-                    if (joint >= joint_count)
-                        return user_error(fmt::format("{}/skin: mesh {} names joint {}, skin {} has {}", pointer,
-                                                      node.mesh, joint, node.skin, joint_count));
-        }
+        const auto has_no_skin = [](const Primitive& primitive) { return primitive.skin.empty(); };
+        const bool is_skinned = !std::ranges::all_of(mesh->primitives, has_no_skin);
+        if (std::ranges::any_of(mesh->primitives, has_no_skin))
+            document.faults().warn(fmt::format("{}/skin: a primitive of mesh {} has no joints", pointer, node.mesh));
+        if (is_skinned && highest_joints[node.mesh] >= joint_count)
+            return user_error(fmt::format("{}/skin: mesh {} names joint {}, skin {} has {}", pointer, node.mesh,
+                                          highest_joints[node.mesh], node.skin, joint_count));
     }
     return {};
 }
 
-Result<Model> read(const std::filesystem::path& path) {
-    auto document = Document::open(path);
+Result<Model> read(const std::filesystem::path& path, Budget budget) {
+    auto document = Document::open(path, std::move(budget));
     if (!document) return failure(std::move(document));
     auto order = order_nodes(*document);
     if (!order) return failure(std::move(order));
@@ -133,6 +138,8 @@ Result<Model> read(const std::filesystem::path& path) {
     if (auto done = convert_drawn(*document, *order, model); !done) return failure(std::move(done));
     if (auto done = check_nodes(*document, *order, model); !done) return failure(std::move(done));
     if (auto done = convert_rest(*document, *order, model); !done) return failure(std::move(done));
+    if (auto done = document->budget().check(); !done) return failure(std::move(done));
+    model.file_bytes = document->budget().file_bytes();
     for (std::string& warning : document->faults().take_warnings())
         model.warnings.push_back(one_printable_line(warning));
     return model;
@@ -140,9 +147,9 @@ Result<Model> read(const std::filesystem::path& path) {
 
 }  // namespace
 
-Result<Model> read_model(const std::filesystem::path& path) {
+Result<Model> read_model(const std::filesystem::path& path, Budget budget) {
     try {
-        auto model = read(path);
+        auto model = read(path, std::move(budget));
         if (model) return model;
         Error error = model.error();
         error.text = fmt::format("{}: {}", path.string(), one_printable_line(error.text));

@@ -160,6 +160,8 @@ Result<Skin> convert_skin(Document& document, std::size_t index, const NodeOrder
     for (const int joint : source.joints)
         if (order.root[at(joint)] != order.root[at(source.joints.front())])
             document.faults().warn(fmt::format("{}/joints: have no common root", pointer));
+    if (auto taken = document.budget().take(pointer, "joints", source.joints.size(), 2 * sizeof(mat4)); !taken)
+        return failure(std::move(taken));
     Skin skin;
     std::vector<bool> is_joint(order.file_index.size());
     for (const int joint : source.joints) {

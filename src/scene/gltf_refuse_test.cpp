@@ -66,9 +66,49 @@ TEST_F(SceneGltfRefuse, Accessors) {
         static_cast<void>(test.text());
         test.json["buffers"][0]["byteLength"] = 4096;
     });
-    expect("more data than", [](TestModel& test) {
+    expect("/accessors/0: 3000000000 numbers of 4 bytes, ", [](TestModel& test) {
         test.json["accessors"][0].erase("bufferView");
         test.json["accessors"][0]["count"] = 1000000000;
+    });
+}
+
+TEST_F(SceneGltfRefuse, WhatIsNamedManyTimesIsHeldOnce) {
+    TestModel test;
+    test.add_triangle();
+    test.json["buffers"] = {{{"byteLength", test.bytes.size()}, {"uri", "data.bin"}}};
+    for (int i = 0; i < 1000; ++i) test.json["buffers"].push_back({{"byteLength", 1 << 20}, {"uri", "./data.bin"}});
+    for (int i = 0; i < 2; ++i) test.json["images"].push_back({{"bufferView", 0}, {"mimeType", "image/png"}});
+    test.json["images"].push_back({{"uri", "picture.png"}});
+    test.json["images"].push_back({{"uri", "./picture.png"}});
+    test.bytes.resize(1 << 20);
+    put(file("data.bin"), test.bytes);
+    put(file("picture.png"), "no picture");
+    put(file("model.gltf"), test.text());
+    const auto model = read_model(file("model.gltf"));
+    ASSERT_TRUE(model) << model.error().text;
+    EXPECT_EQ(model->file_bytes, test.text().size() + (1 << 20));
+    EXPECT_EQ(model->images.size(), 2U);
+}
+
+TEST_F(SceneGltfRefuse, CountsOutOfProportionAreToldBeforeTheyAreMade) {
+    const auto repeat = [](const nlohmann::json& element, std::size_t count) {
+        return nlohmann::json(std::vector<nlohmann::json>(count, element));
+    };
+    const nlohmann::json empty = nlohmann::json::object();
+    expect("/materials: 60000 elements of 3072 bytes",
+           [&](TestModel& test) { test.json["materials"] = repeat(empty, 60000); });
+    expect("/nodes: 160000 elements of 1024", [&](TestModel& test) { test.json["nodes"] = repeat(empty, 160000); });
+    expect("the JSON: 1000", [&](TestModel& test) { test.json["extras"] = repeat(0, 1000000); });
+    // An animation that cannot be had is left out, but not one that is too large.
+    expect("numbers of 4 bytes", [&](TestModel& test) {
+        std::vector<float> times(1000);
+        for (std::size_t i = 0; i < times.size(); ++i) times[i] = static_cast<float>(i);
+        const std::size_t input = test.accessor(times, "SCALAR");
+        test.json["accessors"].push_back({{"componentType", 5126}, {"count", 1000}, {"type", "VEC3"}});
+        const nlohmann::json animation{
+            {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+            {"samplers", {{{"input", input}, {"output", input + 1}}}}};
+        test.json["animations"] = repeat(animation, 20000);
     });
 }
 
@@ -159,7 +199,8 @@ TEST_F(SceneGltfRefuse, EveryCutOfAGlb) {
                                 test.bytes;
     const std::string glb = "glTF" + number(2) + number(static_cast<std::uint32_t>(content.size() + 12)) + content;
     const auto split = [](const std::string& text) {
-        return gltf::split_container(std::as_bytes(std::span(text.data(), text.size())));
+        Budget budget;
+        return gltf::split_container(std::as_bytes(std::span(text.data(), text.size())), budget).has_value();
     };
     ASSERT_TRUE(split(glb));
     for (std::size_t size = 0; size < glb.size(); ++size) EXPECT_FALSE(split(glb.substr(0, size))) << size;

@@ -348,7 +348,7 @@ std::vector<std::string> Faults::take_warnings() {
     return std::move(warnings_);
 }
 
-Result<> check_structure(json& root, Faults& faults) {
+Result<> check_structure(json& root, Faults& faults, Budget& budget) {
     if (auto checked = check_asset(root, faults); !checked) return checked;
     if (auto checked = check_extensions(root, faults); !checked) return checked;
     Checker checker(root, faults);
@@ -360,10 +360,16 @@ Result<> check_structure(json& root, Faults& faults) {
         if (found == root.end()) continue;
         if (!found->is_array())
             return user_error(fmt::format("/{}: {}, an array is needed", array.name, shown(*found)));
-        checker.check_array(*found, *array.definition, array.placeholder, fmt::format("/{}", array.name));
+        const std::string pointer = fmt::format("/{}", array.name);
+        if (auto taken = budget.take(pointer, "elements", found->size(), array.element_size); !taken) return taken;
+        checker.check_array(*found, *array.definition, array.placeholder, pointer);
         kept[std::string(array.name)] = std::move(*found);
     }
     if (const json* lights = Checker::find_lights(root)) {
+        if (auto taken =
+                budget.take("/extensions/KHR_lights_punctual/lights", "elements", lights->size(), element_size);
+            !taken)
+            return taken;
         json copy = *lights;
         checker.check_array(copy, light_definition, light_placeholder, "/extensions/KHR_lights_punctual/lights");
         for (json& light : copy)

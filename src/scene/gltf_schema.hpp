@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/budget.hpp"
+
 namespace darkroom::scene::gltf {
 
 /// What is wrong with the elements of a file, by JSON pointer of the element ("/meshes/3"). A faulty element is an
@@ -32,7 +34,8 @@ class Faults {
 };
 
 /// Removes what is not known here and replaces faulty elements of the arrays by harmless ones of the same index.
-/// Errors: faults of the file as a whole, such as a required extension that is not read here.
-[[nodiscard]] Result<> check_structure(nlohmann::json& root, Faults& faults);
+/// Errors: faults of the file as a whole, such as a required extension that is not read here, or more elements than the
+/// budget has room for.
+[[nodiscard]] Result<> check_structure(nlohmann::json& root, Faults& faults, Budget& budget);
 
 }  // namespace darkroom::scene::gltf

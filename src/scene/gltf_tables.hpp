@@ -47,11 +47,15 @@ struct Definition {
     std::span<const Property> properties;
 };
 
+/// What most elements take in memory, with all that is in none of their arrays: the library's, and ours.
+inline constexpr std::uint64_t element_size = 1024;
+
 /// An array of the root. The placeholder stands for elements that cannot be used.
 struct Array {
     std::string_view name;
     const Definition* definition = nullptr;
     std::string_view placeholder;
+    std::uint64_t element_size = gltf::element_size;
 };
 
 /// The largest whole number: byte counts are larger than an int, but nothing is larger than this.
@@ -225,7 +229,7 @@ inline constexpr std::array arrays{
     Array{"images", &image_definition, "{}"},
     Array{"samplers", &sampler_definition, "{}"},
     Array{"textures", &texture_definition, "{}"},
-    Array{"materials", &material_definition, "{}"},
+    Array{"materials", &material_definition, "{}", 3 * element_size},
     Array{"meshes", &mesh_definition, R"({"primitives":[]})"},
     Array{"cameras", &camera_definition, R"({"type":"perspective","perspective":{"yfov":1,"znear":0.1}})"},
     Array{"skins", &skin_definition, R"({"joints":[]})"},

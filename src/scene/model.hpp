@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/budget.hpp"
 #include "scene/math.hpp"
 #include "scene/scene.hpp"
 
@@ -144,11 +145,13 @@ struct Model {
     std::vector<ModelCamera> cameras;
     std::vector<Light> lights;          ///< KHR_lights_punctual, in the units of the file (candela and lux as they are)
     std::vector<std::string> warnings;  ///< one line each, without the file's name
+    std::uint64_t file_bytes = 0;       ///< of the model and of what its buffers name
 };
 
 /// Reads .glb or .gltf. Images are decoded in parallel; a missing or broken image is a warning and is drawn as white.
 /// Errors begin with the path and name the fault: damaged structure, an index or accessor out of range, a cycle of
 /// nodes, a URI that leaves the model's folder, a required extension this reader lacks.
-[[nodiscard]] Result<Model> read_model(const std::filesystem::path& path);
+/// More elements, or more data that share bytes, than the budget has room for are refused before they are made.
+[[nodiscard]] Result<Model> read_model(const std::filesystem::path& path, Budget budget = Budget());
 
 }  // namespace darkroom::scene
