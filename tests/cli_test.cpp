@@ -191,7 +191,7 @@ TEST_F(Cli, ComparesPictures) {
     EXPECT_EQ(run({"compare", path("a.png"), path("a.png"), "--fail-above", "0"}).code, 0);
     const Outcome differs =
         run({"compare", path("a.png"), path("b.png"), "--fail-above", "0", "--diff", path("d.png")});
-    EXPECT_EQ(differs.code, 1);
+    EXPECT_EQ(differs.code, 3);
     EXPECT_NE(differs.err.find("is above 0"), std::string::npos) << differs.err;
     EXPECT_NE(differs.out.find("FLIP mean"), std::string::npos) << differs.out;
     EXPECT_EQ(picture("d.png").width, 48u);

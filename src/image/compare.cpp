@@ -18,25 +18,11 @@ double difference(float a, float b) {
     return std::abs(static_cast<double>(a) - static_cast<double>(b));
 }
 
-void measure(Comparison& out, const Picture& reference, const Picture& test, PictureEncoding encoding) {
-    double sum = 0.0;
-    double squares = 0.0;
-    double peak = 0.0;
-    for (std::size_t i = 0; i < reference.pixels.size(); i += 4) {
-        for (std::size_t channel = i; channel < i + 3; ++channel) {
-            const float value = reference.pixels[channel];
-            const double error = difference(value, test.pixels[channel]);
-            sum += error;
-            squares += error * error;
-            out.max_error = std::max(out.max_error, error);
-            if (std::isfinite(value)) peak = std::max(peak, static_cast<double>(value));
-        }
-        out.max_alpha_error = std::max(out.max_alpha_error, difference(reference.pixels[i + 3], test.pixels[i + 3]));
-    }
-    if (encoding == PictureEncoding::Display) peak = 1.0;
-    const double count = 0.75 * static_cast<double>(reference.pixels.size());
-    out.mean_error = sum / count;
-    out.psnr = squares == 0.0 ? infinity : 10.0 * std::log10(peak * peak * count / squares);
+void count(NonFinite& counts, float value) {
+    if (std::isnan(value))
+        ++counts.nan;
+    else if (std::isinf(value))
+        ++counts.infinite;
 }
 
 // Every eighth entry and the last of the published table of 256, which is in the public domain (CC0). Between them we
@@ -56,11 +42,48 @@ constexpr std::array<std::array<float, 3>, 33> magma_knots = {
 
 }  // namespace
 
+SampleErrors measure(std::span<const float> reference, std::span<const float> test, const SampleLayout& layout,
+                     std::optional<double> peak) {
+    SampleErrors out;
+    double sum = 0.0;
+    double squares = 0.0;
+    double largest = 0.0;
+    for (std::size_t i = layout.first; i < reference.size(); i += layout.stride)
+        for (std::uint32_t channel = 0; channel < layout.count; ++channel) {
+            const float a = reference[i + channel], b = test[i + channel];
+            count(out.reference, a);
+            count(out.test, b);
+            if (std::isfinite(a)) largest = std::max(largest, std::abs(static_cast<double>(a)));
+            const double error = difference(a, b);
+            if (error == 0.0) continue;
+            out.non_finite_differences += !std::isfinite(a) || !std::isfinite(b);
+            sum += error;
+            squares += error * error;
+            if (error <= out.max_error) continue;
+            const std::size_t pixel = i / layout.stride;
+            out.max_error = error;
+            out.worst = {static_cast<std::uint32_t>(pixel % layout.width),
+                         static_cast<std::uint32_t>(pixel / layout.width), channel, a, b};
+        }
+    const double samples = static_cast<double>(reference.size() / layout.stride) * layout.count;
+    const double top = peak.value_or(largest);
+    out.mean_error = sum / samples;
+    out.psnr = squares == 0.0 ? infinity : 10.0 * std::log10(top * top * samples / squares);
+    return out;
+}
+
 Result<Comparison> compare(const Picture& reference, const Picture& test, const FlipDesc& desc) {
     Result<FlipErrors> errors = flip(reference, test, desc);
     if (!errors) return failure(std::move(errors));
-    Comparison out{.flip_mean = errors->mean, .flip_weighted_median = errors->weighted_median, .flip_max = errors->max};
-    measure(out, reference, test, desc.encoding);
+    const SampleLayout rgb{.width = reference.width};
+    const SampleLayout alpha{.width = reference.width, .first = 3, .count = 1};
+    std::optional<double> peak;
+    if (desc.encoding == PictureEncoding::Display) peak = 1.0;
+    Comparison out{measure(reference.pixels, test.pixels, rgb, peak)};
+    out.alpha = measure(reference.pixels, test.pixels, alpha, 1.0);
+    out.flip_mean = errors->mean;
+    out.flip_weighted_median = errors->weighted_median;
+    out.flip_max = errors->max;
     out.flip_map = paint_errors(errors->errors, errors->width, errors->height);
     return out;
 }

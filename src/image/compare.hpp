@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <darkroom/result.hpp>
+#include <optional>
 #include <span>
 
 #include "image/flip.hpp"
@@ -13,15 +14,40 @@
 
 namespace darkroom {
 
-/// Equal values, equal infinities and two NaNs differ by 0. A NaN or an infinity in one picture only makes max_error
-/// and mean_error infinite and psnr minus infinity; what FLIP makes of it is said there.
-struct Comparison {
-    double max_error = 0.0;        ///< largest absolute difference of red, green or blue
-    double max_alpha_error = 0.0;  ///< largest absolute difference of alpha, which counts nowhere else
-    double mean_error = 0.0;       ///< mean absolute difference of red, green and blue
-    /// In dB, of red, green and blue. The peak is 1 for display-encoded pictures and the reference's largest finite
-    /// value for scene-linear ones. Infinite if nothing differs.
-    double psnr = 0.0;
+/// Some channels of a buffer of samples: `first` to `first + count - 1` of the `stride` that a pixel has.
+struct SampleLayout {
+    std::uint32_t width = 0;
+    std::uint32_t stride = 4, first = 0, count = 3;
+};
+
+/// Samples that are no number.
+struct NonFinite {
+    std::uint64_t nan = 0, infinite = 0;
+};
+
+/// How far samples are apart. Equal values, equal infinities and two NaNs differ by 0. A NaN or an infinity in one
+/// buffer only makes max_error and mean_error infinite and psnr minus infinity.
+struct SampleErrors {
+    struct Place {
+        std::uint32_t x = 0, y = 0, channel = 0;
+        float reference = 0, test = 0;
+    };
+    double max_error = 0.0;   ///< largest absolute difference
+    double mean_error = 0.0;  ///< mean absolute difference
+    double psnr = 0.0;        ///< in dB; infinite if nothing differs
+    Place worst;              ///< the first place of the largest difference, if it is above 0
+    NonFinite reference, test;
+    std::uint64_t non_finite_differences = 0;  ///< samples that are finite in one buffer alone, or of another kind
+};
+
+/// Both buffers have one size. `peak` is that of PSNR; not given: the reference's largest finite absolute value.
+[[nodiscard]] SampleErrors measure(std::span<const float> reference, std::span<const float> test,
+                                   const SampleLayout& layout, std::optional<double> peak = {});
+
+/// The errors of red, green and blue. The peak of display-encoded pictures is 1. What FLIP
+/// makes of NaN is said there.
+struct Comparison : SampleErrors {
+    SampleErrors alpha;  ///< which counts nowhere else
     double flip_mean = 0.0;
     double flip_weighted_median = 0.0;
     double flip_max = 0.0;

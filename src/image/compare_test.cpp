@@ -85,7 +85,7 @@ TEST(Compare, NumbersAreThoseOfTheDefinition) {
     const Result<Comparison> result = compare(reference, test);
     ASSERT_TRUE(result) << result.error().text;
     EXPECT_EQ(result->max_error, 0.25);
-    EXPECT_EQ(result->max_alpha_error, 0.25);
+    EXPECT_EQ(result->alpha.max_error, 0.25);
     EXPECT_DOUBLE_EQ(result->mean_error, 0.25 / 192.0);
     EXPECT_DOUBLE_EQ(result->psnr, 10.0 * std::log10(192.0 / 0.0625));
     const Result<Comparison> linear = compare(reference, test, scene_linear);
