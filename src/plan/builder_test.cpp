@@ -24,6 +24,15 @@ constexpr EffectFile files[] = {
     {"plus.glsl",
      "vec4 plus(vec4 color, Pixel pixel, NoParameters parameters) {\n"
      "    return vec4(color.rgb + sample_linear(plus_side, pixel.uv).rgb, color.a);\n}\n"},
+    {"pool_fill.glsl", "vec4 shade(Pixel pixel) { return custom[0] * load_clamped(pool_in, pixel.texel); }\n"},
+    {"pool_sum.glsl",
+     "vec4 shade(Pixel pixel) {\n"
+     "    vec4 corner = load(pool_one, size(pool_one) - 1);\n"
+     "    return load(pool_so_far, ivec2(0)) + vec4(corner.r, vec2(size(pool_one)), 0.0);\n}\n"},
+    {"pool_trail.glsl",
+     "vec4 shade(Pixel pixel) { return 0.5 * (load_clamped(pool_before, pixel.texel) + load_clamped(pool_in, "
+     "pixel.texel)); "
+     "}\n"},
 };
 
 void build_double(PassBuilder& builder) {
@@ -51,6 +60,85 @@ PassImage make_shared(PassBuilder& builder) {
                         .output = small});
 }
 void build_plus(PassBuilder& builder) { builder.side("plus_side", builder.shared("shared copy", make_shared), {}); }
+
+/// An image of the pool: its share of the picture, its format, and what it holds, exactly.
+struct PoolImage {
+    std::uint32_t numerator, denominator;
+    VkFormat format;
+    float value;
+};
+constexpr std::array<PoolImage, 14> pool{{
+    {1, 1, VK_FORMAT_R8G8B8A8_UNORM, 1},
+    {1, 2, VK_FORMAT_R16G16B16A16_SFLOAT, 2},
+    {1, 4, VK_FORMAT_R32G32B32A32_SFLOAT, 4},
+    {1, 16, VK_FORMAT_R16G16B16A16_SFLOAT, 8},
+    {3, 4, VK_FORMAT_R32_SFLOAT, 16},
+    {2, 1, VK_FORMAT_R16_SFLOAT, 32},
+    {1, 3, VK_FORMAT_R16G16_SFLOAT, 64},
+    {1, 1, VK_FORMAT_R32_SFLOAT, 128},
+    {1, 1, VK_FORMAT_R16G16B16A16_SFLOAT, 256},
+    {1, 100, VK_FORMAT_R32G32B32A32_SFLOAT, 512},
+    {1, 2, VK_FORMAT_R8G8B8A8_UNORM, 0},
+    {5, 7, VK_FORMAT_R16_SFLOAT, 1024},
+    {1, 4, VK_FORMAT_R32_SFLOAT, 2048},
+    {1, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 4096},
+}};
+
+template <std::size_t index>
+void pool_constant(const void*, const PassContext&, std::span<PassVector> out) {
+    out[0] = {pool[index].value, pool[index].value, pool[index].value, 1};
+}
+
+/// Fills all images before it reads any, so that all must be there at once.
+template <std::size_t... indices>
+void build_pool(PassBuilder& builder, std::index_sequence<indices...>) {
+    constexpr std::array<ConstantsFunction, pool.size()> constants{pool_constant<indices>...};
+    const auto create = [&](std::size_t i) {
+        return builder.create({.name = "image " + std::to_string(i),
+                               .format = pool[i].format,
+                               .numerator = pool[i].numerator,
+                               .denominator = pool[i].denominator});
+    };
+    std::array<PassImage, pool.size()> images{};
+    for (std::size_t i = 0; i < pool.size(); ++i)
+        images[i] = builder.add({.name = "fill " + std::to_string(i),
+                                 .shader = "pool_fill.glsl",
+                                 .inputs = {{.name = "pool_in", .image = builder.picture()}},
+                                 .output = create(i),
+                                 .custom_vectors = 1,
+                                 .constants = constants[i]});
+    // And two trails, of a sixteenth and of a quarter of the picture's area.
+    for (const auto& [format, denominator] :
+         {std::pair{VK_FORMAT_R16G16B16A16_SFLOAT, 4U}, {VK_FORMAT_R32_SFLOAT, 2U}}) {
+        const PassBuilder::History trail =
+            builder.history({.name = "trail", .format = format, .denominator = denominator});
+        images[denominator] = builder.add({.name = "trail",
+                                           .shader = "pool_trail.glsl",
+                                           .inputs = {{.name = "pool_in", .image = images[denominator]},
+                                                      {.name = "pool_before", .image = trail.previous}},
+                                           .output = trail.current});
+    }
+    PassImage sum = builder.add({.name = "zero",
+                                 .shader = "pool_fill.glsl",
+                                 .inputs = {{.name = "pool_in", .image = builder.picture()}},
+                                 .output = builder.create({.name = "zero", .format = VK_FORMAT_R32G32B32A32_SFLOAT}),
+                                 .custom_vectors = 1,
+                                 .constants = pool_constant<10>});
+    for (const PassImage image : images)
+        sum = builder.add({.name = "sum",
+                           .shader = "pool_sum.glsl",
+                           .inputs = {{.name = "pool_so_far", .image = sum}, {.name = "pool_one", .image = image}},
+                           .output = builder.create({.name = "sum", .format = VK_FORMAT_R32G32B32A32_SFLOAT})});
+    builder.result(sum);
+}
+
+const EffectInfo pool_effect{
+    .name = "pool",
+    .doc = "Sums what many images hold, their widths and their heights.",
+    .parameters = rows.table(),
+    .files = files,
+    .touch = Touch::History,
+    .build = [](PassBuilder& builder) { build_pool(builder, std::make_index_sequence<pool.size()>()); }};
 
 const EffectInfo doubling{.name = "double",
                           .doc = "Twice the extent.",
@@ -157,6 +245,36 @@ TEST(ComposeBuilder, HistoryIsTheLastFrameOfTheSameView) {
     ASSERT_TRUE(rig.composer.set_enabled(handle, true));
     EXPECT_EQ(rig.frame(), 1.0F) << "a frame without it forgets";
     EXPECT_EQ(rig.frame(), 1.5F);
+}
+
+TEST(ComposeBuilder, ImagesAreOfAnyNumberSizeAndFormat) {
+    for (const VkExtent2D extent : {VkExtent2D{64, 48}, {37, 5}}) {
+        Rig rig(extent, extent, 1.0F);
+        rig.composer.add(pool_effect, nullptr);
+        const auto plan = rig.compile();
+        ASSERT_TRUE(plan) << plan.error().text;
+        float values = 0, widths = 0, heights = 0;
+        for (std::size_t i = 0; i < pool.size(); ++i) {
+            std::uint32_t width = std::max(1U, extent.width * pool[i].numerator / pool[i].denominator);
+            std::uint32_t height = std::max(1U, extent.height * pool[i].numerator / pool[i].denominator);
+            // In whose place the trails are read.
+            if (i == 2 || i == 4) {
+                width = std::max(1U, extent.width / static_cast<std::uint32_t>(i));
+                height = std::max(1U, extent.height / static_cast<std::uint32_t>(i));
+            } else {
+                values += pool[i].value;
+            }
+            widths += static_cast<float>(width);
+            heights += static_cast<float>(height);
+        }
+        float trails = 0;
+        for (int frame = 0; frame < 4; ++frame) {
+            trails = 0.5F * (trails + pool[2].value + pool[4].value);
+            EXPECT_EQ(rig.frame(), values + trails) << "frame " << frame;
+            EXPECT_EQ(rig.pixels().at(0, 0)[1], widths);
+            EXPECT_EQ(rig.pixels().at(0, 0)[2], heights);
+        }
+    }
 }
 
 TEST(ComposeBuilder, SharedImagesAreMadeOnceWhileAnyoneNeedsThem) {
