@@ -5,7 +5,8 @@
 #include <cmath>
 #include <darkroom/effects/volumetric.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_host.hpp"
+#include "compose/test_shadow_map.hpp"
 #include "volumetric/volumetric_reference.hpp"
 #include "volumetric/volumetric_test_world.hpp"
 
@@ -120,6 +121,47 @@ TEST(EffectVolumetricShadow, GpuEachLightHasItsOwnShadows) {
     const Rgba swapped = world.developed({.density = 100}).at(width / 2, height / 2);
     EXPECT_EQ(swapped.r, 0);
     EXPECT_NEAR(swapped.g / middle.r, 1, 1e-3);
+}
+
+// Shadows switched off and on under a plan that runs: no frame shows the light of another one.
+TEST(EffectVolumetricShadow, GpuShadowsThatAreSwitchedOffTakeTheirLightWithThem) {
+    World world = lane_world();
+    world.picture = test::round_to_float(test::random_display(width, height, 3));
+    const ReferenceLight traced = traced_light(lane, above, two_cascades, 128);
+    const test::Host host(world.picture);
+    gpu::Context& context = host.device.context();
+    const gpu::test::Picture depth =
+        gpu::test::upload(context, test::pixels_of(world.depth), VK_FORMAT_R32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
+    const gpu::Image shadow_map = test::upload_shadow_map(context, traced);
+    std::vector<Light> lights{traced.light};
+    lights[0].cascades = test::shadow_map_ref(shadow_map);
+    lights[0].cascade_count = 2;
+    const std::vector<Light> shadowless{traced.light};
+
+    Composer composer(host.device, {.frames_in_flight = 1});
+    composer.add(Volumetric{.density = 100});
+    CompileDesc desc = host.compile_desc();
+    desc.depth = {VK_FORMAT_R32_SFLOAT};
+    desc.is_depth_planar = true;
+    desc.has_shadows = true;
+    test::must(composer.compile(desc));
+    const auto shown = [&](std::span<const Light> given) {
+        Frame frame = host.frame();
+        frame.depth = test::image_ref(depth);
+        frame.camera = world.camera;
+        frame.lights = given;
+        test::must(host.record(composer, frame));
+        return host.read_target();
+    };
+    // Before and after the lean kernels have come.
+    for (const bool has_lean_kernels : {false, true}) {
+        if (has_lean_kernels) composer.wait_for_kernels();
+        const ReferenceImage lit = shown(lights);
+        EXPECT_GT(test::worst_difference(lit, world.picture), 0.1);
+        EXPECT_EQ(test::worst_difference(shown(shadowless), world.picture), 0);
+        EXPECT_EQ(test::worst_difference(shown({}), world.picture), 0);
+        EXPECT_EQ(test::worst_difference(shown(lights), lit), 0) << "and they come back";
+    }
 }
 
 // In front of the wall all is dark, behind it all is lit: none of that may come through.
