@@ -103,6 +103,18 @@ TEST(EffectFog, GpuReadsEveryKindOfDepth) {
     }
 }
 
+TEST(EffectFog, GpuLeavesTheSkyBitForBit) {
+    const Case data;
+    for (const Fog& fog : {Fog{.density = 1000, .end = 6}, Fog{.density = 3, .height_enabled = true}}) {
+        const ReferenceImage out =
+            test::develop([&](Composer& composer) { composer.add(fog); }, data.picture, data.options());
+        ASSERT_EQ(out.pixels.size(), data.picture.pixels.size());
+        for (std::uint32_t y = 0; y < 23; ++y)
+            for (std::uint32_t x = 28; x < 37; ++x)
+                EXPECT_EQ(out.at(x, y).r == data.picture.at(x, y).r, x > 33) << x << ", " << y;
+    }
+}
+
 TEST(EffectFog, GpuWithoutDepthIsLeftOut) {
     const ReferenceImage picture = test::round_to_float(test::random_display(8, 8, 1));
     const ReferenceImage out = test::develop([](Composer& composer) { composer.add(Fog{.density = 9}); }, picture);
