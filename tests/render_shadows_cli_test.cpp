@@ -67,6 +67,20 @@ TEST_F(CliRenderShadows, EveryFrameAndSampleIsDevelopedBitForBit) {
     expect_develops_alike({"--msaa", "4", "--frames", "2"});
 }
 
+// Pictures, layers, lights and cascades alike, whichever process made them.
+TEST_F(CliRenderShadows, EveryProcessMakesTheSameBytes) {
+    std::string picture_bytes, frame_bytes;
+    for (int i = 0; i < 6; ++i) {
+        ASSERT_EQ(render_dungeon({"--frame", path("f.exr")}, "a.png").code, 0);
+        if (i == 0) {
+            picture_bytes = content(path("a.png"));
+            frame_bytes = content(path("f.exr"));
+        }
+        EXPECT_TRUE(content(path("a.png")) == picture_bytes) << i;
+        EXPECT_TRUE(content(path("f.exr")) == frame_bytes) << i;
+    }
+}
+
 TEST_F(CliRenderShadows, TheReferencesHaveVolumetricLightToo) {
     ASSERT_EQ(render_dungeon({"--frame", path("f.exr")}, "a.png").code, 0);
     const Outcome outcome = develop("f.exr", "reference.png", {"--reference"});
