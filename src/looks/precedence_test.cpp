@@ -98,6 +98,49 @@ TEST(Precedence, FlagsWinOverFilesWhichWinOverDefaults) {
     });
 }
 
+TEST(Precedence, AKeyChangesItsOwnValueAlone) {
+    for_every_flat_row([](const EffectInfo& effect, const ParamInfo& row) {
+        const Look file = with_file(effect, row, other_value(effect, row, 1));
+        for (const EffectInfo* const other : all_effects()) {
+            if (other->flat.documented < 0) continue;
+            for (const ParamInfo& kept : other->parameters.rows) {
+                const std::string usual = format(kept, other->parameters.defaults);
+                EXPECT_EQ(value_of(file, *other, kept) == usual, &kept != &row) << flat_key(other->name, kept.name);
+            }
+            if (other != &effect) {
+                EXPECT_EQ(is_on(file, *other), other->flat.starts_on) << other->name;
+            }
+        }
+    });
+}
+
+TEST(Precedence, EveryEffectHasASwitch) {
+    for (const EffectInfo* const effect : all_effects()) {
+        if (effect->flat.documented < 0) continue;
+        for (const bool is_wanted : {true, false}) {
+            const std::string key = flat_key(effect->name, "enabled");
+            const Result<Look> file = parse_look("[post_process]\n" + key + (is_wanted ? " = true\n" : " = false\n"),
+                                                 "a.toml", {.is_strict = true});
+            ASSERT_TRUE(file) << file.error().text;
+            EXPECT_EQ(is_on(*file, *effect), is_wanted) << key;
+        }
+    }
+}
+
+// Every key with its last letter twice.
+TEST(Precedence, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
+    for_every_flat_row([](const EffectInfo& effect, const ParamInfo& row) {
+        const std::string key = flat_key(effect.name, row.name), slip = key + key.back();
+        std::vector<std::string> warnings;
+        const Result<Look> look = parse_look("[post_process]\n" + slip + " = 0\n", "a.toml", {.warnings = &warnings});
+        ASSERT_TRUE(look) << look.error().text;
+        ASSERT_EQ(warnings.size(), 1U);
+        EXPECT_NE(warnings[0].find("unknown key '" + slip + "'"), std::string::npos) << warnings[0];
+        EXPECT_NE(warnings[0].find("did you mean '" + key + "'"), std::string::npos) << warnings[0];
+        EXPECT_EQ(value_of(*look, effect, row), format(row, effect.parameters.defaults));
+    });
+}
+
 // Of files and flags an amount switches its effect, of flags the falloff of fog, too. Nothing else does.
 TEST(Precedence, AmountsSwitchAndNothingElse) {
     const std::set<std::string> named{"bloom_intensity",      "ssao_intensity",     "fog_density",
