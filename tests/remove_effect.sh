@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # remove_effect.sh TREE: for each effect, a tree without its folder configures, builds, and passes its tests. It takes
-# long, so it is of `./test --all` alone. Programs that show effects (examples) and whole-chain tests name some, and stay
-# out; so do these scripts.
+# long, so it is of `./test --all` alone. Programs that show effects (examples), documents and whole-chain tests name
+# some, and stay out; so do these scripts.
 set -euo pipefail
 tree=$1
 work=$(mktemp -d)
@@ -17,7 +17,7 @@ for folder in effects/*/; do
     mv "$folder" "$work/removed"
     cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release >"$work/log" 2>&1 &&
         cmake --build build >>"$work/log" 2>&1 || { tail -n 40 "$work/log" && echo "without $name it does not build" && exit 1; }
-    ctest --test-dir build -L '^fast$' -E '^(Acceptance|Launcher)$' --output-on-failure >"$work/log" 2>&1 ||
+    ctest --test-dir build -L '^fast$' -E '^(Acceptance|Launcher|Documents)$' --output-on-failure >"$work/log" 2>&1 ||
         { tail -n 40 "$work/log" && echo "without $name its tests fail" && exit 1; }
     mv "$work/removed" "$folder"
     echo "without $name: builds and passes"

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// Documents that say what the registry, the folders and the program say, too: they are read and compared.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <darkroom/effects.hpp>
+#include <darkroom/look.hpp>
+#include <regex>
+#include <set>
+
+#include "cli_support.hpp"
+#include "core/param_text.hpp"
+
+namespace darkroom {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path source = DARKROOM_SOURCE_FOLDER;
+
+/// Of a page, with line ends as spaces.
+std::string one_line(const std::string& page) {
+    std::string text = test::content(source / page);
+    EXPECT_FALSE(text.empty()) << page;
+    std::ranges::replace(text, '\n', ' ');
+    return std::regex_replace(text, std::regex(" +"), " ");
+}
+/// The rows of the table of a page under this head, as the first group of `first_cell` and the rest of the line.
+std::vector<std::pair<std::string, std::string>> rows_of(const std::string& page, const std::string& head,
+                                                         const std::string& first_cell) {
+    std::istringstream lines(test::content(source / page));
+    const std::regex pattern("\\| *" + first_cell + " *\\|(.*)\\|");
+    std::vector<std::pair<std::string, std::string>> rows;
+    bool is_inside = false;
+    for (std::string line; std::getline(lines, line);) {
+        is_inside = line.starts_with(head) || (is_inside && line.starts_with('|'));
+        if (std::smatch found; is_inside && std::regex_match(line, found, pattern))
+            rows.emplace_back(found[1], found[2]);
+    }
+    return rows;
+}
+/// The names of a folder's files that end so, without the end.
+std::set<std::string> files_of(const fs::path& folder, const std::string& end) {
+    std::set<std::string> names;
+    for (const auto& file : fs::directory_iterator(source / folder))
+        if (const std::string name = file.path().filename().string(); name.ends_with(end))
+            names.insert(name.substr(0, name.size() - end.size()));
+    return names;
+}
+std::set<std::string> first_cells(const std::vector<std::pair<std::string, std::string>>& rows) {
+    std::set<std::string> cells;
+    for (const auto& [cell, rest] : rows) cells.insert(cell);
+    return cells;
+}
+
+std::vector<std::string> flat_names(std::int32_t FlatPlace::*order, bool only_those_on = false) {
+    std::vector<const EffectInfo*> effects;
+    for (const EffectInfo* const effect : all_effects())
+        if (effect->flat.*order >= 0 && (!only_those_on || effect->flat.starts_on)) effects.push_back(effect);
+    std::ranges::sort(effects, {}, [order](const EffectInfo* effect) { return effect->flat.*order; });
+    std::vector<std::string> names;
+    for (const EffectInfo* const effect : effects) names.emplace_back(effect->name);
+    return names;
+}
+
+TEST(Documents, LooksSayWhatStartsOnAndBothOrders) {
+    const std::string text = one_line("docs/looks.md");
+    for (const std::string& part :
+         {fmt::format("| `\"documented\"` (the default) | {} |", fmt::join(flat_names(&FlatPlace::documented), ", ")),
+          fmt::format("| `\"scene_linear\"` | {} |", fmt::join(flat_names(&FlatPlace::scene_linear), ", ")),
+          fmt::format("These effects start switched on: `{}`.",
+                      fmt::join(flat_names(&FlatPlace::documented, true), "`, `"))})
+        EXPECT_NE(text.find(part), std::string::npos) << "docs/looks.md lacks: " << part;
+}
+
+TEST(Documents, LooksNameEveryKeyOfAnEntry) {
+    const auto rows = rows_of("docs/looks.md", "| Key |", "`([a-z]+)`");
+    std::set<std::string> expected{"effect", "name", "output", "input", "source", "second", "mask"};
+    for (const ParamInfo& row : entry_rows.rows) {
+        expected.emplace(row.name);
+        const auto found = std::ranges::find(rows, row.name, [](const auto& named) { return named.first; });
+        ASSERT_NE(found, rows.end()) << row.name;
+        EXPECT_NE(found->second.find('`' + format(row, entry_rows.defaults) + '`'), std::string::npos) << row.name;
+        for (const std::string_view choice : row.choices)
+            EXPECT_TRUE(std::regex_search(found->second, std::regex(fmt::format("\\b{}\\b", choice)))) << choice;
+    }
+    EXPECT_EQ(first_cells(rows), expected);
+}
+
+TEST(Documents, TablesNameWhatShips) {
+    EXPECT_EQ(first_cells(rows_of("docs/looks.md", "| File |", R"(\[([a-z_]+)\.toml\]\(\.\./looks/[a-z_.]+\))")),
+              files_of("looks", ".toml"));
+    EXPECT_EQ(first_cells(rows_of("docs/scenes.md", "| Scene |", "`([a-z]+)`")), files_of("scenes", ".scene.toml"));
+    std::set<std::string> effects;
+    for (const EffectInfo* const effect : all_effects()) effects.emplace(effect->name);
+    EXPECT_EQ(first_cells(rows_of("README.md", "| Effect |", R"(\[`([a-z_]+)`\]\(effects/[a-z_/.]+\))")), effects);
+}
+
+class CliDocuments : public test::CliFixture {
+  protected:
+    void SetUp() override {
+        for (const char* const name : {"ssao", "bloom", "exposure", "tonemap", "encode"})
+            if (find_effect(name) == nullptr) GTEST_SKIP() << "the effect " << name << " is not in this build";
+        CliFixture::SetUp();
+    }
+};
+
+TEST_F(CliDocuments, ThePlanIsTheOneThatIsPrinted) {
+    const test::Outcome plan = run({"plan", "--kernels", "raster"});
+    ASSERT_EQ(plan.code, 0) << plan.err;
+    EXPECT_NE(test::content(source / "docs/architecture.md").find("```\n" + plan.out + "```\n"), std::string::npos)
+        << "docs/architecture.md shows another plan than this:\n"
+        << plan.out;
+}
+
+}  // namespace
+}  // namespace darkroom
