@@ -12,8 +12,8 @@
 
 namespace darkroom {
 
-/// Slips (unknown keys, values out of range) are warnings unless the reader is strict; notes are warnings always.
-enum class Weight : std::uint8_t { Note, Slip, Wrong };
+/// Slips (unknown keys, values out of range) are warnings unless the reader is strict.
+enum class Weight : std::uint8_t { Slip, Wrong };
 
 class LookReader {
   public:
