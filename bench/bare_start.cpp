@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "core/files.hpp"
+#include "full_screen.hpp"
 #include "gpu/loader.hpp"
 
 namespace darkroom::bench {
@@ -105,44 +106,6 @@ Result<VkPipelineShaderStageCreateInfo> load_stage(Bare& bare, const std::filesy
                                            .pName = "main"};
 }
 
-VkResult make_raster(Bare& bare, const BarePipeline& wanted, std::span<const VkPipelineShaderStageCreateInfo> stages) {
-    const VkPipelineVertexInputStateCreateInfo vertex{.sType =
-                                                          VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-    const VkPipelineInputAssemblyStateCreateInfo assembly{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-    const VkPipelineViewportStateCreateInfo viewport{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
-    const VkPipelineRasterizationStateCreateInfo raster{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .lineWidth = 1.0f};
-    const VkPipelineMultisampleStateCreateInfo samples{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-    const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-                                                    .attachmentCount = 1,
-                                                    .pAttachments = &wanted.blend};
-    constexpr std::array states{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-                                                   .dynamicStateCount = static_cast<std::uint32_t>(states.size()),
-                                                   .pDynamicStates = states.data()};
-    const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                  .colorAttachmentCount = 1,
-                                                  .pColorAttachmentFormats = &wanted.output};
-    const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
-                                            .pNext = &rendering,
-                                            .stageCount = static_cast<std::uint32_t>(stages.size()),
-                                            .pStages = stages.data(),
-                                            .pVertexInputState = &vertex,
-                                            .pInputAssemblyState = &assembly,
-                                            .pViewportState = &viewport,
-                                            .pRasterizationState = &raster,
-                                            .pMultisampleState = &samples,
-                                            .pColorBlendState = &blend,
-                                            .pDynamicState = &dynamic,
-                                            .layout = bare.layouts.back()};
-    return bare.vk.CreateGraphicsPipelines(bare.device, bare.cache, 1, &info, nullptr, &bare.pipelines.emplace_back());
-}
-
 Result<> make_pipeline(Bare& bare, const BarePipeline& wanted) {
     const VkDescriptorSetLayoutCreateInfo set_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                                    .bindingCount = static_cast<std::uint32_t>(wanted.bindings.size()),
@@ -167,7 +130,12 @@ Result<> make_pipeline(Bare& bare, const BarePipeline& wanted) {
     }
     auto vertex = load_stage(bare, wanted.vertex, VK_SHADER_STAGE_VERTEX_BIT);
     if (!vertex) return failure(std::move(vertex));
-    return check(make_raster(bare, wanted, std::array{*vertex, *shader}), "creating a pipeline");
+    const std::array stages{*vertex, *shader};
+    return check(create_full_screen_pipeline(
+                     bare.vk, bare.device, bare.cache,
+                     {.layout = bare.layouts.back(), .stages = stages, .output = wanted.output, .blend = wanted.blend},
+                     bare.pipelines.emplace_back()),
+                 "creating a pipeline");
 }
 
 }  // namespace

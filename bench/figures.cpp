@@ -28,12 +28,15 @@ struct Target {
 };
 constexpr std::string_view hand_written = "tail/hand-written/";
 constexpr std::array targets{
+    Target{"calibration / plain copy", calibration_name, "copy/plain/raster"},
     Target{"tail fused / calibration", "tail/fused/auto", calibration_name, 3.0},
     Target{"tail fused / tail unfused", "tail/fused/auto", "tail/unfused/auto", 0.35},
     Target{"tail fused / tail unfused, compute", "tail/fused/compute", "tail/unfused/compute"},
     Target{"tail fused / tail unfused, raster", "tail/fused/raster", "tail/unfused/raster"},
     Target{"tail compute / hand-written compute", "tail/fused/compute", "tail/hand-written/compute"},
     Target{"tail raster / hand-written raster", "tail/fused/raster", "tail/hand-written/raster"},
+    Target{"tail compute / plain compute", "tail/fused/compute", "tail/hand-written/plain/compute"},
+    Target{"tail raster / plain raster", "tail/fused/raster", "tail/hand-written/plain/raster"},
     Target{"bloom / calibration", "bloom/auto", calibration_name, 5.5},
     Target{"bloom / calibration, compute", "bloom/compute", calibration_name},
     Target{"bloom / calibration, raster", "bloom/raster", calibration_name},
@@ -72,7 +75,7 @@ double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6;
 std::vector<Figure> ratio_figures(const Device& device, const std::vector<Row>& rows) {
     double Sample::*const cost = cost_of(device);
     std::vector<Figure> figures;
-    // Against the faster of the two stages in which one may write the kernel.
+    // Against the fastest of the ways in which one may write the kernel.
     const Row* const tail = find_row(rows, "tail/fused/auto");
     const Row* fastest = nullptr;
     for (const Row& row : rows)

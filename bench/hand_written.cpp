@@ -116,18 +116,19 @@ gpu::KernelSpec calibration_spec() {
             .body = "vec4 shade(Pixel pixel) { return load(scene, pixel.texel); }"};
 }
 
-gpu::KernelSpec tail_spec() {
+gpu::KernelSpec tail_spec(const gpu::Context& context) {
     return {.name = "hand-written tail",
             .images = {{.name = "scene", .storage_format = scene_format},
                        {.name = "tile", .storage_format = VK_FORMAT_R32G32B32A32_SFLOAT}},
             .outputs = {target_format},
+            .is_whole = true,
             .members = {{gpu::BlockMember::Type::Float, "exposure"},
                         {gpu::BlockMember::Type::Float, "vignette_intensity"},
                         {gpu::BlockMember::Type::Float, "vignette_smoothness"},
                         {gpu::BlockMember::Type::Float, "dither_intensity"},
                         {gpu::BlockMember::Type::Uint, "frame"}},
             .body = std::string(tail_body),
-            .workgroup = {16, 16}};
+            .workgroup = gpu::usual_workgroup(context)};
 }
 
 std::optional<TableDesc> only_table_of(const EffectInfo& effect) {
@@ -142,12 +143,7 @@ Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, 
                        std::span<const std::uint32_t> words, const TableDesc* table) {
     const auto run = std::make_shared<KernelRun>();
     if (table != nullptr) {
-        auto image = upload(bed.context,
-                            {.name = table->name,
-                             .format = table->format,
-                             .extent = table->extent,
-                             .usage = VK_IMAGE_USAGE_STORAGE_BIT},
-                            table->data, VK_IMAGE_LAYOUT_GENERAL);
+        auto image = upload_table(bed.context, *table);
         if (!image) return failure(std::move(image));
         run->table = std::move(*image);
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Kernels written by hand, that the composer's are measured against: the calibration pass, and one kernel with the
-// arithmetic of the five effects of the tail. Each runs alone between two barriers.
+// arithmetic of the five effects of the tail. Each runs alone between two barriers, and has what the composer's kernels
+// have for such a frame: whole images, its workgroup, its formats.
 
 #include "gpu/kernel.hpp"
 #include "measure.hpp"
@@ -19,7 +20,7 @@ struct TailValues {
     float dither_intensity = 2.0f / 255.0f;
 };
 /// Exposure, ACES (Narkowicz), vignette, sRGB, dither with the 64x64 tile that `dither` uses; empty: there is none.
-[[nodiscard]] gpu::KernelSpec tail_spec();
+[[nodiscard]] gpu::KernelSpec tail_spec(const gpu::Context& context);
 /// The table of an effect that has exactly one, or nothing.
 [[nodiscard]] std::optional<TableDesc> only_table_of(const EffectInfo& effect);
 

@@ -9,6 +9,7 @@
 
 #include "chains.hpp"
 #include "hand_written.hpp"
+#include "plain.hpp"
 #include "recipe.hpp"
 #include "scene.hpp"
 
@@ -30,6 +31,8 @@ std::string_view stage_name(KernelStage stage) {
     return "auto";
 }
 
+std::string_view stage_name(gpu::Stage stage) { return stage == gpu::Stage::Compute ? "compute" : "raster"; }
+
 Recipe chain_recipe(std::string name, Stack stack, const ChainDesc& desc) {
     return {.name = std::move(name),
             .make = [stack = std::move(stack), desc](Bed& bed, const std::string& row) -> Result<Row> {
@@ -45,13 +48,27 @@ std::vector<std::uint32_t> tail_words(const TailValues& values) {
             word(values.dither_intensity), 0};
 }
 
+Result<TableDesc> noise_tile() {
+    auto table = only_table_of(*tail_noise_effect());
+    if (!table) return machine_error("the effect of the noise has no table of its own");
+    return std::move(*table);
+}
+
 Recipe hand_written_recipe(gpu::Stage stage) {
-    const std::string_view name = stage == gpu::Stage::Compute ? "compute" : "raster";
-    return {.name = fmt::format("tail/hand-written/{}", name),
+    return {.name = fmt::format("tail/hand-written/{}", stage_name(stage)),
             .make = [stage](Bed& bed, const std::string& row) -> Result<Row> {
-                const auto table = only_table_of(*tail_noise_effect());
-                if (!table) return machine_error("the effect of the noise has no table of its own");
-                return kernel_row(bed, row, tail_spec(), stage, tail_words({}), &*table);
+                const auto tile = noise_tile();
+                if (!tile) return failure(tile.error());
+                return kernel_row(bed, row, tail_spec(bed.context), stage, tail_words({}), &*tile);
+            }};
+}
+
+Recipe plain_recipe(std::string_view name, PlainPass pass, gpu::Stage stage) {
+    return {.name = fmt::format("{}/{}", name, stage_name(stage)),
+            .make = [pass, stage](Bed& bed, const std::string& row) -> Result<Row> {
+                const auto tile = noise_tile();
+                if (!tile) return failure(tile.error());
+                return plain_row(bed, row, pass, stage, {}, *tile);
             }};
 }
 
@@ -117,8 +134,11 @@ std::vector<Recipe> recipes() {
                 chain_recipe(fmt::format("effect/{}", effect->name), single_stack(*effect), {.world = WorldUse::Full}));
     if (const Stack tail = tail_stack({}); !tail.empty()) {
         add_chains(out, "tail", tail);
-        for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster})
+        for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster}) {
             out.push_back(hand_written_recipe(stage));
+            out.push_back(plain_recipe("tail/hand-written/plain", PlainPass::Tail, stage));
+            out.push_back(plain_recipe("copy/plain", PlainPass::Copy, stage));
+        }
     }
     if (const Stack bloom = bloom_stack(); !bloom.empty())
         for (const KernelStage stage : stages)

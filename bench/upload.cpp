@@ -36,4 +36,11 @@ Result<gpu::Image> upload(gpu::Context& context, gpu::ImageInfo info, std::span<
     return image;
 }
 
+Result<gpu::Image> upload_table(gpu::Context& context, const TableDesc& table) {
+    return upload(
+        context,
+        {.name = table.name, .format = table.format, .extent = table.extent, .usage = VK_IMAGE_USAGE_STORAGE_BIT},
+        table.data, VK_IMAGE_LAYOUT_GENERAL);
+}
+
 }  // namespace darkroom::bench

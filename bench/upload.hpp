@@ -2,6 +2,7 @@
 #pragma once
 // Images made from bytes of the CPU, once, before anything is measured.
 
+#include <darkroom/effect.hpp>
 #include <span>
 
 #include "gpu/resources.hpp"
@@ -13,5 +14,7 @@ namespace darkroom::bench {
 /// All layers, one after the other, rows without padding; left in `layout`.
 [[nodiscard]] Result<gpu::Image> upload(gpu::Context& context, gpu::ImageInfo info, std::span<const std::byte> bytes,
                                         VkImageLayout layout);
+/// A table of an effect, to be loaded from; in VK_IMAGE_LAYOUT_GENERAL.
+[[nodiscard]] Result<gpu::Image> upload_table(gpu::Context& context, const TableDesc& table);
 
 }  // namespace darkroom::bench
