@@ -113,6 +113,7 @@ gpu::KernelSpec calibration_spec() {
     return {.name = "calibration",
             .images = {{.name = "scene", .storage_format = scene_format}},
             .outputs = {target_format},
+            .is_whole = true,
             .body = "vec4 shade(Pixel pixel) { return load(scene, pixel.texel); }"};
 }
 
