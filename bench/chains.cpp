@@ -150,9 +150,9 @@ Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc)
 
 Row chain_row(Bed& bed, std::string name, const Chain& chain) {
     return {.name = std::move(name),
-            .record = [&bed, composer = chain.composer, world = chain.world](VkCommandBuffer commands) {
-                return composer->record(commands, bed.frame(world));
-            }};
+            .record = [&bed, composer = chain.composer, world = chain.world](
+                          VkCommandBuffer commands) { return composer->record(commands, bed.frame(world)); },
+            .moved_bytes = static_cast<double>(chain.plan.bytes_read() + chain.plan.bytes_written())};
 }
 
 }  // namespace darkroom::bench

@@ -43,18 +43,20 @@ constexpr std::array targets{
     Target{"default stack / calibration", "default/fused/auto", calibration_name, 8.5},
     Target{"default stack / calibration, compute", "default/fused/compute", calibration_name},
     Target{"default stack / calibration, raster", "default/fused/raster", calibration_name},
-    // What a stack pays for an effect where the distance is at hand, and where a pass makes it first.
+    // What a stack pays for an effect.
     Target{"ssao, hemisphere", "ssao/half/hemisphere", calibration_name, 5.0, "effect/encode"},
     Target{"ssao, ground truth", "ssao/half/ground_truth", calibration_name, 5.0, "effect/encode"},
-    Target{"ssao, with its distance", "ssao/half/hemisphere, device depth", calibration_name, {}, "effect/encode"},
+    Target{"ssao, hemisphere, all given", "ssao/half/hemisphere, all given", calibration_name, {}, "effect/encode"},
+    Target{"ssao, ground truth, all given", "ssao/half/ground_truth, all given", calibration_name, {}, "effect/encode"},
     Target{"ssao, full size, hemisphere", "ssao/full/hemisphere", calibration_name, {}, "effect/encode"},
     Target{"ssao, full size, ground truth", "ssao/full/ground_truth", calibration_name, {}, "effect/encode"},
     Target{"volumetric", "volumetric/auto", calibration_name, 5.5, "effect/encode"},
-    Target{"volumetric, with its distance", "volumetric/device depth", calibration_name, {}, "effect/encode"},
-    Target{"fog in the tail", "tail/fog/planar distance", calibration_name, 0.6, "tail/fused/auto"},
-    Target{"fog in the tail, with its distance", "tail/fog/device depth", calibration_name, {}, "tail/fused/auto"},
+    Target{"volumetric, all given", "volumetric/auto, all given", calibration_name, {}, "effect/encode"},
+    Target{"fog in the tail", "tail/fog", calibration_name, 0.6, "tail/fused/auto"},
+    Target{"fog in the tail, all given", "tail/fog, all given", calibration_name, {}, "tail/fused/auto"},
     Target{"plain bloom / calibration", "plain bloom", calibration_name},
     Target{"documented stack / calibration", "documented/fused/auto", calibration_name, 14.0},
+    Target{"documented stack / calibration, all given", "documented/fused/auto, all given", calibration_name},
     Target{"documented stack / calibration, compute", "documented/fused/compute", calibration_name},
     Target{"documented stack / calibration, raster", "documented/fused/raster", calibration_name},
 };
@@ -127,7 +129,7 @@ namespace {
 Result<std::vector<Figure>> compile_figures(Bed& bed) {
     const Stack stack = documented_stack();
     if (stack.empty()) return std::vector<Figure>{};
-    auto chain = compile_chain(bed, stack, {.world = WorldUse::Planar});
+    auto chain = compile_chain(bed, stack, {.world = WorldUse::WithoutNormals});
     if (!chain) return failure(std::move(chain));
     std::array<std::vector<double>, 2> milliseconds;
     for (int i = 0; i < 20; ++i) {

@@ -140,6 +140,11 @@ std::optional<TableDesc> only_table_of(const EffectInfo& effect) {
     return std::move(catcher.tables.front());
 }
 
+double one_pass_bytes(const Bed& bed) {
+    constexpr double scene_bytes = 8, target_bytes = 4;
+    return (scene_bytes + target_bytes) * bed.extent.width * bed.extent.height;
+}
+
 Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, gpu::Stage stage,
                        std::span<const std::uint32_t> words, const TableDesc* table) {
     const auto run = std::make_shared<KernelRun>();
@@ -151,12 +156,14 @@ Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, 
     if (auto ok = fill(bed, *run, spec, stage, words); !ok) return failure(std::move(ok));
     const VkImageLayout layout =
         stage == gpu::Stage::Compute ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    return Row{.name = std::move(name), .record = [&bed, run, layout](VkCommandBuffer commands) -> Result<> {
+    return Row{.name = std::move(name),
+               .record = [&bed, run, layout](VkCommandBuffer commands) -> Result<> {
                    gpu::transition(bed.context, commands, bed.target, VK_IMAGE_LAYOUT_GENERAL, layout);
                    run->kernel->record(commands, run->sets.sets[0], {&run->output, 1});
                    gpu::transition(bed.context, commands, bed.target, layout, VK_IMAGE_LAYOUT_GENERAL);
                    return {};
-               }};
+               },
+               .moved_bytes = one_pass_bytes(bed)};
 }
 
 }  // namespace darkroom::bench

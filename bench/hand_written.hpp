@@ -24,6 +24,8 @@ struct TailValues {
 /// The table of an effect that has exactly one, or nothing.
 [[nodiscard]] std::optional<TableDesc> only_table_of(const EffectInfo& effect);
 
+/// What a pass from the scene to the target moves at least.
+[[nodiscard]] double one_pass_bytes(const Bed& bed);
 /// A row that runs `spec` from the scene to the target. `table` is its second image, if it has one.
 [[nodiscard]] Result<Row> kernel_row(Bed& bed, std::string name, const gpu::KernelSpec& spec, gpu::Stage stage,
                                      std::span<const std::uint32_t> words = {}, const TableDesc* table = nullptr);

@@ -44,6 +44,7 @@ struct Row {
     std::string name;
     std::function<Result<>(VkCommandBuffer)> record{};
     std::function<void()> host{};  ///< instead of `record`: work of the CPU
+    double moved_bytes = 0;        ///< that it must read and write at least; 0: not known
     std::vector<Sample> samples{};
 };
 

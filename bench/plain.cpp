@@ -271,10 +271,12 @@ Result<Row> plain_row(Bed& bed, std::string name, PlainPass pass, gpu::Stage sta
                       const TableDesc& tile) {
     auto plain = Plain::create(bed, pass, stage, values, tile);
     if (!plain) return failure(std::move(plain));
-    return Row{.name = std::move(name), .record = [plain = std::move(*plain)](VkCommandBuffer commands) -> Result<> {
+    return Row{.name = std::move(name),
+               .record = [plain = std::move(*plain)](VkCommandBuffer commands) -> Result<> {
                    plain->record(commands);
                    return {};
-               }};
+               },
+               .moved_bytes = one_pass_bytes(bed)};
 }
 
 }  // namespace darkroom::bench

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 
@@ -18,6 +19,13 @@ constexpr std::array clocks{Clock{"cpu_ms", &Sample::cpu_ms}, Clock{"wall_ms", &
                             Clock{"gpu_ms", &Sample::gpu_ms}};
 
 double in_c(const Report& report, const Row& row) { return ratio(row, report.rows.front(), report.cost); }
+
+/// What moving the row's bytes alone costs, in c.
+std::optional<double> floor_of(const Report& report, const Row& row) {
+    const auto floor = std::ranges::find(report.rows, floor_name, &Row::name);
+    if (row.moved_bytes == 0 || floor == report.rows.end()) return std::nullopt;
+    return in_c(report, *floor) * row.moved_bytes / floor->moved_bytes;
+}
 
 std::string_view unit_of(const Report& report) {
     return report.cost == &Sample::cpu_ms ? "process CPU time" : "GPU time";
@@ -45,15 +53,17 @@ std::string text(const Report& report) {
         fmt::format("{} ({}), {}x{}, {} rounds; c and ratios compare {}\n\n", report.device.name, report.device.driver,
                     report.extent.width, report.extent.height, report.rounds, unit_of(report));
     const auto to = std::back_inserter(out);
-    fmt::format_to(to, "{:<42} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "", "CPU ms", "min", "wall ms", "min",
-                   "GPU ms", "min", "c");
+    fmt::format_to(to, "{:<42} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7} {:>7}\n", "", "CPU ms", "min", "wall ms",
+                   "min", "GPU ms", "min", "c", "floor c");
     for (const Row& row : report.rows) {
         fmt::format_to(to, "{:<42}", row.name);
         for (const Clock& clock : clocks) {
             const std::vector<double> values = column(row, clock.member);
             fmt::format_to(to, " {:>9.3f} {:>9.3f}", median(values), minimum(values));
         }
-        fmt::format_to(to, " {:>7.2f}\n", in_c(report, row));
+        fmt::format_to(to, " {:>7.2f}", in_c(report, row));
+        if (const auto floor = floor_of(report, row)) fmt::format_to(to, " {:>7.2f}", *floor);
+        out += '\n';
     }
     if (!report.passes.empty()) fmt::format_to(to, "\n{:<48} {:>9}\n", "pass", "GPU ms");
     for (const PassRow& pass : report.passes)
@@ -88,7 +98,9 @@ std::string json(const Report& report) {
             const std::vector<double> values = column(row, clock.member);
             fmt::format_to(to, ", \"{0}\": {1:.4f}, \"{0}_min\": {2:.4f}", clock.name, median(values), minimum(values));
         }
-        fmt::format_to(to, ", \"c\": {:.4f}}}", in_c(report, row));
+        fmt::format_to(to, ", \"c\": {:.4f}", in_c(report, row));
+        if (const auto floor = floor_of(report, row)) fmt::format_to(to, ", \"floor_c\": {:.4f}", *floor);
+        out += '}';
     }
     out += "\n  ],\n  \"passes\": [";
     for (std::size_t i = 0; i < report.passes.size(); ++i)

@@ -12,6 +12,8 @@
 namespace darkroom::bench {
 
 inline constexpr std::string_view calibration_name = "calibration (1 c)";
+/// What the device takes to move bytes and do nothing else.
+inline constexpr std::string_view floor_name = "copy of the scene's bytes (floor)";
 
 /// A number that is derived from rows or counted, and what it should be at most.
 struct Figure {
@@ -29,7 +31,8 @@ struct PassRow {
 };
 
 [[nodiscard]] std::vector<std::string> row_names();
-/// Only rows whose name holds one of `filters`, all without any; always the calibration pass, which comes first.
+/// Only rows whose name holds one of `filters`, all without any; always the calibration pass, which comes first, and
+/// the floor.
 [[nodiscard]] Result<std::vector<Row>> make_rows(Bed& bed, std::span<const std::string> filters);
 /// Of the rows that were measured.
 [[nodiscard]] std::vector<Figure> ratio_figures(const Device& device, const std::vector<Row>& rows);
