@@ -75,7 +75,7 @@ Result<> check_picture(const std::string& path, const FilePairs& pairs) {
     if (path.empty()) return {};
     std::vector<std::filesystem::path> inputs;
     for (const FilePairs::Pair& pair : pairs.pairs) inputs.insert(inputs.end(), {pair.reference, pair.test});
-    if (Result<> done = check_output(path, inputs); !done) return done;
+    if (Result<> done = check_output(path, FileSet(inputs)); !done) return done;
     if (const auto kind = darkroom::sample_kind(path, {}); !kind) return failure(kind.error());
     return {};
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <mutex>
 #include <optional>
 
 #include "commands.hpp"
@@ -15,6 +17,8 @@
 #include "number_flag.hpp"
 #include "outputs.hpp"
 #include "report.hpp"
+#include "run_flags.hpp"
+#include "sequence_run.hpp"
 
 namespace app {
 
@@ -26,47 +30,88 @@ using darkroom::user_error;
 struct Options {
     LookFlags look;
     DeviceFlags device;
+    WriteFlags write;
+    RunFlags run;
     std::vector<std::string> inputs, maps;
-    std::string out, size, bits, camera;
+    std::string out, size, camera;
+    std::optional<std::string> frames;
     NumberFlag fov{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
-    bool is_reference = false, has_timings = false, has_alpha = false;
+    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
+    bool is_reference = false;
+};
+
+/// One frame to go through the stack. What is read for the sake of effects with history alone makes no picture.
+struct Step {
+    std::size_t place = 0;  ///< among all inputs
+    std::filesystem::path input, output;
+    long long number = 0;
+    bool is_written = false;
 };
 
 /// Everything that can be known before a frame is read.
 struct Job {
-    std::vector<std::filesystem::path> inputs, outputs;
+    std::vector<Step> steps;
+    std::size_t jobs = 0;
     darkroom::Look look;
     darkroom::FrameOptions frame;
     darkroom::WriteOptions write;
     darkroom::DevelopDesc develop;
     std::optional<VkExtent2D> size;
-    std::optional<double> time;
+    std::optional<double> time, frames_per_second;
 };
 
-Result<Job> job_of(const Options& options) {
-    Job job;
-    if (options.is_reference && options.has_timings)
-        return user_error("--timings: the references do not run on the device");
-    if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
-    if (Result<> done = options.fov.read_to(job.frame.vertical_field_of_view); !done) return failure(std::move(done));
-    Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
-    if (!inputs) return failure(std::move(inputs));
-    job.inputs = std::move(*inputs);
-    Result<std::vector<std::filesystem::path>> outputs = output_paths(job.inputs, options.out);
-    if (!outputs) return failure(std::move(outputs));
-    job.outputs = std::move(*outputs);
-    job.write.alpha = options.has_alpha;
-    if (!options.bits.empty()) {
-        const Result<darkroom::SampleKind> bits = parse_bits(options.bits);
-        if (!bits) return failure(bits.error());
-        job.write.samples = *bits;
+/// The frames that are asked for and are not there yet, each with those before it that histories need.
+Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
+    const Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
+    if (!inputs) return failure(inputs.error());
+    const Result<std::vector<std::filesystem::path>> outputs = output_paths(*inputs, options.out);
+    if (!outputs) return failure(outputs.error());
+    FrameRange range{.first = 0, .last = ~std::uint64_t{0}};
+    if (options.frames) {
+        const Result<FrameRange> parsed = parse_frames(*options.frames);
+        if (!parsed) return failure(parsed.error());
+        range = *parsed;
     }
-    for (const std::filesystem::path& output : job.outputs) {
+    for (const std::filesystem::path& output : *outputs) {
         const Result<darkroom::SampleKind> samples = darkroom::sample_kind(output, job.write);
         if (!samples) return failure(samples.error());
         job.develop.target = target_for(*samples);
     }
+    const std::vector<long long> numbers = numbers_of(*inputs);
+    bool is_any_asked_for = false;
+    std::size_t next_written = inputs->size();
+    for (std::size_t i = inputs->size(); i-- > 0;) {
+        const bool is_asked_for = !options.frames || range.contains(numbers[i]);
+        is_any_asked_for |= is_asked_for;
+        const bool is_written = is_asked_for && !options.run.is_skipped((*outputs)[i]);
+        if (is_written) next_written = i;
+        if (next_written < inputs->size() && next_written - i <= pre_roll)
+            job.steps.push_back({i, (*inputs)[i], (*outputs)[i], numbers[i], is_written});
+    }
+    std::ranges::reverse(job.steps);
+    if (!is_any_asked_for)
+        return user_error(fmt::format("--frames {}: none of the {} inputs has such a number",
+                                      darkroom::printable(*options.frames), inputs->size()));
+    return {};
+}
+
+Result<Job> job_of(const Options& options) {
+    Job job;
+    if (options.is_reference && options.run.has_timings)
+        return user_error("--timings: the references do not run on the device");
+    if (options.time.is_given() && options.frames_per_second.is_given())
+        return user_error("--time: --fps says the time of every frame, leave out one of them");
+    if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
+    if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
+        return failure(std::move(done));
+    if (Result<> done = options.fov.read_to(job.frame.vertical_field_of_view); !done) return failure(std::move(done));
+    Result<darkroom::WriteOptions> write = options.write.options();
+    if (!write) return failure(std::move(write));
+    job.write = std::move(*write);
+    const Result<std::size_t> jobs = options.run.jobs();
+    if (!jobs) return failure(jobs.error());
+    job.jobs = *jobs;
     if (!options.size.empty()) {
         const Result<VkExtent2D> size = parse_size(options.size);
         if (!size) return failure(size.error());
@@ -79,77 +124,168 @@ Result<Job> job_of(const Options& options) {
     if (!stage) return failure(stage.error());
     job.develop.kernels = *stage;
     job.develop.fuse = options.device.is_fused();
+    job.develop.frames_in_flight = 2;
     Result<darkroom::Look> look = options.look.look();
     if (!look) return failure(std::move(look));
     job.look = std::move(*look);
-    job.frame.has_shadow_depths = needs_shadows(job.look);
+    const Result<std::uint32_t> pre_roll = add_needs(job.look, job.frame);
+    if (!pre_roll) return failure(pre_roll.error());
+    job.frame.keeps_halves = !options.is_reference;
+    if (Result<> done = add_steps(options, options.is_reference ? 0 : *pre_roll, job); !done)
+        return failure(std::move(done));
+    // One file is decoded by all threads, several by one each.
+    if (job.steps.size() > 1) job.frame.max_threads = job.write.max_threads = 1;
     return job;
 }
 
 class Develop {
   public:
-    Develop(const Options& options, Job job) : options_(options), job_(std::move(job)) {}
+    Develop(const Options& options, Job job) : options_(options), job_(std::move(job)), items_(job_.steps.size()) {}
 
     Result<> run() {
-        Progress progress(job_.inputs.size());
-        for (std::size_t i = 0; i < job_.inputs.size(); ++i) {
-            const Result<std::string> line = develop(i);
-            if (!line) return failure(line.error());
-            progress.step(*line);
-            if (options_.has_timings) print_timings(*composer_);
-        }
+        const auto pictures = std::ranges::count(job_.steps, true, &Step::is_written);
+        const Result<> done = run_sequence({.steps = job_.steps.size(),
+                                            .pictures = static_cast<std::size_t>(pictures),
+                                            .jobs = job_.jobs,
+                                            .in_flight = options_.is_reference ? 1U : job_.develop.frames_in_flight,
+                                            .keeps_going = options_.run.keeps_going,
+                                            .has_timings = options_.run.has_timings},
+                                           {.decode = [this](std::size_t i) { return decode(i); },
+                                            .begin = [this](std::size_t i) { return begin(i); },
+                                            .finish = [this](std::size_t i) { return finish_step(i); },
+                                            .encode = [this](std::size_t i) { return encode(i); },
+                                            .line = [this](std::size_t i) { return line(i); },
+                                            .release = [this](std::size_t i) { items_[i] = {}; }});
+        if (options_.run.has_timings && done) pass_times_.print();
+        return done;
+    }
+
+    [[nodiscard]] int exit_code(int code) const { return device_ ? app::finish(*device_, code) : code; }
+
+  private:
+    /// What a step has while it is under way.
+    struct Item {
+        darkroom::FrameFile frame;
+        std::vector<darkroom::ReferenceLight> lights;
+        darkroom::DevelopInput input;
+        darkroom::DevelopedPicture picture;
+        VkExtent2D extent{};
+    };
+
+    // The device is made when the first frame has been read: an unreadable one is refused at once.
+    Result<> make_composer() {
+        const std::lock_guard lock(making_);
+        if (composer_) return {};
+        Result<darkroom::Device> device =
+            options_.is_reference ? options_.device.create_if_named() : options_.device.create();
+        if (!device) return failure(std::move(device));
+        auto made = std::make_unique<darkroom::Device>(std::move(*device));
+        auto composer = std::make_unique<darkroom::Composer>(
+            *made, darkroom::ComposerDesc{.frames_in_flight = job_.develop.frames_in_flight,
+                                          .has_timers = options_.run.has_timings});
+        if (Result<> done = darkroom::apply(job_.look, *composer); !done) return done;
+        developer_ = std::make_unique<darkroom::Developer>(*made, job_.develop);
+        device_ = std::move(made);
+        composer_ = std::move(composer);
         return {};
     }
 
-    [[nodiscard]] int exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
+    [[nodiscard]] std::string shown(std::size_t i) const { return darkroom::printable(job_.steps[i].input.string()); }
 
-  private:
-    // The device is made when the first frame has been read: an unreadable one is refused at once.
-    Result<> make_composer() {
-        if (composer_) return {};
-        Result<darkroom::Device> device = options_.device.create();
-        if (!device) return failure(std::move(device));
-        device_ = std::make_unique<darkroom::Device>(std::move(*device));
-        composer_ = std::make_unique<darkroom::Composer>(
-            *device_, darkroom::ComposerDesc{.frames_in_flight = 1, .has_timers = options_.has_timings});
-        developer_ = std::make_unique<darkroom::Developer>(*device_, job_.develop);
-        return darkroom::apply(job_.look, *composer_);
-    }
-
-    Result<std::string> develop(std::size_t index) {
-        const std::string shown = darkroom::printable(job_.inputs[index].string());
-        Result<darkroom::FrameFile> frame = darkroom::read_frame(job_.inputs[index], job_.frame);
+    Result<> decode(std::size_t i) {
+        const Step& step = job_.steps[i];
+        Result<darkroom::FrameFile> frame = darkroom::read_frame(step.input, job_.frame);
         if (!frame) return failure(std::move(frame));
-        for (const std::string& warning : frame->warnings) warn(fmt::format("{}: {}", shown, warning));
-        if (Result<> done = make_composer(); !done) return failure(std::move(done));
+        if (Result<> done = make_composer(); !done) return done;
         const VkExtent2D extent = job_.size.value_or(VkExtent2D{frame->color.width, frame->color.height});
         if (Result<> done = darkroom::check_extent(*device_, extent); !done)
-            return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown, done.error().text)});
+            return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown(i), done.error().text)});
         Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), extent.width, extent.height);
         if (!sized) return failure(std::move(sized));
-        const std::vector<darkroom::ReferenceLight> lights = take_lights(*sized);
-        darkroom::DevelopInput input = develop_input(*sized, lights);
-        if (job_.time) input.time = *job_.time;
-        if (!sized->frame_index) input.frame_index = index;
-        std::vector<std::string> left_out;
-        Result<darkroom::DevelopedPicture> picture =
-            options_.is_reference ? develop_by_reference(*composer_, input, job_.develop.target, left_out)
-                                  : developer_->develop(*composer_, input);
-        if (!picture) return failure(std::move(picture));
-        if (!options_.is_reference) left_out = developer_->plan().left_out;
-        if (index == 0) warn_of_what_is_left_out(job_.look, *composer_, left_out);
-        const VkExtent2D size = picture->extent;
-        if (Result<> done = write(job_.outputs[index], std::move(*picture), job_.write); !done)
-            return failure(std::move(done));
-        return fmt::format("{} -> {} ({}x{})", shown, darkroom::printable(job_.outputs[index].string()), size.width,
-                           size.height);
+        Item& item = items_[i];
+        item.frame = std::move(*sized);
+        item.lights = take_lights(item.frame);
+        item.input = develop_input(item.frame, item.lights);
+        set_time(step, item);
+        return {};
+    }
+
+    /// What the flags say goes before what the frame says, and that before what its name says.
+    void set_time(const Step& step, Item& item) const {
+        const auto number = static_cast<std::uint64_t>(std::max(0LL, step.number));
+        if (!item.frame.frame_index) item.input.frame_index = number;
+        if (job_.time) item.input.time = *job_.time;
+        if (!job_.frames_per_second) return;
+        item.input.time = static_cast<double>(number) / *job_.frames_per_second;
+        item.input.delta_time = 1 / *job_.frames_per_second;
+    }
+
+    Result<> begin(std::size_t i) {
+        Item& item = items_[i];
+        for (const std::string& warning : item.frame.warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        item.input.camera.is_cut = job_.steps[i].place != next_place_;
+        next_place_ = job_.steps[i].place + 1;
+        if (options_.is_reference) {
+            std::vector<std::string> left_out;
+            Result<darkroom::DevelopedPicture> picture =
+                develop_by_reference(*composer_, item.input, job_.develop.target, left_out);
+            if (!picture) return failure(std::move(picture));
+            item.picture = std::move(*picture);
+            tell_of_what_is_left_out(i, left_out);
+            return {};
+        }
+        if (Result<> done = developer_->submit(*composer_, item.input); !done) return done;
+        tell_of_what_is_left_out(i, developer_->plan().left_out);
+        return {};
+    }
+
+    /// Where it is not what was left out of the frame before.
+    void tell_of_what_is_left_out(std::size_t i, const std::vector<std::string>& left_out) {
+        if (last_left_out_ && *last_left_out_ == left_out) return;
+        const std::string frame = job_.steps.size() > 1 ? shown(i) + ": " : "";
+        const std::size_t told = warn_of_what_is_left_out(job_.look, *composer_, left_out, frame);
+        if (told == 0 && last_left_out_) warn(fmt::format("{}nothing is left out any more", frame));
+        last_left_out_ = left_out;
+    }
+
+    Result<> finish_step(std::size_t i) {
+        Item& item = items_[i];
+        if (!options_.is_reference) {
+            Result<darkroom::DevelopedPicture> picture = developer_->finish();
+            if (!picture) return failure(std::move(picture));
+            item.picture = std::move(*picture);
+            if (options_.run.has_timings) pass_times_.add(composer_->times().passes);
+        }
+        item.extent = item.picture.extent;
+        item.lights = {};
+        item.frame = {.attributes = std::move(item.frame.attributes)};
+        return {};
+    }
+
+    Result<> encode(std::size_t i) {
+        if (!job_.steps[i].is_written) return {};
+        darkroom::WriteOptions options = job_.write;
+        options.attributes = items_[i].frame.attributes;
+        return write(job_.steps[i].output, std::move(items_[i].picture), options);
+    }
+
+    [[nodiscard]] std::string line(std::size_t i) const {
+        const Step& step = job_.steps[i];
+        if (!step.is_written) return {};
+        return fmt::format("{} -> {} ({}x{})", shown(i), darkroom::printable(step.output.string()),
+                           items_[i].extent.width, items_[i].extent.height);
     }
 
     const Options& options_;
     Job job_;
+    std::vector<Item> items_;
+    std::mutex making_;
     std::unique_ptr<darkroom::Device> device_;
     std::unique_ptr<darkroom::Composer> composer_;
     std::unique_ptr<darkroom::Developer> developer_;
+    std::optional<std::vector<std::string>> last_left_out_;
+    std::size_t next_place_ = 0;
+    PassTimes pass_times_;
 };
 
 int run(const Options& options) {
@@ -167,21 +303,22 @@ Command add_develop(CLI::App& program) {
     const auto options = std::make_shared<Options>();
     command
         ->add_option("INPUT", options->inputs,
-                     "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.%04d.exr stands for all that match")
+                     "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.%04d.exr or shot.####.exr stands for all that match")
         ->required();
     command
-        ->add_option(
-            "-o,--out", options->out,
-            "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d or {name}")
+        ->add_option("-o,--out", options->out,
+                     "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d, #### or "
+                     "{name}")
         ->type_name("OUT")
         ->required();
     command->add_option("--size", options->size, "Develops at this size; the frame is resampled first")
         ->type_name("WxH");
-    command->add_option("--bits", options->bits, "Samples of the file: 8, 16, half or float")->type_name("BITS");
-    command->add_flag("--alpha", options->has_alpha, "Keeps alpha; without it pictures are opaque");
     command->add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
-    command->add_flag("--timings", options->has_timings, "Prints the GPU milliseconds of every pass");
+    command->add_option("--frames", options->frames, "Of the inputs those with these numbers")->type_name("A-B");
     options->time.add_to(*command, "For effects that move; default: what the frame says, or 0")->type_name("S");
+    options->frames_per_second
+        .add_to(*command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")
+        ->type_name("N");
     const std::string frame_group = "The frame";
     command
         ->add_option("--map", options->maps,
@@ -194,6 +331,8 @@ Command add_develop(CLI::App& program) {
         ->type_name("DEGREES")
         ->group(frame_group);
     command->add_option("--camera", options->camera, "A camera file (TOML)")->type_name("FILE")->group(frame_group);
+    options->write.add_to(*command);
+    options->run.add_to(*command);
     options->device.add_to(*command);
     options->look.add_to(*command, true);
     return {command, [options] { return run(*options); }};

@@ -101,7 +101,12 @@ std::vector<ReferenceLight> take_lights(darkroom::FrameFile& frame) {
 
 DevelopInput develop_input(const darkroom::FrameFile& frame, std::span<const ReferenceLight> lights) {
     const auto [width, height] = std::pair(frame.color.width, frame.color.height);
-    DevelopInput input{.extent = {width, height}, .color = frame.color.pixels, .lights = lights};
+    DevelopInput input{.extent = {width, height},
+                       .color = frame.color.pixels,
+                       .color_halves = frame.halves.color,
+                       .normal_halves = frame.halves.normals,
+                       .velocity_halves = frame.halves.velocity,
+                       .lights = lights};
     if (frame.depth) input.depth = frame.depth->values;
     if (frame.normals) input.normals = frame.normals->values;
     if (frame.velocity) input.velocity = frame.velocity->values;
@@ -135,15 +140,33 @@ darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLaye
     return out;
 }
 
-bool needs_shadows(const darkroom::Look& look) {
-    return std::ranges::any_of(look.entries, [&](const darkroom::LookEntry& entry) {
-        return entry.effect->needs.shadows && entry.state.enabled && (look.is_enabled || !look.is_flat);
-    });
+Result<std::uint32_t> add_needs(const darkroom::Look& look, darkroom::FrameOptions& frame) {
+    darkroom::Composer composer(darkroom::Device::assumed());
+    if (Result<> done = darkroom::apply(look, composer); !done) return failure(std::move(done));
+    constexpr VkImageUsageFlags sampled = VK_IMAGE_USAGE_SAMPLED_BIT;
+    const Result<darkroom::Plan> plan = composer.plan({.max_extent = {64, 64},
+                                                       .color = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
+                                                       .depth = {VK_FORMAT_R32_SFLOAT, sampled},
+                                                       .is_depth_planar = true,
+                                                       .normals = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
+                                                       .velocity = {VK_FORMAT_R32G32_SFLOAT, sampled},
+                                                       .is_velocity_plain = true,
+                                                       .has_shadows = true});
+    if (!plan) return failure(plan.error());
+    const auto is_read = [&](std::string_view image) {
+        return std::ranges::find(plan->frame_images, image) != plan->frame_images.end();
+    };
+    frame.has_depth = is_read("depth");
+    frame.has_normals = is_read("normals");
+    frame.has_velocity = is_read("velocity");
+    frame.has_shadow_depths = is_read("shadows");
+    return composer.pre_roll();
 }
 
 // Linear targets skip the last steps by definition; that is no news.
-void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
-                              std::span<const std::string> left_out) {
+std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
+                                     std::span<const std::string> left_out, std::string_view frame) {
+    std::size_t told = 0;
     for (const std::string& text : left_out) {
         const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
         if (!entry) continue;
@@ -151,20 +174,11 @@ void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Compos
         // What the flat table has on by itself, nobody asked for.
         const bool is_usual =
             look.is_flat && info.flat.starts_on && std::ranges::equal(composer.words(*entry), info.parameters.defaults);
-        if (composer.desc(*entry)->enabled && !info.is_last_step && !is_usual) warn(fmt::format("left out: {}", text));
+        if (!composer.desc(*entry)->enabled || info.is_last_step || is_usual) continue;
+        warn(fmt::format("{}left out: {}", frame, text));
+        ++told;
     }
-}
-
-void print_timings(darkroom::Composer& composer) {
-    double sum = 0;
-    for (const darkroom::PassTime& pass : composer.times().passes) {
-        fmt::print("{:>10.3f} ms  {}\n", pass.milliseconds, pass.name);
-        sum += pass.milliseconds;
-    }
-    if (composer.times().passes.empty())
-        warn("this device has no timestamps");
-    else
-        fmt::print("{:>10.3f} ms  together\n", sum);
+    return told;
 }
 
 Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer, const DevelopInput& input,

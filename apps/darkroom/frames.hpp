@@ -25,13 +25,12 @@ inline constexpr double assumed_field_of_view = 45;
 [[nodiscard]] darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLayers layers);
 /// The camera as develop_input would have it of a file with this one: what a file does not store is left behind.
 [[nodiscard]] darkroom::Camera as_stored(const darkroom::Camera& camera);
-/// Is there an effect that is on and reads shadows?
-[[nodiscard]] bool needs_shadows(const darkroom::Look& look);
-/// One warning for each entry that is on and has no place in the plan, but for those that are on by default.
-void warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
-                              std::span<const std::string> left_out);
-/// The GPU milliseconds of every pass of the last recording.
-void print_timings(darkroom::Composer& composer);
+/// Says of `frame` which layers a stack of this look reads. Gives how many frames before one its histories need.
+[[nodiscard]] darkroom::Result<std::uint32_t> add_needs(const darkroom::Look& look, darkroom::FrameOptions& frame);
+/// One warning, `frame` first, for each entry that is on and has no place in the plan, but for those that are on by
+/// default. Gives how many that were.
+std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
+                                     std::span<const std::string> left_out, std::string_view frame = {});
 /// By the CPU references alone, in the form that the target asks for. `left_out`: as in Plan.
 [[nodiscard]] darkroom::Result<darkroom::DevelopedPicture> develop_by_reference(const darkroom::Composer& composer,
                                                                                 const darkroom::DevelopInput& input,

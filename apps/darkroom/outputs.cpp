@@ -2,9 +2,10 @@
 #include "outputs.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <map>
-#include <set>
+#include <optional>
 #include <system_error>
 
 #include "core/files.hpp"
@@ -22,7 +23,24 @@ namespace {
 
 constexpr std::string_view name_pattern = "{name}";
 
-// The frames' own numbers where all have one and no two the same, else 1, 2, 3.
+std::optional<std::pair<std::uintmax_t, std::uintmax_t>> identity_of(const fs::path& file) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) return std::nullopt;
+    return std::pair<std::uintmax_t, std::uintmax_t>{status.st_dev, status.st_ino};
+}
+
+}  // namespace
+
+FileSet::FileSet(std::span<const fs::path> files) {
+    for (const fs::path& file : files)
+        if (const auto identity = identity_of(file)) files_.insert(*identity);
+}
+
+bool FileSet::contains(const fs::path& file) const {
+    const auto identity = identity_of(file);
+    return identity && files_.contains(*identity);
+}
+
 std::vector<long long> numbers_of(std::span<const fs::path> inputs) {
     std::vector<long long> numbers;
     std::set<long long> seen;
@@ -35,13 +53,10 @@ std::vector<long long> numbers_of(std::span<const fs::path> inputs) {
     return numbers;
 }
 
-}  // namespace
-
-Result<> check_output(const fs::path& output, std::span<const fs::path> inputs) {
+Result<> check_output(const fs::path& output, const FileSet& inputs) {
     std::error_code error;
-    for (const fs::path& input : inputs)
-        if (fs::equivalent(input, output, error) && !error)
-            return user_error(fmt::format("{}: is an input, and would be overwritten", printable(output.string())));
+    if (inputs.contains(output))
+        return user_error(fmt::format("{}: is an input, and would be overwritten", printable(output.string())));
     if (const fs::path folder = output.parent_path(); !folder.empty() && !fs::is_directory(folder, error))
         return user_error(fmt::format("{}: no such folder, the picture cannot be written", printable(folder.string())));
     // Reserving the file tells now, before any work, whether it can be written.
@@ -59,11 +74,12 @@ Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, con
     if (is_folder && !fs::is_directory(out, error))
         return user_error(fmt::format("{}: no such folder", printable(out)));
     if (inputs.size() > 1 && !is_folder && !has_number && name_at == std::string::npos)
-        return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d or {{name}}", printable(out),
-                                      inputs.size()));
+        return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d, #### or {{name}}",
+                                      printable(out), inputs.size()));
     const std::vector<long long> numbers = numbers_of(inputs);
     std::vector<fs::path> outputs;
     std::map<fs::path, fs::path> makers;
+    const FileSet files(inputs);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         fs::path path = out;
         if (is_folder) {
@@ -77,7 +93,7 @@ Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, con
         if (!is_new)
             return user_error(fmt::format("{}: would be made of {} and of {}", printable(path.string()),
                                           printable(maker->second.string()), printable(inputs[i].string())));
-        if (Result<> done = check_output(path, inputs); !done) return failure(std::move(done));
+        if (Result<> done = check_output(path, files); !done) return failure(std::move(done));
         outputs.push_back(std::move(path));
     }
     return outputs;

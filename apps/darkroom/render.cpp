@@ -16,6 +16,7 @@
 #include "report.hpp"
 #include "scene/assets.hpp"
 #include "scene/scene.hpp"
+#include "sequence_run.hpp"
 
 namespace app {
 
@@ -63,20 +64,35 @@ class Render {
 
     Result<> run() {
         if (Result<> done = read(); !done) return done;
+        if (job_.shots.empty()) return {};  // all are there
         if (Result<> done = make(); !done) return done;
-        Progress progress(job_.shots.size());
-        for (const Shot& shot : job_.shots) {
-            if (Result<> done = render(shot); !done) return done;
-            progress.step(fmt::format("Rendered {}x{} image to {}", job_.desc.extent.width, job_.desc.extent.height,
-                                      shown(shot.picture)));
-            if (composer_ && flags_.has_timings) print_timings(*composer_);
-        }
-        return {};
+        const auto pictures = std::ranges::count(job_.shots, true, &Shot::is_written);
+        items_.resize(job_.shots.size());
+        const Result<> done = run_sequence({.steps = items_.size(),
+                                            .pictures = static_cast<std::size_t>(pictures),
+                                            .jobs = job_.jobs,
+                                            .keeps_going = flags_.run.keeps_going,
+                                            .has_timings = flags_.run.has_timings},
+                                           {.decode = [this](std::size_t i) { return pose(i); },
+                                            .begin = [this](std::size_t i) { return render(i); },
+                                            .finish = [](std::size_t) { return Result<>(); },
+                                            .encode = [this](std::size_t i) { return encode(i); },
+                                            .line = [this](std::size_t i) { return line(job_.shots[i]); },
+                                            .release = [this](std::size_t i) { items_[i] = {}; }});
+        if (composer_ && flags_.run.has_timings && done) pass_times_.print();
+        return done;
     }
 
     [[nodiscard]] int exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
 
   private:
+    /// What a shot has while it is under way.
+    struct Item {
+        std::optional<scene::Snapshot> snapshot;
+        DevelopedPicture picture;
+        std::optional<darkroom::FrameFile> frame;
+    };
+
     // Everything that needs no device: a slip is told before one is made.
     Result<> read() {
         Result<RenderJob> job = flags_.job();
@@ -100,7 +116,7 @@ class Render {
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
         choose_way();
-        if (flags_.has_timings && way_ != Way::Developed)
+        if (flags_.run.has_timings && way_ != Way::Developed)
             return darkroom::user_error("--timings: nothing is post-processed");
         const bool is_orthographic = scene_.camera.projection == scene::Projection::Orthographic;
         if (job_.orbit.field_of_view && is_orthographic) warn("--fov: the scene's camera is orthographic, it has none");
@@ -109,12 +125,41 @@ class Render {
         for (const std::string& warning : assets_.warnings) warn(warning);
         std::vector<std::filesystem::path> inputs = assets_.files;
         if (!flags_.look.file.empty()) inputs.emplace_back(flags_.look.file);
+        const FileSet files(inputs);
         for (const Shot& shot : job_.shots)
             for (const std::filesystem::path& path : {shot.picture, shot.frame})
                 if (!path.empty())
-                    if (Result<> done = check_output(path, inputs); !done) return done;
+                    if (Result<> done = check_output(path, files); !done) return done;
+        std::erase_if(job_.shots, [&](const Shot& shot) {
+            return flags_.run.is_skipped(shot.picture) && (shot.frame.empty() || flags_.run.is_skipped(shot.frame));
+        });
+        if (way_ == Way::Developed)
+            if (Result<> done = add_pre_roll(); !done) return done;
         fmt::print("Loaded scene {}\nEntities: {}\n", darkroom::printable(scene_.name), scene_.entities.size());
         std::fflush(stdout);
+        return {};
+    }
+
+    /// The shots before each that histories need and that are not made anyway.
+    Result<> add_pre_roll() {
+        darkroom::FrameOptions ignored;
+        const Result<std::uint32_t> pre_roll = add_needs(look_, ignored);
+        if (!pre_roll) return failure(pre_roll.error());
+        std::vector<Shot> all;
+        for (const Shot& shot : job_.shots) {
+            std::uint64_t first = shot.number - std::min<std::uint64_t>(shot.number, *pre_roll);
+            if (!all.empty()) first = std::max(first, all.back().number + 1);
+            for (std::uint64_t number = first; number < shot.number; ++number) {
+                Shot& before = all.emplace_back(shot);
+                before.number = number;
+                before.time = shot.time - static_cast<double>(shot.number - number) * shot.delta_time;
+                before.previous_time = std::max(0.0, before.time - shot.delta_time);
+                before.frame.clear();
+                before.is_written = false;
+            }
+            all.push_back(shot);
+        }
+        job_.shots = std::move(all);
         return {};
     }
 
@@ -145,7 +190,7 @@ class Render {
         render::RenderDesc& desc = job_.desc;
         if (Result<> done = darkroom::check_extent(*device_, desc.extent); !done) return done;
         desc.has_grid = desc.has_grid && scene_.has_grid;
-        const bool has_frames = !job_.shots.front().frame.empty();
+        const bool has_frames = !job_.shots.back().frame.empty();
         if (way_ == Way::Display) {
             desc.output = render::Output::Display;
             // What the file holds more of than eight bits: half floats have eleven, and no range to leave.
@@ -159,7 +204,7 @@ class Render {
         }
         if (way_ != Way::Developed) return {};
         composer_ = std::make_unique<darkroom::Composer>(
-            *device_, darkroom::ComposerDesc{.frames_in_flight = 1, .has_timers = flags_.has_timings});
+            *device_, darkroom::ComposerDesc{.frames_in_flight = 1, .has_timers = flags_.run.has_timings});
         developer_ = std::make_unique<darkroom::Developer>(*device_, develop_);
         return darkroom::apply(look_, *composer_);
     }
@@ -171,32 +216,55 @@ class Render {
         return {};
     }
 
-    Result<> render(const Shot& shot) {
+    Result<> pose(std::size_t i) {
         const auto [width, height] = job_.desc.extent;
-        const scene::Snapshot snapshot =
-            scene::snapshot(scene_, assets_,
-                            {.time = shot.time,
-                             .previous_time = shot.previous_time,
-                             .aspect = static_cast<float>(width) / static_cast<float>(height),
-                             .seed = job_.seed,
-                             .orbit = job_.orbit});
-        for (const std::string& warning : snapshot.warnings)
-            if (&shot == &job_.shots.front()) warn(warning);
-        DevelopedPicture picture;
+        const Shot& shot = job_.shots[i];
+        items_[i].snapshot = scene::snapshot(scene_, assets_,
+                                             {.time = shot.time,
+                                              .previous_time = shot.previous_time,
+                                              .aspect = static_cast<float>(width) / static_cast<float>(height),
+                                              .seed = job_.seed,
+                                              .orbit = job_.orbit});
+        return {};
+    }
+
+    Result<> render(std::size_t i) {
+        Item& item = items_[i];
+        if (i == 0)
+            for (const std::string& warning : item.snapshot->warnings) warn(warning);
         if (display_) {
-            if (Result<> done = display_->prepare(snapshot); !done) return done;
+            if (Result<> done = display_->prepare(*item.snapshot); !done) return done;
             Result<DevelopedPicture> read = darkroom::read_picture(*device_, display_->picture(), recorder(*display_));
             if (!read) return failure(std::move(read));
-            picture = std::move(*read);
+            item.picture = std::move(*read);
         }
         if (hdr_)
-            if (Result<> done = render_light(shot, snapshot, picture); !done) return done;
-        return write(shot.picture, std::move(picture), job_.write);
+            if (Result<> done = render_light(i); !done) return done;
+        item.snapshot.reset();
+        return {};
+    }
+
+    Result<> encode(std::size_t i) {
+        const Shot& shot = job_.shots[i];
+        if (!shot.is_written) return {};
+        Item& item = items_[i];
+        if (item.frame)
+            if (Result<> done = darkroom::write_frame(shot.frame, *item.frame, job_.write.max_threads); !done)
+                return done;
+        return write(shot.picture, std::move(item.picture), job_.write);
+    }
+
+    [[nodiscard]] std::string line(const Shot& shot) const {
+        if (!shot.is_written) return {};
+        return fmt::format("Rendered {}x{} image to {}", job_.desc.extent.width, job_.desc.extent.height,
+                           shown(shot.picture));
     }
 
     /// The linear frame: through the look, or as it is, and into a file of its own.
-    Result<> render_light(const Shot& shot, const scene::Snapshot& snapshot, DevelopedPicture& picture) {
-        if (Result<> done = hdr_->prepare(snapshot); !done) return done;
+    Result<> render_light(std::size_t i) {
+        const Shot& shot = job_.shots[i];
+        Item& item = items_[i];
+        if (Result<> done = hdr_->prepare(*item.snapshot); !done) return done;
         darkroom::DeviceFrame input{.frame = hdr_->frame(),
                                     .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
                                     .layer_usage = hdr_->layer_usage(),
@@ -205,21 +273,23 @@ class Render {
         input.frame.time = shot.time;
         input.frame.delta_time = shot.delta_time;
         input.frame.frame_index = shot.number;
+        input.frame.camera.is_cut = i > 0 && job_.shots[i - 1].number + 1 != shot.number;
         darkroom::FrameLayers layers;
         const bool has_frame = !shot.frame.empty();
         if (way_ == Way::Developed) {
             Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
             if (!made) return failure(std::move(made));
-            if (&shot == &job_.shots.front()) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
-            picture = std::move(*made);
+            if (i == 0) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
+            item.picture = std::move(*made);
+            if (flags_.run.has_timings) pass_times_.add(composer_->times().passes);
         } else {
             Result<darkroom::FrameLayers> read = darkroom::read_layers(*device_, input.frame, input.record_before);
             if (!read) return failure(std::move(read));
             layers = std::move(*read);
-            if (way_ == Way::Linear) picture = {.extent = layers.extent, .pixels = layers.color};
+            if (way_ == Way::Linear) item.picture = {.extent = layers.extent, .pixels = layers.color};
         }
-        if (!has_frame) return {};
-        return darkroom::write_frame(shot.frame, frame_file(input.frame, std::move(layers)));
+        if (has_frame) item.frame = frame_file(input.frame, std::move(layers));
+        return {};
     }
 
     static darkroom::RecordBefore recorder(render::Renderer& renderer) {
@@ -237,6 +307,8 @@ class Render {
     std::optional<render::Renderer> hdr_, display_;
     std::unique_ptr<darkroom::Composer> composer_;
     std::unique_ptr<darkroom::Developer> developer_;
+    std::vector<Item> items_;
+    PassTimes pass_times_;
 };
 
 int run(const RenderFlags& flags) {

@@ -68,34 +68,6 @@ Result<darkroom::scene::vec3> parse_vec3(std::string_view flag, const std::strin
     return out;
 }
 
-struct FrameRange {
-    std::uint64_t first = 0, last = 0;
-};
-
-Result<FrameRange> parse_frames(const std::string& text) {
-    FrameRange range;
-    const char* const end = text.data() + text.size();
-    const auto [dash, first_error] = std::from_chars(text.data(), end, range.first);
-    std::errc error = first_error;
-    const char* last = dash;
-    range.last = range.first;
-    if (error == std::errc() && dash != end && *dash == '-') {
-        const auto parsed = std::from_chars(dash + 1, end, range.last);
-        last = parsed.ptr;
-        error = parsed.ec;
-    }
-    constexpr std::uint64_t most_number = 1'000'000'000;  // what fits a file name and a float file's attributes
-    if (error != std::errc() || last != end || range.first > most_number || range.last > most_number)
-        return user_error(
-            fmt::format("--frames {}: expected FIRST-LAST, whole numbers from 0 to {}", printable(text), most_number));
-    if (range.last < range.first)
-        return user_error(fmt::format("--frames {}: the last frame is before the first", printable(text)));
-    constexpr std::uint64_t most = 100'000;
-    if (range.last - range.first >= most)
-        return user_error(fmt::format("--frames {}: at most {} frames at once", printable(text), most));
-    return range;
-}
-
 }  // namespace
 
 void RenderFlags::add_to(CLI::App& command) {
@@ -112,9 +84,6 @@ void RenderFlags::add_to(CLI::App& command) {
         ->type_name("PIXELS")
         ->default_str(fmt::format("{}", default_extent.height));
     command.add_option("--size", size_, "Both at once")->type_name("WxH");
-    command.add_option("--bits", bits_, "Samples of the file: 8, 16, half or float")->type_name("BITS");
-    command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque");
-    command.add_flag("--timings", has_timings, "Prints the GPU milliseconds of every pass of post-processing");
     command.add_option("--schemas", schemas_, "Taken for the sake of old command lines; there is nothing to check")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -124,6 +93,8 @@ void RenderFlags::add_to(CLI::App& command) {
     add_moments(command);
     add_camera(command);
     add_drawing(command);
+    write.add_to(command);
+    run.add_to(command);
     device.add_to(command);
     look.add_to(command, true);
 }
@@ -259,7 +230,7 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
             return user_error(
                 fmt::format("--frame {}: {} frames need a name with %04d", printable(*frame_), shots.size()));
     }
-    const std::array<fs::path, 1> inputs{scene};
+    const FileSet inputs(std::array<fs::path, 1>{scene});
     std::set<fs::path> outputs;
     for (const Shot& shot : shots)
         for (const fs::path& path : {shot.picture, shot.frame}) {
@@ -280,18 +251,19 @@ Result<RenderJob> RenderFlags::job() const {
     const Result<darkroom::scene::OrbitOverride> orbit = this->orbit();
     if (!orbit) return failure(orbit.error());
     job.orbit = *orbit;
-    job.write.alpha = has_alpha_;
-    if (bits_) {
-        const Result<darkroom::SampleKind> bits = parse_bits(*bits_);
-        if (!bits) return failure(bits.error());
-        job.write.samples = *bits;
-    }
+    Result<darkroom::WriteOptions> options = write.options();
+    if (!options) return failure(std::move(options));
+    job.write = std::move(*options);
+    const Result<std::size_t> jobs = run.jobs();
+    if (!jobs) return failure(jobs.error());
+    job.jobs = *jobs;
     const Result<darkroom::SampleKind> samples = darkroom::sample_kind(out_, job.write);
     if (!samples) return failure(samples.error());
     job.samples = *samples;
     Result<std::vector<Shot>> shots = this->shots();
     if (!shots) return failure(std::move(shots));
     job.shots = std::move(*shots);
+    if (job.shots.size() > 1) job.write.max_threads = 1;  // several files are encoded at once
     if (Result<> done = check_files(job.shots); !done) return failure(std::move(done));
     if (!schemas_.empty()) warn("--schemas: scenes are checked without schema files, the folders are not read");
     return job;

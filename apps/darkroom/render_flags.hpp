@@ -15,6 +15,7 @@
 #include "look_flags.hpp"
 #include "number_flag.hpp"
 #include "render/renderer.hpp"
+#include "run_flags.hpp"
 #include "scene/snapshot.hpp"
 
 namespace app {
@@ -27,6 +28,7 @@ struct Shot {
     double delta_time = 0;
     std::filesystem::path picture;
     std::filesystem::path frame;  ///< empty: not asked for
+    bool is_written = true;       ///< false: for the sake of effects with history alone
 };
 
 struct RenderJob {
@@ -34,6 +36,7 @@ struct RenderJob {
     darkroom::scene::OrbitOverride orbit;
     std::vector<Shot> shots;
     darkroom::WriteOptions write;
+    std::size_t jobs = 0;
     darkroom::SampleKind samples = darkroom::SampleKind::Integer8;  ///< of the pictures
     std::uint64_t seed = 0;
 };
@@ -45,8 +48,9 @@ class RenderFlags {
 
     LookFlags look;
     DeviceFlags device;
+    WriteFlags write;
+    RunFlags run;
     std::string scene;
-    bool has_timings = false;
     bool is_tone_mapped() const { return !has_no_tone_mapping_; }
     /// Do the flags say a time? Else it is the scene's.
     bool has_time() const { return time_.is_given() || frames_; }
@@ -63,7 +67,7 @@ class RenderFlags {
 
     // Optional, so that an empty text is a wrong value, not a missing one.
     std::string out_ = "render.png";
-    std::optional<std::string> frame_, size_, target_, debug_mode_, frames_, bits_;
+    std::optional<std::string> frame_, size_, target_, debug_mode_, frames_;
     std::vector<std::string> schemas_;
     // More pixels than any device takes. Its own limit is said once it is known.
     NumberFlag width_{"--width", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
@@ -80,7 +84,7 @@ class RenderFlags {
                                   {.least = 16, .most = 16384, .is_whole = true, .unit = "texels"}};
     NumberFlag samples_{"--msaa", {.least = 1, .most = 64, .is_whole = true}};
     bool has_no_grid_ = false, has_wireframe_overlay_ = false, has_normal_arrows_ = false;
-    bool has_no_tone_mapping_ = false, has_no_shadows_ = false, has_alpha_ = false;
+    bool has_no_tone_mapping_ = false, has_no_shadows_ = false;
 };
 
 }  // namespace app

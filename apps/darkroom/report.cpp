@@ -4,18 +4,22 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <mutex>
 
 namespace app {
 
 namespace {
 
 bool is_bar_shown = false;
+std::mutex terminal;  // whose lines come from several threads
 
 void say(std::string_view prefix, std::string_view text) {
     std::string line(text);
     for (char& c : line)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    const std::lock_guard lock(terminal);
     if (is_bar_shown) std::fputs("\r\x1b[K", stderr);
     is_bar_shown = false;
     fmt::print(stderr, "darkroom: {}{}\n", prefix, line);
@@ -51,6 +55,7 @@ Progress::~Progress() {
 }
 
 void Progress::step(std::string_view line) {
+    const std::lock_guard lock(terminal);
     ++done_;
     if (total_ < 2 || !is_terminal_) {
         if (total_ < 2)
@@ -62,7 +67,11 @@ void Progress::step(std::string_view line) {
     }
     constexpr std::size_t width = 30;
     const std::size_t filled = width * done_ / total_;
-    fmt::print(stderr, "\r\x1b[K[{:=<{}}{: <{}}] {}/{} {}", "", filled, "", width - filled, done_, total_, line);
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
+    const double rate = static_cast<double>(done_) / std::max(passed.count(), 1e-6);
+    const auto left = static_cast<long long>(static_cast<double>(total_ - done_) / rate + 0.5);
+    fmt::print(stderr, "\r\x1b[K[{:=<{}}{: <{}}] {}/{} {:.1f} fps, {}:{:02} left  {}", "", filled, "", width - filled,
+               done_, total_, rate, left / 60, left % 60, line);
     std::fflush(stderr);
     is_bar_shown = true;
 }

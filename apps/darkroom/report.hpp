@@ -2,6 +2,7 @@
 #pragma once
 // What the program says: one line an error or warning on standard error, exit codes, and how far it has come.
 
+#include <chrono>
 #include <darkroom/log.hpp>
 #include <darkroom/result.hpp>
 #include <string>
@@ -22,7 +23,8 @@ void warn(std::string_view text);
 /// Prints the library's warnings and errors.
 [[nodiscard]] darkroom::LogSink log_sink();
 
-/// How far a list of files has come: a bar on a terminal, else a line for each file; nothing for a single one.
+/// How far a list of files has come: on a terminal a bar with frames a second and the time that is left, else a line
+/// for each file. Of a single one its line alone. May be told by several threads, one at a time.
 class Progress {
   public:
     explicit Progress(std::size_t total);
@@ -35,6 +37,7 @@ class Progress {
   private:
     std::size_t total_ = 0;
     std::size_t done_ = 0;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     bool is_terminal_ = false;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "image/compare.hpp"
 
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <limits>
 #include <string>
 
+#include "image/decoder.hpp"
 #include "image/flip.hpp"
 
 namespace darkroom {
@@ -174,13 +174,15 @@ TEST(Flip, UniformPicturesGiveThePublishedErrors) {
 
 /// A file's first three channels as they are in it, 0 to 1 for integers.
 Picture read_values(const std::filesystem::path& path) {
-    const auto file = OIIO::ImageInput::open(path.string());
+    auto file = Decoder::open(path);
     if (!file) return {};
-    const auto width = static_cast<std::uint32_t>(file->spec().width);
-    const auto height = static_cast<std::uint32_t>(file->spec().height);
-    Picture out(width, height);
-    const OIIO::stride_t pixel = 4 * sizeof(float);
-    if (!file->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, out.pixels.data(), pixel)) return {};
+    const FilePart& part = file->parts().front();
+    Picture out(part.width, part.height);
+    const auto take = [&](std::uint32_t row, std::uint32_t rows, std::span<const float> samples) {
+        for (std::size_t i = 0; i < std::size_t{rows} * part.width; ++i)
+            std::copy_n(&samples[3 * i], 3, out.at(0, row) + 4 * i);
+    };
+    if (!file->read(0, 0, 3, take)) return {};
     return out;
 }
 

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "image/file_kind.hpp"
+
 namespace darkroom {
 namespace {
 
@@ -83,8 +85,8 @@ struct Part {
     std::optional<Tiles> tiles;
     std::optional<unsigned> compression;
     std::string type;
-    Wide bytes_per_pixel = 0;
-    Wide bytes = 0;  // of all pixels, at full resolution
+    double bytes_per_pixel = 0;  // subsampled channels have fewer than one sample a pixel
+    Wide bytes = 0;              // of all pixels, at full resolution
     Wide channel_count = 0;
     Wide chunk_count = 0;
 };
@@ -128,12 +130,12 @@ Result<> read_channels(Reader reader, Part& part) {
         const auto y_sampling = reader.number<std::int32_t>();
         if (reader.is_past_end()) return malformed("the channel list has no end");
         if (type > 2) return malformed(fmt::format("a channel has pixel type {}, 0 to 2 is allowed", type));
-        if (x_sampling != 1 || y_sampling != 1)
-            return user_error(
-                fmt::format("channel {} is subsampled {}x{} (luminance and chroma); channels at full "
-                            "resolution are needed",
-                            name.substr(0, 64), x_sampling, y_sampling));
-        part.bytes_per_pixel += type == 1 ? 2 : 4;
+        // Chroma at half the resolution is what there is.
+        constexpr std::int32_t coarsest = 64;
+        if (std::min(x_sampling, y_sampling) < 1 || std::max(x_sampling, y_sampling) > coarsest)
+            return malformed(fmt::format("channel {} is sampled {}x{}, 1 to {} is allowed", one_printable_line(name),
+                                         x_sampling, y_sampling, coarsest));
+        part.bytes_per_pixel += (type == 1 ? 2.0 : 4.0) / (x_sampling * y_sampling);
         if (++part.channel_count > 1024) return malformed("more than 1024 channels");
     }
 }
@@ -211,7 +213,7 @@ Wide count_tiles(const Window& data, const Tiles& tiles) {
 }
 
 Result<> check_chunk(Wide width, Wide height, const Part& part) {
-    const Wide bytes = width * height * part.bytes_per_pixel;
+    const auto bytes = static_cast<Wide>(static_cast<double>(width * height) * part.bytes_per_pixel);
     if (bytes <= largest_chunk) return {};
     return user_error(fmt::format("chunks of {}x{} pixels need {} bytes each, at most {} are allowed", width, height,
                                   bytes, largest_chunk));
@@ -226,7 +228,8 @@ Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
         return malformed(fmt::format("compression {}, 0 to 9 is allowed", *part.compression));
     const Compression compression = compressions[*part.compression];
 
-    const Wide bytes = part.bytes = part.data->width() * part.data->height() * part.bytes_per_pixel;
+    const Wide bytes = part.bytes =
+        static_cast<Wide>(static_cast<double>(part.data->width() * part.data->height()) * part.bytes_per_pixel);
     if (bytes / compression.largest_ratio > static_cast<Wide>(file_size))
         return user_error(
             fmt::format("the data window is {} and needs {} bytes of pixels, which a file of {} bytes "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image/exr_source.hpp"
 
-#include <Iex.h>
+#include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfDoubleAttribute.h>

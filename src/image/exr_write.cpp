@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image/exr_write.hpp"
 
+#include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -12,7 +13,6 @@
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
-#include <half.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "image/exr_zip.hpp"
 
+#include <Imath/half.h>
 #include <OpenEXR/ImfCompression.h>
 #include <OpenEXR/ImfHeader.h>
 #include <fmt/format.h>
-#include <half.h>
 #include <libdeflate.h>
 
 #include <algorithm>

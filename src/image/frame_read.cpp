@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <Imath/half.h>
 #include <fmt/format.h>
-#include <half.h>
 
 #include <algorithm>
 #include <cmath>

@@ -56,7 +56,10 @@ Result<> check_size(FileKind kind, const FilePart& part, std::size_t file_size) 
         return user_error(
             fmt::format("a picture of {}x{} cannot be in a file of {} bytes: truncated, or a damaged header",
                         part.width, part.height, file_size));
-    return {};
+    double row_bytes = 0;
+    for (const SampleKind sample : part.kinds)
+        row_bytes += static_cast<double>(part.width) * static_cast<double>(size_of(sample));
+    return check_decoded_size(static_cast<std::uint64_t>(row_bytes * part.height), file_size);
 }
 
 Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads) {

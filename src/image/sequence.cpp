@@ -24,7 +24,7 @@ std::optional<long long> whole_number(std::string_view text) {
     return value;
 }
 
-// before%04dafter
+// before%04dafter, before####after, before@@@@after
 struct Pattern {
     std::string before;
     std::string after;
@@ -42,6 +42,13 @@ std::optional<Pattern> parse(const std::string& name) {
         if (end == name.size() || name[end] != 'd' || end - percent > 4) continue;
         const auto width = whole_number(std::string_view(name).substr(percent + 1, end - percent - 1)).value_or(0);
         return Pattern{name.substr(0, percent), name.substr(end + 1), static_cast<int>(std::min<long long>(width, 18))};
+    }
+    // As many digits as there are signs; a single one is a name like any other.
+    for (std::size_t begin = name.find_first_of("#@"); begin != std::string::npos;) {
+        const std::size_t end = std::min(name.find_first_not_of(name[begin], begin), name.size());
+        if (end - begin >= 2 && end - begin <= 18)
+            return Pattern{name.substr(0, begin), name.substr(end), static_cast<int>(end - begin)};
+        begin = name.find_first_of("#@", end);
     }
     return std::nullopt;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -68,11 +69,28 @@ void remark_domains(const Program& program, const FrameValues& values, std::span
 
 }  // namespace
 
+namespace {
+
+std::vector<std::string> frame_images(const Program& program) {
+    constexpr std::array<const char*, 5> names{"color", "depth", "normals", "velocity", "ui"};
+    std::vector<std::string> out;
+    for (const std::optional<HostImage>& image : program.imports) {
+        if (!image || *image == HostImage::Target) continue;
+        const auto number = static_cast<std::size_t>(*image);
+        const char* const name = number < names.size() ? names[number] : "shadows";
+        if (std::ranges::find(out, name) == out.end()) out.emplace_back(name);
+    }
+    return out;
+}
+
+}  // namespace
+
 Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
                       std::span<const Entry* const> entries) {
     Plan plan{.extent = desc.max_extent,
               .left_out = program.left_out,
               .remarks = program.remarks,
+              .frame_images = frame_images(program),
               .transient_bytes = compiled.transient_bytes(),
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
     FrameValues values(program, entries);

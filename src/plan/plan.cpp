@@ -77,9 +77,9 @@ std::string Plan::json() const {
         "{{\n  \"width\": {}, \"height\": {}, \"dispatches\": {},\n  \"passes\": [{}\n  ],\n  \"bytes_read\": {}, "
         "\"bytes_written\": "
         "{},\n  \"transient_bytes\": {}, \"transient_bytes_unaliased\": {},\n  \"left_out\": {},\n  \"remarks\": "
-        "{}\n}}\n",
+        "{},\n  \"frame_images\": {}\n}}\n",
         extent.width, extent.height, passes.size(), items, bytes_read(), bytes_written(), transient_bytes,
-        transient_bytes_unaliased, list(left_out), list(remarks));
+        transient_bytes_unaliased, list(left_out), list(remarks), list(frame_images));
 }
 
 }  // namespace darkroom

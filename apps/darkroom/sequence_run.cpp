@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#include "sequence_run.hpp"
+
+#include <fmt/format.h>
+
+#include "report.hpp"
+
+namespace app {
+
+using darkroom::PipelineTimes;
+using darkroom::Result;
+
+namespace {
+
+void print_stages(const PipelineTimes& times, std::size_t pictures) {
+    const double count = static_cast<double>(std::max<std::size_t>(1, pictures));
+    const auto share = [&](double milliseconds) { return 100 * milliseconds / times.wall; };
+    fmt::print("{:>10.3f} ms  decode a frame, on {} threads\n", times.decode / count, times.workers);
+    fmt::print("{:>10.3f} ms  upload, GPU and read-back a frame, on one; it waited {:.0f} % of the time for decode\n",
+               times.work / count, share(times.wait_for_decode));
+    fmt::print("{:>10.3f} ms  encode a frame, on {} threads; the last ones took {:.0f} % of the time\n",
+               times.encode / count, times.workers, share(times.wait_for_encode));
+    fmt::print("{:>10.3f} ms  a frame, overlapped: {:.2f} frames a second\n", times.wall / count,
+               1000 * count / times.wall);
+}
+
+}  // namespace
+
+Result<> run_sequence(const SequenceDesc& desc, const SequenceStages& stages) {
+    std::vector<darkroom::Error> failures;
+    PipelineTimes times;
+    {
+        Progress progress(desc.pictures);
+        const auto is_done = [&](std::size_t step, const Result<>& result) {
+            if (!result)
+                failures.push_back(result.error());
+            else if (const std::string line = stages.line(step); !line.empty())
+                progress.step(line);
+            stages.release(step);
+        };
+        times = darkroom::run_pipeline(
+            {.count = desc.steps, .jobs = desc.jobs, .in_flight = desc.in_flight, .keeps_going = desc.keeps_going},
+            {.decode = stages.decode,
+             .begin = stages.begin,
+             .finish = stages.finish,
+             .encode = stages.encode,
+             .is_done = is_done});
+    }
+    if (desc.has_timings && desc.pictures > 1) print_stages(times, desc.pictures);
+    if (failures.empty()) return {};
+    if (!desc.keeps_going) return failure(failures.front());
+    for (const darkroom::Error& error : failures) complain(error.text);
+    return darkroom::user_error(fmt::format("{} of {} frames failed", failures.size(), desc.steps));
+}
+
+void PassTimes::add(std::span<const darkroom::PassTime> passes) {
+    ++frames_;
+    for (const darkroom::PassTime& pass : passes) {
+        const auto [sum, is_new] = sums_.try_emplace(std::string(pass.name), 0);
+        if (is_new) order_.emplace_back(pass.name);
+        sum->second += pass.milliseconds;
+    }
+}
+
+void PassTimes::print() const {
+    if (order_.empty()) {
+        warn("this device has no timestamps");
+        return;
+    }
+    double together = 0;
+    for (const std::string& name : order_) {
+        const double mean = sums_.at(name) / static_cast<double>(frames_);
+        fmt::print("{:>10.3f} ms  {}\n", mean, name);
+        together += mean;
+    }
+    fmt::print("{:>10.3f} ms  together{}\n", together, frames_ > 1 ? ", means of all frames" : "");
+}
+
+}  // namespace app
