@@ -7,11 +7,13 @@ set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 darkroom=${1:-./darkroom}
 folder=${2:-tests/goldens}
+render() { "$darkroom" render "$@" --device llvmpipe; }
 for scene in scenes/*.scene.toml; do
     name=$(basename "$scene" .scene.toml)
-    "$darkroom" render "$scene" --no-postprocess --msaa 4 --size 192x108 -o "$folder/$name.png"
-    "$darkroom" render "$scene" --size 320x180 -o "$folder/$name.finished.png"
+    render "$scene" --no-postprocess --msaa 4 --size 192x108 -o "$folder/$name.png"
+    render "$scene" --size 320x180 -o "$folder/$name.finished.png"
 done
 for look in looks/*.toml; do
-    "$darkroom" develop samples/window.exr --look "$look" --size 192x108 -o "$folder/$(basename "$look" .toml).look.png"
+    "$darkroom" develop samples/window.exr --look "$look" --device llvmpipe --size 192x108 \
+        -o "$folder/$(basename "$look" .toml).look.png"
 done

@@ -68,6 +68,9 @@ Hit trace(const scene::Box& target, vec3 from, vec3 direction) {
     return {enter, normal};
 }
 
+const vec2 middle = 0.5F * vec2(width, height);
+vec2 center(std::uint32_t x, std::uint32_t y) { return {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F}; }
+
 /// The camera that the documentation describes.
 struct Eye {
     vec3 target{0, 0.5F, 0}, position{1, 3, 6};
@@ -78,29 +81,40 @@ struct Eye {
         const vec3 away(std::cos(p) * std::sin(y), std::sin(p), std::cos(p) * std::cos(y));
         return {target, target + distance * away, fov_degrees};
     }
-    /// One metre of planar distance along the ray through a place of the picture, in pixels.
-    [[nodiscard]] vec3 ray(float x, float y) const {
-        const vec3 forward = glm::normalize(target - position);
-        const vec3 right = glm::normalize(glm::cross(forward, vec3(0, 1, 0))), up = glm::cross(right, forward);
-        const float half = std::tan(glm::radians(fov_degrees) / 2), step = 2 * half / static_cast<float>(height);
-        return forward + right * ((x - 0.5F * static_cast<float>(width)) * step) +
-               up * ((0.5F * static_cast<float>(height) - y) * step);
+    [[nodiscard]] vec3 forward() const { return glm::normalize(target - position); }
+    [[nodiscard]] vec3 right() const { return glm::normalize(glm::cross(forward(), vec3(0, 1, 0))); }
+    [[nodiscard]] vec3 up() const { return glm::cross(right(), forward()); }
+    /// Metres a pixel, at one metre.
+    [[nodiscard]] float step() const {
+        return 2 * std::tan(glm::radians(fov_degrees) / 2) / static_cast<float>(height);
     }
-    [[nodiscard]] Hit hit(float x, float y) const {
-        const Hit of_box = trace(box, position, ray(x, y)), of_floor = trace(floor_box, position, ray(x, y));
+
+    /// One metre of planar distance along the ray through a place of the picture, in pixels.
+    [[nodiscard]] vec3 ray(vec2 pixel) const {
+        return forward() + step() * (right() * (pixel.x - middle.x) + up() * (middle.y - pixel.y));
+    }
+    [[nodiscard]] vec2 pixel(vec3 point) const {
+        const vec3 away = (point - position) / (step() * glm::dot(point - position, forward()));
+        return middle + vec2(glm::dot(away, right()), -glm::dot(away, up()));
+    }
+    [[nodiscard]] Hit hit(vec2 pixel) const {
+        const Hit of_box = trace(box, position, ray(pixel)), of_floor = trace(floor_box, position, ray(pixel));
         return of_box.distance < of_floor.distance ? of_box : of_floor;
     }
     /// What a pixel shows, unless an edge crosses it.
     [[nodiscard]] std::optional<Hit> inner(std::uint32_t x, std::uint32_t y, float margin = 0.55F) const {
-        const float u = static_cast<float>(x) + 0.5F, v = static_cast<float>(y) + 0.5F;
-        const Hit middle = hit(u, v);
+        const Hit found = hit(center(x, y));
         for (const vec2& corner : {vec2(-1, -1), vec2(1, -1), vec2(-1, 1), vec2(1, 1)}) {
-            const Hit beside = hit(u + margin * corner.x, v + margin * corner.y);
-            const bool is_same_box = beside.normal == middle.normal && beside.is_sky() == middle.is_sky() &&
-                                     (middle.is_sky() || std::abs(beside.distance / middle.distance - 1) < 0.2F);
+            const Hit beside = hit(center(x, y) + margin * corner);
+            const bool is_same_box = beside.normal == found.normal && beside.is_sky() == found.is_sky() &&
+                                     (found.is_sky() || std::abs(beside.distance / found.distance - 1) < 0.2F);
             if (!is_same_box) return std::nullopt;
         }
-        return middle;
+        return found;
+    }
+    /// Where the ray of a pixel meets a surface.
+    [[nodiscard]] vec3 point(std::uint32_t x, std::uint32_t y, const Hit& hit) const {
+        return position + hit.distance * ray(center(x, y));
     }
 };
 
@@ -141,10 +155,11 @@ TEST_F(CliRenderPixels, TheGridLiesOnTheGroundBesideTheFloor) {
     for_every_pixel([&](std::uint32_t x, std::uint32_t y) {
         const std::optional<Hit> hit = eye.inner(x, y);
         if (!hit) return;
-        const vec3 ray = eye.ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+        const vec3 ray = eye.ray(center(x, y));
         const vec3 place = eye.position - ray * (eye.position.y / ray.y);
-        const bool is_ground = hit->is_sky() && ray.y < 0 && std::abs(place.x) < 19 && std::abs(place.z) < 19;
-        if (!is_ground && !(hit->is_sky() && ray.y < 0)) {
+        const bool is_below = hit->is_sky() && ray.y < 0;
+        const bool is_ground = is_below && std::abs(place.x) < 19 && std::abs(place.z) < 19;
+        if (!is_below) {
             EXPECT_EQ(codes_apart(with, without, x, y), 0) << x << ", " << y;
         }
         if (!is_ground) return;
@@ -163,9 +178,7 @@ TEST_F(CliRenderPixels, ShadowsDarkenWhatTheBoxHidesFromTheSun) {
     for_every_pixel([&](std::uint32_t x, std::uint32_t y) {
         const std::optional<Hit> hit = eye.inner(x, y);
         if (!hit) return;
-        const vec3 point = hit->is_sky() ? vec3(0)
-                                         : eye.position + hit->distance * eye.ray(static_cast<float>(x) + 0.5F,
-                                                                                  static_cast<float>(y) + 0.5F);
+        const vec3 point = hit->is_sky() ? vec3(0) : eye.point(x, y, *hit);
         // The box has no shadow on itself but that of its own faces, which shading knows of.
         const bool is_floor = !hit->is_sky() && point.y < 0.06F;
         // At its foot the filter takes the floor's texels in.
@@ -228,10 +241,9 @@ TEST_F(CliRenderPixels, TheOverlayIsTheEdgesOfTriangles) {
         }
         if (!hit || hit->is_sky()) return;
         // Within a face its diagonals, one of which is drawn.
-        const vec3 point =
-            eye.position + hit->distance * eye.ray(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+        const vec3 point = eye.point(x, y, *hit);
         const scene::Box& of = point.y < 0.06F ? floor_box : box;
-        vec3 across = (point - of.low) / (of.high - of.low);
+        const vec3 across = (point - of.low) / (of.high - of.low);
         const int axis = hit->normal.x != 0 ? 0 : hit->normal.y != 0 ? 1 : 2;
         const float u = across[(axis + 1) % 3], v = across[(axis + 2) % 3];
         if (std::min(std::abs(u - v), std::abs(u + v - 1)) > 0.12F) {
@@ -245,15 +257,6 @@ TEST_F(CliRenderPixels, ArrowsStandOnTheCorners) {
     const Picture plain = rendered({"--no-grid"}), arrows = rendered({"--no-grid", "--show-normals"});
     // From each corner along each of its three normals, of 0.05 halves of the picture's height at its distance.
     const Eye eye;
-    const vec3 forward = glm::normalize(eye.target - eye.position);
-    const vec3 right = glm::normalize(glm::cross(forward, vec3(0, 1, 0))), up = glm::cross(right, forward);
-    const float half = std::tan(glm::radians(eye.fov_degrees) / 2);
-    const auto pixel_of = [&](vec3 point) {
-        const vec3 away = point - eye.position;
-        const float scale = 0.5F * static_cast<float>(height) / (half * glm::dot(away, forward));
-        return vec2(0.5F * static_cast<float>(width) + glm::dot(away, right) * scale,
-                    0.5F * static_cast<float>(height) - glm::dot(away, up) * scale);
-    };
     std::vector<std::pair<vec2, vec2>> segments;
     for (const scene::Box& of : {floor_box, box})
         for (int corner = 0; corner < 8; ++corner)
@@ -262,19 +265,18 @@ TEST_F(CliRenderPixels, ArrowsStandOnTheCorners) {
                 for (int i = 0; i < 3; ++i)
                     if ((corner >> i & 1) != 0) at[i] = of.high[i];
                 normal[axis] = (corner >> axis & 1) != 0 ? 1.0F : -1.0F;
-                const float length_m = 0.05F * half * glm::dot(at - eye.position, forward);
-                segments.emplace_back(pixel_of(at), pixel_of(at + normal * length_m));
+                const float length_m = 0.05F * middle.y * eye.step() * glm::dot(at - eye.position, eye.forward());
+                segments.emplace_back(eye.pixel(at), eye.pixel(at + normal * length_m));
             }
     std::size_t drawn = 0;
     for_every_pixel([&](std::uint32_t x, std::uint32_t y) {
         if (codes_apart(plain, arrows, x, y) == 0) return;
         ++drawn;
         float nearest = 1e9F;
-        const vec2 middle(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
         for (const auto& [from, to] : segments) {
-            const float along =
-                std::clamp(glm::dot(middle - from, to - from) / glm::dot(to - from, to - from), 0.0F, 1.0F);
-            nearest = std::min(nearest, glm::distance(middle, from + along * (to - from)));
+            const vec2 way = to - from;
+            const float along = std::clamp(glm::dot(center(x, y) - from, way) / glm::dot(way, way), 0.0F, 1.0F);
+            nearest = std::min(nearest, glm::distance(center(x, y), from + along * way));
         }
         EXPECT_LE(nearest, 1.0F) << x << ", " << y;
     });
