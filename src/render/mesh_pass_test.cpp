@@ -201,8 +201,9 @@ TEST(RenderGpuMesh, SkinnedVerticesAreWhereTheCpuPutsThem) {
         return (vec2(clip) / clip.w * 0.5F + 0.5F) * vec2(small.width, small.height);
     };
     const vec2 pixel = place(center);
-    const std::array<float, 4> motion =
-        shot.velocity.at(static_cast<std::uint32_t>(pixel.x), static_cast<std::uint32_t>(pixel.y));
+    const auto x = static_cast<std::uint32_t>(pixel.x), y = static_cast<std::uint32_t>(pixel.y);
+    EXPECT_EQ(shot.color.at(x, y)[0], 4) << "above 1";
+    const std::array<float, 4> motion = shot.velocity.at(x, y);
     EXPECT_NEAR(motion[0], place(center + before).x - pixel.x, 0.2F);
     EXPECT_NEAR(motion[1], place(center + before).y - pixel.y, 0.2F);
 }
