@@ -66,6 +66,18 @@ TEST(Timers, ACounterThatGoesRoundDoesNotMakeAPassLong) {
     EXPECT_DOUBLE_EQ(milliseconds[1], 1.0);
 }
 
+// Nothing of the table is there to be called.
+TEST(Timers, ADeviceWithoutTimestampsIsNotAsked) {
+    Context context;
+    context.traits.timestamp_period_ns = 0;
+    Result<Timers> timers = Timers::create(context, 2, 3);
+    ASSERT_TRUE(timers) << timers.error().text;
+    timers->begin(VK_NULL_HANDLE, 1);
+    timers->mark(VK_NULL_HANDLE, 1, 2);
+    std::array<double, 2> milliseconds{};
+    EXPECT_EQ(timers->read(1, 3, milliseconds), 0U);
+}
+
 TEST(Timers, ElapsedTicksHonourTheValidBits) {
     EXPECT_EQ(elapsed_ticks(10, 30, 64), 20U);
     EXPECT_EQ(elapsed_ticks(~std::uint64_t{0}, 4, 64), 5U);
