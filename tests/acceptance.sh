@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# acceptance.sh ACCEPTANCE.md TEST_PROGRAM BUILD: every test that the table names exists, and every row names one or says
-# "open". A test is written `Suite.Test`, or `ctest:Name` where it is a program of its own.
+# acceptance.sh ACCEPTANCE.md TEST_PROGRAM BUILD: every test that the table names exists, and every row (number,
+# capability, how, tests) says how, and names a test or says "open". A test is written `Suite.Test`, or `ctest:Name`
+# where it is a program of its own.
 set -euo pipefail
 table=$1 program=$2 build=$3
 [[ -f $table ]] || { echo "$table is not there" && exit 1; }
@@ -19,10 +20,11 @@ while read -r name; do
     grep -qxF -- "$name" <<<"$programs" || { echo "$table names ctest:$name, which does not exist" && missing=1; }
 done < <(grep -oE '`ctest:[^`]+`' "$table" | tr -d '`' | sed 's/^ctest://' | sort -u)
 
-while read -r row; do
-    last=${row%|*}
-    grep -qE '`([A-Z][A-Za-z0-9_]*\.[A-Z]|ctest:)|\bopen\b' <<<"${last##*|}" ||
-        { echo "a row that names no test and is not open: $row" && missing=1; }
+while IFS='|' read -r _ number _ how named rest; do
+    [[ -z $rest && $how =~ [a-z] ]] || { echo "row$number does not say how" && missing=1; }
+    grep -qE '`([A-Z][A-Za-z0-9_]*\.[A-Z]|ctest:)|\bopen\b' <<<"$named" ||
+        { echo "row$number names no test and is not open" && missing=1; }
+    [[ $how != " not yet"* || $named != *'`'* ]] || { echo "row$number has tests and says not yet" && missing=1; }
 done < <(grep -E '^\| *[0-9]+ *\|' "$table")
 rows=$(grep -cE '^\| *[0-9]+ *\|' "$table" || true)
 [[ $rows -ge 104 ]] || { echo "$table has $rows rows of 104" && missing=1; }
