@@ -6,6 +6,8 @@
 #include <darkroom/effects.hpp>
 #include <darkroom/look.hpp>
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 
 #include "core/param_text.hpp"
@@ -32,7 +34,8 @@ Look look_of(std::string_view text) {
 std::string value_of(Look& look, std::string_view entry, std::string_view name) {
     const LookEntry* const found = find_entry(look, entry);
     if (found == nullptr) return "no entry";
-    return format(*found->effect->parameters.find(name), found->words);
+    const ParamInfo* const row = found->effect->parameters.find(name);
+    return row == nullptr ? "no parameter" : format(*row, found->words);
 }
 /// Tests that name effects are skipped in a tree without them.
 bool lacks(std::initializer_list<const char*> effects) {
@@ -41,18 +44,39 @@ bool lacks(std::initializer_list<const char*> effects) {
 bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
 TEST(Look, EmptyTableIsTheDefaults) {
-    if (lacks({"bloom", "vignette", "dither", "exposure"}))
-        GTEST_SKIP() << "an effect that this test names is not in this build";
     for (const char* const text : {"", "[post_process]\n", "format = 1\n"}) {
         EXPECT_EQ(write_look(look_of(text)), write_look(default_look()));
         EXPECT_TRUE(warnings_of(text).empty());
     }
+}
+
+// What scenes that say nothing were made with.
+TEST(Look, DefaultsAreThePublishedOnes) {
     Look look = default_look();
-    EXPECT_TRUE(find_entry(look, "bloom")->state.enabled.on);
-    EXPECT_FALSE(find_entry(look, "vignette")->state.enabled.on);
-    EXPECT_FALSE(find_entry(look, "dither")->state.enabled.on);
-    EXPECT_EQ(value_of(look, "bloom", "intensity"), "0.04");
-    EXPECT_EQ(value_of(look, "exposure", "exposure"), "1.0");
+    const std::map<std::string, std::map<std::string, std::string>> published{
+        {"bloom", {{"intensity", "0.04"}, {"threshold", "1.0"}, {"soft_threshold", "0.5"}}},
+        {"chromatic_aberration", {{"chromatic_aberration", "0.0"}}},
+        {"dither", {{"intensity", "0.03"}}},
+        {"exposure", {{"exposure", "1.0"}}},
+        {"fog",
+         {{"color", "[0.7, 0.75, 0.82]"},
+          {"density", "0.02"},
+          {"start", "5.0"},
+          {"end", "100.0"},
+          {"height_enabled", "false"},
+          {"height_falloff", "0.1"},
+          {"height_origin", "0.0"}}},
+        {"radial_blur", {{"radial_blur", "0.0"}}},
+        {"ssao", {{"radius", "0.5"}, {"intensity", "1.0"}, {"bias", "0.025"}}},
+        {"vignette", {{"intensity", "0.3"}, {"smoothness", "2.0"}}},
+        {"volumetric", {{"samples", "32"}, {"density", "1.0"}, {"max_distance", "100.0"}, {"decay", "0.98"}}}};
+    const std::set<std::string> on{"bloom", "chromatic_aberration", "exposure", "radial_blur", "ssao"};
+    for (const auto& [effect, values] : published) {
+        if (lacks({effect.c_str()})) continue;
+        EXPECT_EQ(find_entry(look, effect)->state.enabled.on != 0, on.contains(effect)) << effect;
+        for (const auto& [name, value] : values)
+            EXPECT_EQ(value_of(look, effect, name), value) << effect << ' ' << name;
+    }
 }
 
 TEST(Look, ReadsTheFlatTable) {
