@@ -135,29 +135,6 @@ TEST_F(CliRender, WritesEveryKindOfFile) {
     }
 }
 
-TEST_F(CliRenderFlags, EveryCameraFlagMovesTheView) {
-    expect_all_differ({{},
-                       {"--distance", "9"},
-                       {"--yaw", "120"},
-                       {"--pitch", "70"},
-                       {"--target", "1, 0.5, 0"},
-                       {"--target=-1,0.5,0"},
-                       {"--fov", "80"}});
-}
-
-TEST_F(CliRenderFlags, EveryDrawingFlagIsSeen) {
-    expect_all_differ({{},
-                       {"--no-grid"},
-                       {"--wireframe-overlay"},
-                       {"--show-normals"},
-                       {"--no-tonemapping"},
-                       {"--no-shadows"},
-                       {"--shadow-resolution", "128"},
-                       {"--msaa", "4"},
-                       {"--no-postprocess"},
-                       {"--no-postprocess", "--no-tonemapping"}});
-}
-
 TEST_F(CliRenderFlags, EveryDebugModeIsAPicture) {
     expect_all_differ({{},
                        {"--debug-mode", "wireframe"},
