@@ -21,5 +21,6 @@ struct Command {
 [[nodiscard]] Command add_effects(CLI::App& program);
 [[nodiscard]] Command add_devices(CLI::App& program);
 [[nodiscard]] Command add_compare(CLI::App& program);
+[[nodiscard]] Command add_info(CLI::App& program);
 
 }  // namespace app

@@ -61,7 +61,8 @@ int run(int argc, char** argv) {
         "DARKROOM_VALIDATE=1 turns the Vulkan validation layer on. Exit codes: 0 done, 1 the request is wrong, 2 the "
         "machine failed; `compare` has 3: they differ.");
     const std::array commands{app::add_render(program),  app::add_develop(program), app::add_plan(program),
-                              app::add_effects(program), app::add_devices(program), app::add_compare(program)};
+                              app::add_effects(program), app::add_devices(program), app::add_compare(program),
+                              app::add_info(program)};
     // CLI11 would take the next argument for the value.
     for (int i = 1; i < argc; ++i) {
         const std::string_view argument = argv[i];

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "info_documents.hpp"
+#include "scene/assets.hpp"
+#include "scene/model.hpp"
+#include "scene/scene.hpp"
+
+namespace app::info {
+
+using darkroom::Result;
+namespace scenes = darkroom::scene;
+
+namespace {
+
+Json json_of(const scenes::vec3& v) { return {v.x, v.y, v.z}; }
+
+struct Counts {
+    std::size_t primitives = 0, triangles = 0, vertices = 0;
+
+    void add(const scenes::Mesh& mesh) {
+        primitives += mesh.primitives.size();
+        for (const scenes::Primitive& primitive : mesh.primitives) {
+            triangles += primitive.indices.size() / 3;
+            vertices += primitive.vertices.size();
+        }
+    }
+};
+
+// Each mesh as often as nodes draw it.
+Counts drawn(const scenes::Model& model) {
+    std::vector<Counts> of_mesh(model.meshes.size());
+    for (std::size_t i = 0; i < of_mesh.size(); ++i) of_mesh[i].add(model.meshes[i]);
+    Counts out;
+    for (const scenes::Node& node : model.nodes) {
+        if (node.mesh == scenes::no_index) continue;
+        out.primitives += of_mesh[node.mesh].primitives;
+        out.triangles += of_mesh[node.mesh].triangles;
+        out.vertices += of_mesh[node.mesh].vertices;
+    }
+    return out;
+}
+
+std::string_view name_of(scenes::SurfaceBlend blend) {
+    constexpr std::array<std::string_view, 5> names{"opaque", "mask", "alpha", "additive", "multiply"};
+    return names[static_cast<std::size_t>(blend)];
+}
+
+std::string_view name_of(scenes::LightType type) {
+    constexpr std::array<std::string_view, 3> names{"directional", "point", "spot"};
+    return names[static_cast<std::size_t>(type)];
+}
+
+std::string_view name_of(scenes::Projection projection) {
+    return projection == scenes::Projection::Perspective ? "perspective" : "orthographic";
+}
+
+Json textures_of(std::span<const scenes::Image> images) {
+    Json out = Json::array();
+    for (const scenes::Image& image : images)
+        out.push_back({{"name", image.name}, {"size", {image.width, image.height}}});
+    return out;
+}
+
+Json materials_of(const scenes::Model& model) {
+    Json out = Json::array();
+    for (const scenes::ModelMaterial& material : model.materials) {
+        Json textures = Json::array();
+        for (const auto& [texture, name] :
+             {std::pair(&material.base_color_texture, "base color"),
+              std::pair(&material.metallic_roughness_texture, "metallic roughness"),
+              std::pair(&material.normal_texture, "normal"), std::pair(&material.occlusion_texture, "occlusion"),
+              std::pair(&material.emissive_texture, "emissive")})
+            if (texture->is_given()) textures.push_back(name);
+        out.push_back({{"name", material.name}, {"blend", name_of(material.blend)}, {"textures", std::move(textures)}});
+    }
+    return out;
+}
+
+Json animations_of(const scenes::Model& model) {
+    Json out = Json::array();
+    for (const scenes::Animation& animation : model.animations)
+        out.push_back(
+            {{"name", animation.name}, {"seconds", animation.duration}, {"channels", animation.channels.size()}});
+    return out;
+}
+
+Json cameras_of(const scenes::Model& model) {
+    Json out = Json::array();
+    for (const scenes::ModelCamera& camera : model.cameras)
+        out.push_back({{"name", camera.name},
+                       {"projection", name_of(camera.projection)},
+                       {"vertical_field_of_view_degrees", camera.field_of_view}});
+    return out;
+}
+
+Json light_of(const scenes::Light& light) {
+    return {{"type", name_of(light.type)}, {"color", json_of(light.color)}, {"intensity", light.intensity}};
+}
+
+Json model_lights_of(const scenes::Model& model) {
+    Json out = Json::array();
+    for (const scenes::Light& light : model.lights) out.push_back(light_of(light));
+    return out;
+}
+
+Json camera_of(const scenes::Camera& camera) {
+    if (!camera.is_given) return "fitted to what the scene holds";
+    Json out{{"projection", name_of(camera.projection)},
+             {"position", json_of(camera.position)},
+             {"target", json_of(camera.target)}};
+    if (camera.projection == scenes::Projection::Perspective)
+        out["vertical_field_of_view_degrees"] = camera.field_of_view;
+    else
+        out["height"] = camera.ortho_height;
+    if (!camera.path.empty())
+        out.update({{"path_keys", camera.path.size()}, {"path_seconds", camera.path.back().time}});
+    return out;
+}
+
+Json environment_of(const scenes::Environment& environment, const scenes::Assets& assets) {
+    Json out{{"skybox", environment.skybox.empty() ? Json() : Json(environment.skybox.string())}};
+    if (assets.skybox) out["skybox_size"] = {assets.skybox->width, assets.skybox->height};
+    out["background"] = json_of(environment.background);
+    return out;
+}
+
+Json scene_models_of(const scenes::Scene& scene, const scenes::Assets& assets) {
+    std::vector<std::size_t> uses(assets.models.size());
+    for (const scenes::EntityAssets& entity : assets.entities)
+        if (entity.model != scenes::no_index) ++uses[entity.model];
+    Json out = Json::array();
+    for (std::size_t i = 0; i < assets.models.size(); ++i) {
+        const scenes::Model& model = assets.models[i];
+        const auto user =
+            std::ranges::find(assets.entities, static_cast<std::uint32_t>(i), &scenes::EntityAssets::model);
+        const auto entity = static_cast<std::size_t>(user - assets.entities.begin());
+        const Counts counts = drawn(model);
+        out.push_back({{"model", user == assets.entities.end() ? model.name : scene.entities[entity].model->asset},
+                       {"entities", uses[i]},
+                       {"triangles", counts.triangles},
+                       {"vertices", counts.vertices},
+                       {"textures", model.images.size()},
+                       {"animations", model.animations.size()}});
+    }
+    return out;
+}
+
+Json scene_lights_of(const scenes::Scene& scene) {
+    Json out = Json::array();
+    for (const scenes::Entity& entity : scene.entities) {
+        if (!entity.light) continue;
+        Json row{{"entity", entity.name}};
+        row.update(light_of(*entity.light));
+        row["casts_shadow"] = entity.light->type == scenes::LightType::Directional && entity.light->casts_shadow;
+        row["volumetric_intensity"] = entity.light->volumetric_intensity;
+        out.push_back(std::move(row));
+    }
+    return out;
+}
+
+Json particles_of(const scenes::Scene& scene) {
+    Json out = Json::array();
+    for (const scenes::Entity& entity : scene.entities)
+        if (entity.emitter)
+            out.push_back(
+                {{"entity", entity.name},
+                 {"per_second", entity.emitter->emission_rate},
+                 {"at_most", entity.emitter->max_particles},
+                 {"lifetime_seconds", {entity.emitter->lifetime_min, entity.emitter->lifetime_max}},
+                 {"texture", entity.emitter->texture.empty() ? Json() : Json(entity.emitter->texture.string())}});
+    return out;
+}
+
+}  // namespace
+
+Result<Json> model(const std::filesystem::path& path) {
+    const Result<scenes::Model> model = scenes::read_model(path);
+    if (!model) return failure(model.error());
+    Counts stored;
+    std::size_t targets = 0, joints = 0;
+    for (const scenes::Mesh& mesh : model->meshes) {
+        stored.add(mesh);
+        for (const scenes::Primitive& primitive : mesh.primitives) targets += primitive.targets.size();
+    }
+    for (const scenes::Skin& skin : model->skins) joints += skin.joints.size();
+    Json out{{"kind", "model"},
+             {"name", model->name},
+             {"nodes", model->nodes.size()},
+             {"meshes", model->meshes.size()},
+             {"primitives", stored.primitives},
+             {"triangles", stored.triangles},
+             {"drawn_triangles", drawn(*model).triangles},
+             {"vertices", stored.vertices},
+             {"morph_targets", targets},
+             {"skins", model->skins.size()},
+             {"joints", joints},
+             {"materials", materials_of(*model)},
+             {"textures", textures_of(model->images)},
+             {"animations", animations_of(*model)},
+             {"cameras", cameras_of(*model)},
+             {"lights", model_lights_of(*model)}};
+    if (!model->warnings.empty()) out["warnings"] = model->warnings;
+    return out;
+}
+
+Result<Json> scene(const std::string& text, const std::filesystem::path& path) {
+    std::vector<std::string> warnings;
+    const Result<scenes::Scene> scene = scenes::parse_scene(text, path, {.warnings = &warnings});
+    if (!scene) return failure(scene.error());
+    const scenes::Assets assets = scenes::load_assets(*scene);
+    const auto count = [&](auto member) {
+        return std::ranges::count_if(scene->entities, [&](const scenes::Entity& e) { return (e.*member).has_value(); });
+    };
+    Json out{{"name", scene->name},
+             {"description", scene->description},
+             {"time", scene->time},
+             {"entities", scene->entities.size()},
+             {"boxes", count(&scenes::Entity::bounds)},
+             {"sprites", count(&scenes::Entity::sprite)},
+             {"camera", camera_of(scene->camera)},
+             {"environment", environment_of(scene->environment, assets)},
+             {"models", scene_models_of(*scene, assets)},
+             {"textures", textures_of(assets.images)},
+             {"lights", scene_lights_of(*scene)},
+             {"particles", particles_of(*scene)}};
+    warnings.insert(warnings.end(), assets.warnings.begin(), assets.warnings.end());
+    if (!warnings.empty()) out["warnings"] = warnings;
+    return out;
+}
+
+}  // namespace app::info
