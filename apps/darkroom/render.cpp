@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -36,13 +35,6 @@ enum class Way {
 };
 
 std::string shown(const std::filesystem::path& path) { return darkroom::printable(path.string()); }
-
-// Models hold no look.
-bool is_model(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension == ".glb" || extension == ".gltf";
-}
 
 // The effects that bring light into the range of a display. None is known by name.
 bool switch_tone_mapping_off(darkroom::Look& look) {
@@ -112,7 +104,8 @@ class Render {
             shot.time = scene_.time;
             shot.previous_time = std::max(0.0, scene_.time - shot.delta_time);
         }
-        Result<darkroom::Look> look = flags_.look.look(is_model(flags_.scene) ? "" : flags_.scene);
+        // Models hold no look.
+        Result<darkroom::Look> look = flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene);
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
         choose_way();
@@ -122,6 +115,7 @@ class Render {
         if (job_.orbit.field_of_view && is_orthographic) warn("--fov: the scene's camera is orthographic, it has none");
         assets_ = scene::load_assets(scene_);
         if (Result<> done = check_model(); !done) return done;
+        if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;
         for (const std::string& warning : assets_.warnings) warn(warning);
         std::vector<std::filesystem::path> inputs = assets_.files;
         if (!flags_.look.file.empty()) inputs.emplace_back(flags_.look.file);
@@ -165,11 +159,16 @@ class Render {
 
     // In a scene a broken model is a gap; alone there is nothing left, and its error counts.
     [[nodiscard]] Result<> check_model() const {
-        const bool is_drawn = !assets_.models.empty() && !assets_.models.front().meshes.empty();
-        if (is_drawn || !is_model(flags_.scene)) return {};
-        Result<scene::Model> model = scene::read_model(flags_.scene);
-        if (!model) return failure(std::move(model));
-        return {};
+        if (!scene::is_model_path(flags_.scene)) return {};
+        if (!assets_.model_errors.empty()) return failure(assets_.model_errors.front());
+        const auto draws = [](const scene::Model& model) {
+            return std::ranges::any_of(model.nodes, [&](const scene::Node& node) {
+                return node.mesh < model.meshes.size() && !model.meshes[node.mesh].primitives.empty();
+            });
+        };
+        if (std::ranges::any_of(assets_.models, draws)) return {};
+        return darkroom::user_error(
+            fmt::format("{}: the model has no triangles in its scene, nothing is drawn", shown(flags_.scene)));
     }
 
     void choose_way() {

@@ -29,7 +29,7 @@ fs::path first_file(std::span<const fs::path> places) {
 
 fs::path find_model(const fs::path& folder, const std::string& asset) {
     const fs::path name(asset);
-    const bool is_model_file = name.extension() == ".glb" || name.extension() == ".gltf";
+    const bool is_model_file = is_model_path(name);
     const auto with = [&](const char* extension) { return fs::path(asset + extension); };
     std::vector<fs::path> places;
     if (is_model_file) places.push_back(folder / name);
@@ -132,7 +132,7 @@ Assets load_assets(const Scene& scene) {
     std::optional<Result<FrameFile>> sky;
     parallel_for(model_files.size() + 1, 0, [&](std::size_t i) {
         if (i > 0)
-            models[i - 1] = read_model(model_files[i - 1]);
+            models[i - 1] = read_model(model_files[i - 1], Budget(0, model_files.size()));
         else if (!wanted.skybox.empty())
             sky = read_frame(wanted.skybox, {.has_shadow_depths = false});
     });
@@ -157,6 +157,7 @@ Assets load_assets(const Scene& scene) {
         }
         assets.warnings.push_back(
             fmt::format("{} (asked for by {})", models[i].error().text, wanted.models.asked_for_by(i)));
+        assets.model_errors.push_back(models[i].error());
         assets.models.emplace_back();
         forget(assets.entities, &EntityAssets::model, i);
     }

@@ -29,6 +29,7 @@ struct Assets {
     std::optional<Picture> skybox;             ///< linear Rec. 709, as the file has it
     std::vector<std::filesystem::path> files;  ///< that were found, models and pictures
     std::vector<std::string> warnings;         ///< one line each, naming the file and who asked for it
+    std::vector<Error> model_errors;           ///< of the models that could not be had, which are in `warnings`, too
 };
 
 /// Never fails: what cannot be had is in `warnings`. Files are decoded on several threads.

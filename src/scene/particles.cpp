@@ -88,7 +88,6 @@ class History {
     /// Births that are looked at for one picture, where what was skipped before bears on what is alive now. It is
     /// about 10 ms of work; an emitter that has seen more starts its history anew.
     static constexpr std::uint32_t most_births = 262144;
-    static constexpr std::uint32_t most_particles = 10000;
 
     [[nodiscard]] double first_time() const {
         const double bursts = is_repeating_ ? std::floor(longest_life_ / cycle_) + 1 : 1;

@@ -17,6 +17,9 @@ namespace darkroom::scene {
 /// Gravity is a direction of the world for both; scale moves where particles are born, not how fast they fly.
 using EmitterPath = std::function<mat4(double time)>;
 
+/// Of one emitter, whatever its file says.
+inline constexpr std::uint32_t most_particles = 10000;
+
 /// `previous_time` gives Particle::previous_position of those that were alive then; others did not move.
 [[nodiscard]] std::vector<Particle> particles(const ParticleEmitter& emitter, const EmitterPath& path,
                                               std::uint64_t seed, double time, double previous_time);

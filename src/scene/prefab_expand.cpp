@@ -253,6 +253,7 @@ LoadedFile* PrefabExpander::load(const fs::path& path, const Instance& instance)
     LoadedFile& file = files_.emplace_back(LoadedFile{.identity = identity});
     const std::string shown = printable(path.string());
     const Result<std::string> text = read_scene_text(path);
+    if (text) file_bytes_ += text->size();
     Result<toml::table> table = text ? parse_toml(*text, shown) : Result<toml::table>(failure(text.error()));
     if (!table) {
         report_.error(instance.template_place, [&] {

@@ -58,6 +58,11 @@ class PrefabExpander {
     PrefabExpander& operator=(const PrefabExpander&) = delete;
     [[nodiscard]] std::vector<RawEntity> expand(const Level& scene);
 
+    /// Of the prefabs that were read.
+    [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
+    /// A limit was passed, and an error reported: the rest of the scene is not expanded.
+    [[nodiscard]] bool is_full() const { return is_full_; }
+
   private:
     struct Instance {
         std::string name;  // of the table
@@ -92,6 +97,7 @@ class PrefabExpander {
     std::unordered_map<std::string, std::size_t> names_;
     std::vector<Template> chain_;
     std::size_t instances_ = 0;
+    std::uint64_t file_bytes_ = 0;
     bool is_full_ = false;
 };
 

@@ -28,6 +28,8 @@ Result<Scene> SceneReader::read() {
     read_top();
     PrefabExpander prefabs(report_, trees_, scene_.folder);
     const std::vector<RawEntity> entities = prefabs.expand(level_of(file_, 0, scene_.folder));
+    scene_.file_bytes = prefabs.file_bytes();
+    if (prefabs.is_full()) return failure(report_.finish(options_.warnings).error());
     scene_.entities.reserve(entities.size());
     for (const RawEntity& raw : entities) read_entity(raw);
     report_unknown_components();
@@ -268,12 +270,19 @@ Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& fi
             fmt::format("{}: {} bytes, a scene file has at most {}", shown, text.size(), reading::largest_file));
     const Result<toml::table> table = parse_toml(text, shown);
     if (!table) return failure(table.error());
-    return reading::SceneReader(*table, file, options).read();
+    Result<Scene> scene = reading::SceneReader(*table, file, options).read();
+    if (scene) scene->file_bytes += text.size();
+    return scene;
+}
+
+bool is_model_path(const std::filesystem::path& path) {
+    const std::string extension = reading::lower(path.extension().string());
+    return extension == ".glb" || extension == ".gltf";
 }
 
 Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& options) {
     const std::string extension = reading::lower(path.extension().string());
-    if (extension == ".glb" || extension == ".gltf") return reading::scene_of_model(path);
+    if (is_model_path(path)) return reading::scene_of_model(path);
     if (!extension.empty() && extension != ".toml")
         return user_error(
             fmt::format("{}: expected a scene (.toml) or a model (.glb, .gltf)", printable(path.string())));

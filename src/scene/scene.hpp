@@ -151,6 +151,7 @@ struct Scene {
     std::string name, description;
     std::filesystem::path file;    ///< for messages
     std::filesystem::path folder;  ///< that assets are relative to
+    std::uint64_t file_bytes = 0;  ///< of the scene and of its prefabs
     double time = 0;               ///< [scene] time: of a picture when no other time is asked for, seconds
     bool has_grid = true;          ///< [scene] grid
     bool has_alpha_layer = false;  ///< [scene] alpha_layer: alpha is cleared to 0 and only Writes::Alpha draws write it
@@ -167,6 +168,8 @@ struct SceneOptions {
 /// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`.
 [[nodiscard]] Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file,
                                         const SceneOptions& options = {});
+/// Whether the name is that of a model (.glb, .gltf, in any case).
+[[nodiscard]] bool is_model_path(const std::filesystem::path& path);
 /// A .toml file as above; a .glb or .gltf file becomes a scene of that one model, without camera and without grid.
 [[nodiscard]] Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& options = {});
 

@@ -116,6 +116,11 @@ struct SnapshotOptions {
     OrbitOverride orbit;
 };
 
+/// Whether what a snapshot holds, and what the renderer makes of it, stays in proportion to the files of the scene:
+/// entities may share a model, and its nodes meshes, skins and morph targets. The error names the entity and the count
+/// that passed its limit. To be asked before the first snapshot().
+[[nodiscard]] Result<> check_snapshot(const Scene& scene, const Assets& assets);
+
 [[nodiscard]] Snapshot snapshot(const Scene& scene, const Assets& assets, const SnapshotOptions& options);
 
 /// What everything visible fits in, at a time.

@@ -83,10 +83,7 @@ View scene_view(const Camera& camera, double time) {
     return view;
 }
 
-bool is_bare_model(const Scene& scene) {
-    const std::string ending = scene.file.extension().string();
-    return !scene.camera.is_given && (ending == ".glb" || ending == ".gltf" || ending == ".GLB" || ending == ".GLTF");
-}
+bool is_bare_model(const Scene& scene) { return !scene.camera.is_given && is_model_path(scene.file); }
 
 /// The node of a bare model that holds its first camera.
 struct CameraNode {

@@ -92,9 +92,10 @@ void limit(std::vector<LightState>& lights, const Limit& limit, const Scene& sce
         fmt::format("{}: {} {} lights, of which {} are left out, entities.{} first; at most {} are drawn",
                     owner == nullptr ? scene.file.string() : place_of(scene, *owner), order.size(), limit.name,
                     order.size() - limit.most, first.name, limit.most));
-    std::vector<std::size_t> left_out(order.begin() + static_cast<std::ptrdiff_t>(limit.most), order.end());
-    std::sort(left_out.rbegin(), left_out.rend());
-    for (const std::size_t i : left_out) lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(i));
+    std::vector<bool> is_left_out(lights.size());
+    for (std::size_t i = limit.most; i < order.size(); ++i) is_left_out[order[i]] = true;
+    std::size_t next = 0;
+    std::erase_if(lights, [&](const LightState&) { return is_left_out[next++]; });
 }
 
 bool goes_before(const LightState& a, const LightState& b) {
