@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "core/files.hpp"
 #include "core/param_text.hpp"
 #include "report.hpp"
 
@@ -96,6 +97,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    darkroom::AtomicPath::remove_on_signals();
     // Exceptions come from third parties and from the allocator alone.
     try {
         return run(argc, argv);

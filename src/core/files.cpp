@@ -3,12 +3,15 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <system_error>
 #include <tuple>
@@ -18,6 +21,70 @@ namespace darkroom {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The temporary files that exist, for a signal handler: a table of fixed size, since a handler may neither allocate nor
+// lock. A file that finds no room, or whose name is too long, is written all the same and left by a signal.
+struct Watched {
+    enum State : int { Free, Changing, Used };
+    std::atomic<int> state{Free};
+    std::array<char, 1024> path{};
+};
+std::array<Watched, 256> watched_files;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+int watch(const fs::path& path) noexcept {
+    const std::string& name = path.native();
+    if (name.size() >= watched_files[0].path.size()) return -1;
+    for (std::size_t i = 0; i < watched_files.size(); ++i) {
+        int free = Watched::Free;
+        if (!watched_files[i].state.compare_exchange_strong(free, Watched::Changing)) continue;
+        std::copy_n(name.c_str(), name.size() + 1, watched_files[i].path.data());
+        watched_files[i].state = Watched::Used;
+        return static_cast<int>(i);
+    }
+    return -1;
+}
+
+void unwatch(int place) noexcept {
+    if (place >= 0) watched_files[static_cast<std::size_t>(place)].state = Watched::Free;
+}
+
+std::atomic<int> creating{0};
+std::atomic<bool> is_ending{false};
+
+/// While one lives, a file may come to be. The handler waits for it on another thread, so no file appears behind it.
+class Creation {
+  public:
+    Creation() {
+        sigset_t all;
+        ::sigfillset(&all);
+        ::pthread_sigmask(SIG_BLOCK, &all, &before_);
+        ++creating;
+        if (!is_ending) return;
+        --creating;
+        for (;;) ::pause();
+    }
+    Creation(const Creation&) = delete;
+    Creation& operator=(const Creation&) = delete;
+    ~Creation() {
+        --creating;
+        ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    }
+
+  private:
+    sigset_t before_{};
+};
+
+// Only what a handler may call (signal-safety(7)). A file system that hangs is waited for a second at most. The signal
+// that is raised is blocked until the handler returns.
+void remove_watched(int signal) {
+    is_ending = true;
+    for (int wait = 0; wait < 1000 && creating > 0; ++wait) ::poll(nullptr, 0, 1);
+    for (const Watched& file : watched_files)
+        if (file.state == Watched::Used) ::unlink(file.path.data());
+    ::signal(signal, SIG_DFL);
+    ::raise(signal);
+}
 
 struct Descriptor {
     int number = -1;
@@ -112,11 +179,24 @@ Result<> write_file(const fs::path& path, std::span<const std::byte> content) {
     return temporary->commit();
 }
 
+void AtomicPath::remove_on_signals() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction action {};
+        if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
+        action = {};
+        action.sa_handler = remove_watched;
+        ::sigfillset(&action.sa_mask);
+        std::ignore = ::sigaction(signal, &action, nullptr);
+    }
+}
+
 AtomicPath::AtomicPath(fs::path target, fs::path temporary)
-    : target_(std::move(target)), temporary_(std::move(temporary)) {}
+    : target_(std::move(target)), temporary_(std::move(temporary)), watched_(watch(temporary_)) {}
 
 AtomicPath::AtomicPath(AtomicPath&& other) noexcept
-    : target_(std::move(other.target_)), temporary_(std::move(other.temporary_)) {
+    : target_(std::move(other.target_)),
+      temporary_(std::move(other.temporary_)),
+      watched_(std::exchange(other.watched_, -1)) {
     other.temporary_.clear();
 }
 
@@ -125,6 +205,7 @@ AtomicPath& AtomicPath::operator=(AtomicPath&& other) noexcept {
     discard();
     target_ = std::move(other.target_);
     temporary_ = std::move(other.temporary_);
+    watched_ = std::exchange(other.watched_, -1);
     other.temporary_.clear();
     return *this;
 }
@@ -133,7 +214,12 @@ AtomicPath::~AtomicPath() { discard(); }
 
 void AtomicPath::discard() noexcept {
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    forget();
+}
+
+void AtomicPath::forget() noexcept {
     temporary_.clear();
+    unwatch(std::exchange(watched_, -1));
 }
 
 Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
@@ -157,6 +243,7 @@ Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
         const std::string name = fmt::format(".{}.{}.{}.part{}", real.stem().string().substr(0, 100), ::getpid(),
                                              counter.fetch_add(1), real.extension().string());
         fs::path temporary = real.parent_path() / name;
+        const Creation creation;
         const Descriptor file(::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666));
         if (file.number >= 0) {
             struct stat existing {};
@@ -170,7 +257,7 @@ Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
 
 Result<> AtomicPath::commit() {
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) return io_error(target_, "create", errno);
-    temporary_.clear();
+    forget();
     return {};
 }
 

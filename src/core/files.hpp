@@ -34,6 +34,10 @@ struct ReadFileOptions {
 /// removes it and the target is untouched.
 class AtomicPath {
   public:
+    /// Makes SIGINT, SIGTERM and SIGHUP remove the temporary files that are left, then end the process by the signal's
+    /// default action. For programs: a library must not take signals from its host. A signal that is ignored stays so.
+    static void remove_on_signals();
+
     /// Reserves the temporary file (empty). Fails if the folder is missing or not writable, or if the target exists and
     /// is no regular file.
     [[nodiscard]] static Result<AtomicPath> beside(const std::filesystem::path& target);
@@ -48,9 +52,11 @@ class AtomicPath {
   private:
     AtomicPath(std::filesystem::path target, std::filesystem::path temporary);
     void discard() noexcept;
+    void forget() noexcept;
 
     std::filesystem::path target_;
     std::filesystem::path temporary_;  // empty once committed or moved from
+    int watched_ = -1;                 // its place in what a signal handler knows
 };
 
 }  // namespace darkroom

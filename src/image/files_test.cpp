@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "core/files.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
 
 #include "image/sequence.hpp"
 #include "image/test_files.hpp"
@@ -68,6 +74,35 @@ TEST_F(ImageFiles, FullDeviceIsAMachineErrorAndTheDeviceStays) {
     EXPECT_EQ(written.error().fault, Fault::Machine);
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
     EXPECT_FALSE(AtomicPath::beside("/dev/full"));
+}
+
+// Ctrl-C at any moment, while several threads write.
+TEST_F(ImageFiles, ASignalLeavesNoTemporaryFile) {
+    for (int attempt = 0; attempt < 20; ++attempt) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            AtomicPath::remove_on_signals();
+            std::vector<std::jthread> threads;
+            for (int thread = 0; thread < 4; ++thread)
+                threads.emplace_back([&, thread] {
+                    const auto target = file("a" + std::to_string(thread));
+                    for (;;) {
+                        std::vector<AtomicPath> held;
+                        for (int i = 0; i < 8; ++i) held.push_back(std::move(*AtomicPath::beside(target)));
+                        static_cast<void>(held.front().commit());
+                    }
+                });
+            threads.clear();
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(5 + attempt));
+        ::kill(child, attempt % 2 == 0 ? SIGINT : SIGTERM);
+        int status = 0;
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        ASSERT_TRUE(WIFSIGNALED(status));
+        EXPECT_EQ(WTERMSIG(status), attempt % 2 == 0 ? SIGINT : SIGTERM);
+        for (const auto& entry : std::filesystem::directory_iterator(folder_))
+            EXPECT_TRUE(entry.path().filename().string().starts_with("a")) << entry.path();
+    }
 }
 
 class ImageSequence : public WithFolder {};
