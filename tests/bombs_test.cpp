@@ -205,7 +205,13 @@ TEST_F(CliBombs, Scenes) {
     write("itself.toml", "[templates.t.prefabs.p]\ntemplate = \"t\"\n[prefabs.a]\ntemplate = \"t\"\n");
     expect_refused_cheaply("itself.toml", "hold themselves", usual);
     write("deep.toml", "a = " + std::string(100'000, '['));
-    expect_refused_cheaply("deep.toml", "nested", usual);
+    expect_refused_cheaply("deep.toml", "maximum nested value depth of 16", usual);
+    std::string key = "k";
+    for (int i = 0; i < 60; ++i) key += ".a";
+    write("tables.toml", repeated("a", key + " = 1\n", 20'000));
+    expect_refused_cheaply("tables.toml", "more than 262144 dots in keys", usual);
+    write("long.toml", std::string((4 << 20) + 1, '\n'));
+    expect_refused_cheaply("long.toml", "4194305 bytes", usual);
 }
 
 TEST_F(CliBombs, Pictures) {

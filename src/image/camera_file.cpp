@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#define TOML_EXCEPTIONS 0
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <cmath>
 
 #include "core/files.hpp"
 #include "image/frame_file.hpp"
+#include "toml/toml_text.hpp"
 
 namespace darkroom {
 namespace {
@@ -75,12 +74,10 @@ Result<FrameCamera> read_camera(const std::filesystem::path& path) {
     auto bytes = read_file(path);
     if (!bytes) return failure(std::move(bytes));
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    const toml::parse_result parsed = toml::parse(text);
-    if (!parsed)
-        return user_error(fmt::format("{}:{}: {}", path.string(), parsed.error().source().begin.line,
-                                      one_printable_line(parsed.error().description())));
+    const Result<toml::table> table = parse_toml(text, one_printable_line(path.string()));
+    if (!table) return failure(table.error());
     FrameCamera camera;
-    for (const auto& [key, node] : parsed.table())
+    for (const auto& [key, node] : *table)
         if (auto read = read_entry(key.str(), node, camera); !read)
             return user_error(
                 fmt::format("{}:{}: {}", path.string(), node.source().begin.line, std::move(read).error().text));

@@ -147,6 +147,10 @@ TEST_F(ImageFrame, CameraComesFromAFileOrAFieldOfView) {
     const auto bad = read_camera(file("bad.toml"));
     ASSERT_FALSE(bad);
     EXPECT_TRUE(bad.error().text.starts_with(file("bad.toml").string() + ":2: unknown key focal")) << bad.error().text;
+    put(file("deep.toml"), "fov = " + std::string(1000, '['));
+    const auto deep = read_camera(file("deep.toml"));
+    ASSERT_FALSE(deep);
+    EXPECT_NE(deep.error().text.find("depth of 16"), std::string::npos) << deep.error().text;
 }
 
 TEST(ImagePrimaries, Rec709IsUnchangedAndWhiteStaysWhite) {

@@ -101,15 +101,14 @@ Result<Look> parse_look(std::string_view text, std::string shown_name, const Loo
 }
 
 Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) {
-    const std::uintmax_t largest = options.is_scene ? 16U << 20 : 4U << 20;
     const std::string shown = printable(path.string());
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
     if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
         return user_error(fmt::format("{}: is a device, expected a look file", shown));
     const std::uintmax_t size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
-    if (!error && size > largest)
-        return user_error(fmt::format("{}: {} bytes, a look file has at most {}", shown, size, largest));
+    if (!error && size > most_toml_bytes)
+        return user_error(fmt::format("{}: {} bytes, a look file has at most {}", shown, size, most_toml_bytes));
     const Result<std::vector<std::byte>> bytes = read_file(path);
     if (!bytes) return failure(bytes.error());
     return parse_look({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string(), options);

@@ -81,7 +81,7 @@ void SceneReader::read_scene_table(const Value& value) {
     const Where where{.name = "scene"};
     TableReader table(reader_, value, where);
     table.text("name", scene_.name);
-    table.text("description", scene_.description, largest_file);
+    table.text("description", scene_.description, most_toml_bytes);
     table.number("time", scene_.time, {.low = 0, .high = 1e9, .unit = "s"});
     table.flag("grid", scene_.has_grid);
     table.flag("alpha_layer", scene_.has_alpha_layer);
@@ -265,9 +265,6 @@ Result<Scene> scene_of_model(const std::filesystem::path& path) {
 
 Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& file, const SceneOptions& options) {
     const std::string shown = printable(file.string());
-    if (text.size() > reading::largest_file)
-        return user_error(
-            fmt::format("{}: {} bytes, a scene file has at most {}", shown, text.size(), reading::largest_file));
     const Result<toml::table> table = parse_toml(text, shown);
     if (!table) return failure(table.error());
     Result<Scene> scene = reading::SceneReader(*table, file, options).read();

@@ -10,7 +10,7 @@ namespace darkroom::scene::reading {
 namespace {
 
 // Bounds on what prefabs multiply, and on the depth that copies and destructors of trees recurse to.
-constexpr std::size_t most_members = 4'000'000;
+constexpr std::size_t most_members = 1'000'000;
 constexpr int deepest = 8;
 
 }  // namespace

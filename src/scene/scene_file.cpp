@@ -7,6 +7,7 @@
 
 #include "core/files.hpp"
 #include "core/param_text.hpp"
+#include "toml/toml_text.hpp"
 
 namespace darkroom::scene::reading {
 
@@ -19,8 +20,8 @@ Result<std::string> read_scene_text(const std::filesystem::path& path) {
     if (std::filesystem::exists(status) && !is_regular && !std::filesystem::is_directory(status))
         return user_error(fmt::format("{}: is no regular file, expected a scene", shown));
     const std::uintmax_t size = is_regular ? std::filesystem::file_size(path, error) : 0;
-    if (!error && size > largest_file)
-        return user_error(fmt::format("{}: {} bytes, a scene file has at most {}", shown, size, largest_file));
+    if (!error && size > most_toml_bytes)
+        return user_error(fmt::format("{}: {} bytes, a scene file has at most {}", shown, size, most_toml_bytes));
     const Result<std::vector<std::byte>> bytes = read_file(path);
     if (!bytes) return failure(bytes.error());
     return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());

@@ -14,6 +14,9 @@ namespace {
 // destroyed by recursion, so their number is bounded before the text is parsed.
 constexpr std::size_t max_dots = 64;
 
+// Of the whole text: a table takes some 200 bytes, and its dot two.
+constexpr std::size_t most_dots = 1U << 18U;
+
 std::size_t dots_of_keys(std::string_view line) {
     const auto is_digit = [&](std::size_t i) {
         return i < line.size() && std::isdigit(static_cast<unsigned char>(line[i])) != 0;
@@ -70,12 +73,18 @@ std::optional<ParamValue> value_of_table(const toml::table& table) {
 }  // namespace
 
 Result<toml::table> parse_toml(std::string_view text, std::string_view shown_name) {
-    std::size_t line = 1;
+    if (text.size() > most_toml_bytes)
+        return user_error(fmt::format("{}: {} bytes, at most {} are read", shown_name, text.size(), most_toml_bytes));
+    std::size_t line = 1, dots = 0;
     for (std::size_t start = 0; start < text.size(); ++line) {
         const std::size_t end = std::min(text.find('\n', start), text.size());
-        if (dots_of_keys(text.substr(start, end - start)) > max_dots)
+        const std::size_t own = dots_of_keys(text.substr(start, end - start));
+        if (own > max_dots)
             return user_error(fmt::format("{}:{}:1: the line holds more than {} dots, keys may not nest so deep",
                                           shown_name, line, max_dots));
+        dots += own;
+        if (dots > most_dots)
+            return user_error(fmt::format("{}:{}:1: more than {} dots in keys", shown_name, line, most_dots));
         start = end + 1;
     }
     toml::parse_result parsed = toml::parse(text);

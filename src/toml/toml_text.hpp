@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The edge to toml++: text to a tree, nodes to the values of core/param_text.hpp. Public headers name nothing of toml++.
+// The edge to toml++: text to a tree, nodes to the values of core/param_text.hpp. Public headers name nothing of
+// toml++.
 
 #include <toml++/toml.h>
 #include <darkroom/result.hpp>
@@ -12,7 +13,11 @@
 
 namespace darkroom {
 
-/// Syntax errors name the place; text that nests so deep that a reader could run out of stack is refused first.
+/// The largest file of any kind. A tree takes up to 40 times its text.
+inline constexpr std::size_t most_toml_bytes = std::size_t{4} << 20;
+
+/// Syntax errors name the place; text that is too long, or that nests so deep that a reader could run out of stack, is
+/// refused first.
 [[nodiscard]] Result<toml::table> parse_toml(std::string_view text, std::string_view shown_name);
 /// Nothing for what no parameter can hold: dates, mixed arrays, other tables than {x, y, z, w} and {r, g, b}.
 [[nodiscard]] std::optional<ParamValue> value_of(const toml::node& node);
