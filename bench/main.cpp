@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -11,6 +12,7 @@
 #include "core/files.hpp"
 #include "core/param_text.hpp"
 #include "report.hpp"
+#include "sequence.hpp"
 #include "start.hpp"
 
 namespace darkroom::bench {
@@ -21,7 +23,7 @@ constexpr int exit_user = 1, exit_machine = 2;
 
 struct Options {
     std::string size = "1920x1080";
-    std::uint32_t rounds = 7;
+    std::uint32_t rounds = 7, frames = 30;
     std::vector<std::string> filters;
     std::string device;
     std::filesystem::path json, csv;
@@ -51,6 +53,26 @@ Result<> append(std::vector<Figure>& figures, Result<std::vector<Figure>> more) 
     return {};
 }
 
+/// Whole or not at all: its rows are made together.
+Result<> add_sequence(const Options& options, Device& device, VkExtent2D extent, Report& report) {
+    constexpr std::uint32_t most_rounds = 3;
+    const std::vector<std::string> names = sequence_row_names();
+    const auto is_asked_for = [&](const std::string& filter) {
+        return std::ranges::any_of(names, [&](const auto& name) { return name.find(filter) != std::string::npos; });
+    };
+    if (options.frames == 0 || (!options.filters.empty() && std::ranges::none_of(options.filters, is_asked_for)))
+        return {};
+    auto sequence = measure_sequence(device, {.extent = extent,
+                                              .frames = options.frames,
+                                              .rounds = std::min(options.rounds, most_rounds),
+                                              .device = options.device});
+    if (!sequence) return failure(std::move(sequence));
+    report.sequence = std::move(sequence->rows);
+    report.sequence_frames = sequence->frames;
+    report.figures.insert(report.figures.end(), sequence->figures.begin(), sequence->figures.end());
+    return {};
+}
+
 Result<> measure_all(const Options& options, Bed& bed, Report& report) {
     auto rows = make_rows(bed, options.filters);
     if (!rows) return failure(std::move(rows));
@@ -63,6 +85,7 @@ Result<> measure_all(const Options& options, Bed& bed, Report& report) {
         if (!passes) return failure(std::move(passes));
         report.passes = std::move(*passes);
     }
+    if (auto ok = add_sequence(options, bed.device, bed.extent, report); !ok) return ok;
     if (!options.filters.empty()) return {};
     if (auto ok = append(report.figures, counted_figures(bed)); !ok) return ok;
     return append(report.figures, start_figures(options.device, bed.extent, options.rounds));
@@ -75,7 +98,8 @@ Result<> save(const std::filesystem::path& path, const std::string& content) {
 
 int run(const Options& options, std::vector<std::string> command_line) {
     if (options.lists) {
-        for (const std::string& name : row_names()) fmt::print("{}\n", name);
+        for (const auto& names : {row_names(), sequence_row_names()})
+            for (const std::string& name : names) fmt::print("{}\n", name);
         return 0;
     }
     const auto extent = parse_size(options.size);
@@ -106,6 +130,9 @@ int parse_and_run(int argc, char** argv) {
     program.add_option("--size", options.size, "WIDTHxHEIGHT of the picture.")->capture_default_str();
     program.add_option("--rounds", options.rounds, "Runs of every row.")
         ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    program.add_option("--frames", options.frames, "Frames of the sequence; 0: none.")
+        ->check(CLI::Range(0, 10000))
         ->capture_default_str();
     program.add_option("--filter", options.filters, "Only rows whose name holds this text, or one of these.");
     program.add_option("--device", options.device, "Name, part of a name, or index of the device.");

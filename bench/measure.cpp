@@ -13,17 +13,22 @@ namespace darkroom::bench {
 
 namespace {
 
-double process_cpu_ms() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
-
-double wall_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+Sample clocks() {
+    timespec cpu{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+    const auto wall = std::chrono::steady_clock::now().time_since_epoch();
+    return {.cpu_ms = static_cast<double>(cpu.tv_sec) * 1e3 + static_cast<double>(cpu.tv_nsec) * 1e-6,
+            .wall_ms = std::chrono::duration<double, std::milli>(wall).count()};
 }
 
 }  // namespace
+
+Stopwatch::Stopwatch() : start_(clocks()) {}
+
+Sample Stopwatch::elapsed() const {
+    const Sample now = clocks();
+    return {.cpu_ms = now.cpu_ms - start_.cpu_ms, .wall_ms = now.wall_ms - start_.wall_ms};
+}
 
 Result<std::unique_ptr<Submitter>> Submitter::create(gpu::Context& context) {
     std::unique_ptr<Submitter> made(new Submitter(context));
@@ -84,11 +89,11 @@ Result<Sample> Submitter::run(const std::function<Result<>(VkCommandBuffer)>& re
     auto done = context_.check(context_.vk.EndCommandBuffer(*commands), "ending a command buffer");
     if (!done) return failure(std::move(done));
 
-    const double cpu = process_cpu_ms(), wall = wall_ms();
+    const Stopwatch watch;
     done = submit();
     if (done) done = wait();
     if (!done) return failure(std::move(done));
-    Sample sample{.cpu_ms = process_cpu_ms() - cpu, .wall_ms = wall_ms() - wall};
+    Sample sample = watch.elapsed();
     timers_.read(0, 2, {&sample.gpu_ms, 1});
     return sample;
 }
@@ -98,9 +103,9 @@ Result<> measure(Bed& bed, std::vector<Row>& rows, std::uint32_t rounds) {
     if (!submitter) return failure(std::move(submitter));
     const auto run = [&](const Row& row) -> Result<Sample> {
         if (row.record) return (*submitter)->run(row.record);
-        const double cpu = process_cpu_ms(), wall = wall_ms();
+        const Stopwatch watch;
         row.host();
-        return Sample{.cpu_ms = process_cpu_ms() - cpu, .wall_ms = wall_ms() - wall};
+        return watch.elapsed();
     };
     // The first run of a kernel is when a driver may compile it.
     for (std::uint32_t round = 0; round <= rounds; ++round) {

@@ -40,6 +40,16 @@ struct Sample {
     double gpu_ms = 0;   ///< between two timestamps; 0 without timestamps
 };
 
+/// Starts when it is made.
+class Stopwatch {
+  public:
+    Stopwatch();
+    [[nodiscard]] Sample elapsed() const;
+
+  private:
+    Sample start_;
+};
+
 struct Row {
     std::string name;
     std::function<Result<>(VkCommandBuffer)> record{};

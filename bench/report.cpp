@@ -46,6 +46,13 @@ std::string json_text(std::string_view text) {
     return out + '"';
 }
 
+void write_clocks(std::back_insert_iterator<std::string> to, const Row& row) {
+    for (const Clock& clock : clocks) {
+        const std::vector<double> values = column(row, clock.member);
+        fmt::format_to(to, ", \"{0}\": {1:.4f}, \"{0}_min\": {2:.4f}", clock.name, median(values), minimum(values));
+    }
+}
+
 }  // namespace
 
 std::string text(const Report& report) {
@@ -68,11 +75,21 @@ std::string text(const Report& report) {
     if (!report.passes.empty()) fmt::format_to(to, "\n{:<48} {:>9}\n", "pass", "GPU ms");
     for (const PassRow& pass : report.passes)
         fmt::format_to(to, "{:<48} {:>9.3f}\n", fmt::format("{}: {}", pass.stack, pass.pass), pass.milliseconds);
+    if (!report.sequence.empty())
+        fmt::format_to(to, "\n{:<42} {:>9} {:>9} {:>9} {:>9}\n",
+                       fmt::format("sequence of {}, one frame", report.sequence_frames), "CPU ms", "wall ms", "GPU ms",
+                       "frames/s");
+    for (const Row& row : report.sequence) {
+        fmt::format_to(to, "{:<42}", row.name);
+        for (const Clock& clock : clocks) fmt::format_to(to, " {:>9.1f}", median(column(row, clock.member)));
+        fmt::format_to(to, " {:>9.2f}\n", 1e3 / median(column(row, &Sample::wall_ms)));
+    }
     if (!report.figures.empty()) out += '\n';
     for (const Figure& figure : report.figures) {
         fmt::format_to(to, "{:<48} {:>9.3f} {:<5}", figure.name, figure.value, figure.unit);
-        if (figure.at_most)
-            fmt::format_to(to, " at most {:<6g} {}", *figure.at_most, figure.holds() ? "holds" : "MISSED");
+        const std::string_view verdict = figure.holds() ? "holds" : "MISSED";
+        if (figure.at_most) fmt::format_to(to, " at most {:<6g} {}", *figure.at_most, verdict);
+        if (figure.at_least) fmt::format_to(to, " at least {:<5g} {}", *figure.at_least, verdict);
         out += '\n';
     }
     return out;
@@ -94,10 +111,7 @@ std::string json(const Report& report) {
     for (std::size_t i = 0; i < report.rows.size(); ++i) {
         const Row& row = report.rows[i];
         fmt::format_to(to, "{}\n    {{\"name\": {}", i == 0 ? "" : ",", json_text(row.name));
-        for (const Clock& clock : clocks) {
-            const std::vector<double> values = column(row, clock.member);
-            fmt::format_to(to, ", \"{0}\": {1:.4f}, \"{0}_min\": {2:.4f}", clock.name, median(values), minimum(values));
-        }
+        write_clocks(to, row);
         fmt::format_to(to, ", \"c\": {:.4f}", in_c(report, row));
         if (const auto floor = floor_of(report, row)) fmt::format_to(to, ", \"floor_c\": {:.4f}", *floor);
         out += '}';
@@ -107,12 +121,20 @@ std::string json(const Report& report) {
         fmt::format_to(to, "{}\n    {{\"stack\": {}, \"pass\": {}, \"gpu_ms\": {:.4f}}}", i == 0 ? "" : ",",
                        json_text(report.passes[i].stack), json_text(report.passes[i].pass),
                        report.passes[i].milliseconds);
+    fmt::format_to(to, "\n  ],\n  \"sequence_frames\": {},\n  \"sequence\": [", report.sequence_frames);
+    for (std::size_t i = 0; i < report.sequence.size(); ++i) {
+        fmt::format_to(to, "{}\n    {{\"name\": {}", i == 0 ? "" : ",", json_text(report.sequence[i].name));
+        write_clocks(to, report.sequence[i]);
+        out += '}';
+    }
     out += "\n  ],\n  \"figures\": [";
     for (std::size_t i = 0; i < report.figures.size(); ++i) {
         const Figure& figure = report.figures[i];
         fmt::format_to(to, "{}\n    {{\"name\": {}, \"value\": {:.4f}, \"unit\": {}", i == 0 ? "" : ",",
                        json_text(figure.name), figure.value, json_text(figure.unit));
-        if (figure.at_most) fmt::format_to(to, ", \"at_most\": {}, \"holds\": {}", *figure.at_most, figure.holds());
+        if (figure.at_most) fmt::format_to(to, ", \"at_most\": {}", *figure.at_most);
+        if (figure.at_least) fmt::format_to(to, ", \"at_least\": {}", *figure.at_least);
+        if (figure.at_most || figure.at_least) fmt::format_to(to, ", \"holds\": {}", figure.holds());
         out += '}';
     }
     out += "\n  ]\n}\n";

@@ -20,6 +20,8 @@ struct Report {
     std::vector<Row> rows;                   ///< the calibration pass first
     std::vector<Figure> figures;
     std::vector<PassRow> passes;
+    std::vector<Row> sequence;  ///< milliseconds of a frame
+    std::uint32_t sequence_frames = 0;
 };
 
 [[nodiscard]] std::string text(const Report& report);

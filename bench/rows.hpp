@@ -15,13 +15,14 @@ inline constexpr std::string_view calibration_name = "calibration (1 c)";
 /// What the device takes to move bytes and do nothing else.
 inline constexpr std::string_view floor_name = "copy of the scene's bytes (floor)";
 
-/// A number that is derived from rows or counted, and what it should be at most.
+/// A number that is derived from rows or counted, and what it should be at most or at least.
 struct Figure {
     std::string name;
     double value = 0;
     std::string unit;
     std::optional<double> at_most{};
-    [[nodiscard]] bool holds() const { return !at_most || value <= *at_most; }
+    std::optional<double> at_least{};
+    [[nodiscard]] bool holds() const { return (!at_most || value <= *at_most) && (!at_least || value >= *at_least); }
 };
 
 /// The median time of one pass of a stack.

@@ -86,30 +86,6 @@ Vector along(const Vector& from, const Vector& direction, float way) {
     return {from[0] + direction[0] * way, from[1] + direction[1] * way, from[2] + direction[2] * way};
 }
 
-struct Seen {
-    std::vector<float> depth, distance;
-    std::vector<std::uint16_t> normals;
-};
-
-Seen see(const std::vector<Box>& world, const Camera& camera, VkExtent2D extent) {
-    Seen out;
-    for (std::uint32_t y = 0; y < extent.height; ++y)
-        for (std::uint32_t x = 0; x < extent.width; ++x) {
-            const float right = (static_cast<float>(x) + 0.5F) / static_cast<float>(extent.width) * 2 - 1;
-            const float down = (static_cast<float>(y) + 0.5F) / static_cast<float>(extent.height) * 2 - 1;
-            const Vector direction{right / camera.projection[0], down / camera.projection[5], -1};
-            const Hit hit = trace(world, eye, direction);
-            out.distance.push_back(hit.is_sky() ? sky_distance : hit.distance);
-            out.depth.push_back(
-                hit.is_sky() ? 0 : std::max(camera.projection[14] / hit.distance - camera.projection[10], 0.0F));
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                out.normals.push_back(
-                    half_bits(hit.is_sky() || axis != hit.axis ? 0 : std::copysign(1.0F, -direction[axis])));
-            out.normals.push_back(0);
-        }
-    return out;
-}
-
 /// The sun stands in the picture, over the wall, so that shafts and god rays have their work.
 Light sun() {
     Light light{.direction = normalized({0.3F, 0.35F, -1}),
@@ -162,9 +138,32 @@ std::vector<float> shadows(const std::vector<Box>& world, Light& light) {
 
 }  // namespace
 
+StreetView view_street(VkExtent2D extent) {
+    const std::vector<Box> world = street();
+    StreetView out{.camera = street_camera(extent)};
+    const Matrix& projection = out.camera.projection;
+    for (std::uint32_t y = 0; y < extent.height; ++y)
+        for (std::uint32_t x = 0; x < extent.width; ++x) {
+            const float right = (static_cast<float>(x) + 0.5F) / static_cast<float>(extent.width) * 2 - 1;
+            const float down = (static_cast<float>(y) + 0.5F) / static_cast<float>(extent.height) * 2 - 1;
+            const Vector direction{right / projection[0], down / projection[5], -1};
+            const Hit hit = trace(world, eye, direction);
+            out.distance.push_back(hit.is_sky() ? sky_distance : hit.distance);
+            out.depth.push_back(hit.is_sky() ? 0 : std::max(projection[14] / hit.distance - projection[10], 0.0F));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                out.normals.push_back(hit.is_sky() || axis != hit.axis ? 0 : std::copysign(1.0F, -direction[axis]));
+        }
+    return out;
+}
+
 Result<World> World::create(gpu::Context& context, VkExtent2D extent) {
-    const std::vector<Box> boxes = street();
-    World world{.camera = street_camera(extent), .light = sun()};
+    const StreetView seen = view_street(extent);
+    std::vector<std::uint16_t> normals;
+    for (std::size_t i = 0; i < seen.normals.size(); ++i) {
+        normals.push_back(half_bits(seen.normals[i]));
+        if (i % 3 == 2) normals.push_back(0);
+    }
+    World world{.camera = seen.camera, .light = sun()};
     const auto make = [&](gpu::Image& image, const char* name, VkFormat format, VkExtent2D size, std::uint32_t layers,
                           const auto& numbers) -> Result<> {
         const bool has_storage = format != VK_FORMAT_D32_SFLOAT;
@@ -179,13 +178,12 @@ Result<World> World::create(gpu::Context& context, VkExtent2D extent) {
         image = std::move(*made);
         return {};
     };
-    const Seen seen = see(boxes, world.camera, extent);
     auto done = make(world.depth, "depth", VK_FORMAT_D32_SFLOAT, extent, 1, seen.depth);
     if (done) done = make(world.distance, "distance", VK_FORMAT_R32_SFLOAT, extent, 1, seen.distance);
-    if (done) done = make(world.normals, "normals", VK_FORMAT_R16G16B16A16_SFLOAT, extent, 1, seen.normals);
+    if (done) done = make(world.normals, "normals", VK_FORMAT_R16G16B16A16_SFLOAT, extent, 1, normals);
     if (done)
         done = make(world.cascades, "cascades", VK_FORMAT_D32_SFLOAT, {cascade_size, cascade_size}, Light::max_cascades,
-                    shadows(boxes, world.light));
+                    shadows(street(), world.light));
     if (!done) return failure(std::move(done));
     world.light.cascades = {.image = world.cascades.handle,
                             .view = world.cascades.view,

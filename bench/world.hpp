@@ -4,10 +4,19 @@
 // renderer would hand it over. It is traced on the CPU, once, and has nothing to do with the colours of the bed.
 
 #include <darkroom/frame.hpp>
+#include <vector>
 
 #include "gpu/resources.hpp"
 
 namespace darkroom::bench {
+
+/// What the camera sees of the street, row-major, top row first. Depth is reversed; distance is planar, 1e10 for sky.
+struct StreetView {
+    Camera camera;
+    std::vector<float> depth, distance;
+    std::vector<float> normals;  ///< x, y, z of the world; 0 for sky
+};
+[[nodiscard]] StreetView view_street(VkExtent2D extent);
 
 struct World {
     [[nodiscard]] static Result<World> create(gpu::Context& context, VkExtent2D extent);
