@@ -89,7 +89,8 @@ class Plain {
           is_compute_(stage == gpu::Stage::Compute),
           workgroup_(gpu::usual_workgroup(bed.context)) {}
     [[nodiscard]] Result<> create_layouts();
-    [[nodiscard]] Result<VkPipelineShaderStageCreateInfo> load(VkShaderStageFlagBits stage, std::string text);
+    [[nodiscard]] Result<VkPipelineShaderStageCreateInfo> load(VkShaderStageFlagBits stage, gpu::ShaderStage kind,
+                                                               std::string text);
     [[nodiscard]] Result<> create_pipeline();
     void write_set();
     void draw(VkCommandBuffer commands) const;
@@ -108,7 +109,8 @@ class Plain {
 };
 
 Plain::~Plain() {
-    const auto& [vk, device] = std::tie(bed_.context.vk, bed_.context.device);
+    const gpu::Dispatch& vk = bed_.context.vk;
+    const VkDevice device = bed_.context.device;
     vk.DestroyPipeline(device, pipeline_, nullptr);
     vk.DestroyPipelineLayout(device, layout_, nullptr);
     vk.DestroyDescriptorSetLayout(device, set_layout_, nullptr);
@@ -143,11 +145,9 @@ Result<> Plain::create_layouts() {
     return {};
 }
 
-Result<VkPipelineShaderStageCreateInfo> Plain::load(VkShaderStageFlagBits stage, std::string text) {
+Result<VkPipelineShaderStageCreateInfo> Plain::load(VkShaderStageFlagBits stage, gpu::ShaderStage kind,
+                                                    std::string text) {
     gpu::Context& context = bed_.context;
-    const gpu::ShaderStage kind = stage == VK_SHADER_STAGE_COMPUTE_BIT    ? gpu::ShaderStage::Compute
-                                  : stage == VK_SHADER_STAGE_FRAGMENT_BIT ? gpu::ShaderStage::Fragment
-                                                                          : gpu::ShaderStage::Vertex;
     const auto words = context.shaders->compile({.name = "plain pass", .text = std::move(text), .stage = kind});
     if (!words) return failure(words.error());
     const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
@@ -167,7 +167,7 @@ Result<VkPipelineShaderStageCreateInfo> Plain::load(VkShaderStageFlagBits stage,
 Result<> Plain::create_pipeline() {
     gpu::Context& context = bed_.context;
     if (is_compute_) {
-        const auto shader = load(VK_SHADER_STAGE_COMPUTE_BIT,
+        const auto shader = load(VK_SHADER_STAGE_COMPUTE_BIT, gpu::ShaderStage::Compute,
                                  fmt::format("#version 460\nlayout(local_size_x = {}, local_size_y = {}) in;\n{}{}{}",
                                              workgroup_[0], workgroup_[1], head, shade_, compute_main));
         if (!shader) return failure(shader.error());
@@ -177,10 +177,10 @@ Result<> Plain::create_pipeline() {
             context.vk.CreateComputePipelines(context.device, context.pipeline_cache, 1, &info, nullptr, &pipeline_),
             "creating a pipeline");
     }
-    const auto vertex = load(VK_SHADER_STAGE_VERTEX_BIT, std::string(vertex_source));
+    const auto vertex = load(VK_SHADER_STAGE_VERTEX_BIT, gpu::ShaderStage::Vertex, std::string(vertex_source));
     if (!vertex) return failure(vertex.error());
-    const auto fragment =
-        load(VK_SHADER_STAGE_FRAGMENT_BIT, fmt::format("#version 460\n{}{}{}", head, shade_, fragment_main));
+    const auto fragment = load(VK_SHADER_STAGE_FRAGMENT_BIT, gpu::ShaderStage::Fragment,
+                               fmt::format("#version 460\n{}{}{}", head, shade_, fragment_main));
     if (!fragment) return failure(fragment.error());
     const std::array stages{*vertex, *fragment};
     return context.check(
