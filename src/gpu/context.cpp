@@ -145,6 +145,7 @@ Result<> Context::finish() {
     traits.storage_alignment = limits.minStorageBufferOffsetAlignment;
     traits.uniform_alignment = limits.minUniformBufferOffsetAlignment;
     traits.max_uniform_range = limits.maxUniformBufferRange;
+    traits.max_storage_range = limits.maxStorageBufferRange;
     traits.max_workgroup_invocations = limits.maxComputeWorkGroupInvocations;
     std::ranges::copy(limits.maxComputeWorkGroupSize, traits.max_workgroup_size.begin());
     traits.max_storage_images = limits.maxPerStageDescriptorStorageImages;

@@ -38,7 +38,8 @@ struct Traits {
     std::uint32_t max_image_dimension = 0;
     VkDeviceSize storage_alignment = 256, uniform_alignment = 256;
     // Until a device says more: the least that Vulkan promises.
-    std::uint32_t max_uniform_range = 16384;  ///< bytes of one uniform buffer that a shader sees
+    std::uint32_t max_uniform_range = 16384;                  ///< bytes of one uniform buffer that a shader sees
+    VkDeviceSize max_storage_range = VkDeviceSize{1} << 27U;  ///< the same of a storage buffer
     std::uint32_t max_workgroup_invocations = 128;
     std::array<std::uint32_t, 3> max_workgroup_size{128, 128, 64};
     std::uint32_t max_storage_images = 4;    ///< a stage

@@ -1,14 +1,26 @@
 // SPDX-License-Identifier: MIT
 #include "render/frame_buffers.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace darkroom::render {
 
+Result<> check_storage(const gpu::Context& context, VkDeviceSize size, std::string_view name) {
+    if (size <= context.traits.max_storage_range) return {};
+    return user_error(fmt::format("the scene is too large for {}: {} need {} bytes, shaders reach {}",
+                                  context.info.name, name, size, context.traits.max_storage_range));
+}
+
 Result<> HostBuffer::reserve(gpu::Context& context, VkDeviceSize size, VkBufferUsageFlags usage,
                              std::string_view name) {
     if (size <= capacity_) return {};
-    const VkDeviceSize wanted = std::max(size, capacity_ + capacity_ / 2);
+    VkDeviceSize wanted = std::max(size, capacity_ + capacity_ / 2);
+    if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0) {
+        if (Result<> checked = check_storage(context, size, name); !checked) return checked;
+        wanted = std::min(wanted, context.traits.max_storage_range);
+    }
     Result<gpu::Buffer> made = gpu::Buffer::create(context, wanted, usage, gpu::Memory::Kind::Upload, name);
     if (!made) return failure(std::move(made));
     buffer_ = std::move(*made);

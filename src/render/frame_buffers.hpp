@@ -12,6 +12,9 @@
 
 namespace darkroom::render {
 
+/// An error if a storage buffer of this size is more than shaders of the device can reach.
+[[nodiscard]] Result<> check_storage(const gpu::Context& context, VkDeviceSize size, std::string_view name);
+
 /// Memory that the host writes and shaders read.
 class HostBuffer {
   public:

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/assert.hpp"
+#include "render/frame_buffers.hpp"
 #include "render/gpu_scene_sets.hpp"
 #include "render/gpu_scene_textures.hpp"
 #include "render/upload.hpp"
@@ -206,6 +207,9 @@ Result<GpuScene> GpuScene::create(gpu::Context& context, const scene::Assets& as
         Part{out.indices, bytes_of(geometry.indices), VK_BUFFER_USAGE_INDEX_BUFFER_BIT, 0, "indices of the scene"},
         Part{out.morph_deltas, bytes_of(geometry.morph_deltas), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, sizeof(vec4),
              "morph targets"}};
+    const VkDeviceSize deltas = geometry.morph_deltas.size() * sizeof(vec4);
+    if (Result<> checked = check_storage(context, deltas, "morph targets"); !checked)
+        return failure(std::move(checked));
     for (const Part& part : parts) {
         Result<gpu::Buffer> made = uploader.buffer(part.bytes, part.usage, part.least_size, part.name);
         if (!made) return failure(std::move(made));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "render/renderer_test_support.hpp"
 
 namespace darkroom::render {
@@ -55,6 +57,22 @@ TEST(RenderGpuRenderer, ABoxIsWhereArithmeticPutsItAndKeepsHdr) {
             }
         }
     }
+}
+
+TEST(RenderGpuRenderer, WhatShadersCannotReachIsToldBeforeItIsBound) {
+    gpu::Context& context = gpu::test::context();
+    const VkDeviceSize before = std::exchange(context.traits.max_storage_range, 4096);
+    Renderer renderer = renderer_for({.extent = small});
+    scene::Snapshot snapshot = snapshot_of(small);
+    add_box(snapshot, {0, 1, -5}, {2, 3, -4}, plain({4, 0.5F, 0, 1}));
+    EXPECT_TRUE(renderer.prepare(snapshot));
+    snapshot.joints.resize(33, scene::mat4(1));
+    const Result<> refused = renderer.prepare(snapshot);
+    context.traits.max_storage_range = before;
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().text,
+              "the scene is too large for " + context.info.name + ": joints need 4224 bytes, shaders reach 4096");
+    EXPECT_TRUE(renderer.prepare(snapshot));
 }
 
 TEST(RenderGpuRenderer, DepthIsPlanarDistanceOfASlantedFloor) {
