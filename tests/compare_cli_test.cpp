@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // `darkroom compare` as a build server meets it: exit codes, thresholds, what is not a number, many files at once.
-#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "cli_support.hpp"
 #include "image/frame_file.hpp"
+#include "image/test_exr.hpp"
 #include "image/write.hpp"
 
 namespace darkroom {
@@ -46,12 +46,7 @@ class CliCompare : public test::CliFixture {
     /// Numbers into a file as they are, which the library's own writers would mend.
     void write_exr(const std::string& name, const std::vector<std::string>& channels, const std::vector<float>& values,
                    std::uint32_t columns = width) const {
-        OIIO::ImageSpec spec(static_cast<int>(columns), static_cast<int>(values.size() / channels.size() / columns),
-                             static_cast<int>(channels.size()), OIIO::TypeFloat);
-        spec.channelnames = channels;
-        const auto file = OIIO::ImageOutput::create("openexr");
-        ASSERT_TRUE(file && file->open(path(name), spec) && file->write_image(OIIO::TypeFloat, values.data()) &&
-                    file->close());
+        test::store_floats(path(name), channels, columns, values);
     }
     [[nodiscard]] Outcome compare(const std::string& a, const std::string& b,
                                   std::vector<std::string> more = {}) const {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // `darkroom info`: what it tells of every kind of file, and that one it cannot read hides no other.
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "cli_support.hpp"
 #include "core/param_text.hpp"
 #include "image/frame_file.hpp"
+#include "image/test_exr.hpp"
 #include "image/write.hpp"
 
 namespace darkroom {
@@ -104,14 +104,10 @@ TEST_F(CliInfo, WhatTheDefaultLookLeavesOutIsThePlansWord) {
 }
 
 TEST_F(CliInfo, WhatIsNoNumberIsCountedByLayer) {
-    OIIO::ImageSpec spec(4, 2, 4, OIIO::TypeFloat);
-    spec.channelnames = {"R", "G", "B", "Z"};
     std::vector<float> values(32, 0.25f);
     values[1] = values[6] = std::numeric_limits<float>::quiet_NaN();
     values[3] = -std::numeric_limits<float>::infinity();
-    const auto file = OIIO::ImageOutput::create("openexr");
-    ASSERT_TRUE(file && file->open(path("nan.exr"), spec) && file->write_image(OIIO::TypeFloat, values.data()) &&
-                file->close());
+    test::store_floats(path("nan.exr"), {"R", "G", "B", "Z"}, 4, values);
     const json found = document(path("nan.exr"));
     EXPECT_EQ(layer(found, "color").at("nan"), 2);
     EXPECT_EQ(layer(found, "color").at("infinite"), 0);

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "image/frame_lights.hpp"
 
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
 #include <sys/resource.h>
 
 #include <cmath>
@@ -42,6 +47,16 @@ FrameFile frame_of(std::vector<FrameLight> lights) {
     frame.time = 1.0 / 3;
     frame.lights = std::move(lights);
     return frame;
+}
+
+/// One of a frame's size, all of whose channels are 0.5.
+ExrPart part_of(const char* name, const std::vector<std::string>& channels) {
+    static const std::vector<float> values(256, 0.5F);
+    ExrPart part{.header = exr_header(5, 3)};
+    part.header.setName(name);
+    for (const std::string& channel : channels)
+        part.channels.push_back({.name = channel, .kind = SampleKind::Float, .values = values.data()});
+    return part;
 }
 
 class ImageLights : public WithFolder {
@@ -127,12 +142,10 @@ TEST_F(ImageLights, ShadowsAreNoLayerOfTheFrame) {
     ASSERT_TRUE(add_mapping(options.names, "color=N"));
     EXPECT_EQ(read("a.exr", options).depth->values[1], 5.0F / 8) << "found as in a file of one part";
     // A lone channel is grey where nothing else is the colour.
-    OIIO::ImageSpec spec(5, 3, 1, OIIO::TypeFloat);
-    spec.channelnames = {"Z"};
-    spec.attribute("oiio:subimagename", "shadow3");
-    std::vector<EncodedPart> parts = shadow_parts(spec, frame.lights);
-    parts.push_back({spec, [] { return std::vector<float>(15, 0.5F); }});
-    ASSERT_TRUE(encode_parts_to_file(file("b.exr"), parts));
+    ExrPart lone = part_of("shadow3", {"Z"});
+    std::vector<ExrPart> parts = shadow_parts(lone.header, frame.lights);
+    parts.push_back(lone);
+    ASSERT_TRUE(write_exr(file("b.exr"), parts));
     const auto alone = read_frame(file("b.exr"));
     ASSERT_FALSE(alone);
     EXPECT_NE(alone.error().text.find("has no color"), std::string::npos) << alone.error().text;
@@ -188,13 +201,12 @@ class ImageLightsHostile : public ImageLights {
     template <class Change>
     void write(const Change& change) {
         frame_.lights = {light_with(2, 4, 1), light_with(1, 3, 2)};
-        OIIO::ImageSpec spec(5, 3, 3, OIIO::TypeFloat);
-        spec.attribute("oiio:subimagename", "frame");
-        add_lights(spec, frame_.lights);
-        std::vector<EncodedPart> parts = shadow_parts(spec, frame_.lights);
-        parts.insert(parts.begin(), EncodedPart{spec, [] { return std::vector<float>(45, 0.5F); }});
+        ExrPart frame = part_of("frame", {"R", "G", "B"});
+        add_lights(frame.header, frame_.lights);
+        std::vector<ExrPart> parts = shadow_parts(frame.header, frame_.lights);
+        parts.insert(parts.begin(), frame);
         change(parts);
-        const Result<> written = encode_parts_to_file(file("a.exr"), parts);
+        const Result<> written = write_exr(file("a.exr"), parts);
         ASSERT_TRUE(written) << written.error().text;
     }
     template <class Change>
@@ -209,27 +221,26 @@ class ImageLightsHostile : public ImageLights {
     FrameFile frame_;
 };
 
-using Parts = std::vector<EncodedPart>;
+using Parts = std::vector<ExrPart>;
 
-template <class T>
-auto set(const std::string& name, T value) {
-    return [=](Parts& parts) { parts[0].spec.attribute(name, value); };
-}
-auto set_floats(const std::string& name, std::vector<float> values) {
-    return [=](Parts& parts) {
-        parts[0].spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, static_cast<int>(values.size())),
-                                values.data());
+auto set(const std::string& name, const Imf::Attribute& value) {
+    return [name, copy = std::shared_ptr<const Imf::Attribute>(value.copy())](Parts& parts) {
+        // Of an attribute that is there, the type cannot change.
+        parts[0].header.erase(name);
+        parts[0].header.insert(name, *copy);
     };
+}
+auto set(const std::string& name, float value) { return set(name, Imf::FloatAttribute(value)); }
+auto set(const std::string& name, int value) { return set(name, Imf::IntAttribute(value)); }
+auto set(const std::string& name, const char* value) { return set(name, Imf::StringAttribute(value)); }
+auto set_floats(const std::string& name, const std::vector<float>& values) {
+    return set(name, Imf::FloatVectorAttribute(values));
 }
 auto without(const std::string& name) {
-    return [=](Parts& parts) { parts[0].spec.erase_attribute(name); };
+    return [=](Parts& parts) { parts[0].header.erase(name); };
 }
-auto channels(std::size_t part, std::vector<std::string> names) {
-    return [=](Parts& parts) {
-        parts[part].spec.nchannels = static_cast<int>(names.size());
-        parts[part].spec.channelnames = names;
-        parts[part].samples = [] { return std::vector<float>(256, 0.5F); };
-    };
+auto channels(std::size_t part, const std::vector<std::string>& names) {
+    return [=](Parts& parts) { parts[part].channels = part_of("", names).channels; };
 }
 
 TEST_F(ImageLightsHostile, UnchangedItIsRead) {
@@ -270,13 +281,13 @@ TEST_F(ImageLightsHostile, WrongPartsAreRefused) {
     expect_refused("shadow0 has 5 channels with cascade0 among them; cascade0 to cascade3 are allowed",
                    channels(1, {"cascade0", "cascade1", "cascade2", "cascade3", "cascade4"}));
     expect_refused("shadow1: cascades of 3x2 texels; squares of 1 to 16384 a side are allowed",
-                   [](Parts& parts) { parts[2].spec.height = 2; });
+                   [](Parts& parts) { parts[2].header.dataWindow().max.y = 1; });
 }
 
 TEST_F(ImageLightsHostile, WhatNoLightHasIsLeftOut) {
     write([](Parts& parts) {
         without("darkroom:lights")(parts);
-        parts[2].spec.attribute("oiio:subimagename", "shadow123");
+        parts[2].header.setName("shadow123");
     });
     EXPECT_TRUE(read("a.exr").lights.empty());
     EXPECT_EQ(read("a.exr").warnings,
@@ -291,15 +302,15 @@ TEST_F(ImageLightsHostile, WhatNoLightHasIsLeftOut) {
 
 // What memory a picture takes follows from its display window, which shadows share and need not fill.
 TEST_F(ImageLightsHostile, SmallShadowsMayBeBesideALargeFrame) {
-    const auto write_of = [&](int side) {
-        OIIO::ImageSpec spec(side, side, 1, OIIO::TypeHalf);
-        spec.attribute("oiio:subimagename", "frame");
-        spec.full_width = spec.full_height = 8192;
+    const auto write_of = [&](std::uint32_t side) {
+        const std::vector<float> black(std::size_t{side} * side);
+        ExrPart frame{.header = exr_header(side, side), .channels = {{.name = "Y", .values = black.data()}}};
+        frame.header.setName("frame");
+        frame.header.displayWindow().max = {8191, 8191};
         const std::vector<FrameLight> lights{light_with(1, 3, 1)};
-        std::vector<EncodedPart> parts = shadow_parts(spec, lights);
-        parts[0].spec.full_width = parts[0].spec.full_height = 8192;
-        parts.insert(parts.begin(), EncodedPart{spec, [&] { return std::vector<float>(std::size_t(side) * side); }});
-        return encode_parts_to_file(file("a.exr"), parts);
+        std::vector<ExrPart> parts = shadow_parts(frame.header, lights);
+        parts.insert(parts.begin(), frame);
+        return write_exr(file("a.exr"), parts);
     };
     EXPECT_TRUE(write_of(1024));
     const Result<> small = write_of(1023);
@@ -308,11 +319,18 @@ TEST_F(ImageLightsHostile, SmallShadowsMayBeBesideALargeFrame) {
 }
 
 TEST_F(ImageLightsHostile, DepthsAreMended) {
+    // What is not finite is not written: it is put in place of other numbers.
+    static const std::vector<float> stored{0.11F, 0.12F, 0.13F, -1, 2, 0.25F, 0, 1, 0.5F};
     write([](Parts& parts) {
-        parts[2].samples = [] {
-            return std::vector<float>{std::nanf(""), infinity, -infinity, -1, 2, 0.25F, 0, 1, 0.5F};
-        };
+        parts[2].header.compression() = Imf::NO_COMPRESSION;
+        parts[2].channels[0].values = stored.data();
     });
+    std::string bytes = content(file("a.exr"));
+    const auto text = [](float value) { return std::string(reinterpret_cast<const char*>(&value), sizeof value); };
+    for (const auto& [from, to] :
+         {std::pair(0.11F, std::nanf("")), std::pair(0.12F, infinity), std::pair(0.13F, -infinity)})
+        bytes.replace(bytes.rfind(text(from)), sizeof(float), text(to));
+    put(file("a.exr"), bytes);
     const FrameFile back = read("a.exr");
     EXPECT_EQ(back.lights[1].cascades[0].depth.values, (std::vector<float>{1, 1, 1, 0, 1, 0.25F, 0, 1, 0.5F}));
     EXPECT_EQ(back.counts, PixelCounts{.not_finite_other = 3});

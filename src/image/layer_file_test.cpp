@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "image/layer_file.hpp"
 
-#include <OpenImageIO/imageio.h>
-
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "image/display_picture.hpp"
 #include "image/frame_file.hpp"
+#include "image/test_exr.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {
@@ -21,13 +20,9 @@ class ImageLayers : public WithFolder {
     /// 2x2 pixels; the n-th sample of all is `values(n)`.
     template <class Values>
     void put_exr(const std::vector<std::string>& channels, const Values& values) const {
-        OIIO::ImageSpec spec(2, 2, static_cast<int>(channels.size()), OIIO::TypeFloat);
-        spec.channelnames = channels;
         std::vector<float> samples(channels.size() * 4);
         for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = values(i);
-        const auto output = OIIO::ImageOutput::create("openexr");
-        ASSERT_TRUE(output && output->open(file("a.exr").string(), spec) &&
-                    output->write_image(OIIO::TypeFloat, samples.data()) && output->close());
+        test::store_floats(file("a.exr"), channels, 2, samples);
     }
 };
 
