@@ -107,7 +107,7 @@ class CliDocuments : public test::CliFixture {
 };
 
 TEST_F(CliDocuments, ThePlanIsTheOneThatIsPrinted) {
-    const test::Outcome plan = run({"plan", "--kernels", "raster"});
+    const test::Outcome plan = run({"plan"});
     ASSERT_EQ(plan.code, 0) << plan.err;
     EXPECT_NE(test::content(source / "docs/architecture.md").find("```\n" + plan.out + "```\n"), std::string::npos)
         << "docs/architecture.md shows another plan than this:\n"

@@ -201,9 +201,10 @@ Result<std::vector<std::byte>> encode(const EncodeDesc& desc) {
     spec.attribute("DateTime", "1970:01:01 00:00:00");
     // Alpha is carried, never applied: without this, writers divide colour by it.
     spec.attribute("oiio:UnassociatedAlpha", 1);
-    if (desc.kind == SampleKind::Integer8 || desc.kind == SampleKind::Integer16)
+    if (desc.file == FileKind::Jpeg) {
         spec.attribute("oiio:ColorSpace", "sRGB");
-    if (desc.file == FileKind::Jpeg) spec.attribute("Compression", fmt::format("jpeg:{}", desc.quality.value_or(95)));
+        spec.attribute("Compression", fmt::format("jpeg:{}", desc.quality.value_or(95)));
+    }
     if (desc.file == FileKind::Tiff) spec.attribute("compression", desc.compression.empty() ? "zip" : desc.compression);
     OIIO::Filesystem::IOVecOutput memory;
     auto output = OIIO::ImageOutput::create(format_of(desc.file));
