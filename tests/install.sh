@@ -37,3 +37,5 @@ export PKG_CONFIG_PATH=$library/pkgconfig
 eval "'$compiler' -std=c++20 ${flags[*]} '$tree/tests/package/main.cpp' $kept $(pkg-config --cflags --libs darkroom-looks) -o '$work/pkg'"
 "$work/pkg"
 "$prefix/bin/darkroom" --version
+# The module for other files than OpenEXR is found beside the program, wherever that was moved.
+"$prefix/bin/darkroom" info "$tree/tests/goldens/forge.png" >/dev/null

@@ -33,11 +33,7 @@ Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max
         return user_error(fmt::format("{}: is a device, expected an image file", one_printable_line(path.string())));
     auto state = std::make_unique<State>();
     state->path = path.string();
-    const auto check_start = [](std::span<const std::byte> start) -> Result<> {
-        const Result<FileKind> kind = kind_of_file(start);
-        return kind ? Result<>() : failure(kind.error());
-    };
-    auto bytes = read_file(path, {.max_size = max_image_file, .check_start = check_start});
+    auto bytes = read_image_file(path);
     if (!bytes) return failure(std::move(bytes));
     state->bytes = std::move(*bytes);
     auto opened = open_source(state->bytes, max_threads);

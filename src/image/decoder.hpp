@@ -22,8 +22,8 @@ namespace darkroom {
 
 class Decoder {
   public:
-    /// Reads the file, if its first bytes are those of a known kind and it is no longer than max_image_file, and checks
-    /// its structure. The error text begins with the path. `max_threads`: see open_source.
+    /// Reads the file (read_image_file) and checks its structure. The error text begins with the path. `max_threads`:
+    /// see open_source.
     [[nodiscard]] static Result<Decoder> open(const std::filesystem::path& path, std::size_t max_threads = 0);
 
     Decoder(Decoder&&) noexcept;
@@ -57,8 +57,5 @@ class Decoder {
     explicit Decoder(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
-
-/// Bytes of an image file at most.
-inline constexpr std::uintmax_t max_image_file = std::uintmax_t{4} << 30;
 
 }  // namespace darkroom

@@ -12,6 +12,8 @@
 #include <bit>
 #include <cstring>
 #include <memory>
+#include <mutex>
+#include <new>
 #include <vector>
 
 #include "core/parallel.hpp"
@@ -85,28 +87,53 @@ struct FreeDecompressor {
     void operator()(libdeflate_decompressor* decompressor) const { libdeflate_free_decompressor(decompressor); }
 };
 
-/// What one thread needs.
-struct Worker {
-    std::unique_ptr<libdeflate_decompressor, FreeDecompressor> inflate{libdeflate_alloc_decompressor()};
-    std::vector<char> packed;
-    std::vector<std::uint8_t> inflated, bytes;
+/// The packed chunks of a part. OpenEXR reads one at a time: all share the place in the file.
+class Chunks {
+  public:
+    Chunks(const Imf::InputPart& part, std::size_t chunk_bytes) : part_(part), chunk_bytes_(chunk_bytes) {}
 
-    /// The bytes of the chunk that begins with this scan line, or nothing where it is damaged.
-    [[nodiscard]] std::span<const std::uint8_t> unpack(const Imf::InputPart& part, int line, std::size_t size) {
-        packed.resize(size);
-        inflated.resize(size);
-        bytes.resize(size);
-        int packed_size = static_cast<int>(size);
-        part.rawPixelDataToBuffer(line, packed.data(), packed_size);
-        if (static_cast<std::size_t>(packed_size) == size)  // what does not become smaller is stored as it is
-            return {reinterpret_cast<const std::uint8_t*>(packed.data()), size};
-        if (libdeflate_zlib_decompress(inflate.get(), packed.data(), static_cast<std::size_t>(packed_size),
-                                       inflated.data(), size, nullptr) != LIBDEFLATE_SUCCESS)
-            return {};
-        undo_differences(inflated.data(), size);
-        interleave(inflated.data(), size, bytes.data());
-        return bytes;
+    /// The chunk that begins with this scan line. It is never larger than a whole one unpacked.
+    void read(int line, std::vector<char>& packed) {
+        const std::lock_guard lock(mutex_);
+        packed.resize(chunk_bytes_);
+        int size = static_cast<int>(chunk_bytes_);
+        part_.rawPixelDataToBuffer(line, packed.data(), size);
+        packed.resize(static_cast<std::size_t>(size));
     }
+
+  private:
+    const Imf::InputPart& part_;
+    std::size_t chunk_bytes_;
+    std::mutex mutex_;
+};
+
+/// What one thread needs.
+class Worker {
+  public:
+    explicit Worker(Chunks& chunks) : chunks_(chunks) {
+        if (!inflate_) throw std::bad_alloc();
+    }
+
+    /// The `size` bytes of the chunk that begins with this scan line, or nothing where it is damaged.
+    [[nodiscard]] std::span<const std::uint8_t> unpack(int line, std::size_t size) {
+        chunks_.read(line, packed_);
+        if (packed_.size() == size)  // what does not become smaller is stored as it is
+            return {reinterpret_cast<const std::uint8_t*>(packed_.data()), size};
+        inflated_.resize(size);
+        bytes_.resize(size);
+        if (libdeflate_zlib_decompress(inflate_.get(), packed_.data(), packed_.size(), inflated_.data(), size,
+                                       nullptr) != LIBDEFLATE_SUCCESS)
+            return {};
+        undo_differences(inflated_.data(), size);
+        interleave(inflated_.data(), size, bytes_.data());
+        return bytes_;
+    }
+
+  private:
+    Chunks& chunks_;
+    std::unique_ptr<libdeflate_decompressor, FreeDecompressor> inflate_{libdeflate_alloc_decompressor()};
+    std::vector<char> packed_;
+    std::vector<std::uint8_t> inflated_, bytes_;
 };
 
 }  // namespace
@@ -121,12 +148,13 @@ Result<> read_zip_rows(const Imf::InputPart& part, std::span<const ZipChannel> c
     for (const ZipChannel& channel : channels) row_bytes += width * size_of(channel.kind);
     const std::uint32_t first = row / lines, end = (row + rows + lines - 1) / lines;
     std::atomic<std::uint32_t> next{first}, damaged{end};
+    Chunks chunks(part, lines * row_bytes);
     const auto read_chunks = [&] {
-        Worker worker;
+        Worker worker(chunks);
         for (std::uint32_t chunk = next++; chunk < end; chunk = next++) {
             const std::uint32_t top = chunk * lines, bottom = std::min(top + lines, height);
             const std::span<const std::uint8_t> bytes =
-                worker.unpack(part, window.min.y + static_cast<int>(top), (bottom - top) * row_bytes);
+                worker.unpack(window.min.y + static_cast<int>(top), (bottom - top) * row_bytes);
             if (bytes.empty()) {
                 damaged = chunk;
                 return;

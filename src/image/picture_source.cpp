@@ -7,6 +7,7 @@
 #include <exception>
 #include <string_view>
 
+#include "core/files.hpp"
 #include "image/codecs.hpp"
 #include "image/exr_check.hpp"
 #include "image/exr_source.hpp"
@@ -99,6 +100,14 @@ Result<FileKind> kind_of_file(std::span<const std::byte> start) {
         tiff == std::string_view("II+\0", 4) || tiff == std::string_view("MM\0+", 4))
         return FileKind::Tiff;
     return user_error("is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)");
+}
+
+Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path) {
+    const auto check_start = [](std::span<const std::byte> start) -> Result<> {
+        const Result<FileKind> kind = kind_of_file(start);
+        return kind ? Result<>() : failure(kind.error());
+    };
+    return read_file(path, {.max_size = max_image_file, .check_start = check_start});
 }
 
 Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads) {

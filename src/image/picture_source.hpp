@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <darkroom/result.hpp>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -60,6 +61,12 @@ struct OpenedSource {
 
 /// Which kind of file the first 16 bytes (or fewer) belong to.
 [[nodiscard]] Result<FileKind> kind_of_file(std::span<const std::byte> start);
+
+/// Bytes of an image file at most.
+inline constexpr std::uintmax_t max_image_file = std::uintmax_t{4} << 30;
+
+/// The bytes of a file whose first ones are those of a known kind; no others are read to their end.
+[[nodiscard]] Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path);
 
 /// Tells the kind of file by its content, checks its structure and its sizes, and opens it. The bytes outlive the
 /// source. `max_threads` decode one picture, 0: as many as there are processors. Errors name no file.

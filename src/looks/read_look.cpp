@@ -109,7 +109,7 @@ Result<Look> read_look(const std::filesystem::path& path, const LookOptions& opt
     const std::uintmax_t size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
     if (!error && size > most_toml_bytes)
         return user_error(fmt::format("{}: {} bytes, a look file has at most {}", shown, size, most_toml_bytes));
-    const Result<std::vector<std::byte>> bytes = read_file(path);
+    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_toml_bytes});
     if (!bytes) return failure(bytes.error());
     return parse_look({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string(), options);
 }

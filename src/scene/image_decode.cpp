@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "core/files.hpp"
 #include "core/parallel.hpp"
 #include "image/picture_source.hpp"
 #include "scene/assets.hpp"
@@ -124,7 +123,7 @@ std::vector<Result<Image>> decode_images(std::span<const EncodedImage> sources) 
     parallel_for(sources.size(), 0, [&](std::size_t i) {
         std::span<const std::byte> bytes = sources[i].bytes;
         if (bytes.empty() && !sources[i].file.empty()) {
-            auto file = read_file(sources[i].file);
+            auto file = read_image_file(sources[i].file);
             if (!file) {
                 // The caller names the file.
                 std::string text = file.error().text;
