@@ -2,6 +2,7 @@
 #include "image/png_check.hpp"
 
 #include <fmt/format.h>
+#include <libdeflate.h>
 
 #include <array>
 #include <cstdint>
@@ -16,22 +17,6 @@ std::uint32_t big_endian(std::span<const std::byte> bytes) {
     std::uint32_t value = 0;
     for (const std::byte byte : bytes.first(4)) value = value << 8 | std::to_integer<std::uint32_t>(byte);
     return value;
-}
-
-// ISO/IEC 15948, annex D: the CRC of a chunk's type and data.
-std::uint32_t checksum(std::span<const std::byte> bytes) {
-    static const auto table = [] {
-        std::array<std::uint32_t, 256> entries{};
-        for (std::uint32_t i = 0; i < 256; ++i) {
-            entries[i] = i;
-            for (int bit = 0; bit < 8; ++bit)
-                entries[i] = (entries[i] & 1) != 0 ? 0xedb88320u ^ (entries[i] >> 1) : entries[i] >> 1;
-        }
-        return entries;
-    }();
-    std::uint32_t crc = 0xffffffffu;
-    for (const std::byte byte : bytes) crc = table[(crc ^ std::to_integer<std::uint32_t>(byte)) & 0xff] ^ (crc >> 8);
-    return ~crc;
 }
 
 Result<> check_header(std::span<const std::byte> data, std::size_t file_size) {
@@ -65,7 +50,7 @@ Result<> check_png(std::span<const std::byte> file) {
         const std::string_view type(reinterpret_cast<const char*>(file.data()) + position + 4, 4);
         if (length > file.size() - position - 12) return user_error("truncated: unexpected end of file");
         const auto covered = file.subspan(position + 4, length + 4);
-        if (checksum(covered) != big_endian(file.subspan(position + 8 + length)))
+        if (libdeflate_crc32(0, covered.data(), covered.size()) != big_endian(file.subspan(position + 8 + length)))
             return user_error(fmt::format("damaged: the checksum of the chunk at byte {} does not match", position));
         if (is_first && type != "IHDR") return user_error("malformed header: the first chunk must be IHDR");
         if (is_first)
