@@ -220,10 +220,17 @@ class ImageLightsHostile : public ImageLights {
 
 using Parts = std::vector<ExrPart>;
 
+// OpenEXR's own way to erase an attribute leaks it.
+Imf::Header copy_without(const Imf::Header& header, const std::string& name) {
+    Imf::Header out;
+    for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
+        if (attribute.name() != name) out.insert(attribute.name(), attribute.attribute());
+    return out;
+}
 auto set(const std::string& name, const Imf::Attribute& value) {
     return [name, copy = std::shared_ptr<const Imf::Attribute>(value.copy())](Parts& parts) {
         // Of an attribute that is there, the type cannot change.
-        parts[0].header.erase(name);
+        parts[0].header = copy_without(parts[0].header, name);
         parts[0].header.insert(name, *copy);
     };
 }
@@ -234,7 +241,7 @@ auto set_floats(const std::string& name, const std::vector<float>& values) {
     return set(name, Imf::FloatVectorAttribute(values));
 }
 auto without(const std::string& name) {
-    return [=](Parts& parts) { parts[0].header.erase(name); };
+    return [=](Parts& parts) { parts[0].header = copy_without(parts[0].header, name); };
 }
 auto channels(std::size_t part, const std::vector<std::string>& names) {
     return [=](Parts& parts) { parts[part].channels = part_of("", names).channels; };
