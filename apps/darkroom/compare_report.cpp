@@ -9,18 +9,13 @@
 #include <limits>
 
 #include "core/param_text.hpp"
+#include "json.hpp"
 
 namespace app {
 
 using darkroom::printable;
-using Json = nlohmann::ordered_json;
 
 namespace {
-
-Json number(double value) {
-    if (std::isfinite(value)) return value;
-    return fmt::format("{}", value);
-}
 
 // JSON is UTF-8, file names need not be.
 Json texts(std::span<const std::string> list) {
@@ -34,18 +29,18 @@ Json counts(const darkroom::NonFinite& counts) { return {{"nan", counts.nan}, {"
 Json json_of(const ComparedLayer& layer) {
     Json out{{"layer", darkroom::one_printable_line(layer.name)},
              {"channels", layer.channels},
-             {"max_error", number(layer.errors.max_error)},
-             {"mean_error", number(layer.errors.mean_error)},
-             {"psnr", number(layer.errors.psnr)}};
-    if (layer.alpha) out["max_alpha_error"] = number(layer.alpha->max_error);
+             {"max_error", json_number(layer.errors.max_error)},
+             {"mean_error", json_number(layer.errors.mean_error)},
+             {"psnr", json_number(layer.errors.psnr)}};
+    if (layer.alpha) out["max_alpha_error"] = json_number(layer.alpha->max_error);
     const darkroom::SampleErrors::Place& worst = layer.errors.worst;
     out["worst"] = nullptr;
     if (layer.errors.max_error > 0)
         out["worst"] = {{"x", worst.x},
                         {"y", worst.y},
                         {"channel", layer.channels[worst.channel]},
-                        {"reference", number(worst.reference)},
-                        {"test", number(worst.test)}};
+                        {"reference", json_number(worst.reference)},
+                        {"test", json_number(worst.test)}};
     out["reference"] = counts(layer.reference_counts());
     out["test"] = counts(layer.test_counts());
     out["non_finite_differences"] = layer.non_finite_differences();
@@ -95,7 +90,7 @@ struct Extreme {
     [[nodiscard]] double mean() const { return sum / static_cast<double>(count); }
     [[nodiscard]] Json json() const {
         if (count == 0) return nullptr;
-        return {{"worst", number(worst)}, {"pair", whose}, {"mean", number(mean())}};
+        return {{"worst", json_number(worst)}, {"pair", whose}, {"mean", json_number(mean())}};
     }
 };
 

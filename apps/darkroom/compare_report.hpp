@@ -2,12 +2,12 @@
 #pragma once
 // What was found by comparing, as text and as JSON.
 
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "compare_files.hpp"
+#include "json.hpp"
 
 namespace app {
 
@@ -23,8 +23,8 @@ struct ComparedSet {
 };
 
 /// Numbers that JSON has not are the strings "nan", "inf" and "-inf".
-[[nodiscard]] nlohmann::ordered_json json_of(const ComparedFiles& files);
-[[nodiscard]] nlohmann::ordered_json json_of(const ComparedSet& set);
+[[nodiscard]] Json json_of(const ComparedFiles& files);
+[[nodiscard]] Json json_of(const ComparedSet& set);
 
 /// A line for each number, a block for each layer.
 [[nodiscard]] std::string text_of(const ComparedFiles& files);

@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <darkroom/effects.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "core/param_text.hpp"
+#include "json.hpp"
 #include "report.hpp"
 
 namespace app {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using darkroom::EffectInfo;
 
 struct Options {

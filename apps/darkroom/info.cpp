@@ -21,7 +21,6 @@ namespace fs = std::filesystem;
 using darkroom::printable;
 using darkroom::Result;
 using darkroom::user_error;
-using info::Json;
 
 struct Options {
     std::vector<std::string> files;

@@ -7,15 +7,13 @@
 #include <darkroom/look.hpp>
 #include <darkroom/result.hpp>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "json.hpp"
 
 namespace app::info {
 
-/// Keys are snake_case and in the order in which they are shown; null: known to be missing.
-using Json = nlohmann::ordered_json;
-
-/// Errors begin with the path.
+/// Keys are snake_case and in the order in which they are shown; null: known to be missing. Errors begin with the path.
 [[nodiscard]] darkroom::Result<Json> picture(const std::filesystem::path& path);
 [[nodiscard]] darkroom::Result<Json> model(const std::filesystem::path& path);
 /// A scene, a prefab or a look: told apart by their tables.

@@ -22,12 +22,6 @@ using darkroom::Result;
 
 namespace {
 
-// JSON has no infinity, which a far distance may be.
-Json number(double value) {
-    if (std::isfinite(value)) return value;
-    return fmt::format("{}", value);
-}
-
 Json parts_of(std::span<const darkroom::FilePart> parts) {
     Json out = Json::array();
     for (const darkroom::FilePart& part : parts) {
@@ -97,8 +91,8 @@ Json camera_of(const darkroom::FrameCamera& camera) {
             out["vertical_field_of_view_degrees"] =
                 2 * std::atan(1 / std::abs(static_cast<double>(m[5]))) * 180 / std::numbers::pi;
     }
-    if (camera.near_distance) out["near"] = number(*camera.near_distance);
-    if (camera.far_distance) out["far"] = number(*camera.far_distance);
+    if (camera.near_distance) out["near"] = json_number(*camera.near_distance);
+    if (camera.far_distance) out["far"] = json_number(*camera.far_distance);
     if (!out.empty()) out["has_previous_frame"] = camera.previous_world_to_camera.has_value();
     return out;
 }
@@ -110,7 +104,7 @@ Json lights_of(std::span<const darkroom::FrameLight> lights) {
                  {"color", light.color},
                  {"volumetric_intensity", light.volumetric_intensity},
                  {"cascades", light.cascades.size()}};
-        if (!light.cascades.empty()) row["reach"] = number(light.cascades.back().split);
+        if (!light.cascades.empty()) row["reach"] = json_number(light.cascades.back().split);
         out.push_back(std::move(row));
     }
     return out;
@@ -153,8 +147,8 @@ Result<> add_frame(const std::filesystem::path& path, Json& out) {
     }
     if (frame->depth || frame->normals || frame->velocity || !frame->lights.empty()) out["kind"] = "frame";
     if (Json camera = camera_of(frame->camera); !camera.empty()) out["camera"] = std::move(camera);
-    if (frame->time) out["time"] = number(*frame->time);
-    if (frame->delta_time) out["delta_time"] = number(*frame->delta_time);
+    if (frame->time) out["time"] = json_number(*frame->time);
+    if (frame->delta_time) out["delta_time"] = json_number(*frame->delta_time);
     if (frame->frame_index) out["frame_index"] = *frame->frame_index;
     if (!frame->lights.empty()) out["lights"] = lights_of(frame->lights);
     const Result<Json> look = default_look_of(*frame);

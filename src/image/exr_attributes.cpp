@@ -12,7 +12,7 @@ namespace darkroom {
 namespace {
 
 bool is_of_the_file(std::string_view name) {
-    constexpr std::array<std::string_view, 17> layout{"channels",
+    constexpr std::array<std::string_view, 19> layout{"channels",
                                                       "compression",
                                                       "dataWindow",
                                                       "displayWindow",
@@ -28,9 +28,10 @@ bool is_of_the_file(std::string_view name) {
                                                       "maxSamplesPerPixel",
                                                       "whiteLuminance",
                                                       "adoptedNeutral",
-                                                      "renderingTransform"};
-    return std::ranges::find(layout, name) != layout.end() || name.starts_with("darkroom:light") ||
-           name == "dwaCompressionLevel" || name == "deepImageState";
+                                                      "renderingTransform",
+                                                      "dwaCompressionLevel",
+                                                      "deepImageState"};
+    return std::ranges::find(layout, name) != layout.end() || name.starts_with("darkroom:light");
 }
 
 }  // namespace
