@@ -110,6 +110,8 @@ class FrameReader {
     void add_half_place(const ChannelSet& set, std::uint32_t components, std::vector<std::uint16_t>& plane);
     [[nodiscard]] Result<> check(const ChannelSet& set, std::uint32_t components, const char* what) const;
     [[nodiscard]] const FilePart& part(const ChannelSet& set) const { return decoder_.parts()[set.part]; }
+    [[nodiscard]] std::optional<Matrix> matrix(const char* attribute) const;
+    [[nodiscard]] std::optional<Matrix> world_to_camera() const;
 
     Decoder& decoder_;
     const FrameOptions& options_;
@@ -118,8 +120,23 @@ class FrameReader {
     std::vector<LayerPlace> places_;  // of what is read
     bool is_vray_ = false;
     std::optional<ColorMatrix> to_rec709_;  // of the colour
-    std::vector<float> world_to_camera_;    // of V-Ray normals
+    std::optional<Matrix> vray_normals_;    // world to camera, of what V-Ray wrote
 };
+
+std::optional<Matrix> FrameReader::matrix(const char* attribute) const {
+    const std::vector<float> values = decoder_.numbers(found_.color.part, attribute);
+    if (values.size() != 16 || !std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+        return std::nullopt;
+    Matrix result{};
+    std::copy(values.begin(), values.end(), result.begin());
+    return result;
+}
+
+// As the file has it. V-Ray has a name of its own.
+std::optional<Matrix> FrameReader::world_to_camera() const {
+    const std::optional<Matrix> standard = matrix("worldToCamera");
+    return standard || !is_vray_ ? standard : matrix("cameraTransform");
+}
 
 // All parts of an OpenEXR file should have one display window; a plane of another size than the picture has no meaning.
 Result<> FrameReader::check(const ChannelSet& set, std::uint32_t components, const char* what) const {
@@ -246,9 +263,10 @@ Result<> FrameReader::make_normals() {
     if (!found_.normals || !options_.has_normals) return {};
     if (auto checked = check(*found_.normals, 3, "the normals"); !checked) return checked;
     if (is_vray_ && !options_.names.contains("normals")) {
-        world_to_camera_ = decoder_.numbers(found_.color.part, "worldtocamera");
-        if (world_to_camera_.size() != 16) {
-            frame_.warnings.push_back("V-Ray normals without worldToCamera cannot be turned to world space: left out");
+        vray_normals_ = world_to_camera();
+        if (!vray_normals_) {
+            frame_.warnings.push_back(
+                "V-Ray normals without cameraTransform cannot be turned to world space: left out");
             return {};
         }
     }
@@ -256,7 +274,7 @@ Result<> FrameReader::make_normals() {
     frame_.normals->width = frame_.color.width;
     frame_.normals->height = frame_.color.height;
     const std::size_t pixels = std::size_t{frame_.color.width} * frame_.color.height;
-    if (world_to_camera_.empty() && are_halves(*found_.normals, 3)) {
+    if (!vray_normals_ && are_halves(*found_.normals, 3)) {
         frame_.halves.normals.resize(pixels * 4);
         for (std::size_t i = 3; i < pixels * 4; i += 4) frame_.halves.normals[i] = half_one;
         add_half_place(*found_.normals, 4, frame_.halves.normals);
@@ -282,11 +300,11 @@ void FrameReader::finish_normals() {
             ++frame_.counts.not_finite_other;
             std::fill_n(normal, 3, 0.0f);
         }
-        if (world_to_camera_.empty()) continue;
+        if (!vray_normals_) continue;
+        const Matrix& turn = *vray_normals_;
         const std::array<float, 3> in{normal[0], normal[1], normal[2]};
         for (std::size_t row = 0; row < 3; ++row)
-            normal[row] = world_to_camera_[row * 4] * in[0] + world_to_camera_[row * 4 + 1] * in[1] +
-                          world_to_camera_[row * 4 + 2] * in[2];
+            normal[row] = turn[row * 4] * in[0] + turn[row * 4 + 1] * in[1] + turn[row * 4 + 2] * in[2];
     }
 }
 
@@ -327,16 +345,8 @@ void FrameReader::finish_velocity() {
 
 Result<> FrameReader::read_camera_of_file() {
     FrameCamera& camera = frame_.camera;
-    const auto matrix = [&](const char* name) -> std::optional<Matrix> {
-        const std::vector<float> values = decoder_.numbers(found_.color.part, name);
-        if (values.size() != 16 || !std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
-            return std::nullopt;
-        Matrix result{};
-        std::copy(values.begin(), values.end(), result.begin());
-        return result;
-    };
     const double aspect = static_cast<double>(frame_.color.width) / frame_.color.height;
-    camera.world_to_camera = matrix("worldtocamera");
+    camera.world_to_camera = world_to_camera();
     camera.projection = matrix("darkroom:projection");
     camera.previous_world_to_camera = matrix("darkroom:previousWorldToCamera");
     camera.previous_projection = matrix("darkroom:previousProjection");
