@@ -28,6 +28,7 @@
 #include <darkroom/effect.hpp>
 #include <darkroom/frame.hpp>
 #include <darkroom/plan.hpp>
+#include <darkroom/resource.hpp>
 #include <darkroom/result.hpp>
 #include <memory>
 #include <optional>
@@ -47,6 +48,8 @@ struct Handle {
 };
 /// The scene colour as the host gives it: an input for any entry.
 inline constexpr Handle scene_color{~0u};
+/// The alpha of the scene colour as a grey picture: what a scene marks with its alpha is a layer of its own.
+inline constexpr Handle scene_alpha{~0u - 1};
 
 /// What belongs to the stack entry, not to the effect.
 struct EntryDesc {
@@ -162,6 +165,16 @@ class Composer {
     /// keeps the entry's. Needs a compile.
     Result<> rewire(Handle handle, const EntryDesc& desc);
     void clear();
+
+    // Tables and pictures that entries read. A stack is compiled with those that are defined then.
+    /// For parameters of kind Resource. No number is given twice. Errors: a table or picture whose data does not fit
+    /// its size.
+    Result<Resource> define(ResourceData data);
+    /// Frees it with the last plan that was compiled with it.
+    void forget(Resource resource);
+    [[nodiscard]] const Resources& resources() const;
+    /// A picture that was defined, as an input for any entry.
+    [[nodiscard]] static Handle picture_of(Resource resource) { return {resource.id}; }
 
     // Entries: found by name, changed between frames. Errors name the entry, the value and what is allowed; a handle
     // that names no entry is one of them.

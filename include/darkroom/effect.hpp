@@ -5,8 +5,9 @@
 //
 // effects/<name>/<name>.glsl, where the effect has a pointwise end, defines
 //     vec4 <name>(vec4 color, Pixel pixel, <Struct> parameters)
-// and may call sample_linear, load, ... (src/gpu/kernel.hpp) on the side images it declared in `build`. Every name at
-// file scope begins with the effect's name. Alpha passes unchanged unless the effect is about alpha.
+// and may call sample_linear, load, ... (src/gpu/kernel.hpp) on the side images it declared in `build`, and
+// `vec4 <name>_custom(int)` for its end_constants. Every name at file scope begins with the effect's name. Alpha passes
+// unchanged unless the effect is about alpha.
 // A pass of its own lives in effects/<name>/<name>_<pass>.glsl and defines
 //     vec4 shade(Pixel pixel)
 // with `<Struct> <name>_parameters()` at hand, `frame_time` and its like, and custom[i] from the pass's constants; the
@@ -18,6 +19,7 @@
 #include <darkroom/frame.hpp>
 #include <darkroom/param.hpp>
 #include <darkroom/reference.hpp>
+#include <darkroom/resource.hpp>
 #include <functional>
 #include <memory>
 #include <span>
@@ -149,6 +151,8 @@ class PassBuilder {
     [[nodiscard]] virtual std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) = 0;
     /// Values at compile; the values of a frame may differ. A plan that asks for them is made anew when one changes.
     [[nodiscard]] virtual const void* parameters() const = 0;
+    /// What a parameter of kind Resource names; null: nothing. A plan that asks is made anew when such a one changes.
+    [[nodiscard]] virtual const ResourceData* resource(Resource) const { return nullptr; }
 
     [[nodiscard]] virtual PassImage create(const PassImageDesc& desc) = 0;
     /// An image that outlives the frame: `current` is to be written, `previous` is what the last frame of this view
@@ -183,6 +187,9 @@ class PassBuilder {
     virtual void loaded_side(std::string name, PassImage image, PassVector neutral) {
         side(std::move(name), image, neutral);
     }
+    /// Vectors for the pointwise end, worked out on the CPU in every frame: its text reads them by
+    /// `vec4 <effect>_custom(int)`. At most 96 together in one kernel.
+    virtual void end_constants(std::uint32_t /*vectors*/, ConstantsFunction /*constants*/) {}
     /// The effect's output, for effects without a pointwise end. While it is off, its input stands in.
     virtual void result(PassImage image) = 0;
 };

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <darkroom/frame.hpp>
+#include <darkroom/resource.hpp>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,7 @@ struct ReferenceInput {
     const ReferenceImage* normals = nullptr;
     const ReferenceImage* velocity = nullptr;
     std::span<const ReferenceLight> lights;
+    const Resources* resources = nullptr;
     Camera camera;
     double time = 0;
     double delta_time = 0;

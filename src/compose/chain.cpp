@@ -267,12 +267,16 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
         bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
 
     const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
-    if (pass.constants != nullptr) {
-        PassContext own = context;
-        own.frame_extent = program_of().entry_sizes[pass.entry()].of(context.frame_extent);
-        own.output_extent = output.region.extent;
-        pass.constants(values_.words(pass.entry()), own, custom);
-    }
+    PassContext own = context;
+    own.output_extent = output.region.extent;
+    const auto fill = [&](ConstantsFunction constants, std::uint32_t entry, std::span<PassVector> out) {
+        if (constants == nullptr) return;
+        own.frame_extent = program_of().entry_sizes[entry].of(context.frame_extent);
+        constants(values_.words(entry), own, out);
+    };
+    if (!pass.is_fused) fill(pass.constants, pass.entry(), custom);
+    for (const plan::FusedStep& step : pass.steps)
+        fill(step.constants, step.entry, custom.subspan(step.first_vector, step.custom_vectors));
     gpu::write_own_block(
         pass.spec, output.region, inputs, custom, write_words(pass),
         {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index], gpu::own_block_size(pass.spec)});

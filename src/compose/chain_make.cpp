@@ -15,8 +15,6 @@ namespace darkroom::compose {
 
 namespace {
 
-constexpr std::uint32_t most_custom_vectors = 96;
-
 VkDeviceSize align(VkDeviceSize size, VkDeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
 
 /// Calls `work(i)` for i in [0, count) on several threads; the first error wins.
@@ -158,10 +156,10 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     VkDeviceSize at = align(plan::frame_words * 4, context_.traits.uniform_alignment);
     for (const plan::ProgramPass& pass : program_of().passes) {
         const std::size_t size = gpu::own_block_size(pass.spec);
-        if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > most_custom_vectors)
+        if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > plan::most_custom_vectors)
             return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
                                           pass.name, pass.spec.images.size(), pass.spec.custom_vectors,
-                                          gpu::most_images, most_custom_vectors));
+                                          gpu::most_images, plan::most_custom_vectors));
         if (size > most_bytes)
             return user_error(
                 fmt::format("pass '{}': {} bytes of parameters; at most {} are allowed", pass.name, size, most_bytes));
@@ -171,7 +169,7 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     }
     slot_stride_ = at;
     words_.resize(most_words + 1);
-    custom_.resize(most_custom_vectors);
+    custom_.resize(plan::most_custom_vectors);
     auto blocks = gpu::Buffer::create(context_, slot_stride_ * desc_.slots, gpu::block_usage,
                                       gpu::Memory::Kind::Constants, "blocks");
     if (!blocks) return failure(std::move(blocks));

@@ -69,8 +69,33 @@ Result<> check_together(const plan::Entry& entry, std::span<const std::uint32_t>
 std::uint32_t next_id() {
     static std::atomic<std::uint32_t> last{0};
     std::uint32_t id = ++last;
-    while (id == 0 || id == scene_color.id) id = ++last;
+    while (id == 0 || id >= scene_alpha.id) id = ++last;
     return id;
+}
+
+Result<> check_part(std::string_view name, std::uint64_t size, std::uint64_t most, std::uint64_t values,
+                    std::uint64_t wanted) {
+    if (size > most) return user_error(fmt::format("{} of {} entries: allowed is at most {}", name, size, most));
+    if (values == wanted) return {};
+    return user_error(fmt::format("{} of {} entries: {} numbers are given; allowed is {}", name, size, values, wanted));
+}
+
+Result<> check_resource(const ResourceData& data) {
+    constexpr std::uint64_t longest = 65536, widest = 256, largest = 16384;
+    if (const auto* const image = std::get_if<ResourceImage>(&data)) {
+        if (image->width == 0 || image->height == 0 || image->width > largest || image->height > largest)
+            return user_error(fmt::format("a picture of {}x{}: allowed is 1x1 to {}x{}", image->width, image->height,
+                                          largest, largest));
+        const std::uint64_t pixels = std::uint64_t{image->width} * image->height;
+        return check_part("a picture", pixels, pixels, image->rgba.size(), 4 * pixels);
+    }
+    const auto& table = std::get<ColorTable>(data);
+    if (auto ok = check_part("a shaper", table.shaper_size, longest, table.shaper.size(),
+                             std::uint64_t{3} * table.shaper_size);
+        !ok)
+        return ok;
+    return check_part("the edge of a cube", table.size, widest, table.cube.size(),
+                      table.size > widest ? 0 : std::uint64_t{3} * table.size * table.size * table.size);
 }
 
 }  // namespace
@@ -197,6 +222,24 @@ Result<> Composer::rewire(Handle handle, const EntryDesc& desc) {
 }
 
 void Composer::clear() { state_->stack.clear(); }
+
+Result<Resource> Composer::define(ResourceData data) {
+    if (auto ok = check_resource(data); !ok) return failure(std::move(ok));
+    const Resource out{next_id()};
+    // Plans under way keep the map they began with.
+    Resources all = *state_->resources;
+    all.emplace(out.id, std::make_shared<const ResourceData>(std::move(data)));
+    state_->resources = std::make_shared<const Resources>(std::move(all));
+    return out;
+}
+
+void Composer::forget(Resource resource) {
+    Resources all = *state_->resources;
+    all.erase(resource.id);
+    state_->resources = std::make_shared<const Resources>(std::move(all));
+}
+
+const Resources& Composer::resources() const { return *state_->resources; }
 
 std::optional<Handle> Composer::find(std::string_view entry_name) const {
     for (const auto& entry : state_->stack)

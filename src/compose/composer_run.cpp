@@ -35,6 +35,18 @@ Result<> check_names(std::span<const plan::Entry> stack) {
     return {};
 }
 
+Result<> check_resources(const plan::Entry& entry) {
+    for (const ParamInfo& row : entry.info->parameters.rows) {
+        const Resource resource{entry.base[row.word]};
+        if (row.kind == Kind::Resource && resource.id != 0 && !entry.resources->contains(resource.id))
+            return user_error(
+                fmt::format("{}.{} = resource {}: the composer has none of this number; it may have been "
+                            "forgotten",
+                            entry.desc.name, row.name, resource.id));
+    }
+    return {};
+}
+
 Result<> check_target_extent(VkExtent2D extent, std::uint32_t limit) {
     if (extent.width <= limit && extent.height <= limit && (extent.width == 0) == (extent.height == 0)) return {};
     return user_error(fmt::format("target_extent {}x{}: this device allows 1x1 to {}x{}, and 0x0 for the picture's",
@@ -79,6 +91,8 @@ Result<Composer::State::Snapshot> Composer::State::snapshot(const CompileDesc& c
     for (const auto& entry : stack) {
         if (auto ok = check_values(*entry, entry->base); !ok) return failure(std::move(ok));
         out.values.push_back(*entry);
+        out.values.back().resources = resources;
+        if (auto ok = check_resources(out.values.back()); !ok) return failure(std::move(ok));
         out.entries.push_back(entry);
     }
     if (auto ok = check_names(out.values); !ok) return failure(std::move(ok));

@@ -53,6 +53,7 @@ struct Composer::State {
     std::shared_ptr<gpu::Context> context;
     ComposerDesc desc;
     std::vector<std::shared_ptr<plan::Entry>> stack;
+    std::shared_ptr<const Resources> resources = std::make_shared<Resources>();
 
     std::unique_ptr<compose::Chain> chain;
     compose::Chain* retired = nullptr;  ///< that unfinished recordings may still use; owned

@@ -122,6 +122,7 @@ class Chain {
                            .normals = input_.normals,
                            .velocity = input_.velocity,
                            .lights = input_.lights,
+                           .resources = &composer_.resources(),
                            .camera = input_.camera,
                            .time = input_.time,
                            .frame_index = input_.frame_index});

@@ -332,6 +332,9 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
             if (structs.insert(step.info->parameters.struct_name).second)
                 declarations += parameter_struct(step.info->parameters);
             declarations += parameter_loader(*step.info, step.place, step.baked);
+            if (step.custom_vectors > 0)
+                declarations += fmt::format("vec4 {}_custom{}(int index) {{ return custom[{} + index]; }}\n",
+                                            step.info->name, suffix, step.first_vector);
             declarations += step.text->glsl;
         }
         std::string layer = step.is_merge ? fmt::format("load(layer{}, pixel.texel)", suffix)

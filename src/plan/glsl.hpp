@@ -66,6 +66,9 @@ struct FusedStep {
     std::shared_ptr<const EffectText> text;  ///< none of a merge
     bool is_merge = false;                   ///< only lays image layer_e<place> over the picture
     bool has_mask = false;                   ///< image mask_e<place>
+    ConstantsFunction constants = nullptr;   ///< of a pointwise end
+    std::uint32_t custom_vectors = 0;
+    std::uint32_t first_vector = 0;  ///< of them among the kernel's
     // Of a lean kernel:
     bool is_certain = false;  ///< on: no branch
     bool is_plain = false;    ///< opacity 1, no blending, no mask

@@ -23,6 +23,12 @@ bool is_same(graph::Size a, graph::Size b) {
     return std::uint64_t{a.numerator} * b.denominator == std::uint64_t{b.numerator} * a.denominator;
 }
 
+std::uint32_t vectors_of(std::span<const FusedStep> steps) {
+    std::uint32_t vectors = 0;
+    for (const FusedStep& step : steps) vectors += step.custom_vectors;
+    return vectors;
+}
+
 std::string missing_needs(const Needs& needs, const CompileDesc& desc) {
     std::string out;
     const auto say = [&](bool is_needed, bool is_there, std::string_view name) {
@@ -157,7 +163,11 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
     }
     if (info.touch == Touch::Neighbourhood || info.touch == Touch::History) return add_result(entry, input, builder);
 
-    FusedStep step{.info = &info, .entry = entry, .name = stack_[entry].desc.name};
+    FusedStep step{.info = &info,
+                   .entry = entry,
+                   .name = stack_[entry].desc.name,
+                   .constants = builder.end_function,
+                   .custom_vectors = builder.end_vectors};
     std::vector<PassInput> side_inputs;
     for (Builder::Side& side : builder.sides) {
         step.images.push_back(side.name);
@@ -213,12 +223,15 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
             why = fmt::format("{} reads the picture before it, too", from.reader);
         else if (kernels_[kernel].images.size() + side_count >= gpu::most_images)
             why = fmt::format("a kernel reads at most {} images", gpu::most_images);
+        else if (vectors_of(kernels_[kernel].steps) + step.custom_vectors > most_custom_vectors)
+            why = fmt::format("a kernel holds at most {} vectors of its effects", most_custom_vectors);
         if (!why.empty()) {
             if (auto image = materialise(input, why); !image) return failure(std::move(image));
             kernel = open_kernel(input, std::move(why));
         }
     }
     step.place = static_cast<std::uint32_t>(kernels_[kernel].steps.size());
+    step.first_vector = vectors_of(kernels_[kernel].steps);
     const std::string suffix = place_suffix(step.place);
     if (!step.is_merge) {
         auto text = text_of(*step.info, fmt::format("{}.glsl", step.info->name), step.place, step.images);
@@ -331,6 +344,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         toggle.entries.push_back(step.entry);
         append_header_members(*step.info, step.place, pass.spec.members);
         append_parameter_members(*step.info, step.place, pass.spec.members);
+        pass.spec.custom_vectors += step.custom_vectors;
     }
     if (pass.name.empty()) pass.name = "copy";
     pass.spec.name = pass.name;

@@ -149,6 +149,10 @@ class Builder final : public PassBuilder {
         planner_.program_.reads_values = true;
         return planner_.stack_[entry_].base.data();
     }
+    [[nodiscard]] const ResourceData* resource(Resource resource) const override {
+        planner_.program_.reads_values = true;
+        return find_resource(planner_.stack_[entry_].resources.get(), resource);
+    }
     [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
     [[nodiscard]] History history(const PassImageDesc& desc) override;
     [[nodiscard]] PassImage frame_image(FrameImage which) override;
@@ -166,8 +170,14 @@ class Builder final : public PassBuilder {
     void loaded_side(std::string name, PassImage image, PassVector neutral) override {
         add_side(std::move(name), image, neutral, true);
     }
+    void end_constants(std::uint32_t vectors, ConstantsFunction constants) override {
+        end_vectors = vectors;
+        end_function = constants;
+    }
     void result(PassImage image) override;
 
+    std::uint32_t end_vectors = 0;
+    ConstantsFunction end_function = nullptr;
     std::vector<Side> sides;
     graph::Version output;
     std::string error;

@@ -15,6 +15,9 @@
 
 namespace darkroom::plan {
 
+/// Of the constants of one kernel. With them a block stays within what every device allows.
+inline constexpr std::uint32_t most_custom_vectors = 96;
+
 /// A stack entry as the Composer keeps it.
 struct Entry {
     std::uint32_t id = 0;             ///< of its Handle: never given twice
@@ -22,7 +25,8 @@ struct Entry {
     const EffectInfo* info = nullptr;
     std::shared_ptr<const void> effect_owner{};  ///< keeps `info` alive where it is not static
     EntryDesc desc;
-    std::vector<std::uint32_t> base;  ///< parameter words
+    std::shared_ptr<const Resources> resources{};  ///< of the Composer
+    std::vector<std::uint32_t> base;               ///< parameter words
     struct Override {
         std::string owner;
         std::uint32_t word = 0, words = 0;
