@@ -43,13 +43,19 @@ namespace darkroom {
 /// number is given twice, in any Composer: the handle of an entry that was removed names nothing.
 struct Handle {
     std::uint32_t id = 0;
+    bool is_previous = false;
     [[nodiscard]] bool is_given() const { return id != 0; }
+    /// The same picture one frame before: an input for any entry, also for those before the one that makes it. Black
+    /// where there was no such frame. Read as `input` it is brought to the scene's size.
+    [[nodiscard]] Handle previous() const { return {id, true}; }
     friend bool operator==(Handle, Handle) = default;
 };
 /// The scene colour as the host gives it: an input for any entry.
 inline constexpr Handle scene_color{~0u};
 /// The alpha of the scene colour as a grey picture: what a scene marks with its alpha is a layer of its own.
 inline constexpr Handle scene_alpha{~0u - 1};
+
+inline constexpr std::uint32_t previous_pre_roll = 60;
 
 /// What belongs to the stack entry, not to the effect.
 struct EntryDesc {
@@ -63,6 +69,11 @@ struct EntryDesc {
     float opacity = 1.0f;  ///< [0, 1]
     BlendMode blend =
         BlendMode::Mix;  ///< how the result goes over the input: the input is the base, the result the layer
+    /// Size that the entry works at, and its output has, relative to its input, which is then read by one bilinear tap
+    /// a pixel: a quarter of each side is best made in two steps.
+    OutputScale scale;
+    /// Of the image that holds its output. UNDEFINED: CompileDesc::intermediate, where it becomes an image at all.
+    VkFormat format = VK_FORMAT_UNDEFINED;
 };
 
 struct ComposerDesc {
@@ -206,7 +217,8 @@ class Composer {
     [[nodiscard]] std::vector<std::uint32_t> current(Handle) const;
     /// How many frames to develop before the first that is wanted, so that a run which begins in the middle gives the
     /// picture of an unbroken one: the sum of EffectInfo::pre_roll over the entries that are on, with their current
-    /// values, because a history that is made from a picture with a history settles after it. Needs no compile.
+    /// values, because a history that is made from a picture with a history settles after it; and previous_pre_roll for
+    /// every picture that is read as the frame before, of which nobody knows when it settles. Needs no compile.
     [[nodiscard]] std::uint32_t pre_roll() const;
 
     /// Plans the stack, makes the kernels that the device does not have yet, allocates what it needs. The previous plan

@@ -25,7 +25,7 @@ struct ColorTable {
     std::vector<float> cube;                                        ///< size^3 triples, red runs fastest
 };
 
-/// A picture: row-major, top row first; values within half precision.
+/// A picture: row-major, top row first, scene-linear.
 struct ResourceImage {
     std::uint32_t width = 0, height = 0;
     std::vector<float> rgba;

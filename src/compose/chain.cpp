@@ -130,7 +130,8 @@ void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
         graph::HistoryImages* const history = physical_->history(i, frame.view);
         if (history == nullptr) continue;
         before_.states[i] = history->state;
-        const bool is_on = values_.is_on(program_of().history_entries[i]);
+        const std::uint32_t entry = program_of().history_entries[i];
+        const bool is_on = entry == plan::no_entry || values_.is_on(entry);
         if (!is_related || (is_on && !history->state.was_on)) history->state.needs_reset = true;
         history->state.was_on = is_on;
     }

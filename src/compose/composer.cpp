@@ -216,6 +216,8 @@ Result<> Composer::rewire(Handle handle, const EntryDesc& desc) {
     own.mask = desc.mask;
     own.blend = desc.blend;
     own.output = desc.output;
+    own.scale = desc.scale;
+    own.format = desc.format;
     if (!desc.name.empty()) own.name = desc.name;
     state_->stack[state_->index_of(handle)] = std::move(made);
     return {};
@@ -368,6 +370,9 @@ std::vector<std::uint32_t> Composer::current(Handle handle) const {
 std::uint32_t Composer::pre_roll() const {
     std::uint64_t frames = 0;
     for (const auto& entry : state_->stack) {
+        const EntryDesc& desc = entry->desc;
+        for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
+            if (wire.is_previous) frames += previous_pre_roll;
         if (entry->info->pre_roll == nullptr) continue;
         const std::vector<std::uint32_t> words = current({entry->id});
         if (entry->is_on(words.data())) frames += entry->info->pre_roll(words.data());

@@ -20,8 +20,9 @@ auto facts_of(const CompileDesc& desc) {
 /// Of an entry what the planner looks at; the rest are values of a frame.
 auto wiring_of(const plan::Entry& entry) {
     const EntryDesc& desc = entry.desc;
-    return std::tuple(entry.id, entry.info, desc.input.id, desc.source.id, desc.second.id, desc.mask.id, desc.name,
-                      entry.is_plain());
+    const auto wire = [](Handle handle) { return std::pair(handle.id, handle.is_previous); };
+    return std::tuple(entry.id, entry.info, wire(desc.input), wire(desc.source), wire(desc.second), wire(desc.mask),
+                      desc.name, entry.is_plain(), desc.scale.numerator, desc.scale.denominator, desc.format);
 }
 
 /// The stage the user asked for where it can run the kernel, else the other one.

@@ -46,6 +46,7 @@ inline double random_value(std::mt19937& random, const ParamInfo& row, Values va
 
 inline void set_random(std::mt19937& random, Composer& composer, Handle handle, Values values) {
     for (const ParamInfo& row : composer.info(handle)->parameters.rows) {
+        if (row.kind == Kind::Resource) continue;
         std::array<std::uint32_t, 4> words{};
         for (std::uint32_t i = 0; i < std::min(row.words, 4u); ++i) {
             switch (row.kind) {

@@ -52,7 +52,12 @@ class Chain {
 
     Result<ReferenceChainOutput> run() {
         pictures_.push_back(*input_.color);
-        domains_.push_back(Domain::SceneLinear);
+        ReferenceImage& alpha = pictures_.emplace_back(*input_.color);
+        for (Rgba& pixel : alpha.pixels) {
+            const double grey = std::clamp(pixel.a, 0.0, 1.0);
+            pixel = {grey, grey, grey, 1};
+        }
+        domains_.assign(2, Domain::SceneLinear);
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
         ReferenceChainOutput out{.picture = pictures_[values_.empty() ? 0 : values_.back()],
@@ -74,6 +79,7 @@ class Chain {
 
     std::size_t value_of(Handle handle, std::size_t entry) const {
         if (handle == scene_color) return 0;
+        if (handle == scene_alpha) return 1;
         if (handle.is_given()) return values_[index_of(handle)];
         return entry == 0 ? 0 : values_[entry - 1];
     }
@@ -83,7 +89,7 @@ class Chain {
         const EffectInfo& info = *composer_.info(handle);
         const EntryDesc& desc = *composer_.desc(handle);
         for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
-            if (wire.is_given() && wire != scene_color && index_of(wire) >= index)
+            if (wire.is_given() && wire != scene_color && wire != scene_alpha && index_of(wire) >= index)
                 return user_error(
                     fmt::format("stack entry '{}': it reads what is not the output of an earlier entry", desc.name));
         const std::size_t from = value_of(desc.input, index);

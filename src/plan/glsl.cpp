@@ -322,7 +322,7 @@ std::string pass_body(const FusedStep& step) {
            parameter_loader(*step.info, step.place, step.baked) + step.text->glsl;
 }
 
-Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling) {
+Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha) {
     std::string declarations, code;
     std::set<std::string_view> structs;
     bool has_merge = false;
@@ -378,6 +378,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
     // The texel under the pixel's centre; in integers, because a product of floats may fall short of it.
     if (resampling == Resampling::Nearest)
         read = "load_clamped(picture, (2 * pixel.texel + 1) * size(picture) / (2 * pixel.size))";
+    if (is_alpha) read = "vec4(vec3(clamp(load(picture, pixel.texel).a, 0.0, 1.0)), 1.0)";
     return fmt::format(
         "{}{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",
         curve_struct(), helpers, declarations, read, code);

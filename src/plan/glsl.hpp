@@ -80,8 +80,10 @@ enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb, OfFrame };
 [[nodiscard]] gpu::BlockMember finish_member();
 /// How a fused kernel reads a picture that may have another extent than its output.
 enum class Resampling : std::uint8_t { None, Linear, Nearest };
-/// The body of a fused kernel: reads image `picture`, applies the steps in order, finishes for the target.
-[[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling);
+/// The body of a fused kernel: reads image `picture` (or only its alpha, as a grey picture), applies the steps in
+/// order, finishes for the target.
+[[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling,
+                                             bool is_alpha = false);
 /// The body of an effect's pass.
 [[nodiscard]] std::string pass_body(const FusedStep& step);
 

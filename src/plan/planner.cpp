@@ -15,14 +15,6 @@ namespace darkroom::plan {
 
 namespace {
 
-graph::Size scaled(graph::Size size, std::uint32_t numerator, std::uint32_t denominator) {
-    return {.numerator = size.numerator * numerator, .denominator = size.denominator * denominator};
-}
-bool is_same(graph::Size a, graph::Size b) {
-    if (a.width != 0 || b.width != 0) return a.width == b.width && a.height == b.height;
-    return std::uint64_t{a.numerator} * b.denominator == std::uint64_t{b.numerator} * a.denominator;
-}
-
 std::uint32_t vectors_of(std::span<const FusedStep> steps) {
     std::uint32_t vectors = 0;
     for (const FusedStep& step : steps) vectors += step.custom_vectors;
@@ -58,9 +50,12 @@ Result<Program> Planner::run() {
     leave_out();
     resolve_inputs();
     count_readers();
+    if (auto ok = make_wires(); !ok) return failure(std::move(ok));
 
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
-        const std::size_t input = input_of(i);
+        const auto read = scaled_input(i);
+        if (!read) return failure(read.error());
+        const std::size_t input = *read;
         program_.entry_sizes.push_back(values_[input].size);
         if (program_.is_left_out[i]) {
             entry_values_[i] = input;
@@ -69,36 +64,10 @@ Result<Program> Planner::run() {
         auto value = add_entry(i, input);
         if (!value) return failure(std::move(value));
         entry_values_[i] = *value;
+        if (auto ok = keep_output(i); !ok) return failure(std::move(ok));
     }
     if (auto ok = finish(); !ok) return failure(std::move(ok));
     return std::move(program_);
-}
-
-Result<> Planner::check_handles() const {
-    const auto check = [&](std::uint32_t entry, Handle handle, std::string_view which) -> Result<> {
-        if (!handle.is_given() || handle == scene_color) return {};
-        const std::uint32_t from = index_of(handle);
-        if (from < entry) return {};
-        return user_error(fmt::format("stack entry '{}': its {} is {}", stack_[entry].desc.name, which,
-                                      from == no_entry ? "no entry of this stack; it may have been removed"
-                                                       : "not the output of an earlier entry"));
-    };
-    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
-        const EntryDesc& desc = stack_[i].desc;
-        if (auto ok = check(i, desc.input, "input"); !ok) return ok;
-        if (auto ok = check(i, desc.source, "source"); !ok) return ok;
-        if (auto ok = check(i, desc.second, "second"); !ok) return ok;
-        if (auto ok = check(i, desc.mask, "mask"); !ok) return ok;
-        if (stack_[i].info->has_second && !desc.second.is_given())
-            return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
-                                          desc.name, stack_[i].info->name));
-    }
-    return {};
-}
-
-std::uint32_t Planner::index_of(Handle handle) const {
-    const auto found = std::ranges::find(stack_, handle.id, &Entry::id);
-    return found == stack_.end() ? no_entry : static_cast<std::uint32_t>(found - stack_.begin());
 }
 
 void Planner::leave_out() {
@@ -113,44 +82,6 @@ void Planner::leave_out() {
         program_.left_out.push_back(fmt::format("{}: {}", stack_[i].desc.name, why));
         program_.is_left_out[i] = true;
     }
-}
-
-std::uint32_t Planner::resolved(Handle handle, std::uint32_t entry) const {
-    if (handle == scene_color || (entry == 0 && !handle.is_given())) return no_entry;
-    const std::uint32_t from = handle.is_given() ? index_of(handle) : entry - 1;
-    return program_.is_left_out[from] ? program_.entry_inputs[from] : from;
-}
-
-void Planner::resolve_inputs() {
-    for (std::uint32_t i = 0; i < stack_.size(); ++i)
-        program_.entry_inputs.push_back(resolved(stack_[i].desc.input, i));
-    program_.last_entry = resolved({}, static_cast<std::uint32_t>(stack_.size()));
-}
-
-std::size_t Planner::value_of(Handle handle, std::uint32_t entry) const {
-    if (handle == scene_color) return 0;
-    if (handle.is_given()) return entry_values_[index_of(handle)];
-    return entry == 0 ? 0 : entry_values_[entry - 1];
-}
-std::size_t Planner::input_of(std::uint32_t entry) const { return value_of(stack_[entry].desc.input, entry); }
-
-/// Who reads the output of each entry as a picture of its own: such an output must become an image.
-void Planner::count_readers() {
-    image_reader_.assign(stack_.size(), {});
-    std::vector<std::uint32_t> inputs(stack_.size(), 0);
-    const auto read_picture = [&](std::uint32_t from, const std::string& reader) {
-        if (from != no_entry && inputs[from]++ > 0) image_reader_[from] = reader;
-    };
-    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
-        if (program_.is_left_out[i]) continue;
-        const EntryDesc& wiring = stack_[i].desc;
-        for (const Handle handle : {wiring.source, wiring.second, wiring.mask}) {
-            const std::uint32_t from = handle.is_given() ? resolved(handle, i) : no_entry;
-            if (from != no_entry) image_reader_[from] = wiring.name;
-        }
-        read_picture(program_.entry_inputs[i], wiring.name);
-    }
-    read_picture(program_.last_entry, "the target");
 }
 
 Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
@@ -189,8 +120,7 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
     auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].desc.name));
     if (!picture) return failure(std::move(picture));
     const std::string why = fmt::format("{} has passes of its own", stack_[entry].desc.name);
-    const OutputScale& scale = stack_[entry].info->output_scale;
-    const graph::Size size = scaled(values_[input].size, scale.numerator, scale.denominator);
+    const graph::Size size = scaled(values_[input].size, stack_[entry].info->output_scale);
     // Whoever reads the output counts on its size, on or off.
     picture = at_size(*picture, size, fmt::format("{}.resampled input", stack_[entry].desc.name));
     if (!picture) return failure(std::move(picture));
@@ -267,9 +197,15 @@ std::size_t Planner::open_kernel(std::size_t input, std::string why) {
 
 Result<graph::Version> Planner::materialise(std::size_t index, const std::string& why) {
     if (values_[index].image.is_valid()) return values_[index].image;
-    const graph::Version image =
-        create_picture(fmt::format("picture {}", kernels_.size()), values_[index].size, desc_.intermediate);
-    auto version = close_kernel(values_[index].kernel, image, desc_.intermediate, Finish::None, false);
+    return materialise_into(
+        index, create_picture(fmt::format("picture {}", kernels_.size()), values_[index].size, desc_.intermediate),
+        false, why);
+}
+
+Result<graph::Version> Planner::materialise_into(std::size_t index, graph::Version image, bool is_always_on,
+                                                 const std::string& why) {
+    auto version =
+        close_kernel(values_[index].kernel, image, facts_.at(image.index).format, Finish::None, is_always_on);
     if (!version) return version;
     // Nobody joined the kernel behind this value (its reader was known), so whoever comes next starts a new one.
     values_[index].image = *version;
@@ -333,7 +269,7 @@ Result<> Planner::finish() {
 Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version target, VkFormat format, Finish finish,
                                              bool is_always_on) {
     const OpenKernel kernel = kernels_[index];
-    ProgramPass pass{.boundary = kernel.boundary, .steps = kernel.steps, .finish = finish};
+    ProgramPass pass{.boundary = kernel.boundary, .steps = kernel.steps, .is_alpha = kernel.is_alpha, .finish = finish};
     const bool is_warp =
         !kernel.steps.empty() && kernel.steps.front().info->touch == Touch::Warp && !kernel.steps.front().is_merge;
 
@@ -346,7 +282,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         append_parameter_members(*step.info, step.place, pass.spec.members);
         pass.spec.custom_vectors += step.custom_vectors;
     }
-    if (pass.name.empty()) pass.name = "copy";
+    if (pass.name.empty()) pass.name = kernel.is_alpha ? "scene alpha" : "copy";
     pass.spec.name = pass.name;
     if (finish == Finish::OfFrame) pass.spec.members.insert(pass.spec.members.begin(), finish_member());
     pass.spec.frame = frame_members();
@@ -366,7 +302,8 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         pass.inputs.push_back(input);
     }
     // Unfused, a kernel whose entry is off copies: else every picture would live as long as those it may stand in for.
-    const bool has_toggle = !is_always_on && desc_.fuse;
+    // So does one that gives the picture another size.
+    const bool has_toggle = !is_always_on && desc_.fuse && !pass.is_alpha && pass.resampling == Resampling::None;
     if (has_toggle) pass.toggle = toggle_index(std::move(toggle));
     auto version = add_pass(std::move(pass), target, 0);
     if (!version) return version;

@@ -46,13 +46,19 @@ graph::Version Planner::import_neutral(VkFormat format, const PassVector& value)
         desc.format = format;
         put(std::array{*halves[0], *halves[1], *halves[2], *halves[3]});
     }
+    const graph::Version version = import_constant(std::move(desc), {.width = 1, .height = 1});
+    facts_[version.index].size = {};
+    return version;
+}
+
+graph::Version Planner::import_constant(TableDesc desc, graph::Size size) {
     constexpr VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
-    const graph::ImageDesc image{.name = desc.name, .format = desc.format, .size = {.width = 1, .height = 1}};
+    const graph::ImageDesc image{.name = desc.name, .format = desc.format, .size = size};
     program_.fixed_images.push_back(
         {.desc = std::move(desc), .import_index = static_cast<std::uint32_t>(program_.imports.size())});
     program_.imports.emplace_back(std::nullopt);
     const graph::Version version = program_.graph.import({.image = image, .usage = usage, .is_constant = true});
-    facts_[version.index] = {.root = version.index, .size = {}, .format = image.format, .usage = usage};
+    facts_[version.index] = {.root = version.index, .size = size, .format = image.format, .usage = usage};
     return version;
 }
 

@@ -22,6 +22,8 @@ inline constexpr VkImageUsageFlags own_usage =
 /// One text for equal sizes.
 [[nodiscard]] std::string fraction_text(graph::Size size);
 
+[[nodiscard]] graph::Size scaled(graph::Size size, const OutputScale& scale);
+[[nodiscard]] bool is_same(graph::Size a, graph::Size b);
 class Planner {
   public:
     Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits);
@@ -44,6 +46,7 @@ class Planner {
         graph::Size size{};
         std::string boundary;
         Resampling resampling = Resampling::Linear;  ///< where the picture has another size
+        bool is_alpha = false;                       ///< makes a grey picture of the alpha before anything else
         std::vector<FusedStep> steps;
         std::vector<std::pair<std::string, PassInput>> images;
     };
@@ -58,12 +61,21 @@ class Planner {
     [[nodiscard]] Result<> check_handles() const;
     /// Where the entry is in the stack; no_entry: it is not there.
     [[nodiscard]] std::uint32_t index_of(Handle handle) const;
+    /// Does the wire name the output of an entry, of this frame?
+    [[nodiscard]] bool is_of_entry(Handle handle) const;
     void leave_out();
     /// Who gets what from whom, past the entries that are left out.
     void resolve_inputs();
     [[nodiscard]] std::uint32_t resolved(Handle handle, std::uint32_t entry) const;
     [[nodiscard]] std::size_t value_of(Handle handle, std::uint32_t entry) const;
-    [[nodiscard]] std::size_t input_of(std::uint32_t entry) const;
+    /// The picture that the host defined under this handle; null: the handle names something else.
+    [[nodiscard]] const ResourceImage* picture_of(std::uint32_t entry, Handle handle) const;
+    [[nodiscard]] Result<> make_wires();
+    [[nodiscard]] Result<> previous_of(Handle handle);
+    [[nodiscard]] Result<graph::Version> copy_into(std::size_t value, graph::Version image);
+    [[nodiscard]] graph::Size output_size(std::uint32_t entry) const;
+    [[nodiscard]] Result<std::size_t> scaled_input(std::uint32_t entry);
+    [[nodiscard]] Result<> keep_output(std::uint32_t entry);
     void count_readers();
     [[nodiscard]] Result<std::size_t> add_entry(std::uint32_t entry, std::size_t input);
     [[nodiscard]] Result<std::size_t> add_result(std::uint32_t entry, std::size_t input, Builder& builder);
@@ -72,6 +84,8 @@ class Planner {
     [[nodiscard]] std::size_t open_kernel(std::size_t input, std::string why);
     /// Makes the picture an image, if it is not one yet, by closing its kernel.
     [[nodiscard]] Result<graph::Version> materialise(std::size_t value, const std::string& why);
+    [[nodiscard]] Result<graph::Version> materialise_into(std::size_t value, graph::Version image, bool is_always_on,
+                                                          const std::string& why);
     /// An image of exactly this size for what is read by texel: resampled, if anything else may stand there.
     [[nodiscard]] Result<graph::Version> at_size(graph::Version version, graph::Size size, const std::string& name);
     /// An image of the host at an entry's size, where that is another one.
@@ -90,6 +104,8 @@ class Planner {
     [[nodiscard]] graph::Version create_picture(std::string name, graph::Size size, VkFormat format);
     void fall_back(graph::Version version, graph::Version instead);
     [[nodiscard]] graph::Version import_neutral(VkFormat format, const PassVector& value);
+    /// An image that never changes, as one of the graph's.
+    [[nodiscard]] graph::Version import_constant(TableDesc desc, graph::Size size);
     /// An input that is not the picture: sampled, but for tables that are only loaded.
     [[nodiscard]] gpu::KernelImage kernel_image(std::string name, const PassInput& input) const;
     /// Can this side image of a kernel be read by imageLoad? One image is in one layout: all must read it so.
@@ -108,9 +124,11 @@ class Planner {
     const PlannerTraits& traits_;
     Domain target_domain_ = Domain::Encoded;
     Program program_;
-    std::vector<Value> values_;              ///< 0: the scene colour
-    std::vector<std::size_t> entry_values_;  ///< per entry: the value it makes
-    std::vector<std::string> image_reader_;  ///< per entry: who reads its output as an image
+    std::vector<Value> values_;                                    ///< 0: the scene colour
+    std::vector<std::size_t> entry_values_;                        ///< per entry: the value it makes
+    std::map<std::pair<std::uint32_t, bool>, std::size_t> wires_;  ///< by handle: values that no entry makes
+    std::map<std::uint32_t, graph::Version> kept_outputs_;  ///< by entry: where its output lies for the next frame
+    std::vector<std::string> image_reader_;                 ///< per entry: who reads its output as an image
     std::vector<OpenKernel> kernels_;
     std::map<std::uint32_t, Facts> facts_;  ///< by version
     std::map<HostImage, graph::Version> host_images_;

@@ -80,7 +80,8 @@ struct ProgramPass {
     std::string boundary;
     std::vector<FusedStep> steps;  ///< of an effect's pass: one
     std::vector<Literal> literals;
-    bool is_fused = true;  ///< made by the planner from entries; else by an effect's build
+    bool is_alpha = false;  ///< makes a grey picture of the alpha before its steps
+    bool is_fused = true;   ///< made by the planner from entries; else by an effect's build
     bool asks_input_is_twice = false;
     // Of an effect's pass:
     ConstantsFunction constants = nullptr;
@@ -119,9 +120,10 @@ struct Program {
     std::uint32_t last_entry = no_entry;            ///< whose output the target gets
     std::vector<graph::Size> entry_sizes;           ///< per entry: of the picture that it gets
     graph::Size target_size;
-    std::vector<std::uint32_t> history_entries;  ///< per history of the graph: the entry that declared it
-    std::vector<bool> is_left_out;               ///< per entry
-    std::vector<bool> is_mixable;                ///< per entry: opacity and blending may change while recording
+    std::vector<std::uint32_t>
+        history_entries;            ///< per history of the graph: the entry whose switch resets it; no_entry: none
+    std::vector<bool> is_left_out;  ///< per entry
+    std::vector<bool> is_mixable;   ///< per entry: opacity and blending may change while recording
     std::vector<std::string> left_out, remarks;
     /// What effects asked of the largest extent: the program serves every extent with the same answers.
     struct ExtentAnswer {

@@ -20,7 +20,7 @@ Result<gpu::KernelSpec> spec_of(const ProgramPass& pass, std::span<const FusedSt
         spec.body = pass_body(steps.front());
         return spec;
     }
-    auto body = fused_body(steps, finish, pass.resampling);
+    auto body = fused_body(steps, finish, pass.resampling, pass.is_alpha);
     if (!body) return failure(std::move(body));
     spec.body = std::move(*body);
     return spec;
