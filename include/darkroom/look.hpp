@@ -25,19 +25,29 @@
 
 namespace darkroom {
 
+/// Formats that an entry's output may have as an image. Any: that of the pictures between kernels.
+enum class EntryFormat : std::uint32_t { Any, Rgba8, Rgba16, Rgba16f, Rgba32f, Rgb10a2, R11g11b10f, R8, R16f, R32f };
+
 /// What every stack entry has beside the effect's own parameters.
 struct EntryState {
     Toggle enabled = true;
     float opacity = 1.0f;
     BlendMode blend = BlendMode::Mix;
+    float scale = 1.0f;
+    EntryFormat format = EntryFormat::Any;
 };
 inline constexpr auto entry_rows =
     describe(field<&EntryState::enabled>("Is the effect applied."),
              field<&EntryState::opacity>("How much of the result goes over the input.", {0, 1}),
-             field<&EntryState::blend>("How the result goes over the input."));
+             field<&EntryState::blend>("How the result goes over the input."),
+             field<&EntryState::scale>("Sides of its output, relative to its input's: the nearest fraction of two "
+                                       "numbers up to 64.",
+                                       {0.015625, 4}),
+             field<&EntryState::format>("Of the image that its output becomes."));
 
-/// One effect of a look. The wires are names: "scene" is the picture as it came, others are the `output` of an entry
-/// before this one; empty is the default of darkroom::EntryDesc.
+/// One effect of a look. The wires are names: "scene" is the picture as it came, "alpha" its alpha as a grey picture,
+/// others are the `output` of an entry before this one; "NAME.previous" is the output of any entry, or the scene, one
+/// frame before; empty is the default of darkroom::EntryDesc.
 struct LookEntry {
     const EffectInfo* effect = nullptr;
     std::vector<std::uint32_t> words;  ///< of the effect's struct

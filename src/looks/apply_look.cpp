@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <darkroom/look.hpp>
 #include <map>
 
@@ -28,37 +31,84 @@ bool is_in_the_way(const Look& look, const LookEntry& entry) {
     return entry.state.enabled.on == 0 || (effect.is_identity != nullptr && effect.is_identity(entry.words.data()));
 }
 
+OutputScale fraction(float scale) {
+    OutputScale best{1, 1};
+    for (std::uint32_t denominator = 1; denominator <= 64; ++denominator) {
+        const auto numerator = static_cast<std::uint32_t>(std::clamp(std::lround(scale * denominator), 1L, 64L));
+        const auto error = [&](const OutputScale& of) {
+            return std::abs(static_cast<float>(of.numerator) / static_cast<float>(of.denominator) - scale);
+        };
+        if (error({numerator, denominator}) < error(best)) best = {numerator, denominator};
+    }
+    return best;
+}
+
+VkFormat image_format(EntryFormat format) {
+    constexpr std::array formats{VK_FORMAT_UNDEFINED,
+                                 VK_FORMAT_R8G8B8A8_UNORM,
+                                 VK_FORMAT_R16G16B16A16_UNORM,
+                                 VK_FORMAT_R16G16B16A16_SFLOAT,
+                                 VK_FORMAT_R32G32B32A32_SFLOAT,
+                                 VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+                                 VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+                                 VK_FORMAT_R8_UNORM,
+                                 VK_FORMAT_R16_SFLOAT,
+                                 VK_FORMAT_R32_SFLOAT};
+    static_assert(formats.size() == detail::Enumerators<EntryFormat>::count);
+    return formats[static_cast<std::size_t>(format)];
+}
+
 }  // namespace
 
 Result<> apply(const Look& look, Composer& composer) {
     const std::vector<std::string> names = entry_names(look);
-    std::map<std::string, Handle, std::less<>> outputs{{std::string(scene_name), scene_color}};
+    std::map<std::string, Handle, std::less<>> outputs{{std::string(scene_name), scene_color},
+                                                       {std::string(alpha_name), scene_alpha}};
+    // What an entry reads of the frame before may be made by a later one: those are wired when all are there.
+    std::vector<std::pair<Handle, std::size_t>> unwired;
+    const auto wired = [&](std::size_t index, bool is_complete) -> Result<EntryDesc> {
+        const LookEntry& entry = look.entries[index];
+        EntryDesc desc{.name = names[index],
+                       .output = entry.output,
+                       .enabled = look.is_enabled ? entry.state.enabled.on != 0 : true,
+                       .opacity = entry.state.opacity,
+                       .blend = entry.state.blend,
+                       .scale = fraction(entry.state.scale),
+                       .format = image_format(entry.state.format)};
+        for (const WireInfo& end : wires) {
+            std::string_view name = entry.*end.member;
+            if (!end.is_reference || name.empty()) continue;
+            const bool is_previous = name.ends_with(previous_suffix);
+            if (is_previous) name.remove_suffix(previous_suffix.size());
+            const auto found = outputs.find(name);
+            if (is_previous && !is_complete) continue;
+            if (found == outputs.end())
+                return user_error(fmt::format("{}: {}: {} = \"{}\": no entry{} has this output", look.shown_name,
+                                              names[index], end.key, printable(entry.*end.member),
+                                              is_previous ? "" : " before it"));
+            desc.*end.handle = is_previous ? found->second.previous() : found->second;
+        }
+        if (look.is_flat) desc.source = scene_color;
+        return desc;
+    };
     for (const LookEntry* const entry : ordered(look)) {
         const std::size_t index = static_cast<std::size_t>(entry - look.entries.data());
         const bool is_kept = look.is_enabled || is_domain_change(*entry->effect);
         if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry)) continue;
-        const auto wire = [&](const std::string& name) {
-            const auto found = outputs.find(name);
-            return found == outputs.end() ? Handle{} : found->second;
-        };
-        for (const WireInfo& end : wires) {
-            const std::string& name = entry->*end.member;
-            if (end.is_reference && !name.empty() && !outputs.contains(name))
-                return user_error(fmt::format("{}: {}: {} = \"{}\": no entry before it has this output",
-                                              look.shown_name, names[index], end.key, printable(name)));
-        }
-        const EntryDesc desc{.input = wire(entry->input),
-                             .source = look.is_flat ? scene_color : wire(entry->source),
-                             .second = wire(entry->second),
-                             .mask = wire(entry->mask),
-                             .name = names[index],
-                             .output = entry->output,
-                             .enabled = look.is_enabled ? entry->state.enabled.on != 0 : true,
-                             .opacity = entry->state.opacity,
-                             .blend = entry->state.blend};
+        const auto desc = wired(index, false);
+        if (!desc) return failure(desc.error());
         const void* const words = look.is_enabled ? entry->words.data() : nullptr;
-        const Handle handle = composer.add(*entry->effect, words, desc);
+        const Handle handle = composer.add(*entry->effect, words, *desc);
         if (!entry->output.empty()) outputs[entry->output] = handle;
+        const bool reads_previous = std::ranges::any_of(wires, [&](const WireInfo& end) {
+            return end.is_reference && (entry->*end.member).ends_with(previous_suffix);
+        });
+        if (reads_previous) unwired.emplace_back(handle, index);
+    }
+    for (const auto& [handle, index] : unwired) {
+        const auto desc = wired(index, true);
+        if (!desc) return failure(desc.error());
+        if (auto ok = composer.rewire(handle, *desc); !ok) return ok;
     }
     return {};
 }

@@ -11,18 +11,23 @@ namespace darkroom {
 
 /// The wire to the picture as it came.
 inline constexpr std::string_view scene_name = "scene";
+/// That to its alpha, as a grey picture.
+inline constexpr std::string_view alpha_name = "alpha";
+/// Behind another name: that picture one frame before.
+inline constexpr std::string_view previous_suffix = ".previous";
 inline constexpr const auto& order_names = detail::Enumerators<LookOrder>::names;
 
 struct WireInfo {
     std::string_view key;
     std::string LookEntry::*member;
-    bool is_reference;  ///< names another entry's output
+    bool is_reference;                    ///< names another entry's output
+    Handle EntryDesc::*handle = nullptr;  ///< of a reference
 };
 inline constexpr std::array<WireInfo, 6> wires{{{"name", &LookEntry::name, false},
-                                                {"input", &LookEntry::input, true},
-                                                {"source", &LookEntry::source, true},
-                                                {"second", &LookEntry::second, true},
-                                                {"mask", &LookEntry::mask, true},
+                                                {"input", &LookEntry::input, true, &EntryDesc::input},
+                                                {"source", &LookEntry::source, true, &EntryDesc::source},
+                                                {"second", &LookEntry::second, true, &EntryDesc::second},
+                                                {"mask", &LookEntry::mask, true, &EntryDesc::mask},
                                                 {"output", &LookEntry::output, false}}};
 
 using StateWords = std::array<std::uint32_t, sizeof(EntryState) / 4>;

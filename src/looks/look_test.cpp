@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -195,10 +196,11 @@ TEST(Look, StackErrorsNameBothEnds) {
     EXPECT_EQ(
         error_of(blur + blur),
         "a.toml:6:10: output 'blurred' is made by stack entry 1 (gaussian_blur) and by stack entry 2 (gaussian_blur)");
-    EXPECT_EQ(error_of(blur + "[[stack]]\neffect = \"blend\"\nsecond = \"blured\"\n"),
-              "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, known are scene, "
-              "blurred, did you "
-              "mean 'blurred'?");
+    EXPECT_EQ(
+        error_of(blur + "[[stack]]\neffect = \"blend\"\nsecond = \"blured\"\n"),
+        "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, known are scene, alpha, "
+        "blurred, did you "
+        "mean 'blurred'?");
     EXPECT_TRUE(contains(error_of("[[stack]]\neffect = \"blom\"\n"), "did you mean 'bloom'?"));
     EXPECT_TRUE(contains(error_of("[[stack]]\nradius = 1\n"), "stack entry 1 has no key 'effect'"));
     EXPECT_TRUE(contains(error_of("stack = 1\n"), "expected [[stack]] entries"));
@@ -387,6 +389,58 @@ TEST(Look, HostileFilesAreRefused) {
     const std::string twice = error_of(renamed("19_toml_duplicate_keys.toml"));
     EXPECT_TRUE(twice.starts_with("a.toml:3:")) << twice;
     EXPECT_TRUE(error_of(renamed("20_toml_non_utf8.toml")).starts_with("a.toml:2:"));
+}
+
+constexpr std::string_view feedback = R"(
+[[stack]]
+effect = "grayscale"
+mask = "alpha"
+scale = 0.333
+format = "rgba8"
+
+[[stack]]
+effect = "blend"
+input = "scene"
+second = "trail.previous"
+
+[[stack]]
+effect = "blend"
+second = "scene.previous"
+output = "trail"
+)";
+
+TEST(Look, WiresNameTheAlphaAndTheFrameBefore) {
+    if (lacks({"grayscale", "blend"})) GTEST_SKIP() << "an effect that this test names is not in the tree";
+    const Look look = look_of(feedback);
+    EXPECT_EQ(write_look(look_of(write_look(look))), write_look(look));
+    Composer composer(Device::assumed());
+    const Result<> applied = apply(look, composer);
+    ASSERT_TRUE(applied) << applied.error().text;
+    ASSERT_EQ(composer.size(), 3u);
+    const EntryDesc& first = *composer.desc(composer.entry(0));
+    EXPECT_EQ(first.mask, scene_alpha);
+    EXPECT_EQ(first.scale.numerator, 1u);
+    EXPECT_EQ(first.scale.denominator, 3u);
+    EXPECT_EQ(first.format, VK_FORMAT_R8G8B8A8_UNORM);
+    EXPECT_EQ(composer.desc(composer.entry(1))->second, composer.entry(2).previous());
+    EXPECT_EQ(composer.desc(composer.entry(1))->input, scene_color);
+    EXPECT_EQ(composer.desc(composer.entry(2))->second, scene_color.previous());
+    EXPECT_EQ(composer.desc(composer.entry(2))->output, "trail");
+    EXPECT_EQ(composer.pre_roll(), 2 * previous_pre_roll);
+    const auto plan = composer.plan({.max_extent = {90, 60}});
+    EXPECT_TRUE(plan) << plan.error().text;
+}
+
+TEST(Look, WiresToTheFrameBeforeNameAnOutput) {
+    if (lacks({"blend"})) GTEST_SKIP() << "an effect that this test names is not in the tree";
+    const auto error = [](std::string_view wire) {
+        return error_of(fmt::format("[[stack]]\neffect = \"blend\"\nsecond = \"{}\"\noutput = \"a\"\n", wire));
+    };
+    EXPECT_EQ(error("a.previous"), "accepted");
+    EXPECT_TRUE(contains(error("b.previous"), "no entry has this output, known are scene, alpha, a"))
+        << error("b.previous");
+    EXPECT_TRUE(contains(error("alpha.previous"), "no entry has this output")) << error("alpha.previous");
+    EXPECT_TRUE(contains(error(".previous"), "expected a name")) << error(".previous");
 }
 
 }  // namespace

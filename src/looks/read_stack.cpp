@@ -82,7 +82,9 @@ class StackReader {
         for (const WireInfo& wire : wires) {
             if (wire.key != key.str()) continue;
             const auto* const text = node.as_string();
-            if (text != nullptr && is_name(text->get())) {
+            std::string_view name = text == nullptr ? std::string_view() : text->get();
+            if (wire.is_reference && name.ends_with(previous_suffix)) name.remove_suffix(previous_suffix.size());
+            if (is_name(name)) {
                 entry.*wire.member = text->get();
                 return;
             }
@@ -153,7 +155,7 @@ class StackReader {
         for (std::size_t i = 0; i < look_.entries.size(); ++i) {
             const std::string& output = look_.entries[i].output;
             if (output.empty()) continue;
-            if (output == scene_name) {
+            if (output == scene_name || output == alpha_name) {
                 reader_.report(node_of(i, "output"), Weight::Wrong,
                                fmt::format("output '{}' of {}: this name is the scene's", output, shown(i)));
                 continue;
@@ -164,7 +166,7 @@ class StackReader {
                     node_of(i, "output"), Weight::Wrong,
                     fmt::format("output '{}' is made by {} and by {}", output, shown(found->second), shown(i)));
         }
-        std::vector<std::string> known{std::string(scene_name)};
+        std::vector<std::string> known{std::string(scene_name), std::string(alpha_name)};
         for (const auto& [name, maker] : makers) known.push_back(name);
         for (std::size_t i = 0; i < look_.entries.size(); ++i)
             for (const WireInfo& wire : wires)
@@ -173,14 +175,16 @@ class StackReader {
 
     void check_wire(std::size_t index, const WireInfo& wire, const std::map<std::string, std::size_t>& makers,
                     std::span<const std::string> known) {
-        const std::string& name = look_.entries[index].*wire.member;
-        if (name.empty() || name == scene_name) return;
+        std::string name = look_.entries[index].*wire.member;
+        const bool is_previous = name.ends_with(previous_suffix);
+        if (is_previous) name.resize(name.size() - previous_suffix.size());
+        if (name.empty() || name == scene_name || (name == alpha_name && !is_previous)) return;
         const auto found = makers.find(name);
         if (found == makers.end())
             return reader_.report(node_of(index, wire.key), Weight::Wrong,
                                   fmt::format("{} = \"{}\" of {}: no entry has this output, known are {}{}", wire.key,
                                               name, shown(index), fmt::join(known, ", "), suggestion(name, known)));
-        if (found->second < index) return;
+        if (found->second < index || is_previous) return;
         reader_.report(node_of(index, wire.key), Weight::Wrong,
                        fmt::format("{} = \"{}\" of {}: made only later, by {}", wire.key, name, shown(index),
                                    found->second == index ? "itself" : shown(found->second)));
