@@ -97,8 +97,13 @@ struct LookOverride {
 /// unless `<effect>_enabled` is among them.
 [[nodiscard]] Result<> override_look(Look& look, std::span<const LookOverride> overrides);
 
+struct ApplyOptions {
+    /// Gives effects of the flat table that are off their place, so that Composer::set_enabled() finds them: they own
+    /// images then, and those with passes part kernels. Those that move coordinates by nothing have none in any case.
+    bool keeps_what_is_off = false;
+};
 /// Appends the look's entries to the Composer. The flat table wires `source` to the scene, as its documented order has
-/// it, and those of its effects that move coordinates have a place only where they are on.
-[[nodiscard]] Result<> apply(const Look& look, Composer& composer);
+/// it, and of its effects that are off those with images or passes get no place.
+[[nodiscard]] Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options = {});
 
 }  // namespace darkroom

@@ -23,12 +23,14 @@ bool is_domain_change(const EffectInfo& effect) {
     return false;
 }
 
-// An effect of the flat table that moves coordinates would part the kernel even while it is off, and every frame would
-// pay for what nobody asked for.
-bool is_in_the_way(const Look& look, const LookEntry& entry) {
+// Of the flat table's effects that are off, the pointwise ones without images cost nothing. The others would own memory
+// or part a kernel in every frame, for what nobody asked for.
+bool is_in_the_way(const Look& look, const LookEntry& entry, const ApplyOptions& options) {
     const EffectInfo& effect = *entry.effect;
-    if (!look.is_flat || effect.touch != Touch::Warp) return false;
-    return entry.state.enabled.on == 0 || (effect.is_identity != nullptr && effect.is_identity(entry.words.data()));
+    if (!look.is_flat || (effect.touch == Touch::Pointwise && !effect.build)) return false;
+    const bool is_still =
+        effect.touch == Touch::Warp && effect.is_identity != nullptr && effect.is_identity(entry.words.data());
+    return is_still || (entry.state.enabled.on == 0 && !options.keeps_what_is_off);
 }
 
 OutputScale fraction(float scale) {
@@ -60,7 +62,7 @@ VkFormat image_format(EntryFormat format) {
 
 }  // namespace
 
-Result<> apply(const Look& look, Composer& composer) {
+Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options) {
     const std::vector<std::string> names = entry_names(look);
     std::map<std::string, Handle, std::less<>> outputs{{std::string(scene_name), scene_color},
                                                        {std::string(alpha_name), scene_alpha}};
@@ -94,7 +96,7 @@ Result<> apply(const Look& look, Composer& composer) {
     for (const LookEntry* const entry : ordered(look)) {
         const std::size_t index = static_cast<std::size_t>(entry - look.entries.data());
         const bool is_kept = look.is_enabled || is_domain_change(*entry->effect);
-        if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry)) continue;
+        if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry, options)) continue;
         const auto desc = wired(index, false);
         if (!desc) return failure(desc.error());
         const void* const words = look.is_enabled ? entry->words.data() : nullptr;
