@@ -218,7 +218,7 @@ struct EffectInfo {
     OutputScale output_scale;   ///< of effects with a result of their own
     bool has_second = false;    ///< reads a second picture, as side image `second`
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
-    void (*build)(PassBuilder&) = nullptr;
+    std::function<void(PassBuilder&)> build{};
     /// The published equation in double precision; see reference.hpp.
     ReferenceFunction reference = nullptr;
     /// What is wrong with values that are each allowed by themselves, as "end = 3: must lie beyond start = 5"; empty:
@@ -228,7 +228,7 @@ struct EffectInfo {
     bool (*is_identity)(const void* parameters) = nullptr;
     /// Of effects with a history: how many frames before a frame must have been developed so that its picture is within
     /// half a code of 8 bits of an unbroken run, given that what the effect reads is. Null: none.
-    std::uint32_t (*pre_roll)(const void* parameters) = nullptr;
+    std::function<std::uint32_t(const void* parameters)> pre_roll{};
     /// Of a description that was made at run time: who keeps it longer than its maker holds this.
     std::weak_ptr<const void> owner{};
 };
