@@ -104,6 +104,7 @@ struct PassImageDesc {
     std::uint32_t numerator = 1;
     std::uint32_t denominator = 1;
     std::uint32_t mip_levels = 1;
+    VkExtent2D extent{};  ///< where it is not 0: of mip level 0, whatever the frame's
 };
 
 /// A pass of one kernel.
@@ -119,8 +120,8 @@ struct KernelPassDesc {
     std::vector<Input> inputs;
     PassImage output;
     std::uint32_t output_mip_level = 0;
-    bool is_additive = false;  ///< adds to what `output` holds
-    std::uint32_t custom_vectors = 0;
+    bool is_additive = false;          ///< adds to what `output` holds
+    std::uint32_t custom_vectors = 0;  ///< at most 512
     ConstantsFunction constants = nullptr;
     ConditionFunction condition = nullptr;  ///< beside the entry's own toggle
     std::uint32_t argument = 0;             ///< handed to condition

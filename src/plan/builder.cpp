@@ -42,9 +42,11 @@ PassImage Builder::at_own_size(Result<graph::Version> version) {
 
 graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
     const graph::Size size = planner_.values_[input_].size;
+    const bool is_absolute = desc.extent.width != 0;
     return {.name = fmt::format("{}.{}", planner_.stack_[entry_].desc.name, desc.name),
             .format = desc.format,
-            .size = {.numerator = size.numerator * desc.numerator, .denominator = size.denominator * desc.denominator},
+            .size = is_absolute ? graph::Size{.width = desc.extent.width, .height = desc.extent.height}
+                                : scaled(size, {desc.numerator, desc.denominator}),
             .mip_levels = desc.mip_levels};
 }
 

@@ -153,8 +153,8 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
             why = fmt::format("{} reads the picture before it, too", from.reader);
         else if (kernels_[kernel].images.size() + side_count >= gpu::most_images)
             why = fmt::format("a kernel reads at most {} images", gpu::most_images);
-        else if (vectors_of(kernels_[kernel].steps) + step.custom_vectors > most_custom_vectors)
-            why = fmt::format("a kernel holds at most {} vectors of its effects", most_custom_vectors);
+        else if (vectors_of(kernels_[kernel].steps) + step.custom_vectors > most_fused_vectors)
+            why = fmt::format("a kernel holds at most {} vectors of its effects", most_fused_vectors);
         if (!why.empty()) {
             if (auto image = materialise(input, why); !image) return failure(std::move(image));
             kernel = open_kernel(input, std::move(why));

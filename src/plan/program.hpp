@@ -15,8 +15,10 @@
 
 namespace darkroom::plan {
 
-/// Of the constants of one kernel. With them a block stays within what every device allows.
-inline constexpr std::uint32_t most_custom_vectors = 96;
+/// Vectors from the CPU in one pass of an effect, and in one fused kernel beside the parameters of its entries. With
+/// them a block stays within the 16 KiB that every device allows.
+inline constexpr std::uint32_t most_custom_vectors = 512;
+inline constexpr std::uint32_t most_fused_vectors = 96;
 
 /// A stack entry as the Composer keeps it.
 struct Entry {

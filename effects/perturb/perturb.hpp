@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Perturbation: the picture swims, as by heat, drink or a blast. Two crossed sines, a ring that runs outward from a
+// point, and an image of displacements are added up; one set of parameters, four ways to evaluate it, which agree.
+
+#include <darkroom/effect.hpp>
+
+namespace darkroom {
+
+/// Where the displacement is worked out: in every pixel; there with a table in place of sin(); in the vertices of a
+/// grid, between which it is interpolated; or in those by the CPU.
+enum class PerturbEvaluation : std::uint32_t { Pixel, SineTable, Vertex, Cpu };
+
+struct Perturb {
+    float amount = 1.0f;
+    Vec4 strength{6.0f, 6.0f, 2.0f, 2.0f};
+    Vec2 time_distortion;
+    Vec2 speed;
+    float ring_strength = 0.0f;
+    Vec2 ring_center{0.5f, 0.5f};
+    float ring_width = 0.15f;
+    float ring_speed = 0.6f;
+    float ring_period = 2.0f;
+    Resource distortion;
+    float distortion_strength = 16.0f;
+    PerturbEvaluation evaluation = PerturbEvaluation::Pixel;
+    Vec2 grid{32.0f, 18.0f};
+};
+inline constexpr auto perturb_rows = describe(
+    field<&Perturb::amount>("Scales all displacements.", {0, 8}).as_amount(),
+    field<&Perturb::strength>("Amplitude of the sines in x and y, in pixels; then their waves across the picture.",
+                              {-256, 256}),
+    field<&Perturb::time_distortion>("Phase of the sines in x and y, in turns: 0 and 1 are the same.", {0, 1}),
+    field<&Perturb::speed>("Turns of the phases, and of the distortion image, in a second.", {-16, 16}),
+    field<&Perturb::ring_strength>("Amplitude of the ring at its start; below 0 it pulls.", {-256, 256}, unit::pixels),
+    field<&Perturb::ring_center>("Where the ring starts, in uv.", {-1, 2}),
+    field<&Perturb::ring_width>("Half-width of the ring, in heights of the picture.", {0.001, 2}),
+    field<&Perturb::ring_speed>("Heights of the picture that the ring runs in a second.", {0, 16}),
+    field<&Perturb::ring_period>("Time in which the ring dies down, and after which it starts again.", {0.01, 3600},
+                                 unit::seconds),
+    field<&Perturb::distortion>("An image whose red and green displace the picture: 0.5 by nothing. It repeats."),
+    field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels),
+    field<&Perturb::evaluation>("Where the displacement is worked out."),
+    field<&Perturb::grid>("Columns and rows of the grid, for vertex and cpu; read at compile.", {1, 256}));
+
+/// What the CPU adds to the parameters in a frame.
+struct PerturbFrame {
+    float phase_x = 0, phase_y = 0;  ///< of the sines, in turns, [0, 1)
+    float ring_radius = 0;           ///< in heights of the picture
+    float ring_amplitude = 0;        ///< in pixels
+};
+[[nodiscard]] PerturbFrame perturb_frame(const Perturb& parameters, double time);
+
+[[nodiscard]] const EffectInfo& effect_info(const Perturb&);
+
+}  // namespace darkroom
