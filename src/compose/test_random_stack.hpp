@@ -72,10 +72,12 @@ inline void set_random(std::mt19937& random, Composer& composer, Handle handle, 
         must(composer.set(handle, row.name, info.parameters.defaults.subspan(row.word, row.words)));
 }
 
-/// Any of the entries before, the scene, or (default) the entry before.
+/// Any of the entries before, perhaps as it was a frame before; the scene or its alpha; or (default) the entry before.
 inline Handle random_handle(std::mt19937& random, const Composer& composer, std::uint32_t entry) {
-    const std::uint32_t pick = below(random, entry + 2);
-    return pick == 0 ? Handle{} : pick == 1 ? scene_color : composer.entry(pick - 2);
+    const std::uint32_t pick = below(random, entry + 3);
+    if (pick < 3) return std::array{Handle{}, scene_color, scene_alpha}[pick];
+    const Handle of_entry = composer.entry(pick - 3);
+    return one_in(random, 12) ? of_entry.previous() : of_entry;
 }
 
 struct StackDesc {
@@ -83,6 +85,7 @@ struct StackDesc {
     const EffectInfo* always = nullptr;  ///< an effect that the stack holds at some place
     std::span<const EffectInfo* const> effects = all_effects();
     std::uint32_t one_input_in = 6;  ///< how many entries name their input
+    bool has_sizes = false;          ///< entries may work at half the size, the last one, too
 };
 
 inline void fill_random(std::mt19937& random, Composer& composer, const StackDesc& desc) {
@@ -99,6 +102,8 @@ inline void fill_random(std::mt19937& random, Composer& composer, const StackDes
         if (one_in(random, 3)) inputs.opacity = static_cast<float>(between(random, 0, 1));
         if (one_in(random, 3)) inputs.blend = static_cast<BlendMode>(below(random, 9));
         inputs.enabled = !one_in(random, 8);
+        if (desc.has_sizes && one_in(random, 12)) inputs.scale = {1, 2};
+        if (one_in(random, 12)) inputs.format = VK_FORMAT_R32G32B32A32_SFLOAT;
         set_random(random, composer, composer.add(*info, nullptr, inputs), desc.values);
     }
 }
@@ -120,8 +125,11 @@ inline void edit_random(std::mt19937& random, Composer& composer, Values values)
 inline std::string described(const Composer& composer) {
     std::string out;
     const auto wire = [&](std::string_view key, Handle handle) {
-        if (handle.is_given())
-            out += fmt::format("{} = \"{}\"\n", key, handle == scene_color ? "scene" : composer.desc(handle)->name);
+        if (!handle.is_given()) return;
+        const std::string name = handle == scene_color   ? "scene"
+                                 : handle == scene_alpha ? "alpha"
+                                                         : composer.desc({handle.id})->name;
+        out += fmt::format("{} = \"{}{}\"\n", key, name, handle.is_previous ? ".previous" : "");
     };
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const Handle entry = composer.entry(i);
@@ -134,6 +142,9 @@ inline std::string described(const Composer& composer) {
         wire("second", inputs.second);
         wire("mask", inputs.mask);
         if (inputs.opacity != 1) out += fmt::format("opacity = {}\n", inputs.opacity);
+        if (inputs.scale.denominator != 1)
+            out += fmt::format("scale = {}\n", 1.0 * inputs.scale.numerator / inputs.scale.denominator);
+        if (inputs.format != VK_FORMAT_UNDEFINED) out += fmt::format("format = {}\n", static_cast<int>(inputs.format));
         if (inputs.blend != BlendMode::Mix) out += fmt::format("blend = {}\n", static_cast<int>(inputs.blend));
         const auto words = composer.words(entry);
         for (const ParamInfo& row : composer.info(entry)->parameters.rows) {

@@ -59,11 +59,11 @@ Result<Program> Planner::run() {
         program_.entry_sizes.push_back(values_[input].size);
         if (program_.is_left_out[i]) {
             entry_values_[i] = input;
-            continue;
+        } else {
+            auto value = add_entry(i, input);
+            if (!value) return failure(std::move(value));
+            entry_values_[i] = *value;
         }
-        auto value = add_entry(i, input);
-        if (!value) return failure(std::move(value));
-        entry_values_[i] = *value;
         if (auto ok = keep_output(i); !ok) return failure(std::move(ok));
     }
     if (auto ok = finish(); !ok) return failure(std::move(ok));

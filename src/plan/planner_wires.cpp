@@ -116,11 +116,12 @@ void Planner::count_readers() {
 /// The pictures that no entry makes, for the wires that name them.
 Result<> Planner::make_wires() {
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
-        if (program_.is_left_out[i]) continue;
         const EntryDesc& desc = stack_[i].desc;
         for (const Handle handle : {desc.input, desc.source, desc.second, desc.mask}) {
             const std::pair key{handle.id, handle.is_previous};
-            if (!handle.is_given() || wires_.contains(key)) continue;
+            // What is left out hands on its input, and reads nothing else.
+            const bool is_read = handle.is_given() && (!program_.is_left_out[i] || handle == desc.input);
+            if (!is_read || wires_.contains(key)) continue;
             if (const ResourceImage* const picture = picture_of(i, handle)) {
                 const graph::Size size{.width = picture->width, .height = picture->height};
                 values_.push_back({.image = import_constant(texels_of(*picture), size),
@@ -182,6 +183,7 @@ graph::Size Planner::output_size(std::uint32_t entry) const {
         size = {.width = picture->width, .height = picture->height};
     else if (!desc.input.is_previous && program_.entry_inputs[entry] != no_entry)
         size = output_size(program_.entry_inputs[entry]);
+    if (program_.is_left_out[entry]) return size;
     size = scaled(size, desc.scale);
     const bool has_result = info.touch == Touch::Neighbourhood || info.touch == Touch::History;
     return has_result ? scaled(size, info.output_scale) : size;
@@ -210,7 +212,8 @@ Result<std::size_t> Planner::scaled_input(std::uint32_t entry) {
 Result<> Planner::keep_output(std::uint32_t entry) {
     const EntryDesc& desc = stack_[entry].desc;
     const auto kept = kept_outputs_.find(entry);
-    if (kept == kept_outputs_.end() && desc.format == VK_FORMAT_UNDEFINED) return {};
+    const bool has_format = desc.format != VK_FORMAT_UNDEFINED && !program_.is_left_out[entry];
+    if (kept == kept_outputs_.end() && !has_format) return {};
     const std::size_t value = entry_values_[entry];
     const std::string why = kept != kept_outputs_.end() ? fmt::format("{} is read in the next frame, too", desc.name)
                                                         : fmt::format("{} has a format of its own", desc.name);
