@@ -30,14 +30,15 @@ ReferenceImage scene(std::uint32_t width, std::uint32_t height) {
     return test::round_to_half(picture);
 }
 
-/// Every flat effect in the documented order, or the other one, all on.
+/// Every flat effect in the documented order, or the other one, all on; but for fxaa, which compares pixels, and may
+/// choose another neighbour where half floats round.
 void fill_default(Composer& composer, bool is_documented) {
     std::vector<const EffectInfo*> flat;
     const auto rank = [&](const EffectInfo* info) {
         return is_documented ? info->flat.documented : info->flat.scene_linear;
     };
     for (const EffectInfo* const info : all_effects())
-        if (rank(info) >= 0) flat.push_back(info);
+        if (rank(info) >= 0 && info->name != "fxaa") flat.push_back(info);
     std::ranges::sort(flat, {}, rank);
     for (const EffectInfo* const info : flat) composer.add(*info, nullptr, {.source = scene_color});
 }
@@ -281,9 +282,9 @@ TEST_F(ChainLooks, EveryShippedLookDevelopsAsItsReference) {
 
 TEST_F(ChainLooks, TheShippedOrdersGiveNoRemark) {
     for (const char* const order : {"documented", "scene_linear"}) {
-        const auto look = parse_look(
-            "[post_process]\norder = \"" + std::string(order) + "\"\nvignette_enabled = true\ndither_enabled = true\n",
-            "a.toml", {.is_strict = true});
+        const auto look = parse_look("[post_process]\norder = \"" + std::string(order) +
+                                         "\"\nvignette_enabled = true\ndither_enabled = true\nfxaa_enabled = true\n",
+                                     "a.toml", {.is_strict = true});
         ASSERT_TRUE(look) << look.error().text;
         Composer composer(gpu::test::device());
         test::must(apply(*look, composer));

@@ -129,6 +129,8 @@ class Graph {
             if (std::ranges::any_of(wires, [](Handle wire) { return wire.is_previous; })) return std::nullopt;
             if (desc.scale.denominator != 1) return std::nullopt;
             if (&info == &test::absent_effect) continue;
+            // What compares or counts levels may fall to the other side by a rounding.
+            if (info.name == "fxaa" || info.name == "posterize") return std::nullopt;
             if (info.reference == nullptr || !is_exact || info.output_scale.denominator != 1) return std::nullopt;
         }
         const bool is_srgb = surroundings_.format == VK_FORMAT_R8G8B8A8_SRGB;

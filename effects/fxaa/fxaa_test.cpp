@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <darkroom/effects/fxaa.hpp>
+#include <limits>
+#include <string_view>
+
+#include "compose/test_support.hpp"
+#include "fxaa/fxaa_reference.hpp"
+
+namespace darkroom {
+namespace {
+
+constexpr std::array every_quality{FxaaQuality::Low, FxaaQuality::Medium, FxaaQuality::High};
+
+ReferenceImage developed(const Fxaa& fxaa, const ReferenceImage& picture, KernelStage kernels = KernelStage::Auto) {
+    return test::develop([&](Composer& composer) { composer.add(fxaa); }, picture, {.kernels = kernels});
+}
+
+/// White below a line that falls by one pixel in `run`, black above it, without smoothing; or on its side.
+ReferenceImage slanted_edge(std::uint32_t width, std::uint32_t height, std::uint32_t run, bool is_upright) {
+    ReferenceImage picture(is_upright ? height : width, is_upright ? width : height, {0, 0, 0, 1});
+    for (std::uint32_t along = 0; along < width; ++along)
+        for (std::uint32_t across = height / 4 + along / run; across < height; ++across)
+            picture.at(is_upright ? across : along, is_upright ? along : across) = {1, 1, 1, 1};
+    return picture;
+}
+
+/// The largest difference between two neighbours along the edge: what the eye sees of a stair. The ends, where the
+/// picture hides how the edge goes on, are left out.
+double highest_stair(const ReferenceImage& picture, bool is_upright) {
+    double highest = 0;
+    const std::uint32_t along = is_upright ? picture.height : picture.width;
+    const std::uint32_t across = is_upright ? picture.width : picture.height;
+    for (std::uint32_t i = 40; i + 41 < along; ++i)
+        for (std::uint32_t j = 0; j < across; ++j) {
+            const Rgba& here = is_upright ? picture.at(j, i) : picture.at(i, j);
+            const Rgba& next = is_upright ? picture.at(j, i + 1) : picture.at(i + 1, j);
+            highest = std::max(highest, std::abs(here.g - next.g));
+        }
+    return highest;
+}
+
+/// A line of letters of 5x7 pixels, twice as large as drawn, on a flat field.
+ReferenceImage text(Rgba field, Rgba ink) {
+    constexpr std::array<std::string_view, 7> letters{"#...#.####..####..", "#...#.#...#.#.....", "#...#.#...#.#.....",
+                                                      "#...#.#...#.####..", "#...#.#...#.#.....", "#...#.#...#.#.....",
+                                                      ".###..####..####.."};
+    ReferenceImage picture(60, 40, field);
+    for (std::uint32_t y = 0; y < 14; ++y)
+        for (std::uint32_t x = 0; x < 36; ++x)
+            if (letters[y / 2][x / 2] == '#') picture.at(x + 12, y + 13) = ink;
+    return picture;
+}
+
+bool is_flat_around(const ReferenceImage& picture, std::uint32_t x, std::uint32_t y) {
+    for (const int dy : {-1, 0, 1})
+        for (const int dx : {-1, 0, 1})
+            if (picture.clamped(std::int64_t{x} + dx, std::int64_t{y} + dy).g != picture.at(x, y).g) return false;
+    return true;
+}
+
+TEST(EffectFxaa, StairsOfAOneToFortyEdgeFallFourfold) {
+    for (const bool is_upright : {false, true})
+        for (const FxaaQuality quality : every_quality) {
+            SCOPED_TRACE(static_cast<int>(quality));
+            const ReferenceImage picture = slanted_edge(400, 32, 40, is_upright);
+            ASSERT_EQ(highest_stair(picture, is_upright), 1.0);
+            for (const float subpixel : {0.0f, 0.75f}) {
+                const Fxaa fxaa{.quality = quality, .subpixel = subpixel};
+                EXPECT_LE(highest_stair(test::reference_of(fxaa, picture), is_upright), 0.25);
+                EXPECT_LE(highest_stair(developed(fxaa, picture), is_upright), 0.25);
+            }
+        }
+}
+
+// The line through the middles of the steps is the edge that was meant: the covered part of each column is near it.
+TEST(EffectFxaa, AStairBecomesTheLineThatItStandsFor) {
+    const ReferenceImage picture = slanted_edge(400, 32, 10, false);
+    const ReferenceImage out = developed({.subpixel = 0}, picture);
+    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+    for (std::uint32_t x = 40; x < 200; ++x) {
+        double covered = 0;
+        for (std::uint32_t y = 0; y < out.height; ++y) covered += out.at(x, y).g;
+        EXPECT_NEAR(covered, out.height - (8 + (x + 0.5) / 10 - 0.5), 0.11) << x;
+    }
+}
+
+TEST(EffectFxaa, TextLeavesItsFieldUnchanged) {
+    const ReferenceImage picture = test::round_to_float(text({0.1, 0.2, 0.3, 0.5}, {0.9, 0.8, 0.7, 0.5}));
+    const ReferenceImage out = developed({.subpixel = 1}, picture);
+    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+    int changed = 0;
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const Rgba &before = picture.at(x, y), &after = out.at(x, y);
+            EXPECT_EQ(after.a, before.a);
+            if (is_flat_around(picture, x, y))
+                EXPECT_TRUE(after.r == before.r && after.g == before.g && after.b == before.b) << x << "," << y;
+            else
+                changed += after.g != before.g ? 1 : 0;
+        }
+    EXPECT_GT(changed, 50);
+}
+
+TEST(EffectFxaa, FaintTextAndStraightEdgesAreNoStairs) {
+    const ReferenceImage faint = test::round_to_float(text({0.5, 0.5, 0.5, 1}, {0.56, 0.57, 0.55, 1}));
+    EXPECT_EQ(test::worst_difference(developed({.subpixel = 1}, faint), faint), 0.0);
+    for (const bool is_upright : {false, true}) {
+        const ReferenceImage straight = slanted_edge(64, 32, 1000, is_upright);
+        EXPECT_EQ(test::worst_difference(developed({.subpixel = 0}, straight), straight), 0.0);
+    }
+}
+
+TEST(EffectFxaa, SubpixelTakesALonePixelAway) {
+    ReferenceImage picture = test::uniform(9, 9, {0.2, 0.2, 0.2, 1});
+    picture.at(4, 4) = {1, 1, 1, 1};
+    double before = 2;
+    for (const float subpixel : {0.0f, 0.25f, 0.75f, 1.0f}) {
+        const double left = test::reference_of(Fxaa{.subpixel = subpixel}, picture).at(4, 4).g;
+        EXPECT_LT(left, before);
+        before = left;
+    }
+    EXPECT_NEAR(before, 0.2, 1e-12);
+}
+
+TEST(EffectFxaa, GpuMatchesReference) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(67, 41, 1));
+    for (const FxaaQuality quality : every_quality)
+        for (const float subpixel : {0.0f, 0.75f}) {
+            const Fxaa fxaa{.quality = quality, .subpixel = subpixel};
+            const ReferenceImage expected = test::reference_of(fxaa, picture);
+            // Whole pixels are read, so nothing but single precision parts them.
+            for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster})
+                EXPECT_LE(test::worst_difference(developed(fxaa, picture, stage), expected), 1e-5);
+        }
+}
+
+TEST(EffectFxaa, GpuOnTinyPictures) {
+    for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 7u}, {9u, 1u}, {2u, 2u}}) {
+        const ReferenceImage picture = test::round_to_float(test::random_display(width, height, 3));
+        EXPECT_LE(test::worst_difference(developed({}, picture), test::reference_of(Fxaa{}, picture)), 1e-5)
+            << width << "x" << height;
+    }
+}
+
+// A search may end at a broken pixel, but no number of it comes further than to its neighbours.
+TEST(EffectFxaa, GpuNanAndInfinityStayContained) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    ReferenceImage picture = test::round_to_float(test::random_display(48, 48, 4));
+    picture.at(20, 20) = {nan, nan, nan, 1};
+    picture.at(33, 21) = {infinity, infinity, -infinity, 1};
+    const ReferenceImage out = developed({.subpixel = 1}, picture);
+    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const auto is_near = [&](int at_x, int at_y) {
+                return std::abs(static_cast<int>(x) - at_x) + std::abs(static_cast<int>(y) - at_y) <= 1;
+            };
+            const Rgba& color = out.at(x, y);
+            if ((x == 20 && y == 20) || (x == 33 && y == 21)) continue;
+            if (is_near(33, 21)) {
+                EXPECT_LE(std::abs(color.r), 65504) << x << "," << y;
+                continue;
+            }
+            EXPECT_TRUE(color.r >= 0 && color.r <= 1 && color.g >= 0 && color.g <= 1) << x << "," << y;
+        }
+}
+
+TEST(EffectFxaa, BelongsBehindTheCurve) {
+    const Domains accepts = effect_info(Fxaa{}).accepts;
+    EXPECT_TRUE(accepts.contains(Domain::Encoded) && accepts.contains(Domain::DisplayLinear));
+    EXPECT_FALSE(accepts.contains(Domain::SceneLinear));
+}
+
+}  // namespace
+}  // namespace darkroom
