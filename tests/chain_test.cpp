@@ -132,18 +132,12 @@ double mean_codes(const ReferenceImage& a, const ReferenceImage& b) {
 }
 
 using Names = std::vector<std::string>;
-const Names documented_order{"radial_blur", "chromatic_aberration",
-                             "ssao",        "volumetric",
-                             "bloom",       "exposure",
-                             "tonemap",     "fog",
-                             "encode",      "dither",
-                             "vignette"};
-const Names scene_linear_order{"radial_blur", "chromatic_aberration",
-                               "ssao",        "volumetric",
-                               "bloom",       "fog",
-                               "exposure",    "tonemap",
-                               "vignette",    "encode",
-                               "dither"};
+const Names documented_order{
+    "radial_blur", "chromatic_aberration", "ssao",   "volumetric", "bloom",   "exposure", "tonemap",
+    "fog",         "lens_distortion",      "encode", "dither",     "vignette"};
+const Names scene_linear_order{
+    "radial_blur", "chromatic_aberration", "ssao",     "volumetric", "bloom", "fog", "exposure",
+    "tonemap",     "lens_distortion",      "vignette", "encode",     "dither"};
 
 /// The flat table with everything on at once, strong enough that each effect shows.
 void fill_with_everything(Composer& composer, bool is_documented) {
@@ -165,6 +159,7 @@ dither_enabled = true
 dither_intensity = 0.05
 vignette_enabled = true
 vignette_intensity = 0.6
+lens_distortion = 0.3
 )",
                                  "everything.toml", {.is_strict = true});
     ASSERT_TRUE(look) << look.error().text;
