@@ -133,10 +133,10 @@ double mean_codes(const ReferenceImage& a, const ReferenceImage& b) {
 
 using Names = std::vector<std::string>;
 const Names documented_order{
-    "radial_blur", "chromatic_aberration", "ssao",   "volumetric", "bloom",   "exposure", "tonemap",
+    "radial_blur", "chromatic_aberration", "ssao",   "volumetric", "bloom",   "exposure", "color_grade", "tonemap",
     "fog",         "lens_distortion",      "encode", "dither",     "vignette"};
 const Names scene_linear_order{
-    "radial_blur", "chromatic_aberration", "ssao",     "volumetric", "bloom", "fog", "exposure",
+    "radial_blur", "chromatic_aberration", "ssao",     "volumetric", "bloom", "fog", "exposure", "color_grade",
     "tonemap",     "lens_distortion",      "vignette", "encode",     "dither"};
 
 /// The flat table with everything on at once, strong enough that each effect shows.
@@ -160,6 +160,8 @@ dither_intensity = 0.05
 vignette_enabled = true
 vignette_intensity = 0.6
 lens_distortion = 0.3
+color_grade_temperature = 5500
+color_grade_contrast = 1.3
 )",
                                  "everything.toml", {.is_strict = true});
     ASSERT_TRUE(look) << look.error().text;
