@@ -1,5 +1,5 @@
-# What an engine links: libdarkroom.so, one shared object of core, gpu, graph, plan, compose and effects, and
-# libdarkroom_looks.so, which reads looks (TOML) and table files; or libdarkroom.a, which is the former as an archive
+# What an engine links: libdarkroom.so, one shared object of core, gpu, graph, plan, compose, effects and
+# custom, and libdarkroom_looks.so, which reads looks (TOML) and table files; or libdarkroom.a, which is the former as an archive
 # (DARKROOM_STATIC). In the tree and installed they are Darkroom::darkroom, Darkroom::looks and Darkroom::static. Included
 # after the folders they are made of.
 
@@ -13,7 +13,7 @@ function(darkroom_shared_library name)
   foreach(part ${library_PARTS})
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
     target_link_libraries(${name} PRIVATE
-      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|plan|compose|effects|toml|looks)$>")
+      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|plan|compose|effects|custom|toml|looks)$>")
   endforeach()
   set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
     LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -31,7 +31,7 @@ function(darkroom_shared_library name)
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
-set(DARKROOM_PARTS core gpu graph plan compose effects)
+set(DARKROOM_PARTS core gpu graph plan compose effects custom)
 darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS ${DARKROOM_PARTS})
 # The headers name Vulkan types; a host calls Vulkan through whatever loader it has.
 target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)

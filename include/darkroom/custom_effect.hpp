@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // A user's own effect in one GLSL file, loaded at run time: it takes its place in a stack, and fuses with its
-// neighbours, like those in the library. It is the pointwise (or warp) kind only: passes of its own, histories and a
-// CPU reference need an effect's folder.
+// neighbours, like those in the library. What a folder of the tree can do in GLSL a file can, passes, images and
+// histories among them; a CPU reference and numbers worked out on the CPU need a folder.
 //
 //     // @effect duotone: Maps shadows and highlights to two colours.
 //     // @param float amount = 1 in [0, 1] amount: How much of the toned picture is seen.
@@ -12,15 +12,43 @@
 //
 //     vec4 duotone(vec4 color, Pixel pixel, Duotone parameters) { ... }
 //
-// The lines above the first line of code describe it. A line of @param is KIND NAME = DEFAULT, the interval `in [a, b]`
-// where the kind has one (float, int, vec2, vec3, vec4, rgb), then any of a unit (px, cd/m2, m, 1/m, deg, s), `log` (a
-// slider in equal ratios) and `amount` (0 switches the effect off), then a colon and a sentence. The first name of a
-// choice is the default; in GLSL the names are Duotone_mode_luma and so on. Other lines:
-//     // @touch warp              the function is vec4 duotone(Pixel pixel, Duotone parameters) and reads `picture`
-//     // @accepts scene_linear display_linear     the domains it is meant for; without it all, encoded too
-//     // @needs depth             left out of the plan where the frame has none: depth, normals, velocity, shadows, ui
-// What the text defines at file scope begins with the effect's name, so that two entries of it fit one kernel.
+// A comment line that begins with @ describes something. Above the first line of code stand:
+//     @effect NAME: SENTENCE.     required
+//     @param KIND NAME = DEFAULT in [LOWEST, HIGHEST] UNIT log amount: SENTENCE.
+//                                 KIND is float, int, vec2, vec3, vec4 or rgb, or without an interval toggle (on, off)
+//                                 or choice (the first name is the default; in GLSL Duotone_mode_luma). UNIT is px,
+//                                 cd/m2, m, 1/m, deg or s, or missing; `log`: a slider in equal ratios; `amount`: 0
+//                                 switches the effect off
+//     @touch warp                 the function is vec4 duotone(Pixel pixel, Duotone parameters) and reads `picture`
+//     @accepts DOMAIN ...         scene_linear, display_linear, encoded: those it is meant for; without it all
+//     @makes DOMAIN               what the picture is behind it; without it what it was
+//     @needs NEED ...             without these of the frame it is left out of the plan: depth, normals, velocity,
+//                                 shadows, ui; and `second`, the entry's second picture, for the end
+//     @image NAME: RATIO FORMAT   an image for passes, RATIO (1, 1/2, 3/4 ...) of the picture's size; FORMAT is
+//     rgba16f,
+//                                 rgba32f, rgba8, rg16f, rg32f, rg8, r16f, r32f, r8 or r11f_g11f_b10f
+//     @history NAME: RATIO FORMAT an image that outlives the frame: NAME is written, NAME_previous is what the frame
+//                                 before wrote; zero after a cut
+//     @pre_roll FRAMES            with a history: how many frames before must have been developed for a right picture
+//     @table NAME: WIDTHxHEIGHT FORMAT = VALUE, VALUE ...   r32f, rgba32f, and in [0, 1] r8, rgba8; a line that ends in
+//                                 a comma goes on in the next comment
+//     @result IMAGE               the effect's picture, where it has no end
+// and above functions:
+//     @pass NAME: IMAGE ... -> IMAGE    below it, to the next such line, is the pass's code: vec4 duotone_NAME(Pixel
+//                                 pixel, Duotone parameters) makes the image behind the arrow of those before it, which
+//                                 are `picture`, `source` (what the entry's wire of that name says, else the picture),
+//                                 and images of the file. Each is written once, before it is read
+//     @end IMAGE ...              below it is the end, with the images that it reads: vec4 duotone(vec4 color, Pixel
+//                                 pixel, Duotone parameters). In a file without passes all code is the end's
+// Code above the first @pass and @end is everyone's. What a function may call: GLSL, `#include "shared/NAME.glsl"`
+// (effects/shared), and on images by their names sample_linear(image, uv), load(image, texel), load_clamped,
+// gather_red, gather_green and size (src/gpu/kernel.hpp). Of the frame it may read frame_time, frame_delta_time,
+// frame_index; with shared/camera.glsl its camera; and what @needs names: frame_depth (red: planar distance; 1e10 is
+// sky), frame_normals (view space), frame_velocity (red, green: previous minus current position, in pixels, y down),
+// frame_ui (sRGB-encoded, premultiplied). Names at file scope begin with the effect's name, so that two entries of it
+// fit one kernel.
 
+#include <cstddef>
 #include <darkroom/effect.hpp>
 #include <darkroom/result.hpp>
 #include <filesystem>
@@ -33,8 +61,11 @@ namespace darkroom {
 /// Moving it keeps info() where it is.
 class CustomEffect {
   public:
+    static constexpr std::size_t most_bytes = 65536;  ///< of a file
+
+    /// Errors read "name:line: ...".
     [[nodiscard]] static Result<CustomEffect> load(const std::filesystem::path& file);
-    /// `shown_name` stands for the file in errors, which read "name:line: ...". GLSL itself is compiled with the stack.
+    /// `shown_name` stands for the file in errors. GLSL itself is compiled with the stack.
     [[nodiscard]] static Result<CustomEffect> parse(std::string_view text, std::string_view shown_name);
 
     CustomEffect(CustomEffect&&) noexcept;

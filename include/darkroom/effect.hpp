@@ -199,6 +199,7 @@ class PassBuilder {
 struct EffectFile {
     std::string_view name;  ///< "bloom_downsample.glsl"
     std::string_view text;
+    std::string_view shown{};  ///< what errors call it; empty: effects/<effect>/<name>
 };
 /// The files of effects/<effect>/, embedded at build time.
 [[nodiscard]] std::span<const EffectFile> embedded_files(std::string_view effect);

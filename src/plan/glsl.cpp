@@ -12,10 +12,13 @@ namespace darkroom::plan {
 
 namespace {
 
+const EffectFile* find_file(std::span<const EffectFile> files, std::string_view name) {
+    const auto found = std::ranges::find(files, name, &EffectFile::name);
+    return found == files.end() ? nullptr : &*found;
+}
 std::string_view file_text(std::span<const EffectFile> files, std::string_view name) {
-    for (const EffectFile& file : files)
-        if (file.name == name) return file.text;
-    return {};
+    const EffectFile* const file = find_file(files, name);
+    return file == nullptr ? std::string_view{} : file->text;
 }
 
 struct Scalar {
@@ -97,7 +100,7 @@ void for_each_line(std::string_view text, const Visit& visit) {
 }
 
 Result<void> append_with_includes(std::string& out, std::string_view text, const std::string& shown_name, int depth) {
-    out += fmt::format("#line 1 \"effects/{}\"\n", shown_name);
+    out += fmt::format("#line 1 \"{}\"\n", shown_name);
     Result<void> result;
     for_each_line(text, [&](std::string_view line, std::size_t number) {
         const std::string_view name = included_name(line);
@@ -108,12 +111,12 @@ Result<void> append_with_includes(std::string& out, std::string_view text, const
         }
         const std::string_view included = file_text(shared_files(), name);
         if (included.empty() || depth > 8) {
-            result = user_error(fmt::format("effects/{}:{}: #include \"{}\": there is no such file in effects/shared",
+            result = user_error(fmt::format("{}:{}: #include \"{}\": there is no such file in effects/shared",
                                             shown_name, number, name));
             return;
         }
-        result = append_with_includes(out, included, std::string(name), depth + 1);
-        out += fmt::format("#line {} \"effects/{}\"\n", number + 1, shown_name);
+        result = append_with_includes(out, included, fmt::format("effects/{}", name), depth + 1);
+        out += fmt::format("#line {} \"{}\"\n", number + 1, shown_name);
     });
     return result;
 }
@@ -127,7 +130,7 @@ std::string with_own_files(const EffectInfo& info, std::string_view text, std::s
         if (included.empty())
             out.append(line).push_back('\n');
         else
-            out += fmt::format("#line 1 \"effects/{}/{}\"\n{}\n#line {} \"effects/{}\"\n", info.name, name, included,
+            out += fmt::format("#line 1 \"effects/{}/{}\"\n{}\n#line {} \"{}\"\n", info.name, name, included,
                                number + 1, shown_name);
     });
     return out;
@@ -286,12 +289,13 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::s
 
 Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, std::uint32_t place,
                                std::span<const std::string> images) {
-    std::string_view own = file_text(info.files, file);
-    const bool is_shared = own.empty();
-    if (is_shared) own = file_text(shared_files(), file);
-    const std::string shown = is_shared && !own.empty() ? std::string(file) : fmt::format("{}/{}", info.name, file);
-    const std::string expanded = with_own_files(info, own, shown);
-    if (expanded.empty()) return user_error(fmt::format("effects/{}: there is no such file", shown));
+    const EffectFile* const own = find_file(info.files, file);
+    const std::string_view text = own != nullptr ? own->text : file_text(shared_files(), file);
+    const bool is_shared = own == nullptr && !text.empty();
+    std::string shown = is_shared ? fmt::format("effects/{}", file) : fmt::format("effects/{}/{}", info.name, file);
+    if (own != nullptr && !own->shown.empty()) shown = own->shown;
+    const std::string expanded = with_own_files(info, text, shown);
+    if (expanded.empty()) return user_error(fmt::format("{}: there is no such file", shown));
 
     EffectText out;
     std::set<std::string_view> members;
@@ -354,14 +358,14 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
 
     std::string helpers;
     if (has_merge) {
-        if (auto ok =
-                append_with_includes(helpers, file_text(shared_files(), "shared/merge.glsl"), "shared/merge.glsl", 0);
+        if (auto ok = append_with_includes(helpers, file_text(shared_files(), "shared/merge.glsl"),
+                                           "effects/shared/merge.glsl", 0);
             !ok)
             return failure(std::move(ok));
     }
     if (finish != Finish::None) {
-        if (auto ok =
-                append_with_includes(helpers, file_text(shared_files(), "shared/srgb.glsl"), "shared/srgb.glsl", 0);
+        if (auto ok = append_with_includes(helpers, file_text(shared_files(), "shared/srgb.glsl"),
+                                           "effects/shared/srgb.glsl", 0);
             !ok)
             return failure(std::move(ok));
         for (const auto& [kind, call] : {std::pair{Finish::EncodeSrgb, "color.rgb = srgb_encode(color.rgb);"},

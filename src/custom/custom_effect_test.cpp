@@ -106,13 +106,15 @@ TEST(CustomEffect, ErrorsNameThePlaceTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of(""), "my.glsl:1: no line `// @effect NAME: SENTENCE.` before the code");
     EXPECT_EQ(error_of("// @effect mine: Mine.\n// vec4 mine(\nfloat other() { return mine; }\n"),
               "my.glsl:1: no function mine: expected `vec4 mine(vec4 color, Pixel pixel, Mine parameters)`");
-    EXPECT_EQ(error_of_line("@parm float a = 1"),
-              "my.glsl:3: @parm: allowed is @effect, @touch, @accepts, @needs, @param");
+    EXPECT_EQ(
+        error_of_line("@parm float a = 1"),
+        "my.glsl:3: @parm: allowed is @effect, @param, @touch, @accepts, @makes, @needs, @image, @history, @table, "
+        "@result, @pre_roll, @pass, @end");
     EXPECT_EQ(error_of_line("@touch history"), "my.glsl:3: @touch history: allowed is pointwise, warp");
     EXPECT_EQ(error_of_line("@accepts linear"),
               "my.glsl:3: @accepts linear: allowed is scene_linear, display_linear, encoded");
     EXPECT_EQ(error_of_line("@needs money"),
-              "my.glsl:3: @needs money: allowed is depth, normals, velocity, shadows, ui");
+              "my.glsl:3: @needs money: allowed is depth, normals, velocity, shadows, ui, second");
     EXPECT_EQ(error_of_line("@param double a = 1 in [0, 2]: A."),
               "my.glsl:3: @param double: allowed is float, int, toggle, choice, vec2, vec3, vec4, rgb");
     EXPECT_EQ(error_of_line("@effect other: Other."), "my.glsl:3: a second @effect; a file holds one");
@@ -146,7 +148,7 @@ TEST(CustomEffect, ARowObeysTheRulesOfACompiledRow) {
     says("choice a = one | Two: A.", "lower-case");
     EXPECT_EQ(error_of("// @effect mine: Mine.\n// @param toggle a = on: A.\n// @param toggle a = on: A.\nmine("),
               "my.glsl:3: a: described twice");
-    EXPECT_EQ(error_of("// @effect mix: Mine.\nmix("), "my.glsl:1: mix: a function of GLSL or of the kernels");
+    EXPECT_EQ(error_of("\n// @effect mix: Mine.\nmix("), "my.glsl:2: mix: a name of GLSL or of the kernels");
 }
 
 TEST(CustomEffect, HostileTextIsRefusedOrReadAndNeverTrusted) {

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// From a description to passes.
+
+#include <algorithm>
+#include <map>
+
+#include "custom/description.hpp"
+#include "custom/frame_images.hpp"
+
+namespace darkroom::custom {
+
+namespace {
+
+class Build {
+  public:
+    Build(PassBuilder& builder, const Description& from) : builder_(builder), from_(from) {
+        for (const FileImage& image : from.images) declare(image);
+    }
+
+    void run() {
+        for (const FileFunction& pass : from_.passes) {
+            KernelPassDesc desc{.name = std::string(pass.name), .shader = pass.shader, .output = images_[pass.output]};
+            for (const FileInput& input : pass.inputs)
+                desc.inputs.push_back(
+                    {.name = std::string(input.name), .image = image(input.name), .is_loaded = input.is_loaded});
+            images_[pass.output] = builder_.add(desc);
+        }
+        if (!from_.result.empty()) builder_.result(images_[from_.result]);
+        if (!from_.end) return;
+        for (const FileInput& input : from_.end->inputs) {
+            const FrameImageRow* const row = frame_row(input.name);
+            const PassVector neutral = row == nullptr ? PassVector{} : row->neutral;
+            if (input.is_loaded)
+                builder_.loaded_side(std::string(input.name), image(input.name), neutral);
+            else
+                builder_.side(std::string(input.name), image(input.name), neutral);
+        }
+    }
+
+  private:
+    void declare(const FileImage& image) {
+        const PassImageDesc desc{.name = std::string(image.name),
+                                 .format = image.format,
+                                 .numerator = image.ratio.numerator,
+                                 .denominator = image.ratio.denominator};
+        switch (image.kind) {
+            case FileImage::Kind::Image:
+                images_[image.name] = builder_.create(desc);
+                return;
+            case FileImage::Kind::Table:
+                images_[image.name] = builder_.table(image.table);
+                return;
+            case FileImage::Kind::History:
+                const PassBuilder::History history = builder_.history(desc);
+                images_[image.name] = history.current;
+                previous_[image.name] = history.previous;
+                return;
+        }
+    }
+
+    static const FrameImageRow* frame_row(std::string_view name) {
+        const auto found = std::ranges::find(frame_images, name, &FrameImageRow::name);
+        return found == frame_images.end() ? nullptr : &*found;
+    }
+
+    PassImage image(std::string_view name) {
+        if (name == "picture") return builder_.picture();
+        if (name == "source") return builder_.source();
+        if (const FrameImageRow* const row = frame_row(name)) return row->make(builder_);
+        if (const auto found = images_.find(name); found != images_.end()) return found->second;
+        return previous_.at(name.substr(0, name.rfind('_')));
+    }
+
+    PassBuilder& builder_;
+    const Description& from_;
+    std::map<std::string_view, PassImage> images_;    ///< as they are behind the passes so far
+    std::map<std::string_view, PassImage> previous_;  ///< of histories, by their names
+};
+
+}  // namespace
+
+void build(PassBuilder& builder, const Description& description) { Build(builder, description).run(); }
+
+}  // namespace darkroom::custom

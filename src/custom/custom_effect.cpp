@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <darkroom/custom_effect.hpp>
+#include <system_error>
+#include <utility>
+
+#include "core/files.hpp"
+#include "core/param_text.hpp"
+#include "custom/description.hpp"
+
+namespace darkroom {
+
+struct CustomEffect::State : custom::Description {};
+
+CustomEffect::CustomEffect(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+CustomEffect::CustomEffect(CustomEffect&&) noexcept = default;
+CustomEffect& CustomEffect::operator=(CustomEffect&&) noexcept = default;
+CustomEffect::~CustomEffect() = default;
+
+const EffectInfo& CustomEffect::info() const { return state_->info; }
+
+Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view shown_name) {
+    if (text.size() > most_bytes)
+        return user_error(fmt::format("{}: {} bytes, the file of an effect has at most {}", printable(shown_name),
+                                      text.size(), most_bytes));
+    auto state = std::make_shared<State>();
+    if (auto ok = custom::read_description(*state, text, shown_name); !ok) return failure(std::move(ok));
+    state->info.owner = state;
+    // Whoever calls these holds the state: they are members of what it keeps.
+    const State* const own = state.get();
+    state->info.build = [own](PassBuilder& builder) { custom::build(builder, *own); };
+    if (own->pre_roll) state->info.pre_roll = [frames = *own->pre_roll](const void*) { return frames; };
+    return CustomEffect(std::move(state));
+}
+
+Result<CustomEffect> CustomEffect::load(const std::filesystem::path& file) {
+    // A pipe might never end.
+    std::error_code error;
+    if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+        return user_error(fmt::format("{}: is no regular file", printable(file.string())));
+    auto bytes = read_file(file, {.max_size = most_bytes});
+    if (!bytes) return failure(std::move(bytes));
+    return parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file.string());
+}
+
+}  // namespace darkroom

@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: MIT
+// Files that declare passes, images, histories and tables, and that read what the frame has.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <darkroom/custom_effect.hpp>
+#include <filesystem>
+#include <string>
+
+#include "compose/test_host.hpp"
+#include "compose/test_support.hpp"
+
+namespace darkroom {
+namespace {
+
+using gpu::test::must;
+
+const std::filesystem::path examples = std::filesystem::path(DARKROOM_SOURCE_FOLDER) / "examples";
+
+CustomEffect parsed(std::string_view text) {
+    auto effect = CustomEffect::parse(text, "my.glsl");
+    if (!effect) ADD_FAILURE() << effect.error().text;
+    return effect ? std::move(*effect) : must(CustomEffect::parse("// @effect none: None.\nnone(", "none.glsl"));
+}
+std::string error_of(const std::string& text) {
+    const auto effect = CustomEffect::parse(text, "my.glsl");
+    return effect ? "" : effect.error().text;
+}
+/// The error of a file of these lines and of the functions that they ask for.
+std::string error_of_lines(const std::string& lines) {
+    return error_of("// @effect mine: Mine.\n" + lines + "\nmine( mine_one( mine_two(\n");
+}
+
+TEST(CustomPasses, AreReadWithTheirImagesAndTheirCode) {
+    const CustomEffect effect = must(CustomEffect::load(examples / "two_pass_blur.glsl"));
+    const EffectInfo& info = effect.info();
+    EXPECT_EQ(info.touch, Touch::Neighbourhood);
+    ASSERT_EQ(info.files.size(), 2u);
+    EXPECT_EQ(info.files[0].name, "two_pass_blur_across.glsl");
+    EXPECT_NE(info.files[0].text.find("two_pass_blur_reach"), std::string_view::npos);
+    EXPECT_EQ(info.files[0].text.find("two_pass_blur_down("), std::string_view::npos);
+    EXPECT_FALSE(info.pre_roll);
+
+    const CustomEffect trail = must(CustomEffect::load(examples / "feedback_trail.glsl"));
+    EXPECT_EQ(trail.info().touch, Touch::Pointwise);
+    ASSERT_TRUE(trail.info().pre_roll);
+    EXPECT_EQ(trail.info().pre_roll(trail.info().parameters.defaults.data()), 110u);
+}
+
+TEST(CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
+    const std::string image = "// @image one: 1 rgba16f\n", pass = "// @pass one: picture -> one\n";
+    EXPECT_EQ(error_of_lines(image + "// @pass one: picture two -> one"),
+              "my.glsl:3: pass one reads 'two': there is no such image, there are picture, source, one");
+    EXPECT_EQ(error_of_lines(image + "// @pass one: one -> one"),
+              "my.glsl:3: pass one reads 'one', which no pass before it writes");
+    EXPECT_EQ(error_of_lines(image + "// @image two: 1 r8\n// @pass one: two -> one\n// @pass two: one -> two"),
+              "my.glsl:4: pass one reads 'two', which no pass before it writes")
+        << "a cycle";
+    EXPECT_EQ(error_of_lines(image + pass + "// @pass two: one -> one"),
+              "my.glsl:4: pass two writes 'one', which a pass before it writes");
+    EXPECT_EQ(error_of_lines(image + pass + "// @pass two: picture -> one"),
+              "my.glsl:4: pass two writes 'one', which a pass before it writes");
+    EXPECT_EQ(error_of_lines(image + "// @pass one: picture -> two"),
+              "my.glsl:3: pass one writes 'two': expected an image or a history of the file");
+    EXPECT_EQ(error_of_lines(image + "// @pass one: picture picture -> one"),
+              "my.glsl:3: pass one reads 'picture' twice");
+    EXPECT_EQ(error_of_lines(image + "// @pass one picture"),
+              "my.glsl:3: one picture: a name is made of lower-case "
+              "letters, digits and single underscores, and begins with "
+              "a letter");
+    EXPECT_EQ(error_of_lines(image + "// @pass one: picture"),
+              "my.glsl:3: pass one: expected `@pass one: IMAGE IMAGE -> IMAGE`");
+    EXPECT_EQ(error_of_lines(image + pass),
+              "my.glsl:1: passes that nobody sees: expected `// @end IMAGE` above the function mine, or `// @result "
+              "IMAGE`");
+    EXPECT_EQ(error_of_lines(image + pass + "// @end two"),
+              "my.glsl:4: @end reads 'two': there is no such image, there are picture, source, one");
+    EXPECT_EQ(error_of_lines(image + "// @result one\n" + pass + "// @end one"),
+              "my.glsl:5: @end: the effect's picture is @result one, it has no end");
+    EXPECT_EQ(error_of_lines(image), "my.glsl:1: image one: no pass writes it");
+    EXPECT_EQ(error_of("// @effect mine: Mine.\n// @image one: 1 r8\n// @result one\n// @pass one: -> one\nmine("),
+              "my.glsl:4: no function mine_one: expected `vec4 mine_one(Pixel pixel, Mine parameters)`");
+    EXPECT_EQ(error_of_lines("// @image one: 1/2 rgba17f"),
+              "my.glsl:2: one: format rgba17f: allowed is rgba16f, rgba32f, rgba8, rg16f, rg32f, rg8, r16f, r32f, r8, "
+              "r11f_g11f_b10f");
+    for (const char* const size : {"0", "1/0", "3", "-1", "1e9", "99999999999", "x", "1/2/3"})
+        EXPECT_EQ(error_of_lines(std::string("// @image one: ") + size + " r8"),
+                  std::string("my.glsl:2: one: size ") + size +
+                      ": expected its share of the picture, as 1, 1/2 or 3/4, at most 2");
+    EXPECT_EQ(error_of_lines(image + image), "my.glsl:3: one: declared twice");
+    for (const char* const name : {"picture", "source", "frame_depth", "load", "one_previous", "color"})
+        EXPECT_EQ(error_of_lines(std::string("// @image ") + name + ": 1 r8"),
+                  std::string("my.glsl:2: ") + name + ": has a meaning already");
+    EXPECT_EQ(error_of_lines("// @image half: 1 r8"), "my.glsl:2: half: a keyword of GLSL");
+    EXPECT_EQ(error_of_lines("// @image mine_one: 1 r8\n// @pass one: -> mine_one\n// @end mine_one"),
+              "my.glsl:1: image mine_one: names that begin with the effect's are those of functions");
+    EXPECT_EQ(error_of_lines("// @history one: 1 r8\n" + pass + "// @end one"),
+              "my.glsl:1: a history without `@pre_roll FRAMES`: how many frames before must have been developed for a "
+              "right picture");
+    EXPECT_EQ(error_of_lines("// @pre_roll 3"), "my.glsl:1: @pre_roll: the file has no history");
+    EXPECT_EQ(error_of_lines("// @pre_roll 9999"),
+              "my.glsl:2: @pre_roll 9999: expected a number of frames in [0, 1000]");
+    EXPECT_EQ(error_of_lines("// @result one"),
+              "my.glsl:2: @result one: expected an image or a history that a line before it declares");
+    EXPECT_EQ(error_of("// @effect mine: Mine.\nvec4 mine(vec4 color) { return load(frame_depth, x); }"),
+              "my.glsl:1: frame_depth: read without `@needs depth`");
+    EXPECT_EQ(error_of_lines(image + pass + "// @param toggle a = on: A."),
+              "my.glsl:4: @param: stands above the code, the passes and the end");
+    EXPECT_EQ(error_of_lines("// @touch warp\n" + image + "// @result one\n" + pass),
+              "my.glsl:1: @touch warp: with @result the passes make the picture");
+}
+
+TEST(CustomPasses, TablesAreReadAndCounted) {
+    EXPECT_EQ(error_of_lines("// @table one: 2x1 r32f = 1,\n//   2e3\n// @end one"), "");
+    EXPECT_EQ(error_of_lines("// @table one: 2x1 rgba8 = 0, 1, 0.5, 1, 0, 0, 0,\n// 1\n// @end one"), "");
+    EXPECT_EQ(error_of_lines("// @table one: 2x1 r32f = 1, 2, 3"),
+              "my.glsl:2: one: 3 values, its 2 x 1 texels of one take 2");
+    EXPECT_EQ(error_of_lines("// @table one: 2x1 rgba8 ="),
+              "my.glsl:2: one: 0 values, its 2 x 1 texels of four take 8");
+    EXPECT_EQ(error_of_lines("// @table one: 1x1 r8 = 1.5"), "my.glsl:2: one: value 1.5: expected a number in [0, 1]");
+    EXPECT_EQ(error_of_lines("// @table one: 1x1 r32f = nan"), "my.glsl:2: one: value nan: expected a number");
+    EXPECT_EQ(error_of_lines("// @table one: 1x1 r32f = 1e39"), "my.glsl:2: one: value 1e39: expected a number");
+    EXPECT_EQ(error_of_lines("// @table one: 1x1 rgba16f = 1"),
+              "my.glsl:2: one: rgba16f: allowed is r32f, rgba32f, r8, rgba8");
+    for (const char* const size : {"0x1", "1", "65536x65536", "4097x1", "1x", "ax1"})
+        EXPECT_EQ(error_of_lines(std::string("// @table one: ") + size + " r8 = 1"),
+                  std::string("my.glsl:2: one: ") + size + ": expected WIDTHxHEIGHT, at most 4096 texels");
+}
+
+TEST(CustomPasses, CountsHaveBounds) {
+    std::string images, passes, parameters;
+    for (int i = 0; i < 40; ++i) {
+        images += "// @image a" + std::to_string(i) + ": 1 r8\n";
+        passes += "// @pass a" + std::to_string(i) + ": -> a" + std::to_string(i) + "\n";
+    }
+    for (int i = 0; i < 100; ++i) parameters += "// @param toggle a" + std::to_string(i) + " = on: A.\n";
+    EXPECT_EQ(error_of_lines(images), "my.glsl:18: a16: a file has at most 16 images");
+    EXPECT_EQ(error_of_lines(parameters), "my.glsl:66: a64: a file has at most 64 parameters");
+    std::string reads = "// @end";
+    for (int i = 0; i < 9; ++i) reads += " a" + std::to_string(i);
+    std::string some = images.substr(0, images.find("// @image a9")),
+                writers = passes.substr(0, passes.find("// @pass a9"));
+    EXPECT_EQ(error_of_lines(some + writers + reads), "my.glsl:20: @end reads more than 8 images");
+    EXPECT_EQ(error_of(std::string(CustomEffect::most_bytes + 1, ' ')),
+              "my.glsl: 65537 bytes, the file of an effect has at most 65536");
+}
+
+TEST(CustomPasses, CodeDeclaresNothingOfTheKernel) {
+    const auto says = [](const std::string& code, const std::string& part) {
+        const std::string text = error_of("// @effect mine: Mine.\n" + code + "\nmine(");
+        EXPECT_TRUE(text.starts_with("my.glsl:2: " + part)) << code << " -> " << text;
+    };
+    says("layout(binding = 9) buffer Mine { float a; };", "layout: the kernel around");
+    says("uniform float a;", "uniform: the kernel around");
+    says("void main() {}", "main: the kernel around");
+    says("#version 460", "#version 460: allowed is `#include");
+    says("#extension GL_EXT_buffer_reference : require", "#extension");
+    says("#include \"/etc/passwd\"", "#include");
+    says("  #pragma x", "#pragma");
+    says("#define A(x) x x", "#define A(x): expected a name without parameters");
+    says("#define A " + std::string(500, 'x'), "#define A: a value of at most 120 characters");
+    says("#define A 1\\\n", "a backslash");
+    EXPECT_EQ(error_of("// @effect mine: Mine.\n#define A 1\n#define B A A\nmine("),
+              "my.glsl:3: #define B: its value names A, another one");
+    EXPECT_EQ(error_of("// @effect mine: Mine.\n#define TAU (2.0 * 3.14159)\nmine("), "");
+    EXPECT_EQ(error_of("// @effect bloom: Mine.\nbloom("),
+              "my.glsl:1: bloom: the name of an effect that is built in; choose another");
+}
+
+/// Of a value below 1 in half precision; drivers may truncate where they store.
+constexpr double half_ulp = 1.0 / 2048;
+
+/// One direction of the Gaussian of examples/two_pass_blur.glsl, from its definition.
+ReferenceImage blurred(const ReferenceImage& in, double radius, bool is_across) {
+    ReferenceImage out = in;
+    const int reach = static_cast<int>(std::ceil(3 * radius));
+    for (std::uint32_t y = 0; y < in.height; ++y)
+        for (std::uint32_t x = 0; x < in.width; ++x) {
+            Rgba sum{0, 0, 0, 0};
+            double weights = 0;
+            for (int i = -reach; i <= reach; ++i) {
+                const double weight = std::exp(-0.5 * i * i / (radius * radius));
+                const Rgba& tap = in.clamped(is_across ? std::int64_t{x} + i : x, is_across ? y : std::int64_t{y} + i);
+                sum = {sum.r + weight * tap.r, sum.g + weight * tap.g, sum.b + weight * tap.b, sum.a + weight * tap.a};
+                weights += weight;
+            }
+            out.at(x, y) = {sum.r / weights, sum.g / weights, sum.b / weights, sum.a / weights};
+        }
+    return out;
+}
+
+TEST(ComposeCustomPasses, TheBlurIsTheGaussian) {
+    const CustomEffect effect = must(CustomEffect::load(examples / "two_pass_blur.glsl"));
+    for (const auto& [width, height] : {std::pair{37u, 23u}, {1u, 1u}, {2u, 9u}}) {
+        const ReferenceImage picture = test::round_to_float(test::random_display(width, height, 4));
+        for (const double radius : {1.5, 6.0}) {
+            const ReferenceImage expected = blurred(blurred(picture, radius, true), radius, false);
+            for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
+                const auto fill = [&](Composer& composer) {
+                    must(composer.set(composer.add(effect.info(), nullptr), "radius", radius));
+                };
+                const ReferenceImage out = test::develop(fill, picture, {.kernels = stage});
+                EXPECT_LE(test::worst_difference(out, expected), 2 * half_ulp + 1e-5) << width << " " << radius;
+            }
+        }
+    }
+}
+
+TEST(ComposeCustomPasses, TwoEntriesOfAFileLeaveEachOtherAlone) {
+    const CustomEffect effect = must(CustomEffect::load(examples / "two_pass_blur.glsl"));
+    const ReferenceImage picture = test::round_to_float(test::random_display(21, 17, 6));
+    const auto fill = [&](Composer& composer) {
+        for (const double radius : {1.0, 3.0})
+            must(composer.set(composer.add(effect.info(), nullptr), "radius", radius));
+    };
+    ReferenceImage expected = picture;
+    for (const double radius : {1.0, 3.0}) expected = blurred(blurred(expected, radius, true), radius, false);
+    EXPECT_LE(test::worst_difference(test::develop(fill, picture), expected), 4 * half_ulp + 1e-5);
+}
+
+/// A white frame, then black ones: what is left of the trail after `seconds`.
+double trail_after(const CustomEffect& effect, double seconds, double frames_per_second, bool is_cut = false) {
+    const test::Host host(test::uniform(8, 6, {1, 1, 1, 1}));
+    const gpu::test::Picture black =
+        gpu::test::upload(host.device.context(), test::pixels_of(test::uniform(8, 6, {0, 0, 0, 1})),
+                          VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
+    Composer composer(host.device);
+    composer.add(effect.info(), nullptr);
+    must(composer.compile(host.compile_desc()));
+    const auto frames = static_cast<std::uint32_t>(std::lround(seconds * frames_per_second));
+    for (std::uint32_t i = 0; i <= frames; ++i) {
+        Frame frame = host.frame();
+        if (i > 0) frame.color = test::image_ref(black);
+        frame.delta_time = 1 / frames_per_second;
+        frame.frame_index = i;
+        frame.camera.is_cut = is_cut && i == frames;
+        must(host.record(composer, frame));
+    }
+    return host.read_target().at(3, 3).r;
+}
+
+TEST(ComposeCustomPasses, ATrailFadesByTimeAndEndsAtACut) {
+    const CustomEffect effect = must(CustomEffect::load(examples / "feedback_trail.glsl"));
+    for (const double rate : {20.0, 60.0, 120.0})
+        EXPECT_NEAR(trail_after(effect, 0.1, rate), 0.8 / 4, 1.0 / 512) << rate;
+    EXPECT_EQ(trail_after(effect, 0.1, 60, true), 0);
+}
+
+/// What a file's function shows of a frame with depth and normals.
+ReferenceImage shown(const std::string& text, const ReferenceImage& picture, const test::RunOptions& options = {}) {
+    const CustomEffect effect = parsed(text);
+    return test::develop([&](Composer& composer) { composer.add(effect.info(), nullptr); }, picture, options);
+}
+
+struct Case {
+    ReferenceImage picture = test::round_to_float(test::random_display(13, 7, 3));
+    ReferenceImage depth{13, 7}, normals{13, 7};
+    Camera camera = test::look_at({1, 3, 2}, {4, 1, -9}, 1.1, 13.0 / 7);
+    Case() {
+        for (std::uint32_t y = 0; y < 7; ++y)
+            for (std::uint32_t x = 0; x < 13; ++x) {
+                depth.at(x, y).r = double{static_cast<float>(1 + x * 0.5 + y)};
+                normals.at(x, y) = {0, 1, 0, 0};
+            }
+    }
+    [[nodiscard]] test::RunOptions options() const { return {.depth = &depth, .normals = &normals, .camera = camera}; }
+};
+
+TEST(ComposeCustomPasses, NeedsBindTheImagesOfTheFrame) {
+    const Case data;
+    const std::string end = "vec4 mine(vec4 color, Pixel pixel, Mine parameters) { return ";
+    const ReferenceImage depth =
+        shown("// @effect mine: Mine.\n// @needs depth\n" + end + "vec4(load(frame_depth, pixel.texel).r); }",
+              data.picture, data.options());
+    const ReferenceImage sampled =
+        shown("// @effect mine: Mine.\n// @needs depth\n" + end + "vec4(sample_linear(frame_depth, pixel.uv).r); }",
+              data.picture, data.options());
+    ASSERT_EQ(depth.pixels.size(), data.depth.pixels.size());
+    ASSERT_EQ(sampled.pixels.size(), data.depth.pixels.size());
+    for (std::size_t i = 0; i < depth.pixels.size(); ++i) {
+        EXPECT_EQ(depth.pixels[i].r, data.depth.pixels[i].r);
+        EXPECT_NEAR(sampled.pixels[i].r, data.depth.pixels[i].r, 1e-3);
+    }
+    // The same as device depth.
+    test::RunOptions device = data.options();
+    device.camera.depth = DepthKind::Standard;
+    device.is_depth_planar = false;
+    ReferenceImage stored = data.depth;
+    const Matrix& p = device.camera.projection;
+    for (Rgba& pixel : stored.pixels) pixel.r = (-pixel.r * double{p[10]} + double{p[14]}) / pixel.r;
+    device.depth = &stored;
+    EXPECT_LE(test::worst_difference(
+                  shown("// @effect mine: Mine.\n// @needs depth\n" + end +
+                            "vec4(load(frame_depth, pixel.texel).rrr, "
+                            "color.a); }",
+                        data.picture, device),
+                  [&] {
+                      ReferenceImage out = data.depth;
+                      for (std::size_t i = 0; i < out.pixels.size(); ++i)
+                          out.pixels[i] = {out.pixels[i].r, out.pixels[i].r, out.pixels[i].r, data.picture.pixels[i].a};
+                      return out;
+                  }()),
+              1e-3);
+    // Up in the world is up and towards a camera that looks down.
+    const ReferenceImage normals =
+        shown("// @effect mine: Mine.\n// @needs normals\n" + end + "load(frame_normals, pixel.texel); }", data.picture,
+              data.options());
+    EXPECT_GT(normals.at(5, 3).g, 0.9);
+    EXPECT_GT(normals.at(5, 3).b, 0.1);
+}
+
+TEST(ComposeCustomPasses, APassReadsDepthAndTheFrameWithoutItLeavesTheEffectOut) {
+    const Case data;
+    const std::string text =
+        "// @effect mine: Mine.\n// @needs depth\n// @image far: 1 r32f\n// @pass one: -> far\n"
+        "vec4 mine_one(Pixel pixel, Mine parameters) { return load(frame_depth, pixel.texel) * 2.0; }\n// @end far\n"
+        "vec4 mine(vec4 color, Pixel pixel, Mine parameters) { return vec4(load(far, pixel.texel).r); }\n";
+    EXPECT_EQ(shown(text, data.picture, data.options()).at(4, 2).r, 2 * data.depth.at(4, 2).r);
+    EXPECT_EQ(test::worst_difference(shown(text, data.picture), data.picture), 0);
+}
+
+TEST(ComposeCustomPasses, VelocityAndUiAreThoseOfTheFrame) {
+    const CustomEffect effect = parsed(
+        "// @effect mine: Mine.\n// @needs velocity ui\nvec4 mine(vec4 color, Pixel pixel, Mine parameters) {\n"
+        "    return vec4(load(frame_velocity, pixel.texel).rg, load(frame_ui, pixel.texel).ba);\n}\n");
+    const test::Host host(test::uniform(4, 3, {0, 0, 0, 1}));
+    const auto upload = [&](Rgba color) {
+        return gpu::test::upload(host.device.context(), test::pixels_of(test::uniform(4, 3, color)),
+                                 VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
+    };
+    const gpu::test::Picture velocity = upload({0.5, -0.25, 0, 0}), ui = upload({0, 0, 0.75, 0.5});
+    CompileDesc desc = host.compile_desc();
+    desc.velocity = {velocity.image.info.format, velocity.image.info.usage};
+    desc.ui = {ui.image.info.format, ui.image.info.usage};
+    Composer composer(host.device);
+    composer.add(effect.info(), nullptr);
+    must(composer.compile(desc));
+    Frame frame = host.frame();
+    frame.velocity = test::image_ref(velocity);
+    frame.ui = test::image_ref(ui);
+    frame.camera.velocity = {.sign = VelocityKind::Sign::CurrentMinusPrevious, .unit = VelocityKind::Unit::Uv};
+    must(host.record(composer, frame));
+    const Rgba out = host.read_target().at(2, 1);
+    EXPECT_NEAR(out.r, -0.5 * 4, 1e-3);
+    EXPECT_NEAR(out.g, frame.camera.velocity.is_y_down ? 0.25 * 3 : -0.25 * 3, 1e-3);
+    EXPECT_EQ(out.b, 0.75);
+    EXPECT_EQ(out.a, 0.5);
+}
+
+TEST(ComposeCustomPasses, TablesHoldTheirValues) {
+    const ReferenceImage picture = test::uniform(3, 2, {0, 0, 0, 1});
+    const ReferenceImage out = shown(
+        "// @effect mine: Mine.\n// @table one: 3x1 r32f = -1, 2.5,\n//   1e3\n// @table two: 1x2 rgba8 = 1, 0, 0, 1,\n"
+        "//  0, 0, 1, 1\n// @end one two\nvec4 mine(vec4 color, Pixel pixel, Mine parameters) {\n"
+        "    return vec4(load(one, ivec2(pixel.texel.x, 0)).r, load(two, ivec2(0, pixel.texel.y)).rb,\n"
+        "                sample_linear(one, vec2(1.0 / 3.0, 0.5)).r);\n}\n",
+        picture);
+    ASSERT_EQ(out.pixels.size(), 6u);
+    const double expected[] = {-1, 2.5, 1000};
+    for (std::uint32_t x = 0; x < 3; ++x) EXPECT_EQ(out.at(x, 0).r, expected[x]);
+    EXPECT_EQ(out.at(0, 0).g, 1);
+    EXPECT_EQ(out.at(0, 0).b, 0);
+    EXPECT_EQ(out.at(0, 1).g, 0);
+    EXPECT_EQ(out.at(0, 1).b, 1);
+    EXPECT_NEAR(out.at(0, 0).a, 0.75, 0.02);
+}
+
+TEST(ComposeCustomPasses, AResultMayBeSmaller) {
+    const CustomEffect effect = parsed(
+        "// @effect mine: Mine.\n// @image one: 1/2 rgba32f\n// @result one\n// @pass one: source -> one\n"
+        "vec4 mine_one(Pixel pixel, Mine parameters) { return load(source, pixel.texel * 2); }\n");
+    const ReferenceImage picture = test::round_to_float(test::random_display(16, 8, 9));
+    test::Host host(picture);
+    host.target = gpu::test::blank(host.device.context(), {8, 4}, VK_FORMAT_R32G32B32A32_SFLOAT);
+    Composer composer(host.device);
+    composer.add(effect.info(), nullptr);
+    must(composer.compile(host.compile_desc()));
+    EXPECT_EQ(host.run(composer).at(3, 1).r, picture.at(6, 2).r);
+}
+
+TEST(ComposeCustomPasses, AWarpMayHavePasses) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(16, 8, 9));
+    const ReferenceImage moved = shown(
+        "// @effect mine: Mine.\n// @touch warp\n// @image one: 1 r32f\n// @pass one: -> one\n"
+        "vec4 mine_one(Pixel pixel, Mine parameters) { return vec4(1.0); }\n// @end one\n"
+        "vec4 mine(Pixel pixel, Mine parameters) {\n"
+        "    return load_clamped(picture, pixel.texel + int(load(one, pixel.texel).r));\n}\n",
+        picture);
+    EXPECT_EQ(moved.at(3, 2).g, picture.at(4, 3).g);
+}
+
+TEST(ComposeCustomPasses, TheDomainIsWhatTheFileSays) {
+    const CustomEffect effect = parsed(
+        "// @effect mine: Mine.\n// @makes encoded\n"
+        "vec4 mine(vec4 color, Pixel pixel, Mine parameters) { return color; }\n");
+    const ReferenceImage picture = test::uniform(2, 2, {0.5, 0.5, 0.5, 1});
+    // Nobody encodes what is encoded already.
+    const auto run = [&](bool has_it) {
+        return test::develop(
+                   [&](Composer& composer) {
+                       if (has_it) composer.add(effect.info(), nullptr);
+                   },
+                   picture, {.target = VK_FORMAT_R8G8B8A8_UNORM})
+            .at(0, 0)
+            .r;
+    };
+    EXPECT_NEAR(run(true), 0.5, 1.0 / 255);
+    EXPECT_NEAR(run(false), 0.735, 2.0 / 255);
+}
+
+TEST(ComposeCustomPasses, ASecondPictureIsReadByTheEnd) {
+    const CustomEffect effect = parsed(
+        "// @effect mine: Mine.\n// @needs second\nvec4 mine(vec4 color, Pixel pixel, Mine parameters) {\n"
+        "    return color + 2.0 * load(second, pixel.texel);\n}\n");
+    const ReferenceImage picture = test::uniform(2, 2, {0.25, 0.5, 0.125, 1});
+    const ReferenceImage out = test::develop(
+        [&](Composer& composer) { composer.add(effect.info(), nullptr, {.second = scene_color}); }, picture);
+    EXPECT_EQ(out.at(1, 1).r, 0.75);
+}
+
+TEST(ComposeCustomPasses, AFaultOfAPassIsThatOfTheFilesLine) {
+    const CustomEffect effect = parsed(
+        "// @effect mine: Mine.\n// @image one: 1 r32f\n// @result one\n// @pass one: picture -> one\n"
+        "vec4 mine_one(Pixel pixel, Mine parameters) {\n    return nonsense;\n}\n");
+    Composer composer(gpu::test::device());
+    composer.add(effect.info(), nullptr);
+    const auto plan = composer.compile({.max_extent = {8, 8}});
+    ASSERT_FALSE(plan);
+    EXPECT_NE(plan.error().text.find("my.glsl:6"), std::string::npos) << plan.error().text;
+    EXPECT_NE(plan.error().text.find("nonsense"), std::string::npos) << plan.error().text;
+    EXPECT_EQ(plan.error().text.find('\n'), std::string::npos) << plan.error().text;
+}
+
+}  // namespace
+}  // namespace darkroom

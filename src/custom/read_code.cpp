@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// What the code of a file says, read as tokens: which images it names, and what it must not say.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "core/param_text.hpp"
+#include "custom/description.hpp"
+#include "custom/frame_images.hpp"
+#include "custom/words.hpp"
+#include "gpu/glsl_scan.hpp"
+
+namespace darkroom::custom {
+
+namespace {
+
+using gpu::Token;
+
+/// Words with which a shader declares what it reads and writes, or how it runs.
+constexpr std::array<std::string_view, 9> refused_words{"attribute", "buffer", "layout",     "main",   "sampler2D",
+                                                        "shade",     "shared", "subroutine", "uniform"};
+/// A value goes wherever its name stands, so it is short and names no other: text cannot grow without bound.
+constexpr std::size_t longest_value = 120;
+
+/// Calls visit(token, the mark or word before, the one before that) for every token that is not blank.
+template <class Visit>
+void for_each_token(std::string_view code, const Visit& visit) {
+    gpu::GlslScanner scanner(code);
+    Token last, last_but_one;
+    for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
+        if (token.kind == Token::Kind::Blank) continue;
+        visit(token, last, last_but_one);
+        last_but_one = last;
+        last = token;
+    }
+}
+
+bool names_word(std::string_view code, std::string_view name) {
+    bool is_named = false;
+    for_each_token(code, [&](const Token& token, const Token&, const Token&) {
+        is_named |= token.kind == Token::Kind::Word && token.text == name;
+    });
+    return is_named;
+}
+
+/// Does it stand in load(NAME, ...), load_clamped(NAME, ...) and size(NAME) alone?
+bool is_loaded_alone(std::string_view code, std::string_view name) {
+    bool is_loaded = false, is_sampled = false;
+    for_each_token(code, [&](const Token& token, const Token& before, const Token& function) {
+        if (token.kind != Token::Kind::Word || token.text != name) return;
+        const bool is_load = function.text == "load" || function.text == "load_clamped";
+        is_loaded |= is_load;
+        is_sampled |= before.text != "(" || (!is_load && function.text != "size");
+    });
+    return is_loaded && !is_sampled;
+}
+
+struct Define {
+    std::string_view name, value;
+    std::size_t line = 0;
+};
+
+/// `#include "shared/camera.glsl"` and `#define NAME VALUE`.
+Result<std::optional<Define>> read_directive(std::string_view text, std::size_t line) {
+    std::string_view rest = text.substr(1);
+    const std::string_view word = next_word(rest);
+    if (word == "include" && rest.starts_with("\"shared/")) return std::nullopt;
+    if (word != "define")
+        return user_error(
+            fmt::format("{}: allowed is `#include \"shared/NAME.glsl\"` and `#define NAME VALUE`", printable(text)));
+    const std::string_view name = next_word(rest);
+    if (name.find('(') != std::string_view::npos)
+        return user_error(
+            fmt::format("#define {}: expected a name without parameters; write a function", printable(name)));
+    if (rest.size() > longest_value)
+        return user_error(
+            fmt::format("#define {}: a value of at most {} characters is allowed", printable(name), longest_value));
+    return Define{name, rest, line};
+}
+
+}  // namespace
+
+Result<> check_code(std::string_view text, std::size_t& line) {
+    std::vector<Define> defines;
+    gpu::GlslScanner scanner(text);
+    line = 1;
+    for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
+        if (token.kind == Token::Kind::Directive) {
+            auto define = read_directive(token.text, line);
+            if (!define) return failure(std::move(define));
+            if (*define) defines.push_back(**define);
+        }
+        // A line that goes on in the next would part what is read here from what is compiled.
+        if (token.text == "\\" || (token.text.ends_with('\\') && token.kind != Token::Kind::Blank))
+            return user_error("a backslash: GLSL has no use for one here");
+        if (token.kind == Token::Kind::Word && std::ranges::find(refused_words, token.text) != refused_words.end())
+            return user_error(
+                fmt::format("{}: the kernel around the file's functions declares its images and its main "
+                            "function; allowed are functions, structs and constants",
+                            token.text));
+        line += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
+    }
+    std::set<std::string_view> names;
+    for (const Define& define : defines) names.insert(define.name);
+    for (const Define& define : defines)
+        for (const std::string_view name : names)
+            if (names_word(define.value, name)) {
+                line = define.line;
+                return user_error(fmt::format("#define {}: its value names {}, another one", printable(define.name),
+                                              printable(name)));
+            }
+    return {};
+}
+
+Result<> read_uses(const Description& from, FileFunction& function, std::string_view code) {
+    for (const FrameImageRow& row : frame_images) {
+        if (!names_word(code, row.name)) continue;
+        if (!(from.info.needs.*row.need))
+            return user_error(fmt::format("{}: read without `@needs {}`", row.name, row.need_name));
+        function.inputs.push_back({.name = row.name});
+    }
+    if (function.inputs.size() > most_inputs)
+        return user_error(fmt::format("{} images are read, of the frame and of the file; at most {} are allowed",
+                                      function.inputs.size(), most_inputs));
+    for (FileInput& input : function.inputs) input.is_loaded = is_loaded_alone(code, input.name);
+    return {};
+}
+
+}  // namespace darkroom::custom

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+// The lines of a file, one by one: what describes the effect, and which function's each line of code is.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <darkroom/effects.hpp>
+
+#include "core/param_text.hpp"
+#include "custom/description.hpp"
+#include "custom/words.hpp"
+#include "plan/glsl_names.hpp"
+
+namespace darkroom::custom {
+
+namespace {
+
+constexpr Names<Touch, 2> touches{{{"pointwise", Touch::Pointwise}, {"warp", Touch::Warp}}};
+constexpr Names<Domain, 3> domains{
+    {{"scene_linear", Domain::SceneLinear}, {"display_linear", Domain::DisplayLinear}, {"encoded", Domain::Encoded}}};
+constexpr Names<bool Needs::*, 5> needs{{{"depth", &Needs::depth},
+                                         {"normals", &Needs::normals},
+                                         {"velocity", &Needs::velocity},
+                                         {"shadows", &Needs::shadows},
+                                         {"ui", &Needs::ui}}};
+constexpr std::string_view second_name = "second";
+
+/// gaussian_blur -> GaussianBlur
+std::string pascal_name(std::string_view snake) {
+    std::string out;
+    bool is_start = true;
+    for (const char c : snake) {
+        if (c != '_') out += is_start && c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+        is_start = c == '_';
+    }
+    return out;
+}
+
+Result<> read_effect(Description& out, std::string_view text) {
+    if (!out.info.name.empty()) return user_error("a second @effect; a file holds one");
+    const auto halves = with_sentence(text);
+    if (!halves) return failure(halves.error());
+    if (auto ok = check_name(halves->head); !ok) return ok;
+    if (plan::is_function_name(halves->head) || pascal_name(halves->head) == "Curve")
+        return user_error(fmt::format("{}: a name of GLSL or of the kernels", halves->head));
+    if (find_effect(halves->head) != nullptr)
+        return user_error(fmt::format("{}: the name of an effect that is built in; choose another", halves->head));
+    out.info.name = out.keep(halves->head);
+    out.info.doc = out.keep(halves->rest);
+    return {};
+}
+
+Result<> read_touch(Description& out, std::string_view text) {
+    const auto touch = named(touches, text);
+    if (!touch) return user_error(fmt::format("@touch {}: allowed is {}", printable(text), listed(touches)));
+    out.info.touch = *touch;
+    return {};
+}
+
+Result<> read_accepts(Description& out, std::string_view text) {
+    out.info.accepts = {};
+    do {
+        const std::string_view name = next_word(text);
+        const auto domain = named(domains, name);
+        if (!domain) return user_error(fmt::format("@accepts {}: allowed is {}", printable(name), listed(domains)));
+        out.info.accepts = out.info.accepts | Domains::only(*domain);
+    } while (!text.empty());
+    return {};
+}
+
+template <Domain domain>
+Domain makes(Domain, const void*) {
+    return domain;
+}
+
+Result<> read_makes(Description& out, std::string_view text) {
+    const auto domain = named(domains, text);
+    if (!domain) return user_error(fmt::format("@makes {}: allowed is {}", printable(text), listed(domains)));
+    constexpr std::array functions{makes<Domain::SceneLinear>, makes<Domain::DisplayLinear>, makes<Domain::Encoded>};
+    out.info.makes = functions[static_cast<std::size_t>(*domain)];
+    return {};
+}
+
+Result<> read_needs(Description& out, std::string_view text) {
+    do {
+        const std::string_view name = next_word(text);
+        const auto need = named(needs, name);
+        if (!need && name != second_name)
+            return user_error(fmt::format("@needs {}: allowed is {}, {}", printable(name), listed(needs), second_name));
+        if (need)
+            out.info.needs.** need = true;
+        else
+            out.info.has_second = true;
+    } while (!text.empty());
+    return {};
+}
+
+using Reader = Result<> (*)(Description&, std::string_view);
+template <FileImage::Kind kind>
+Result<> read_image_of(Description& out, std::string_view text) {
+    return read_image(out, kind, text);
+}
+constexpr Names<Reader, 11> head_readers{{{"@effect", read_effect},
+                                          {"@param", read_parameter},
+                                          {"@touch", read_touch},
+                                          {"@accepts", read_accepts},
+                                          {"@makes", read_makes},
+                                          {"@needs", read_needs},
+                                          {"@image", read_image_of<FileImage::Kind::Image>},
+                                          {"@history", read_image_of<FileImage::Kind::History>},
+                                          {"@table", read_image_of<FileImage::Kind::Table>},
+                                          {"@result", read_result},
+                                          {"@pre_roll", read_pre_roll}}};
+constexpr std::string_view pass_word = "@pass", end_word = "@end", table_word = "@table";
+
+/// What a comment line says; empty: the line is code, or none of ours.
+std::string_view comment_of(std::string_view line) { return line.starts_with("//") ? trimmed(line.substr(2)) : ""; }
+
+class FileReader {
+  public:
+    FileReader(Description& out, std::string_view text, std::string_view shown_name)
+        : out_(out), text_(out.keep(text)), shown_name_(printable(shown_name)) {
+        // It stands in quotes in the text that is compiled.
+        for (char& c : shown_name_)
+            if (c == '"' || c == '\\') c = '_';
+        for (std::string_view rest = text_; !rest.empty();) {
+            const std::size_t end = rest.find('\n');
+            lines_.push_back(rest.substr(0, end));
+            rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
+        }
+    }
+
+    Result<> run() {
+        Result<> done = read();
+        if (done) return done;
+        return user_error(fmt::format("{}:{}: {}", shown_name_, line_, done.error().text));
+    }
+
+  private:
+    Result<> read() {
+        line_ = 1;
+        if (text_.find('\0') != std::string_view::npos) return user_error("a zero byte; the file is no text");
+        if (auto ok = check_code(text_, line_); !ok) return ok;
+        if (auto ok = read_lines(); !ok) return ok;
+        line_ = 1;
+        if (out_.info.name.empty()) return user_error("no line `// @effect NAME: SENTENCE.` before the code");
+        if (auto ok = check_passes(out_); !ok) return ok;
+        if (out_.result.empty() && !out_.end) {
+            if (!out_.passes.empty())
+                return user_error(
+                    fmt::format("passes that nobody sees: expected `// @end IMAGE` above the function {}, "
+                                "or `// @result IMAGE`",
+                                out_.info.name));
+            out_.end = FileFunction{.line = 1};
+        }
+        struct_name_ = out_.keep(pascal_name(out_.info.name));
+        for (std::size_t i = 0; i < out_.passes.size(); ++i)
+            if (auto ok = add_pass_text(out_.passes[i], i + 1); !ok) return ok;
+        if (out_.end)
+            if (auto ok = add_end_text(*out_.end); !ok) return ok;
+        out_.info.files = out_.files;
+        out_.info.parameters = {struct_name_, out_.rows, out_.defaults};
+        return {};
+    }
+
+    Result<> read_lines() {
+        constexpr std::size_t common = 0;
+        std::size_t owner = common;
+        bool is_head = true;
+        for (line_ = 1; line_ <= lines_.size(); ++line_) {
+            const std::string_view content = trimmed(lines_[line_ - 1]);
+            std::string_view comment = comment_of(content);
+            if (comment.starts_with('@')) {
+                const std::string_view word = next_word(comment);
+                if (word == pass_word || word == end_word) {
+                    is_head = false;
+                    if (auto ok = begin_function(word, comment); !ok) return ok;
+                    owner = word == end_word ? end_owner : out_.passes.size();
+                } else if (auto ok = read_head(word, comment, is_head); !ok) {
+                    return ok;
+                }
+            }
+            is_head &= content.empty() || content.starts_with("//");
+            owners_.push_back(owner);
+        }
+        return {};
+    }
+
+    Result<> begin_function(std::string_view word, std::string_view text) {
+        if (word == end_word) {
+            if (out_.end) return user_error("a second @end; an effect has one");
+            auto end = read_end(out_, text);
+            if (!end) return failure(std::move(end));
+            end->line = line_;
+            out_.end = std::move(*end);
+            return {};
+        }
+        auto pass = read_pass(out_, text);
+        if (!pass) return failure(std::move(pass));
+        pass->line = line_;
+        out_.passes.push_back(std::move(*pass));
+        return {};
+    }
+
+    Result<> read_head(std::string_view word, std::string_view text, bool is_head) {
+        const auto reader = named(head_readers, word);
+        if (!reader)
+            return user_error(
+                fmt::format("{}: allowed is {}, {}, {}", printable(word), listed(head_readers), pass_word, end_word));
+        if (!is_head) return user_error(fmt::format("{}: stands above the code, the passes and the end", word));
+        if (word != table_word) return (*reader)(out_, text);
+        // The values of a table go on in the next line as long as one ends in a comma.
+        std::string whole(text);
+        while (trimmed(whole).ends_with(',') && line_ < lines_.size()) {
+            const std::string_view next = comment_of(trimmed(lines_[line_]));
+            if (next.empty() || next.starts_with('@')) break;
+            whole.append(next);
+            ++line_;
+            owners_.push_back(0);
+        }
+        return (*reader)(out_, whole);
+    }
+
+    /// The lines that are the function's own or everyone's; the others are empty, so that numbers stay true.
+    [[nodiscard]] std::string text_of(std::size_t owner) const {
+        std::string out;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            if (owners_[i] == 0 || owners_[i] == owner) out += lines_[i];
+            out += '\n';
+        }
+        return out;
+    }
+
+    Result<> add_text(FileFunction& function, const std::string& name, std::string_view first_argument,
+                      std::string code) {
+        line_ = function.line;
+        if (!plan::calls_name(code, name))
+            return user_error(fmt::format("no function {}: expected `vec4 {}({}Pixel pixel, {} parameters)`", name,
+                                          name, first_argument, struct_name_));
+        if (auto ok = read_uses(out_, function, code); !ok) return ok;
+        function.shader = out_.keep(name + ".glsl");
+        if (!function.name.empty())
+            code += fmt::format("#line {} \"{}\"\nvec4 shade(Pixel pixel) {{ return {}(pixel, {}_parameters()); }}\n",
+                                function.line, shown_name_, name, out_.info.name);
+        out_.files.push_back({function.shader, out_.keep(code), out_.keep(shown_name_)});
+        return {};
+    }
+
+    Result<> add_pass_text(FileFunction& pass, std::size_t owner) {
+        return add_text(pass, fmt::format("{}_{}", out_.info.name, pass.name), "", text_of(owner));
+    }
+    Result<> add_end_text(FileFunction& end) {
+        return add_text(end, std::string(out_.info.name), out_.info.touch == Touch::Warp ? "" : "vec4 color, ",
+                        text_of(end_owner));
+    }
+
+    static constexpr std::size_t end_owner = ~std::size_t{0};
+    Description& out_;
+    std::string_view text_, struct_name_;
+    std::string shown_name_;
+    std::vector<std::string_view> lines_;
+    std::vector<std::size_t> owners_;  ///< of each line: 0 for everyone, the number of a pass from 1, or end_owner
+    std::size_t line_ = 1;
+};
+
+}  // namespace
+
+Result<> check_name(std::string_view name) {
+    if (!plan::is_snake_name(name))
+        return user_error(
+            fmt::format("{}: a name is made of lower-case letters, digits and single underscores, and begins with a "
+                        "letter",
+                        printable(name)));
+    if (plan::is_glsl_keyword(name)) return user_error(fmt::format("{}: a keyword of GLSL", name));
+    return {};
+}
+
+Result<Halves> with_sentence(std::string_view text) {
+    const std::size_t colon = text.find(':');
+    const std::string_view sentence =
+        colon == std::string_view::npos ? std::string_view{} : trimmed(text.substr(colon + 1));
+    if (sentence.empty() || sentence.back() != '.')
+        return user_error(
+            fmt::format("{}: expected a colon and a sentence that ends with a full stop", printable(text)));
+    return Halves{trimmed(text.substr(0, colon)), sentence};
+}
+
+Result<> read_description(Description& out, std::string_view text, std::string_view shown_name) {
+    return FileReader(out, text, shown_name).run();
+}
+
+}  // namespace darkroom::custom
