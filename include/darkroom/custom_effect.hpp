@@ -2,7 +2,7 @@
 #pragma once
 // A user's own effect in one GLSL file, loaded at run time: it takes its place in a stack, and fuses with its
 // neighbours, like those in the library. What a folder of the tree can do in GLSL a file can, passes, images and
-// histories among them; a CPU reference and numbers worked out on the CPU need a folder.
+// histories among them; a CPU reference and numbers worked out on the CPU need a folder. docs/custom_effects.md shows it.
 //
 //     // @effect duotone: Maps shadows and highlights to two colours.
 //     // @param float amount = 1 in [0, 1] amount: How much of the toned picture is seen.

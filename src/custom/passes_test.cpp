@@ -5,6 +5,7 @@
 #include <cmath>
 #include <darkroom/custom_effect.hpp>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "compose/test_host.hpp"
@@ -160,6 +161,9 @@ TEST(CustomPasses, CodeDeclaresNothingOfTheKernel) {
     says("#define A(x) x x", "#define A(x): expected a name without parameters");
     says("#define A " + std::string(500, 'x'), "#define A: a value of at most 120 characters");
     says("#define A 1\\\n", "a backslash");
+    std::string sum = "float mine_sum(float x) { return x";
+    for (int i = 0; i < 1000; ++i) sum += "+x";
+    says(sum + "; }", "a statement of more than 2000 words and marks");
     EXPECT_EQ(error_of("// @effect mine: Mine.\n#define A 1\n#define B A A\nmine("),
               "my.glsl:3: #define B: its value names A, another one");
     EXPECT_EQ(error_of("// @effect mine: Mine.\n#define TAU (2.0 * 3.14159)\nmine("), "");
@@ -307,6 +311,21 @@ TEST(ComposeCustomPasses, NeedsBindTheImagesOfTheFrame) {
               data.options());
     EXPECT_GT(normals.at(5, 3).g, 0.9);
     EXPECT_GT(normals.at(5, 3).b, 0.1);
+}
+
+TEST(ComposeCustomPasses, TheExampleOfThePageIsRight) {
+    std::ifstream file(std::filesystem::path(DARKROOM_SOURCE_FOLDER) / "docs/custom_effects.md");
+    const std::string page{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t begin = page.find("// @effect distance_tint");
+    ASSERT_NE(begin, std::string::npos);
+    const Case data;
+    const ReferenceImage out = shown(page.substr(begin, page.find("```", begin) - begin), data.picture, data.options());
+    ASSERT_EQ(out.pixels.size(), data.picture.pixels.size());
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const double share = 1 - std::exp2(-data.depth.at(x, y).r / 50), before = data.picture.at(x, y).b;
+            EXPECT_NEAR(out.at(x, y).b, before + (0.7 - before) * share, 1e-5);
+        }
 }
 
 TEST(ComposeCustomPasses, APassReadsDepthAndTheFrameWithoutItLeavesTheEffectOut) {

@@ -23,6 +23,8 @@ constexpr std::array<std::string_view, 9> refused_words{"attribute", "buffer", "
                                                         "shade",     "shared", "subroutine", "uniform"};
 /// A value goes wherever its name stands, so it is short and names no other: text cannot grow without bound.
 constexpr std::size_t longest_value = 120;
+/// The compiler walks the tree of an expression by recursion: one of 7000 nested calls ends the process.
+constexpr std::size_t longest_statement = 2000;
 
 /// Calls visit(token, the mark or word before, the one before that) for every token that is not blank.
 template <class Visit>
@@ -85,6 +87,7 @@ Result<std::optional<Define>> read_directive(std::string_view text, std::size_t 
 Result<> check_code(std::string_view text, std::size_t& line) {
     std::vector<Define> defines;
     gpu::GlslScanner scanner(text);
+    std::size_t statement = 0;
     line = 1;
     for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
         if (token.kind == Token::Kind::Directive) {
@@ -100,6 +103,11 @@ Result<> check_code(std::string_view text, std::size_t& line) {
                 fmt::format("{}: the kernel around the file's functions declares its images and its main "
                             "function; allowed are functions, structs and constants",
                             token.text));
+        statement = token.text == ";" || token.text == "{" || token.text == "}" ? 0
+                    : token.kind == Token::Kind::Blank                          ? statement
+                                                                                : statement + 1;
+        if (statement > longest_statement)
+            return user_error(fmt::format("a statement of more than {} words and marks", longest_statement));
         line += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
     }
     std::set<std::string_view> names;
