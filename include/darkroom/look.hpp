@@ -17,6 +17,7 @@
 #include <darkroom/param.hpp>
 #include <darkroom/result.hpp>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,6 +55,8 @@ struct LookEntry {
     EntryState state;
     std::string name;  ///< empty: see entry_names
     std::string input, source, second, mask, output;
+    std::string effect_file{};                   ///< of a custom effect: its file, as the look names it
+    std::shared_ptr<const void> effect_owner{};  ///< keeps a custom effect for as long as the entry
 };
 
 /// The two shipped orders of the flat table.
@@ -62,6 +65,7 @@ enum class LookOrder : std::uint32_t { Documented, SceneLinear };
 struct Look {
     static constexpr std::int64_t format = 1;  ///< of the files that this build reads and writes
     bool is_flat = true;                       ///< [post_process]; false: [[stack]]
+    bool was_flat = false;                     ///< a stack that place_entry made of a flat table
     bool is_enabled = true;                    ///< flat only; false: nothing but tone mapping and encoding, at defaults
     LookOrder order = LookOrder::Documented;   ///< flat only
     std::vector<LookEntry> entries;            ///< flat: every effect with a place in the table
@@ -72,6 +76,10 @@ struct LookOptions {
     bool is_strict = false;                        ///< unknown keys and values out of range are errors, not warnings
     std::vector<std::string>* warnings = nullptr;  ///< "file:line:column: ..." of what was passed over
     bool is_scene = false;                         ///< the file is a scene: its other tables are no slips
+    /// Entries may name files (`effect = "duotone.glsl"`). These are code, and may keep a GPU busy for ever: a host
+    /// that allows them trusts whoever made the look.
+    bool allows_custom_effects = false;
+    std::filesystem::path folder;  ///< that these files are relative to; empty: read_look takes the look's own
 };
 
 /// The flat table with nothing written in it.
@@ -79,7 +87,12 @@ struct LookOptions {
 /// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`.
 [[nodiscard]] Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options = {});
 [[nodiscard]] Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options = {});
-/// As a file that reads back as the same look.
+/// An entry of the effect in this file (darkroom/custom_effect.hpp), at its defaults.
+[[nodiscard]] Result<LookEntry> custom_entry(const std::filesystem::path& file);
+/// Puts an entry behind the last place where the picture is in a domain that its effect accepts. A flat table becomes
+/// the stack that it stands for, without what is off. Errors: there is no such place; another effect has its name.
+[[nodiscard]] Result<> place_entry(Look& look, LookEntry entry);
+/// As a file that reads back as the same look, where it lies in the same folder.
 [[nodiscard]] std::string write_look(const Look& look);
 
 /// The name of each entry: its own, or the effect's, or effect#2 and so on for later ones.

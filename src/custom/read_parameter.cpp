@@ -105,8 +105,8 @@ Result<> add(Description& out, const ParamInfo& row, std::string_view text) {
 Result<> check_parameter_name(const Description& out, std::string_view name) {
     if (auto ok = check_name(name); !ok) return ok;
     // They belong to the stack entry, and a look could not tell them apart.
-    static constexpr std::string_view entry_keys[] = {"effect", "enabled", "name",    "input", "source",
-                                                      "second", "output",  "opacity", "blend", "mask"};
+    static constexpr std::string_view entry_keys[] = {"effect", "enabled", "name",   "input",   "source", "scale",
+                                                      "format", "second",  "output", "opacity", "blend",  "mask"};
     if (std::ranges::find(entry_keys, name) != std::end(entry_keys))
         return user_error(fmt::format("{}: a key of every stack entry", name));
     if (std::ranges::find(out.rows, name, &ParamInfo::name) != out.rows.end())

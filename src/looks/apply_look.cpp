@@ -14,15 +14,6 @@ namespace darkroom {
 
 namespace {
 
-// What is left of a flat table that is switched off: the effects that take the picture from one domain to the next.
-bool is_domain_change(const EffectInfo& effect) {
-    if (effect.makes == nullptr) return false;
-    const void* const defaults = effect.parameters.defaults.data();
-    for (const Domain before : {Domain::SceneLinear, Domain::DisplayLinear})
-        if (effect.accepts.contains(before) && effect.makes(before, defaults) != before) return true;
-    return false;
-}
-
 // Of the flat table's effects that are off, the pointwise ones without images cost nothing. The others would own memory
 // or part a kernel in every frame, for what nobody asked for.
 bool is_in_the_way(const Look& look, const LookEntry& entry, const ApplyOptions& options) {
@@ -61,6 +52,14 @@ VkFormat image_format(EntryFormat format) {
 }
 
 }  // namespace
+
+bool is_domain_change(const EffectInfo& effect) {
+    if (effect.makes == nullptr) return false;
+    const void* const defaults = effect.parameters.defaults.data();
+    for (const Domain before : {Domain::SceneLinear, Domain::DisplayLinear})
+        if (effect.accepts.contains(before) && effect.makes(before, defaults) != before) return true;
+    return false;
+}
 
 Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options) {
     const std::vector<std::string> names = entry_names(look);

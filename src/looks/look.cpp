@@ -24,7 +24,7 @@ std::string conflict_of(const LookEntry& entry) {
 
 LookEntry entry_of(const EffectInfo& effect) {
     const std::span<const std::uint32_t> defaults = effect.parameters.defaults;
-    return {.effect = &effect, .words = {defaults.begin(), defaults.end()}};
+    return {.effect = &effect, .words = {defaults.begin(), defaults.end()}, .effect_owner = effect.owner.lock()};
 }
 
 std::vector<const LookEntry*> ordered(const Look& look) {
@@ -44,6 +44,20 @@ void write_row(std::string& out, std::string_view key, const ParamInfo& row, std
     out += fmt::format("{} = {}\n", key, format(row, words));
 }
 
+/// As a string of TOML.
+std::string quoted(std::string_view text) {
+    std::string out(1, '"');
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            out.append(1, '\\').append(1, c);
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            out += c;
+    }
+    return out + '"';
+}
+
 void write_flat(std::string& out, const Look& look) {
     out += "\n[post_process]\n";
     out += fmt::format("enabled = {}\norder = \"{}\"\n", look.is_enabled,
@@ -58,7 +72,8 @@ void write_flat(std::string& out, const Look& look) {
 
 void write_stack(std::string& out, const Look& look) {
     for (const LookEntry& entry : look.entries) {
-        out += fmt::format("\n[[stack]]\neffect = \"{}\"\n", entry.effect->name);
+        const std::string_view effect = entry.effect_file.empty() ? entry.effect->name : entry.effect_file;
+        out += fmt::format("\n[[stack]]\neffect = {}\n", quoted(effect));
         for (const WireInfo& wire : wires)
             if (!(entry.*wire.member).empty()) out += fmt::format("{} = \"{}\"\n", wire.key, entry.*wire.member);
         const StateWords state = state_words(entry.state);

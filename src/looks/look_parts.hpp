@@ -38,6 +38,11 @@ using StateWords = std::array<std::uint32_t, sizeof(EntryState) / 4>;
 [[nodiscard]] std::vector<const LookEntry*> ordered(const Look& look);
 /// What is wrong with the entry's values together, as "fog: ..."; empty: nothing.
 [[nodiscard]] std::string conflict_of(const LookEntry& entry);
+/// Files of one text are one effect: where the look has the entry's already, that one is taken. Errors: it has another
+/// effect of that name.
+[[nodiscard]] Result<> share_effect(const Look& look, LookEntry& entry);
+/// Does it take the picture from one domain to the next? What is left of a flat table that is switched off.
+[[nodiscard]] bool is_domain_change(const EffectInfo& effect);
 /// An entry with the effect's defaults.
 [[nodiscard]] LookEntry entry_of(const EffectInfo& effect);
 

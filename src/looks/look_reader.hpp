@@ -21,6 +21,7 @@ class LookReader {
         : options_(options), shown_name_(std::move(shown_name)) {}
 
     [[nodiscard]] Result<Look> read(const toml::table& file);
+    [[nodiscard]] const LookOptions& options() const { return options_; }
 
     void report(const toml::source_position& place, Weight weight, std::string text) {
         problems_.push_back({place, weight, std::move(text)});

@@ -67,7 +67,7 @@ class Overrider {
     Result<Target> find(std::string_view key, const std::string& shown) const {
         const std::size_t dot = key.rfind('.');
         if (dot != std::string_view::npos) return find_in_entry(key.substr(0, dot), key.substr(dot + 1), shown);
-        for (const EffectInfo* const effect : all_effects()) {
+        for (const EffectInfo* const effect : effects()) {
             const ParamInfo* row = nullptr;
             for (const ParamInfo& candidate : effect->parameters.rows)
                 if (flat_key(effect->name, candidate.name) == key) row = &candidate;
@@ -99,9 +99,18 @@ class Overrider {
                                       fmt::join(names, ", "), suggestion(name, names)));
     }
 
-    static std::vector<std::string> all_keys() {
+    /// Those that are built in, and those of files.
+    std::vector<const EffectInfo*> effects() const {
+        const std::span<const EffectInfo* const> known = all_effects();
+        std::vector<const EffectInfo*> out(known.begin(), known.end());
+        for (const LookEntry& entry : look_.entries)
+            if (entry.effect_owner && std::ranges::find(out, entry.effect) == out.end()) out.push_back(entry.effect);
+        return out;
+    }
+
+    std::vector<std::string> all_keys() const {
         std::vector<std::string> keys;
-        for (const EffectInfo* const effect : all_effects()) {
+        for (const EffectInfo* const effect : effects()) {
             keys.push_back(flat_key(effect->name, "enabled"));
             for (const ParamInfo& row : effect->parameters.rows) keys.push_back(flat_key(effect->name, row.name));
         }

@@ -111,7 +111,9 @@ Result<Look> read_look(const std::filesystem::path& path, const LookOptions& opt
         return user_error(fmt::format("{}: {} bytes, a look file has at most {}", shown, size, most_toml_bytes));
     const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_toml_bytes});
     if (!bytes) return failure(bytes.error());
-    return parse_look({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string(), options);
+    LookOptions here = options;
+    if (here.folder.empty()) here.folder = path.parent_path();
+    return parse_look({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string(), here);
 }
 
 }  // namespace darkroom

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <darkroom/effects.hpp>
 #include <map>
+#include <optional>
+#include <system_error>
 
 #include "core/param_text.hpp"
 #include "looks/look_parts.hpp"
@@ -51,30 +53,55 @@ class StackReader {
 
     void read_entry(const toml::table& table) {
         ++number_;
-        const EffectInfo* const effect = read_effect(table);
-        if (effect == nullptr) return;
-        LookEntry entry = entry_of(*effect);
+        std::optional<LookEntry> made = read_effect(table);
+        if (!made) return;
+        LookEntry& entry = *made;
         for (const auto& [key, node] : table)
             if (key.str() != "effect") read_key(entry, key, node);
         look_.entries.push_back(std::move(entry));
         origins_.push_back({&table, number_});
     }
 
-    const EffectInfo* read_effect(const toml::table& table) {
+    std::optional<LookEntry> read_effect(const toml::table& table) {
         const toml::node* const node = table.get("effect");
         if (node == nullptr) {
             reader_.report(table, Weight::Wrong, fmt::format("stack entry {} has no key 'effect'", number_));
-            return nullptr;
+            return std::nullopt;
         }
         const auto* const name = node->as_string();
+        if (name != nullptr && name->get().ends_with(".glsl")) return read_file(*node, name->get());
         const EffectInfo* const effect = name == nullptr ? nullptr : find_effect(name->get());
-        if (effect != nullptr) return effect;
+        if (effect != nullptr) return entry_of(*effect);
         std::vector<std::string> names;
         for (const EffectInfo* const known : all_effects()) names.emplace_back(known->name);
         const std::string near = name == nullptr ? std::string() : suggestion(name->get(), names);
         reader_.report(*node, Weight::Wrong,
-                       fmt::format("effect = {}: allowed is one of {}{}", show(*node), fmt::join(names, ", "), near));
-        return nullptr;
+                       fmt::format("effect = {}: allowed is one of {}, and the file of one (.glsl){}", show(*node),
+                                   fmt::join(names, ", "), near));
+        return std::nullopt;
+    }
+
+    /// However often a look names a file, it is read once, and one effect.
+    std::optional<LookEntry> read_file(const toml::node& node, const std::string& name) {
+        const auto refuse = [&](std::string_view why) {
+            reader_.report(node, Weight::Wrong, fmt::format("effect = {}: {}", show(node), why));
+            return std::nullopt;
+        };
+        if (!reader_.options().allows_custom_effects)
+            return refuse("the effect of a file is code, which is not allowed for this look");
+        std::error_code ignored;
+        const std::filesystem::path file = reader_.options().folder / name;
+        const auto [found, is_new] = files_.try_emplace(std::filesystem::weakly_canonical(file, ignored));
+        if (is_new) {
+            Result<LookEntry> entry = custom_entry(file);
+            if (!entry) return refuse(entry.error().text);
+            if (const Result<> shared = share_effect(look_, *entry); !shared) return refuse(shared.error().text);
+            found->second = std::move(*entry);
+        }
+        if (!found->second) return std::nullopt;
+        LookEntry entry = *found->second;
+        entry.effect_file = name;
+        return entry;
     }
 
     void read_key(LookEntry& entry, const toml::key& key, const toml::node& node) {
@@ -194,6 +221,7 @@ class StackReader {
     Look look_{.is_flat = false};
     std::vector<Origin> origins_;
     std::size_t number_ = 0;
+    std::map<std::filesystem::path, std::optional<LookEntry>> files_;  ///< of custom effects; empty: a wrong one
 };
 
 }  // namespace
