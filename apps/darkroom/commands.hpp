@@ -3,7 +3,9 @@
 // The commands. Each adds itself to the program, and returns what runs it once the arguments are parsed.
 
 #include <CLI/CLI.hpp>
+#include <darkroom/look.hpp>
 #include <functional>
+#include <span>
 
 namespace app {
 
@@ -15,9 +17,10 @@ struct Command {
     Run run;
 };
 
-[[nodiscard]] Command add_render(CLI::App& program);
-[[nodiscard]] Command add_develop(CLI::App& program);
-[[nodiscard]] Command add_plan(CLI::App& program);
+// `named`: effects of files, whose parameters are flags, too.
+[[nodiscard]] Command add_render(CLI::App& program, std::span<const darkroom::LookEntry> named);
+[[nodiscard]] Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> named);
+[[nodiscard]] Command add_plan(CLI::App& program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_effects(CLI::App& program);
 [[nodiscard]] Command add_devices(CLI::App& program);
 [[nodiscard]] Command add_compare(CLI::App& program);

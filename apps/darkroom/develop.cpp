@@ -298,7 +298,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_develop(CLI::App& program) {
+Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> named) {
     CLI::App* const command = program.add_subcommand("develop", "Develops HDR frames into finished pictures");
     const auto options = std::make_shared<Options>();
     command
@@ -334,7 +334,7 @@ Command add_develop(CLI::App& program) {
     options->write.add_to(*command);
     options->run.add_to(*command);
     options->device.add_to(*command);
-    options->look.add_to(*command, true);
+    options->look.add_to(*command, true, named);
     return {command, [options] { return run(*options); }};
 }
 

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <darkroom/custom_effect.hpp>
 #include <darkroom/effects.hpp>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "core/param_text.hpp"
@@ -99,7 +101,13 @@ int list() {
 
 int show(const Options& options) {
     const std::string& name = options.name;
-    const EffectInfo* const effect = darkroom::find_effect(name);
+    std::optional<darkroom::CustomEffect> custom;
+    if (name.ends_with(".glsl")) {
+        auto loaded = darkroom::CustomEffect::load(name);
+        if (!loaded) return fail(loaded.error());
+        custom = std::move(*loaded);
+    }
+    const EffectInfo* const effect = custom ? &custom->info() : darkroom::find_effect(name);
     if (effect == nullptr) {
         std::vector<std::string> names;
         for (const darkroom::EffectInfo* const known : darkroom::all_effects()) names.emplace_back(known->name);
@@ -123,7 +131,7 @@ int show(const Options& options) {
 Command add_effects(CLI::App& program) {
     CLI::App* const command = program.add_subcommand("effects", "Lists the effects, or shows the page of one");
     const auto options = std::make_shared<Options>();
-    command->add_option("NAME", options->name, "An effect; its page is shown");
+    command->add_option("NAME", options->name, "An effect, or the file of one (.glsl); its page is shown");
     command->add_flag("--json", options->is_json, "For programs: parameters, flags and what effects need");
     return {command, [options] {
                 if (!options->name.empty()) return show(*options);

@@ -172,8 +172,8 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
         if (!entry) continue;
         const darkroom::EffectInfo& info = *composer.info(*entry);
         // What the flat table has on by itself, nobody asked for.
-        const bool is_usual =
-            look.is_flat && info.flat.starts_on && std::ranges::equal(composer.words(*entry), info.parameters.defaults);
+        const bool is_usual = (look.is_flat || look.was_flat) && info.flat.starts_on &&
+                              std::ranges::equal(composer.words(*entry), info.parameters.defaults);
         if (!composer.desc(*entry)->enabled || info.is_last_step || is_usual) continue;
         warn(fmt::format("{}left out: {}", frame, text));
         ++told;

@@ -5,12 +5,14 @@
 #include <array>
 #include <cctype>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <system_error>
 
 #include "commands.hpp"
 #include "core/param_text.hpp"
 #include "info_documents.hpp"
+#include "named_effects.hpp"
 #include "report.hpp"
 
 namespace app {
@@ -25,6 +27,7 @@ using darkroom::user_error;
 struct Options {
     std::vector<std::string> files;
     bool is_json = false;
+    bool has_no_custom_effects = false;
 };
 
 /// The start of a file, and its extension in lower case for kinds that have no mark.
@@ -64,13 +67,17 @@ bool is_toml(const Head& head) {
 struct Kind {
     std::string_view name;
     bool (*is)(const Head& head);
-    Result<Json> (*tell)(const fs::path& path);
+    std::function<Result<Json>(const fs::path& path)> tell;
 };
 
-/// The first that a file is.
-constexpr std::array kinds{Kind{"a picture (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)", is_picture, info::picture},
-                           Kind{"a model (glTF)", is_model, info::model},
-                           Kind{"a scene or a look (TOML)", is_toml, info::toml}};
+/// A file is the first of them that it looks like.
+std::array<Kind, 3> kinds_of(const Options& options) {
+    const auto toml = [allows = !options.has_no_custom_effects](const fs::path& path) {
+        return info::toml(path, allows);
+    };
+    return {Kind{"a picture (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)", is_picture, info::picture},
+            Kind{"a model (glTF)", is_model, info::model}, Kind{"a scene or a look (TOML)", is_toml, toml}};
+}
 
 Result<Head> head_of(const fs::path& path) {
     const std::string shown = printable(path.string());
@@ -86,9 +93,10 @@ Result<Head> head_of(const fs::path& path) {
     return head;
 }
 
-Result<Json> document_of(const fs::path& path) {
+Result<Json> document_of(const fs::path& path, const Options& options) {
     const Result<Head> head = head_of(path);
     if (!head) return failure(head.error());
+    const auto kinds = kinds_of(options);
     const auto kind = std::ranges::find_if(kinds, [&](const Kind& known) { return known.is(*head); });
     if (kind != kinds.end()) return kind->tell(path);
     std::vector<std::string_view> names;
@@ -101,7 +109,7 @@ int run(const Options& options) {
     Json documents = Json::array();
     int code = exit_ok;
     for (const std::string& file : options.files) {
-        const Result<Json> found = document_of(file);
+        const Result<Json> found = document_of(file, options);
         if (!found) {
             code = std::max(code, fail(found.error()));
             continue;
@@ -125,6 +133,8 @@ Command add_info(CLI::App& program) {
     const auto options = std::make_shared<Options>();
     command->add_option("FILE", options->files, "Files of any known kind, which is told by their content")->required();
     command->add_flag("--json", options->is_json, "For programs: a document, or an array of them for several files");
+    command->add_flag(no_custom_effects, options->has_no_custom_effects,
+                      "Refuses a look that names the file of an effect");
     return {command, [options] { return run(*options); }};
 }
 

@@ -17,7 +17,7 @@ namespace app::info {
 [[nodiscard]] darkroom::Result<Json> picture(const std::filesystem::path& path);
 [[nodiscard]] darkroom::Result<Json> model(const std::filesystem::path& path);
 /// A scene, a prefab or a look: told apart by their tables.
-[[nodiscard]] darkroom::Result<Json> toml(const std::filesystem::path& path);
+[[nodiscard]] darkroom::Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects);
 
 /// The entries in the order in which they are applied; of the flat table those that are on or have values of their own.
 [[nodiscard]] Json entries_of(const darkroom::Look& look);

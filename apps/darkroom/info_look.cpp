@@ -63,13 +63,14 @@ Json entries_of(const darkroom::Look& look) {
                  {"effect", effect.name},
                  {"is_on", is_on},
                  {"values", std::move(values)}};
+        if (!entry->effect_file.empty()) row["file"] = entry->effect_file;
         if (Json wires = wires_of(*entry); !wires.empty()) row["wires"] = std::move(wires);
         out.push_back(std::move(row));
     }
     return out;
 }
 
-Result<Json> toml(const std::filesystem::path& path) {
+Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects) {
     const Result<std::string> text = darkroom::scene::reading::read_scene_text(path);
     if (!text) return failure(text.error());
     const std::string shown = path.string();
@@ -92,8 +93,11 @@ Result<Json> toml(const std::filesystem::path& path) {
     }
     if (!has_look) return out;
     std::vector<std::string> warnings;
-    const Result<darkroom::Look> look =
-        darkroom::parse_look(*text, shown, {.warnings = &warnings, .is_scene = is_scene});
+    const Result<darkroom::Look> look = darkroom::parse_look(*text, shown,
+                                                             {.warnings = &warnings,
+                                                              .is_scene = is_scene,
+                                                              .allows_custom_effects = allows_custom_effects,
+                                                              .folder = path.parent_path()});
     if (!look) return failure(look.error());
     if (is_scene)
         out["look"] = look_of(*look);

@@ -6,6 +6,8 @@
 #include <darkroom/effects.hpp>
 
 #include "core/param_text.hpp"
+#include "looks/look_parts.hpp"
+#include "named_effects.hpp"
 #include "report.hpp"
 
 namespace app {
@@ -35,13 +37,25 @@ void drop_what_is_off(Look& look) {
 
 void LookFlags::add_value(CLI::App& command, const std::string& key, const std::string& help,
                           const std::string& group) {
+    // Of an effect of a file that has the name of another flag; --set reaches it still.
+    if (command.get_option_no_throw(darkroom::flag_name(key)) != nullptr) return;
     values_.push_back(std::make_unique<Value>(Value{.key = key, .flag = darkroom::flag_name(key)}));
     Value& value = *values_.back();
     value.option = command.add_option(value.flag, value.text, help)->group(group)->type_name("")->expected(1);
     value.option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
 
-void LookFlags::add_to(CLI::App& command, bool has_look_flag) {
+void LookFlags::add_effect(CLI::App& command, const darkroom::EffectInfo& effect) {
+    const std::string title = fmt::format("{}: {}", effect.name, effect.doc);
+    add_value(command, darkroom::flat_key(effect.name, "enabled"), "on or off", title);
+    for (const darkroom::ParamInfo& row : effect.parameters.rows)
+        add_value(command, darkroom::flat_key(effect.name, row.name),
+                  fmt::format("{} {}, default {}", row.doc, darkroom::interval(row),
+                              darkroom::format(row, effect.parameters.defaults)),
+                  title);
+}
+
+void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const darkroom::LookEntry> named) {
     const std::string group = "The look";
     if (has_look_flag)
         command
@@ -63,15 +77,21 @@ void LookFlags::add_to(CLI::App& command, bool has_look_flag) {
     command
         .add_flag("--no-postprocess", is_off_, "Tone mapping and encoding at their defaults, whatever the look says")
         ->group(group);
-    for (const darkroom::EffectInfo* const effect : darkroom::all_effects()) {
-        const std::string title = fmt::format("{}: {}", effect->name, effect->doc);
-        add_value(command, darkroom::flat_key(effect->name, "enabled"), "on or off", title);
-        for (const darkroom::ParamInfo& row : effect->parameters.rows)
-            add_value(command, darkroom::flat_key(effect->name, row.name),
-                      fmt::format("{} {}, default {}", row.doc, darkroom::interval(row),
-                                  darkroom::format(row, effect->parameters.defaults)),
-                      title);
-    }
+    command
+        .add_option(
+            "--effect", effect_files_,
+            "An effect of your own, behind the last place in the look where the picture is what it accepts; its "
+            "parameters are flags, too")
+        ->type_name("FILE.glsl")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group(group);
+    command
+        .add_flag(no_custom_effects, has_no_custom_effects_,
+                  "Refuses a look that names the file of an effect: such files are code")
+        ->group(group);
+    for (const darkroom::EffectInfo* const effect : darkroom::all_effects()) add_effect(command, *effect);
+    for (const darkroom::LookEntry& entry : named) add_effect(command, *entry.effect);
 }
 
 Result<std::vector<LookOverride>> LookFlags::overrides() const {
@@ -88,34 +108,61 @@ Result<std::vector<LookOverride>> LookFlags::overrides() const {
     return out;
 }
 
+Result<> LookFlags::add_custom_effects(Look& look) const {
+    for (const std::string& name : effect_files_) {
+        if (has_no_custom_effects_)
+            return user_error(fmt::format("--effect {}: {} refuses it", darkroom::printable(name), no_custom_effects));
+        Result<darkroom::LookEntry> entry = darkroom::custom_entry(name);
+        if (!entry) return failure(std::move(entry));
+        if (const Result<> shared = darkroom::share_effect(look, *entry); !shared)
+            return user_error(fmt::format("{}: {}", darkroom::printable(name), shared.error().text));
+        look.entries.push_back(std::move(*entry));
+    }
+    return {};
+}
+
+Result<> LookFlags::set_order(Look& look) const {
+    if (order_.empty()) return {};
+    if (!look.is_flat)
+        return user_error(
+            fmt::format("--order {}: {} has an explicit stack", darkroom::printable(order_), look.shown_name));
+    if (order_ == "documented")
+        look.order = darkroom::LookOrder::Documented;
+    else if (order_ == "scene_linear")
+        look.order = darkroom::LookOrder::SceneLinear;
+    else
+        return user_error(
+            fmt::format("--order {}: allowed is documented or scene_linear", darkroom::printable(order_)));
+    return {};
+}
+
 Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
     std::vector<std::string> warnings;
-    const darkroom::LookOptions options{
-        .is_strict = is_strict_, .warnings = &warnings, .is_scene = file.empty() || is_scene_name(file)};
+    const darkroom::LookOptions options{.is_strict = is_strict_,
+                                        .warnings = &warnings,
+                                        .is_scene = file.empty() || is_scene_name(file),
+                                        .allows_custom_effects = !has_no_custom_effects_};
     const std::filesystem::path path = file.empty() ? scene : std::filesystem::path(file);
     Result<Look> look = path.empty() ? Result<Look>(darkroom::default_look()) : darkroom::read_look(path, options);
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
-    if (!order_.empty()) {
-        if (!look->is_flat)
-            return user_error(
-                fmt::format("--order {}: {} has an explicit stack", darkroom::printable(order_), look->shown_name));
-        if (order_ == "documented")
-            look->order = darkroom::LookOrder::Documented;
-        else if (order_ == "scene_linear")
-            look->order = darkroom::LookOrder::SceneLinear;
-        else
-            return user_error(
-                fmt::format("--order {}: allowed is documented or scene_linear", darkroom::printable(order_)));
-    }
+    if (Result<> done = set_order(*look); !done) return failure(std::move(done));
+    // They have no place before it is known what is on, but values already.
+    if (Result<> done = add_custom_effects(*look); !done) return failure(std::move(done));
     const Result<std::vector<LookOverride>> values = overrides();
     if (!values) return failure(values.error());
     if (Result<> done = darkroom::override_look(*look, *values); !done) return failure(std::move(done));
     if (is_off_) {
         *look = darkroom::default_look();
         look->is_enabled = false;
+        return look;
     }
+    const auto first = look->entries.end() - static_cast<std::ptrdiff_t>(effect_files_.size());
+    const std::vector<darkroom::LookEntry> customs(first, look->entries.end());
+    look->entries.erase(first, look->entries.end());
     drop_what_is_off(*look);
+    for (const darkroom::LookEntry& entry : customs)
+        if (Result<> done = darkroom::place_entry(*look, entry); !done) return failure(std::move(done));
     return look;
 }
 

@@ -7,6 +7,7 @@
 #include <darkroom/look.hpp>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace app {
 
 class LookFlags {
   public:
-    /// `has_look_flag`: false where the look is a positional argument.
-    void add_to(CLI::App& command, bool has_look_flag);
+    /// `has_look_flag`: false where the look is a positional argument. `named`: effects of files.
+    void add_to(CLI::App& command, bool has_look_flag, std::span<const darkroom::LookEntry> named);
     /// Reads the look and applies the flags. Prints warnings. Without a file of its own it is that of the scene.
     [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& scene = {}) const;
     /// --no-postprocess. look() is then the default one, switched off.
@@ -31,13 +32,18 @@ class LookFlags {
         std::string text;
         CLI::Option* option = nullptr;
     };
+    void add_effect(CLI::App& command, const darkroom::EffectInfo& effect);
     void add_value(CLI::App& command, const std::string& key, const std::string& help, const std::string& group);
     [[nodiscard]] darkroom::Result<std::vector<darkroom::LookOverride>> overrides() const;
+    /// Puts those of --effect behind the look's entries, at their defaults.
+    [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
+    [[nodiscard]] darkroom::Result<> set_order(darkroom::Look& look) const;
 
     std::string order_;
-    std::vector<std::string> sets_;
+    std::vector<std::string> sets_, effect_files_;
     std::vector<std::unique_ptr<Value>> values_;  // CLI11 keeps references to the texts
     bool is_strict_ = false;
+    bool has_no_custom_effects_ = false;
     bool is_off_ = false;
 };
 

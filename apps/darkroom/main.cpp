@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "core/files.hpp"
 #include "core/param_text.hpp"
+#include "named_effects.hpp"
 #include "report.hpp"
 
 namespace {
@@ -61,8 +62,10 @@ int run(int argc, char** argv) {
         "`darkroom COMMAND --help` lists the flags of a command.\n"
         "DARKROOM_VALIDATE=1 turns the Vulkan validation layer on. Exit codes: 0 done, 1 the request is wrong, 2 the "
         "machine failed; `compare` has 3: they differ.");
-    const std::array commands{app::add_render(program),  app::add_develop(program), app::add_plan(program),
-                              app::add_effects(program), app::add_devices(program), app::add_compare(program),
+    const std::vector<darkroom::LookEntry> named = app::effects_named_by({argv, static_cast<std::size_t>(argc)});
+    const std::array commands{app::add_render(program, named), app::add_develop(program, named),
+                              app::add_plan(program, named),   app::add_effects(program),
+                              app::add_devices(program),       app::add_compare(program),
                               app::add_info(program)};
     // CLI11 would take the next argument for the value.
     for (int i = 1; i < argc; ++i) {

@@ -70,7 +70,7 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_plan(CLI::App& program) {
+Command add_plan(CLI::App& program, std::span<const darkroom::LookEntry> named) {
     CLI::App* const command = program.add_subcommand(
         "plan", "Shows what the planner makes of a look: kernels, what fused and why not, bytes, memory");
     const auto options = std::make_shared<Options>();
@@ -82,7 +82,7 @@ Command add_plan(CLI::App& program) {
         ->type_name("FRAME");
     command->add_option("--bits", options->bits, "The target: 8, 16, half or float")->type_name("BITS");
     options->device.add_to(*command);
-    options->look.add_to(*command, false);
+    options->look.add_to(*command, false, named);
     return {command, [options] { return run(*options); }};
 }
 

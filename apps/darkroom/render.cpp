@@ -318,10 +318,10 @@ int run(const RenderFlags& flags) {
 
 }  // namespace
 
-Command add_render(CLI::App& program) {
+Command add_render(CLI::App& program, std::span<const darkroom::LookEntry> named) {
     CLI::App* const command = program.add_subcommand("render", "Renders a scene and post-processes it");
     const auto flags = std::make_shared<RenderFlags>();
-    flags->add_to(*command);
+    flags->add_to(*command, named);
     return {command, [flags] { return run(*flags); }};
 }
 

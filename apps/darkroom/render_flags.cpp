@@ -70,7 +70,7 @@ Result<darkroom::scene::vec3> parse_vec3(std::string_view flag, const std::strin
 
 }  // namespace
 
-void RenderFlags::add_to(CLI::App& command) {
+void RenderFlags::add_to(CLI::App& command, std::span<const darkroom::LookEntry> named) {
     command.add_option("SCENE", scene, "A scene (.toml) or a model (.glb, .gltf)")->required();
     command
         .add_option("-o,--output,--out", out_,
@@ -96,7 +96,7 @@ void RenderFlags::add_to(CLI::App& command) {
     write.add_to(command);
     run.add_to(command);
     device.add_to(command);
-    look.add_to(command, true);
+    look.add_to(command, true, named);
 }
 
 void RenderFlags::add_moments(CLI::App& command) {

@@ -43,7 +43,7 @@ struct RenderJob {
 
 class RenderFlags {
   public:
-    void add_to(CLI::App& command);
+    void add_to(CLI::App& command, std::span<const darkroom::LookEntry> named);
     [[nodiscard]] darkroom::Result<RenderJob> job() const;
 
     LookFlags look;
