@@ -79,6 +79,10 @@ const EffectInfo* tail_noise_effect() { return find_effect(noise_effect); }
 
 Stack bloom_stack() { return stack_of({{"bloom", {{"levels", std::int64_t{5}}}}}); }
 
+Stack gaussian_stack(double radius, const std::string& resolution) {
+    return stack_of({{"gaussian_blur", {{"radius", radius}, {"resolution", resolution}}}});
+}
+
 Stack plain_bloom_stack() {
     return stack_of({{"high_pass"},
                      {"gaussian_blur", {{"radius", 24.0}}},

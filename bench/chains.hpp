@@ -31,6 +31,8 @@ using Stack = std::vector<Step>;
 [[nodiscard]] Stack foggy_tail_stack(const TailValues& values);
 /// Bloom at five levels.
 [[nodiscard]] Stack bloom_stack();
+/// A Gaussian blur alone; `resolution`: automatic or full.
+[[nodiscard]] Stack gaussian_stack(double radius, const std::string& resolution);
 /// The shipped look of bloom in plain steps: high pass, blur, blend, then exposure, tone mapping, encoding.
 [[nodiscard]] Stack plain_bloom_stack();
 /// Ambient occlusion alone.

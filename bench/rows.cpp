@@ -162,6 +162,11 @@ std::vector<Recipe> recipes() {
     if (const Stack bloom = bloom_stack(); !bloom.empty())
         for (const KernelStage stage : stages)
             out.push_back(chain_recipe(fmt::format("bloom/{}", stage_name(stage)), bloom, {.kernels = stage}));
+    for (const double radius : {4.0, 16.0, 64.0})
+        for (const char* const resolution : {"automatic", "full"})
+            for (const KernelStage stage : stages)
+                add_chain(out, fmt::format("gaussian/{}/{}/{}", radius, resolution, stage_name(stage)),
+                          gaussian_stack(radius, resolution), {.kernels = stage});
     add_chain(out, "plain bloom", plain_bloom_stack(), {});
     add_chains(out, "default", default_stack());
     add_world_chains(out);

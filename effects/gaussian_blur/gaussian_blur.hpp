@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Gaussian blur: every pixel becomes the mean of its surroundings, weighted by a bell curve; one line of the picture
-// after the other, so the cost grows with the radius and not with its square. It is not a depth of field: it knows no
-// depth.
+// after the other, so the cost grows with the radius and not with its square, and a wide blur is one of a smaller
+// picture. It is not a depth of field: it knows no depth.
 
 #include <array>
 #include <cstddef>
@@ -10,24 +10,41 @@
 
 namespace darkroom {
 
+enum class GaussianBlurResolution : std::uint32_t {
+    Automatic,  ///< as small a picture as the blur leaves no detail for
+    Full,       ///< every weight at every pixel
+};
+
 struct GaussianBlur {
     std::int32_t radius = 4;
     float sigma = 0.0f;
+    GaussianBlurResolution resolution = GaussianBlurResolution::Automatic;
 };
 inline constexpr auto gaussian_blur_rows = describe(
-    field<&GaussianBlur::radius>("Half-width of the blur; 0 leaves the picture as it is.", {0, 64}, unit::pixels),
-    field<&GaussianBlur::sigma>("Standard deviation of the bell curve; 0 takes a third of the radius.", {0, 64},
-                                unit::pixels));
+    field<&GaussianBlur::radius>("Half-width of the blur; 0 leaves the picture as it is.", {0, 255}, unit::pixels)
+        .as_loop_count(),
+    field<&GaussianBlur::sigma>("Standard deviation of the bell curve; 0 takes a third of the radius.", {0, 255},
+                                unit::pixels),
+    field<&GaussianBlur::resolution>("Whether a wide blur works on a smaller picture."));
 
-/// The curve as a shader samples it: the pixel itself, then bilinear taps to both sides, each standing for two pixels.
+/// One direction of the blur as a shader sums it up: the texel itself, then pairs of texels to both sides. Pair i holds
+/// texels 2i + 1 and 2i + 2, weighed by weights[i] (1 - fractions[i]) and weights[i] fractions[i]: one bilinear tap at
+/// 2i + 1 + fractions[i] reads both.
 struct GaussianBlurTaps {
-    static constexpr std::size_t capacity = 32;
+    static constexpr std::size_t capacity = 128;
     float centre_weight = 1.0f;
     std::size_t count = 0;
-    std::array<float, capacity> offsets{};  ///< in pixels
+    std::array<float, capacity> fractions{};
     std::array<float, capacity> weights{};  ///< of one side
 };
-[[nodiscard]] GaussianBlurTaps gaussian_blur_taps(const GaussianBlur& blur);
+/// `scale`: how many of the picture's pixels a texel of the blurred picture stands for, along this direction. Above 1,
+/// the curve's variance is what making the picture small and large again leaves of the whole.
+[[nodiscard]] GaussianBlurTaps gaussian_blur_taps(const GaussianBlur& blur, double scale = 1.0);
+/// How often the picture is halved before it is blurred: 0 to 6. A plan keeps what it was compiled with.
+[[nodiscard]] std::uint32_t gaussian_blur_level(const GaussianBlur& blur);
+/// Reads of an image for every pixel of the result, where bilinear taps are used; those of smaller pictures count by
+/// their share of the pixels.
+[[nodiscard]] double gaussian_blur_fetches(const GaussianBlur& blur);
 
 [[nodiscard]] const EffectInfo& effect_info(const GaussianBlur&);
 

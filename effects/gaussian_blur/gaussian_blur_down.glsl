@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+// The blur along the columns, of what gaussian_blur_across.glsl made.
+#include "gaussian_blur_taps.glsl"
+
+vec4 shade(Pixel pixel) {
+    vec4 own = load(gaussian_blur_input, pixel.texel);
+    return vec4(gaussian_blur_sum(pixel, own, (gaussian_blur_parameters().radius + 3) / 4, true), own.a);
+}
