@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/arena_bloom.hpp>
+#include <string>
+
+#include "arena_bloom/arena_bloom_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+void build(PassBuilder& builder) {
+    const auto create = [&](std::string name, std::uint32_t denominator) {
+        return builder.create({.name = std::move(name), .denominator = denominator});
+    };
+    PassImage image = builder.add({.name = "bright part",
+                                   .shader = "arena_bloom_bright.glsl",
+                                   .inputs = {{.name = "arena_bloom_source", .image = builder.source()}},
+                                   .output = create("bright part", 4)});
+    // The 3x3 filter (1 2 1 / 2 4 2 / 1 2 1) / 16 of bilinear taps one texel apart is the tent that halves.
+    KernelPassDesc combine{.name = "combine", .shader = "arena_bloom_combine.glsl", .output = create("combine", 4)};
+    for (std::uint32_t level = 0; level < arena_bloom_levels; ++level) {
+        const std::string number = std::to_string(level);
+        image = builder.add({.name = "halve " + number,
+                             .shader = "shared/halve.glsl",
+                             .inputs = {{.name = "halve_input", .image = image, .is_loaded = true}},
+                             .output = create("level " + number, 8u << level)});
+        combine.inputs.push_back({.name = "arena_bloom_level_" + number, .image = image});
+    }
+    const PassImage glow = builder.add({.name = "double",
+                                        .shader = "arena_bloom_double.glsl",
+                                        .inputs = {{.name = "arena_bloom_small", .image = builder.add(combine)}},
+                                        .output = create("glow", 2)});
+    builder.side("arena_bloom_glow", glow, {0, 0, 0, 0});
+}
+
+}  // namespace
+
+const EffectInfo& effect_info(const ArenaBloom&) {
+    static const EffectInfo info{
+        .name = "arena_bloom",
+        .doc = "What is bright glows, as in a fighting game.",
+        .parameters = arena_bloom_rows.table(),
+        .files = embedded_files("arena_bloom"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::SceneLinear),
+        .build = build,
+        .reference = arena_bloom_reference,
+        .is_identity =
+            [](const void* parameters) { return static_cast<const ArenaBloom*>(parameters)->intensity == 0.0f; },
+    };
+    return info;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Arena bloom: the glow of a fighting game, which keeps its picture within a display's range: what is bright glows in a
+// fixed shape, through four small pictures with weights of their own and a power that leaves only strong light. For
+// light without an upper end see bloom.
+
+#include <darkroom/effect.hpp>
+
+namespace darkroom {
+
+enum class ArenaBloomSource : std::uint32_t {
+    Masked,  ///< colour and alpha within [0, 1], and alpha says how much glows
+    Plain,   ///< colour as it is, whatever its alpha
+};
+
+struct ArenaBloom {
+    float intensity = 1.0f;
+    ArenaBloomSource source_kind = ArenaBloomSource::Masked;
+};
+inline constexpr auto arena_bloom_rows = describe(
+    field<&ArenaBloom::intensity>("How much of the glow is added.", {0, 4}).as_amount(),
+    field<&ArenaBloom::source_kind>("Whether colour is limited to a display's range and alpha masks the glow."));
+
+[[nodiscard]] const EffectInfo& effect_info(const ArenaBloom&);
+
+}  // namespace darkroom
