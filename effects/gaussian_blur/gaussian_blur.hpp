@@ -21,9 +21,9 @@ struct GaussianBlur {
     GaussianBlurResolution resolution = GaussianBlurResolution::Automatic;
 };
 inline constexpr auto gaussian_blur_rows = describe(
-    field<&GaussianBlur::radius>("Half-width of the blur; 0 leaves the picture as it is.", {0, 255}, unit::pixels)
+    field<&GaussianBlur::radius>("Half-width of the blur; 0 leaves the picture as it is.", {0, 64}, unit::pixels)
         .as_loop_count(),
-    field<&GaussianBlur::sigma>("Standard deviation of the bell curve; 0 takes a third of the radius.", {0, 255},
+    field<&GaussianBlur::sigma>("Standard deviation of the bell curve; 0 takes a third of the radius.", {0, 64},
                                 unit::pixels),
     field<&GaussianBlur::resolution>("Whether a wide blur works on a smaller picture."));
 
@@ -31,7 +31,7 @@ inline constexpr auto gaussian_blur_rows = describe(
 /// texels 2i + 1 and 2i + 2, weighed by weights[i] (1 - fractions[i]) and weights[i] fractions[i]: one bilinear tap at
 /// 2i + 1 + fractions[i] reads both.
 struct GaussianBlurTaps {
-    static constexpr std::size_t capacity = 128;
+    static constexpr std::size_t capacity = 32;
     float centre_weight = 1.0f;
     std::size_t count = 0;
     std::array<float, capacity> fractions{};
@@ -40,7 +40,7 @@ struct GaussianBlurTaps {
 /// `scale`: how many of the picture's pixels a texel of the blurred picture stands for, along this direction. Above 1,
 /// the curve's variance is what making the picture small and large again leaves of the whole.
 [[nodiscard]] GaussianBlurTaps gaussian_blur_taps(const GaussianBlur& blur, double scale = 1.0);
-/// How often the picture is halved before it is blurred: 0 to 6. A plan keeps what it was compiled with.
+/// How often the picture is halved before it is blurred: 0 to 4. A plan keeps what it was compiled with.
 [[nodiscard]] std::uint32_t gaussian_blur_level(const GaussianBlur& blur);
 /// Reads of an image for every pixel of the result, where bilinear taps are used; those of smaller pictures count by
 /// their share of the pixels.
