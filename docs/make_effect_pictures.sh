@@ -1,25 +1,32 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes docs/pictures/effects/: every effect off and on, for docs/effects.md: docs/make_effect_pictures.sh [DARKROOM].
+# Makes docs/pictures/effects/: every effect off and on, for docs/effects.md: docs/make_effect_pictures.sh [DARKROOM
+# [EFFECT ...]]. Without names all are made.
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 darkroom=${1:-./darkroom}
+names=" ${*:2} "
 out=docs/pictures/effects
 mkdir -p "$out"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+is_wanted() { [[ $names == "  " || $names == *" $1 "* ]]; }
+# picture SCENE FILE FLAGS
+picture() { "$darkroom" render "scenes/$1.scene.toml" --size 320x180 --msaa "${samples:-4}" "${@:3}" -o "$out/$2" >/dev/null; }
+
 # pair NAME SCENE OFF-FLAGS -- ON-FLAGS: by flags of the flat table.
 pair() {
-    local name=$1 scene=scenes/$2.scene.toml off=() on=()
+    local name=$1 scene=$2 off=() on=()
+    is_wanted "$name" || return 0
     shift 2
     while [[ $1 != -- ]]; do off+=("$1") && shift; done
     shift
     on=("$@")
-    "$darkroom" render "$scene" --size 320x180 --msaa 4 "${off[@]}" -o "$out/${name}_off.jpg" >/dev/null
-    "$darkroom" render "$scene" --size 320x180 --msaa 4 "${on[@]}" -o "$out/${name}_on.jpg" >/dev/null
+    picture "$scene" "${name}_off.jpg" "${off[@]}"
+    picture "$scene" "${name}_on.jpg" "${on[@]}"
 }
-# stack NAME SCENE TOML: an entry before exposure, tone mapping and encoding, against these alone.
+# stack NAME SCENE BEFORE [BEHIND]: entries before exposure, tone mapping and encoding, or behind, against these alone.
 tail_of_stack='[[stack]]
 effect = "exposure"
 [[stack]]
@@ -27,15 +34,13 @@ effect = "tonemap"
 [[stack]]
 effect = "encode"'
 stack() {
-    local name=$1 scene=scenes/$2.scene.toml
+    is_wanted "$1" || return 0
     printf '%s\n' "$tail_of_stack" >"$work/off.toml"
-    printf '%s\n%s\n' "$3" "$tail_of_stack" >"$work/on.toml"
-    for state in off on; do
-        "$darkroom" render "$scene" --size 320x180 --msaa 4 --look "$work/$state.toml" -o "$out/${name}_$state.jpg" >/dev/null
-    done
+    printf '%s\n' "$3" "$tail_of_stack" "${4:-}" >"$work/on.toml"
+    for state in off on; do picture "$2" "${1}_$state.jpg" --look "$work/$state.toml"; done
 }
 
-pair ssao courtyard --ssao-enabled off --volumetric-enabled off --fog-enabled off -- --ssao-radius 1 --ssao-intensity 2 --volumetric-enabled off --fog-enabled off
+pair ssao dungeon --exposure 6 --ssao-enabled off --volumetric-enabled off -- --exposure 6 --ssao-radius 1.5 --ssao-intensity 2.5 --volumetric-enabled off
 pair volumetric dungeon --volumetric-enabled off -- --volumetric-density 30
 pair fog courtyard --fog-enabled off -- --fog-density 0.05
 pair bloom forge --bloom-enabled off -- --bloom-intensity 0.12
@@ -45,11 +50,37 @@ pair vignette showcase --vignette-enabled off -- --vignette-intensity 0.7
 pair radial_blur forge --radial-blur 0 -- --radial-blur 0.8
 pair chromatic_aberration forge --chromatic-aberration 0 -- --chromatic-aberration 3
 pair dither dungeon --dither-enabled off -- --dither-intensity 0.05
-stack god_rays showcase '[[stack]]
+stack god_rays dungeon '[[stack]]
 effect = "god_rays"
 follows_light = false
-position = [0.497, 0.235]
-intensity = 1.5'
+position = [0.47, 0.5]
+threshold = 0.05
+radius = 0.4
+intensity = 8.0'
+stack color_grade showcase '[[stack]]
+effect = "color_grade"
+temperature = 12000.0
+shadows = [0.7, 0.9, 1.3]
+highlights = [1.2, 1.05, 0.8]
+contrast = 1.25
+curve_red = [[-6.0, -6.5], [0.0, 0.2], [4.0, 4.0]]
+vibrance = 0.4'
+stack hsv_adjust showcase '' '[[stack]]
+effect = "hsv_adjust"
+hue = 110.0
+saturation = 1.3'
+stack posterize showcase '' '[[stack]]
+effect = "posterize"
+levels = 5'
+samples=1 stack fxaa courtyard '' '[[stack]]
+effect = "fxaa"'
+stack lens_distortion courtyard '' '[[stack]]
+effect = "lens_distortion"
+lens_distortion = 0.5
+dispersion = 0.05'
+stack perturb courtyard '' '[[stack]]
+effect = "perturb"
+strength = [5.0, 5.0, 3.0, 2.0]'
 stack high_pass showcase '[[stack]]
 effect = "high_pass"
 threshold = 0.8'
@@ -60,3 +91,12 @@ stack negative showcase '[[stack]]
 effect = "negative"'
 stack grayscale showcase '[[stack]]
 effect = "grayscale"'
+stack box_blur showcase '[[stack]]
+effect = "box_blur"
+radius = 6'
+stack kawase_blur showcase '[[stack]]
+effect = "kawase_blur"'
+stack classic_bloom forge '[[stack]]
+effect = "classic_bloom"'
+stack arena_bloom forge '[[stack]]
+effect = "arena_bloom"'
