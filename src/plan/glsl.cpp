@@ -70,7 +70,6 @@ const char* glsl_type(Kind kind) {
         case Kind::Vec4:
             return "vec4";
         case Kind::Curve:
-            return "Curve";
         case Kind::Resource:
             break;
     }
@@ -150,25 +149,22 @@ const std::set<std::string_view>& shared_words() {
     return words;
 }
 
-/// The struct that a curve is in GLSL.
-std::string curve_struct() {
-    return fmt::format("struct Curve {{\n    uint count;\n    float x[{0}];\n    float y[{0}];\n}};\n",
-                       Curve::capacity);
-}
+/// Of a curve the effect makes vectors (PassBuilder::end_constants), of a resource tables.
+bool is_in_block(const ParamInfo& row) { return row.kind != Kind::Curve && row.kind != Kind::Resource; }
 
 }  // namespace
 
 std::uint32_t parameter_words(const ParamTable& table) {
     std::uint32_t words = 0;
     for (const ParamInfo& row : table.rows)
-        if (row.kind != Kind::Resource) words += row.words;
+        if (is_in_block(row)) words += row.words;
     return words;
 }
 
 void write_parameters(const ParamTable& table, std::span<const std::uint32_t> words, std::span<std::uint32_t> out) {
     auto place = out.begin();
     for (const ParamInfo& row : table.rows)
-        if (row.kind != Kind::Resource) place = std::copy_n(words.begin() + row.word, row.words, place);
+        if (is_in_block(row)) place = std::copy_n(words.begin() + row.word, row.words, place);
 }
 
 std::string place_suffix(std::uint32_t place) { return fmt::format("_e{}", place); }
@@ -227,15 +223,9 @@ void append_header_members(const EffectInfo& info, std::uint32_t place, std::vec
 }
 
 void append_parameter_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
-    using enum gpu::BlockMember::Type;
     const std::string prefix = block_prefix(info, place);
     for (const ParamInfo& row : info.parameters.rows) {
         const std::string name = fmt::format("{}{}", prefix, row.name);
-        if (row.kind == Kind::Curve) {
-            out.push_back({Uint, name + "_count"});
-            out.push_back({Float, name + "_x", Curve::capacity});
-            out.push_back({Float, name + "_y", Curve::capacity});
-        }
         for (const Scalar& scalar : scalars_of(row.kind)) out.push_back({scalar.type, name + scalar.suffix});
     }
 }
@@ -246,7 +236,7 @@ namespace {
 std::string parameter_struct(const ParamTable& table) {
     std::string members, constants;
     for (const ParamInfo& row : table.rows) {
-        if (row.kind == Kind::Resource) continue;
+        if (!is_in_block(row)) continue;
         members += fmt::format("    {} {};\n", glsl_type(row.kind), row.name);
         for (std::size_t i = 0; i < row.choices.size(); ++i)
             constants += fmt::format("const uint {}_{}_{} = {}u;\n", table.struct_name, row.name, row.choices[i], i);
@@ -260,19 +250,10 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::s
     const std::string prefix = block_prefix(info, place);
     std::string arguments;
     for (const ParamInfo& row : info.parameters.rows) {
-        if (row.kind == Kind::Resource) continue;
+        if (!is_in_block(row)) continue;
         if (!arguments.empty()) arguments += ", ";
         if (const auto found = std::ranges::find(baked, &row, &Baked::row); found != baked.end()) {
             arguments += fmt::format("{}({}u)", glsl_type(row.kind), found->value);
-            continue;
-        }
-        if (row.kind == Kind::Curve) {
-            std::string x, y;
-            for (std::size_t i = 0; i < Curve::capacity; ++i) {
-                x += fmt::format("{}{}{}_x[{}]", i == 0 ? "" : ", ", prefix, row.name, i);
-                y += fmt::format("{}{}{}_y[{}]", i == 0 ? "" : ", ", prefix, row.name, i);
-            }
-            arguments += fmt::format("Curve({0}{1}_count, float[]({2}), float[]({3}))", prefix, row.name, x, y);
             continue;
         }
         std::string components;
@@ -322,8 +303,8 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, st
 
 std::string pass_body(const FusedStep& step) {
     if (!step.text->asks_parameters) return step.text->glsl;
-    return curve_struct() + parameter_struct(step.info->parameters) +
-           parameter_loader(*step.info, step.place, step.baked) + step.text->glsl;
+    return parameter_struct(step.info->parameters) + parameter_loader(*step.info, step.place, step.baked) +
+           step.text->glsl;
 }
 
 Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha) {
@@ -384,8 +365,8 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
         read = "load_clamped(picture, (2 * pixel.texel + 1) * size(picture) / (2 * pixel.size))";
     if (is_alpha) read = "vec4(vec3(clamp(load(picture, pixel.texel).a, 0.0, 1.0)), 1.0)";
     return fmt::format(
-        "{}{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",
-        curve_struct(), helpers, declarations, read, code);
+        "{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",
+        helpers, declarations, read, code);
 }
 
 }  // namespace darkroom::plan
