@@ -8,9 +8,9 @@
 namespace darkroom {
 
 enum class FxaaQuality : std::uint32_t {
-    Low,     ///< preset 12: 5 steps to each side, 20 pixels far
-    Medium,  ///< preset 15: 8 steps, 26 pixels
-    High,    ///< preset 29: 12 steps, 30 pixels
+    Low,     ///< the steps of preset 12
+    Medium,  ///< of preset 15
+    High,    ///< of preset 29
 };
 
 struct Fxaa {
