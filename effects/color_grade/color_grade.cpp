@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -38,8 +36,8 @@ void put_rows(const Matrix3& matrix, std::span<PassVector> out) {
         for (std::size_t i = 0; i < 3; ++i) out[row][i] = static_cast<float>(matrix[row][i]);
 }
 
-/// Overrides may have put the ends of a range in the wrong order: a step then.
-double width_of(const Vec2& range) { return std::max(double{range.y} - double{range.x}, 1e-6); }
+/// Without a width it is a step.
+double width_of(const Vec2& range) { return std::max(double{range.y}, 1e-6); }
 
 /// One channel of the curves. The stops of a point are counted from middle grey, those of the shader from 1.
 void put_curve(const Curve& curve, std::size_t channel, std::span<PassVector> out) {
@@ -114,19 +112,6 @@ bool is_identity(const void* parameters) {
            grade.hue == neutral.hue && grade.vibrance == neutral.vibrance && grade.saturation == neutral.saturation;
 }
 
-std::string conflict(const void* parameters) {
-    const ColorGrade& grade = grade_of(parameters);
-    const Vec2 &dark = grade.shadows_range, &bright = grade.highlights_range;
-    const auto rises = [](std::string_view name, const Vec2& range) {
-        return range.y > range.x ? std::string{} : fmt::format("{} = [{}, {}]: must rise", name, range.x, range.y);
-    };
-    if (std::string text = rises("shadows_range", dark); !text.empty()) return text;
-    if (std::string text = rises("highlights_range", bright); !text.empty()) return text;
-    if (bright.x >= dark.y) return {};
-    return fmt::format("highlights_range = [{}, {}]: must not begin before the shadows end, at {}", bright.x, bright.y,
-                       dark.y);
-}
-
 }  // namespace
 
 const EffectInfo& effect_info(const ColorGrade&) {
@@ -140,7 +125,6 @@ const EffectInfo& effect_info(const ColorGrade&) {
         .flat = {.documented = 65, .scene_linear = 65, .starts_on = true},
         .build = [](PassBuilder& builder) { builder.end_constants(vectors, constants); },
         .reference = pointwise_reference<ColorGrade, color_grade_reference>,
-        .conflict = conflict,
         .is_identity = is_identity,
     };
     return info;

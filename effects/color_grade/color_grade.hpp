@@ -12,7 +12,7 @@ struct ColorGrade {
     float tint = 0.0f;
     Vec3 mixer_red{1, 0, 0}, mixer_green{0, 1, 0}, mixer_blue{0, 0, 1};
     Rgb shadows{1, 1, 1}, midtones{1, 1, 1}, highlights{1, 1, 1};
-    Vec2 shadows_range{0.0f, 0.3f}, highlights_range{0.55f, 1.0f};
+    Vec2 shadows_range{0.0f, 0.3f}, highlights_range{0.55f, 0.45f};
     Rgb lift{0, 0, 0}, gamma{1, 1, 1}, gain{1, 1, 1};
     float contrast = 1.0f;
     float pivot = 0.18f;
@@ -33,8 +33,10 @@ inline constexpr auto color_grade_rows = describe(
     field<&ColorGrade::shadows>("Factor of what is dark.", {0, 4}),
     field<&ColorGrade::midtones>("Factor of what lies between dark and bright.", {0, 4}),
     field<&ColorGrade::highlights>("Factor of what is bright.", {0, 4}),
-    field<&ColorGrade::shadows_range>("Luminances at which the shadows begin to fade and end.", {0, 64}),
-    field<&ColorGrade::highlights_range>("Luminances at which the highlights begin and are full.", {0, 64}),
+    field<&ColorGrade::shadows_range>("Luminance at which the shadows begin to fade, and the width over which they do.",
+                                      {0, 64}),
+    field<&ColorGrade::highlights_range>("Luminance at which the highlights begin, and the width over which they do.",
+                                         {0, 64}),
     field<&ColorGrade::lift>("Light that is added: offset.", {-1, 1}),
     field<&ColorGrade::gamma>("Exponent 1 / gamma: above 1 the middle gets brighter.", {0.1, 10, Scale::Log}),
     field<&ColorGrade::gain>("Factor of the light: slope.", {0, 16}),

@@ -30,7 +30,7 @@ inline Rgba color_grade_reference(Rgba color, const ReferencePixel&, const Color
     const auto triple = [](const auto& value) { return Triple{double{value.r}, double{value.g}, double{value.b}}; };
     const auto row = [](const Vec3& value) { return Triple{double{value.x}, double{value.y}, double{value.z}}; };
     const auto smoothstep = [](const Vec2& range, double v) {
-        const double t = std::clamp((v - double{range.x}) / (double{range.y} - double{range.x}), 0.0, 1.0);
+        const double t = std::clamp((v - double{range.x}) / std::max(double{range.y}, 1e-6), 0.0, 1.0);
         return t * t * (3 - 2 * t);
     };
 
@@ -46,7 +46,7 @@ inline Rgba color_grade_reference(Rgba color, const ReferencePixel&, const Color
     const Triple gain = triple(grade.gain);
     const std::array<const Curve*, 3> curves{&grade.curve_red, &grade.curve_green, &grade.curve_blue};
     for (std::size_t i = 0; i < 3; ++i) {
-        light[i] *= shadows[i] * dark + midtones[i] * (1 - dark - bright) + highlights[i] * bright;
+        light[i] *= (shadows[i] * dark + midtones[i] * (1 - dark)) * (1 - bright) + highlights[i] * bright;
         light[i] = std::clamp(light[i] * gain[i] + lift[i], -65536.0, 65536.0);
         // Light below the smallest half float is scaled as that is, and negative light as its mirror image.
         const double magnitude = std::max(std::abs(light[i]), 0x1p-24);
