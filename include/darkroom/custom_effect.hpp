@@ -2,7 +2,8 @@
 #pragma once
 // A user's own effect in one GLSL file, loaded at run time: it takes its place in a stack, and fuses with its
 // neighbours, like those in the library. What a folder of the tree can do in GLSL a file can, passes, images and
-// histories among them; a CPU reference and numbers worked out on the CPU need a folder. docs/custom_effects.md shows it.
+// histories among them; a CPU reference and numbers worked out on the CPU need a folder. docs/custom_effects.md shows
+// it.
 //
 //     // @effect duotone: Maps shadows and highlights to two colours.
 //     // @param float amount = 1 in [0, 1] amount: How much of the toned picture is seen.
@@ -45,8 +46,9 @@
 // gather_red, gather_green and size (src/gpu/kernel.hpp). Of the frame it may read frame_time, frame_delta_time,
 // frame_index; with shared/camera.glsl its camera; and what @needs names: frame_depth (red: planar distance; 1e10 is
 // sky), frame_normals (view space), frame_velocity (red, green: previous minus current position, in pixels, y down),
-// frame_ui (sRGB-encoded, premultiplied). Names at file scope begin with the effect's name, so that two entries of it
-// fit one kernel.
+// frame_ui (sRGB-encoded, premultiplied), and of the first light that casts shadows duotone_lit(vec3 world, float
+// planar), 1 where it reaches that place, duotone_light_direction() and duotone_light_color(). Names at file scope
+// begin with the effect's name, so that two entries of it fit one kernel.
 
 #include <cstddef>
 #include <darkroom/effect.hpp>

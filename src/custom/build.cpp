@@ -6,6 +6,7 @@
 
 #include "custom/description.hpp"
 #include "custom/frame_images.hpp"
+#include "custom/light.hpp"
 
 namespace darkroom::custom {
 
@@ -23,10 +24,15 @@ class Build {
             for (const FileInput& input : pass.inputs)
                 desc.inputs.push_back(
                     {.name = std::string(input.name), .image = image(input.name), .is_loaded = input.is_loaded});
+            if (pass.reads_light) {
+                desc.custom_vectors = light_vectors;
+                desc.constants = write_light;
+            }
             images_[pass.output] = builder_.add(desc);
         }
         if (!from_.result.empty()) builder_.result(images_[from_.result]);
         if (!from_.end) return;
+        if (from_.end->reads_light) builder_.end_constants(light_vectors, write_light);
         for (const FileInput& input : from_.end->inputs) {
             const FrameImageRow* const row = frame_row(input.name);
             const PassVector neutral = row == nullptr ? PassVector{} : row->neutral;

@@ -41,6 +41,7 @@ struct FileFunction {
     std::string_view shader;  ///< in EffectInfo::files
     std::vector<FileInput> inputs;
     std::size_t line = 0;
+    bool reads_light = false;
 };
 
 /// Strings and choices are in deques, because others hold views of the elements while more are added.

@@ -18,7 +18,7 @@ struct FrameImageRow {
     PassVector neutral;
 };
 
-inline constexpr std::array<FrameImageRow, 4> frame_images{
+inline constexpr std::array<FrameImageRow, 5> frame_images{
     {{"depth", &Needs::depth, "frame_depth", linear_depth, {1e10f, 0, 0, 0}},
      {"normals",
       &Needs::normals,
@@ -26,6 +26,7 @@ inline constexpr std::array<FrameImageRow, 4> frame_images{
       [](PassBuilder& builder) { return view_normals(builder, NormalSource::Image); },
       {}},
      {"velocity", &Needs::velocity, "frame_velocity", [](PassBuilder& builder) { return velocity(builder); }, {}},
-     {"ui", &Needs::ui, "frame_ui", [](PassBuilder& builder) { return builder.frame_image(FrameImage::Ui); }, {}}}};
+     {"ui", &Needs::ui, "frame_ui", [](PassBuilder& builder) { return builder.frame_image(FrameImage::Ui); }, {}},
+     {"shadows", &Needs::shadows, "frame_shadow", [](PassBuilder& builder) { return builder.shadow_map(0); }, {}}}};
 
 }  // namespace darkroom::custom

@@ -366,6 +366,46 @@ TEST(ComposeCustomPasses, VelocityAndUiAreThoseOfTheFrame) {
     EXPECT_EQ(out.a, 0.5);
 }
 
+/// Two cascades of 4 x 4 texels: in the first something stands at depth 0.3 before the left half; the second is empty.
+ReferenceLight shadow_light_of_halves() {
+    ReferenceLight light{.light = {.direction = {0, 0.5f, 0}, .color = {3, 2, 1}, .splits = {10, 20}},
+                         .resolution = 4,
+                         .cascades = {std::vector<float>(16, 1.0f), std::vector<float>(16, 1.0f)}};
+    for (std::size_t i = 0; i < 16; ++i)
+        if (i % 4 < 2) light.cascades[0][i] = 0.3f;
+    return light;
+}
+
+TEST(ComposeCustomPasses, ShadowsAreThoseOfTheFirstLightThatCastsThem) {
+    const std::array lights{shadow_light_of_halves()};
+    const ReferenceImage picture = test::uniform(3, 1, {0, 0, 0, 1});
+    const std::string head = "// @effect mine: Mine.\n// @needs shadows\n";
+    const std::string body =
+        "    vec2 place = vec2(pixel.uv.x < 0.3 ? -0.5 : 0.5, 0.0);\n"
+        "    float lit = mine_lit(vec3(place, 0.5), 5.0), near = mine_lit(vec3(place, 0.2), 5.0);\n"
+        "    float far = mine_lit(vec3(-0.5, 0.0, 0.5), pixel.uv.x < 0.6 ? 15.0 : 25.0);\n"
+        "    return vec4(lit, near, far, mine_light_color().r + mine_light_direction().y);\n";
+    const ReferenceImage end = shown(head + "vec4 mine(vec4 color, Pixel pixel, Mine parameters) {\n" + body + "}\n",
+                                     picture, {.lights = lights});
+    const ReferenceImage pass = shown(head + "// @image one: 1 rgba32f\n// @result one\n// @pass one: -> one\n" +
+                                          "vec4 mine_one(Pixel pixel, Mine parameters) {\n" + body + "}\n",
+                                      picture, {.lights = lights});
+    ASSERT_EQ(end.pixels.size(), 3u);
+    EXPECT_EQ(test::worst_difference(end, pass), 0);
+    EXPECT_EQ(end.at(0, 0).r, 0) << "behind what stands there";
+    EXPECT_EQ(end.at(1, 0).r, 1);
+    for (const Rgba& pixel : end.pixels) {
+        EXPECT_EQ(pixel.g, 1) << "before it";
+        EXPECT_EQ(pixel.b, 1) << "in another cascade, and behind all";
+        EXPECT_EQ(pixel.a, 3.5);
+    }
+    EXPECT_EQ(
+        test::worst_difference(
+            shown(head + "vec4 mine(vec4 color, Pixel pixel, Mine parameters) {\n" + body + "}\n", picture), picture),
+        0)
+        << "without shadows it is left out";
+}
+
 TEST(ComposeCustomPasses, TablesHoldTheirValues) {
     const ReferenceImage picture = test::uniform(3, 2, {0, 0, 0, 1});
     const ReferenceImage out = shown(

@@ -8,6 +8,7 @@
 
 #include "core/param_text.hpp"
 #include "custom/description.hpp"
+#include "custom/light.hpp"
 #include "custom/words.hpp"
 #include "plan/glsl_names.hpp"
 
@@ -237,6 +238,10 @@ class FileReader {
         if (!plan::calls_name(code, name))
             return user_error(fmt::format("no function {}: expected `vec4 {}({}Pixel pixel, {} parameters)`", name,
                                           name, first_argument, struct_name_));
+        function.reads_light = out_.info.needs.shadows && reads_light(code, out_.info.name);
+        if (function.reads_light)
+            code = fmt::format("{}#line 1 \"{}\"\n{}", light_code(out_.info.name, !function.name.empty()), shown_name_,
+                               code);
         if (auto ok = read_uses(out_, function, code); !ok) return ok;
         function.shader = out_.keep(name + ".glsl");
         if (!function.name.empty())
