@@ -6,6 +6,8 @@
 // @image columns: 1 rgba16f
 // @result columns
 
+#include "shared/sanitize.glsl"
+
 // Beyond three standard deviations lies 0.3 % of a Gaussian.
 int two_pass_blur_reach(float radius) { return int(ceil(3.0 * radius)); }
 
@@ -21,7 +23,7 @@ vec4 two_pass_blur_across(Pixel pixel, TwoPassBlur parameters) {
     int reach = two_pass_blur_reach(parameters.radius);
     for (int i = -reach; i <= reach; ++i) {
         float weight = two_pass_blur_weight(i, parameters.radius);
-        sum += weight * load_clamped(picture, pixel.texel + ivec2(i, 0));
+        sum += weight * sanitize(load_clamped(picture, pixel.texel + ivec2(i, 0)));
         weights += weight;
     }
     return sum / weights;

@@ -2,8 +2,8 @@
 #pragma once
 // A user's own effect in one GLSL file, loaded at run time: it takes its place in a stack, and fuses with its
 // neighbours, like those in the library. What a folder of the tree can do in GLSL a file can, passes, images and
-// histories among them; a CPU reference and numbers worked out on the CPU need a folder. docs/custom_effects.md shows
-// it.
+// histories among them; a CPU reference and numbers worked out on the CPU need a folder. docs/custom_effects.md is the
+// page.
 //
 //     // @effect duotone: Maps shadows and highlights to two colours.
 //     // @param float amount = 1 in [0, 1] amount: How much of the toned picture is seen.
@@ -25,9 +25,8 @@
 //     @makes DOMAIN               what the picture is behind it; without it what it was
 //     @needs NEED ...             without these of the frame it is left out of the plan: depth, normals, velocity,
 //                                 shadows, ui; and `second`, the entry's second picture, for the end
-//     @image NAME: RATIO FORMAT   an image for passes, RATIO (1, 1/2, 3/4 ...) of the picture's size; FORMAT is
-//     rgba16f,
-//                                 rgba32f, rgba8, rg16f, rg32f, rg8, r16f, r32f, r8 or r11f_g11f_b10f
+//     @image NAME: RATIO FORMAT   an image for passes, RATIO (1, 1/2, 3/4 ...) of the picture's size; of FORMAT
+//                                 rgba16f, rgba32f, rgba8, rg16f, rg32f, rg8, r16f, r32f, r8 or r11f_g11f_b10f
 //     @history NAME: RATIO FORMAT an image that outlives the frame: NAME is written, NAME_previous is what the frame
 //                                 before wrote; zero after a cut
 //     @pre_roll FRAMES            with a history: how many frames before must have been developed for a right picture
