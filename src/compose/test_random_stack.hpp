@@ -29,7 +29,7 @@ enum class Values : std::uint8_t {
 inline double random_value(std::mt19937& random, const ParamInfo& row, Values values) {
     const Range& range = row.range;
     if (values == Values::Sane) {
-        const double most = row.kind == Kind::Int ? 6.0 : std::max(range.min * 4, 2.0);
+        const double most = std::max(range.min * 4, row.kind == Kind::Int ? 6.0 : 2.0);
         return between(random, range.min, std::min(range.max, most));
     }
     switch (below(random, 5)) {

@@ -322,7 +322,7 @@ TEST_F(ComposePlan, PassesThatWaitForALightAreListed) {
 }
 
 TEST_F(ComposePlan, HandlesMustNameEarlierEntries) {
-    add(composer, "exposure", {}, {.input = Handle{~0u - 1}});
+    add(composer, "exposure", {}, {.input = Handle{~0u - 2}});
     add(composer, "negative");
     EXPECT_NE(error().find("'exposure': its input"), std::string::npos) << error();
     composer.clear();
