@@ -27,6 +27,9 @@ namespace {
 using darkroom::Result;
 using darkroom::user_error;
 
+/// Of frames that say nothing else: as DevelopInput has it.
+constexpr double usual_frames_per_second = 60;
+
 struct Options {
     LookFlags look;
     DeviceFlags device;
@@ -128,7 +131,8 @@ Result<Job> job_of(const Options& options) {
     Result<darkroom::Look> look = options.look.look();
     if (!look) return failure(std::move(look));
     job.look = std::move(*look);
-    const Result<std::uint32_t> pre_roll = add_needs(job.look, job.frame);
+    const double delta_time = 1 / job.frames_per_second.value_or(usual_frames_per_second);
+    const Result<std::uint32_t> pre_roll = add_needs(job.look, delta_time, job.frame);
     if (!pre_roll) return failure(pre_roll.error());
     job.frame.keeps_halves = !options.is_reference;
     if (Result<> done = add_steps(options, options.is_reference ? 0 : *pre_roll, job); !done)

@@ -140,7 +140,7 @@ darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLaye
     return out;
 }
 
-Result<std::uint32_t> add_needs(const darkroom::Look& look, darkroom::FrameOptions& frame) {
+Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, darkroom::FrameOptions& frame) {
     darkroom::Composer composer(darkroom::Device::assumed());
     if (Result<> done = darkroom::apply(look, composer); !done) return failure(std::move(done));
     constexpr VkImageUsageFlags sampled = VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -160,7 +160,7 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, darkroom::FrameOptio
     frame.has_normals = is_read("normals");
     frame.has_velocity = is_read("velocity");
     frame.has_shadow_depths = is_read("shadows");
-    return composer.pre_roll();
+    return composer.pre_roll(delta_time);
 }
 
 // Linear targets skip the last steps by definition; that is no news.

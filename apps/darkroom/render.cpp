@@ -137,7 +137,8 @@ class Render {
     /// The shots before each that histories need and that are not made anyway.
     Result<> add_pre_roll() {
         darkroom::FrameOptions ignored;
-        const Result<std::uint32_t> pre_roll = add_needs(look_, ignored);
+        if (job_.shots.empty()) return {};
+        const Result<std::uint32_t> pre_roll = add_needs(look_, job_.shots.front().delta_time, ignored);
         if (!pre_roll) return failure(pre_roll.error());
         std::vector<Shot> all;
         for (const Shot& shot : job_.shots) {

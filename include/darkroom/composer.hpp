@@ -218,8 +218,9 @@ class Composer {
     /// How many frames to develop before the first that is wanted, so that a run which begins in the middle gives the
     /// picture of an unbroken one: the sum of EffectInfo::pre_roll over the entries that are on, with their current
     /// values, because a history that is made from a picture with a history settles after it; and previous_pre_roll for
-    /// every picture that is read as the frame before, of which nobody knows when it settles. Needs no compile.
-    [[nodiscard]] std::uint32_t pre_roll() const;
+    /// every picture that is read as the frame before, of which nobody knows when it settles. `delta_time`: seconds
+    /// between frames. Needs no compile.
+    [[nodiscard]] std::uint32_t pre_roll(double delta_time = 1.0 / 60) const;
 
     /// Plans the stack, makes the kernels that the device does not have yet, allocates what it needs. The previous plan
     /// stays alive until the recordings made with it have finished. Waits for a compile_later() that has begun.

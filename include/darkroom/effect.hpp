@@ -229,8 +229,9 @@ struct EffectInfo {
     /// For a frame's parameters: does the effect change nothing? Such an entry is treated as switched off.
     bool (*is_identity)(const void* parameters) = nullptr;
     /// Of effects with a history: how many frames before a frame must have been developed so that its picture is within
-    /// half a code of 8 bits of an unbroken run, given that what the effect reads is. Null: none.
-    std::function<std::uint32_t(const void* parameters)> pre_roll{};
+    /// half a code of 8 bits of an unbroken run, given that what the effect reads is, and that frames are `delta_time`
+    /// seconds apart. Null: none.
+    std::function<std::uint32_t(const void* parameters, double delta_time)> pre_roll{};
     /// Of a description that was made at run time: who keeps it longer than its maker holds this.
     std::weak_ptr<const void> owner{};
 };

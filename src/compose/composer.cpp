@@ -367,7 +367,7 @@ std::vector<std::uint32_t> Composer::current(Handle handle) const {
     return out;
 }
 
-std::uint32_t Composer::pre_roll() const {
+std::uint32_t Composer::pre_roll(double delta_time) const {
     std::uint64_t frames = 0;
     for (const auto& entry : state_->stack) {
         const EntryDesc& desc = entry->desc;
@@ -375,7 +375,7 @@ std::uint32_t Composer::pre_roll() const {
             if (wire.is_previous) frames += previous_pre_roll;
         if (entry->info->pre_roll == nullptr) continue;
         const std::vector<std::uint32_t> words = current({entry->id});
-        if (entry->is_on(words.data())) frames += entry->info->pre_roll(words.data());
+        if (entry->is_on(words.data())) frames += entry->info->pre_roll(words.data(), delta_time);
     }
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(frames, std::numeric_limits<std::uint32_t>::max()));
 }

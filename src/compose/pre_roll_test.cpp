@@ -24,7 +24,7 @@ constexpr EffectFile linger_files[] = {
      "    return mix(load(linger_in, pixel.texel), load(linger_before, pixel.texel), linger_parameters().keep);\n}\n"},
 };
 /// The frames before weigh keep, keep^2 ... in the picture.
-std::uint32_t linger_pre_roll(const void* parameters) {
+std::uint32_t linger_pre_roll(const void* parameters, double /*delta_time*/ = 0) {
     const double keep = static_cast<double>(static_cast<const Linger*>(parameters)->keep);
     std::uint32_t frames = 0;
     for (double missing = keep; missing > half_a_code; missing *= keep) ++frames;
@@ -99,7 +99,7 @@ TEST_F(ComposePreRoll, GivesThePictureOfAnUnbrokenRun) {
 
 TEST_F(ComposePreRoll, IsThatOfTheEntriesThatAreOnWithTheirCurrentValues) {
     EffectInfo endless = linger();
-    endless.pre_roll = [](const void*) { return std::numeric_limits<std::uint32_t>::max(); };
+    endless.pre_roll = [](const void*, double) { return std::numeric_limits<std::uint32_t>::max(); };
     Composer composer(Device::assumed());
     EXPECT_EQ(composer.pre_roll(), 0u);
     const Linger usual, brief{.keep = 0.5f};

@@ -30,7 +30,7 @@ Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view
     // Whoever calls these holds the state: they are members of what it keeps.
     const State* const own = state.get();
     state->info.build = [own](PassBuilder& builder) { custom::build(builder, *own); };
-    if (own->pre_roll) state->info.pre_roll = [frames = *own->pre_roll](const void*) { return frames; };
+    if (own->pre_roll) state->info.pre_roll = [frames = *own->pre_roll](const void*, double) { return frames; };
     return CustomEffect(std::move(state));
 }
 
