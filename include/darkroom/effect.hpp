@@ -83,6 +83,7 @@ struct PassContext {
     std::uint64_t frame_index = 0;
     const Camera* camera = nullptr;
     std::span<const Light> lights;
+    bool has_history = false;  ///< for constants: do the effect's histories hold what an earlier frame wrote?
 };
 
 using PassVector = std::array<float, 4>;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "compose/camera_jump.hpp"
 #include "compose/frame_check.hpp"
 #include "core/assert.hpp"
 
@@ -123,9 +124,12 @@ void Chain::lend_images(const Frame& frame) {
 
 /// Histories start from zero where nothing of the last frame of the view can be used, each by itself.
 void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
+    graph::HistoryView& view = physical_->histories(frame.view);
     before_.view_index = frame.view;
-    before_.view = physical_->histories(frame.view);
-    const bool is_related = !frame.camera.is_cut && frame.delta_time > 0;
+    before_.view = view;
+    const bool is_jump = view.recordings > 0 && is_camera_jump(view.camera, frame.camera.view);
+    const bool is_related = !frame.camera.is_cut && !is_jump && frame.delta_time > 0;
+    view.camera = frame.camera.view;
     for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
         graph::HistoryImages* const history = physical_->history(i, frame.view);
         if (history == nullptr) continue;
@@ -136,6 +140,10 @@ void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
         history->state.was_on = is_on;
     }
     physical_->begin(commands, context_.vk, frame.color.used_region().extent, frame.view);
+    std::ranges::fill(has_history_, std::uint8_t{1});
+    for (std::uint32_t i = 0; i < before_.states.size(); ++i)
+        if (const graph::HistoryImages* const history = physical_->history(i, frame.view))
+            if (history->state.was_reset) has_history_[program_of().history_entries[i]] = 0;
 }
 
 gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
@@ -273,6 +281,7 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     const auto fill = [&](ConstantsFunction constants, std::uint32_t entry, std::span<PassVector> out) {
         if (constants == nullptr) return;
         own.frame_extent = program_of().entry_sizes[entry].of(context.frame_extent);
+        own.has_history = has_history_[entry] != 0;
         constants(values_.words(entry), own, out);
     };
     if (!pass.is_fused) fill(pass.constants, pass.entry(), custom);

@@ -131,6 +131,7 @@ class Chain final : public Garbage {
         std::vector<graph::HistoryState> states;  ///< per history
     };
     Before before_;
+    std::vector<std::uint8_t> has_history_;  ///< per entry, in the present recording
 
     // Timers: what was recorded in each slot.
     struct Timed {

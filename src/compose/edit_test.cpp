@@ -302,7 +302,9 @@ TEST_F(ComposeEdit, AnAbandonedRecordingDidNotHappen) {
         must(context.check(context.vk.AllocateCommandBuffers(context.device, &info, &commands), "commands"));
         const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
         must(context.check(context.vk.BeginCommandBuffer(commands, &begin), "begin"));
-        must(composer.record(commands, host.frame()));
+        Frame elsewhere = host.frame();
+        elsewhere.camera.view[12] = 1000;  // the camera was not there, either
+        must(composer.record(commands, elsewhere));
         must(context.check(context.vk.EndCommandBuffer(commands), "end"));
         context.vk.DestroyCommandPool(context.device, pool, nullptr);
     };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "compose/test_host.hpp"
+#include "plan/program.hpp"
 
 namespace darkroom {
 namespace {
@@ -94,6 +95,29 @@ TEST_F(ComposePreRoll, GivesThePictureOfAnUnbrokenRun) {
         EXPECT_LE(difference(pre_roll), half_a_code);
         EXPECT_GT(difference(pre_roll / 2), half_a_code) << "for two entries: the larger one's alone";
         EXPECT_GT(difference(0), 100 * half_a_code);
+    }
+}
+
+// Of all that ship: who keeps something from frame to frame says for how long it counts.
+TEST(ComposeHistory, WhoeverDeclaresOneStatesItsPreRoll) {
+    constexpr ImageUse any{VK_FORMAT_R32G32B32A32_SFLOAT};
+    for (const EffectInfo* const info : all_effects()) {
+        const plan::Entry entry{.id = 1,
+                                .info = info,
+                                .desc = {.second = scene_color, .name = std::string(info->name)},
+                                .base = {info->parameters.defaults.begin(), info->parameters.defaults.end()}};
+        const auto program = plan::plan_program(
+            {&entry, 1}, {.max_extent = {64, 64}, .depth = any, .normals = any, .velocity = any, .ui = any},
+            {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Raster; }});
+        ASSERT_TRUE(program) << info->name << ": " << program.error().text;
+        const bool has_history = !program->history_entries.empty();
+        EXPECT_TRUE(has_history || info->touch != Touch::History) << info->name;
+        EXPECT_EQ(has_history, info->pre_roll != nullptr) << info->name;
+        if (!has_history || info->pre_roll == nullptr) continue;
+        const auto frames = [&](double delta_time) { return info->pre_roll(entry.base.data(), delta_time); };
+        EXPECT_GT(frames(1.0 / 60), 0u) << info->name;
+        EXPECT_GE(frames(1.0 / 144), frames(1.0 / 30)) << info->name;
+        EXPECT_LT(frames(1.0 / 144), 10'000u) << info->name;
     }
 }
 

@@ -21,6 +21,7 @@ struct HistoryState {
     std::uint64_t recordings = 0;  ///< HistoryView::recordings after the last frame that it was a part of
     bool was_on = false;           ///< for the caller: did that frame write it?
     bool needs_reset = true;       ///< it holds nothing that a frame may read
+    bool was_reset = false;        ///< for the caller: the present frame finds zero in it
 };
 
 /// A history in one view.
@@ -36,6 +37,7 @@ struct HistoryView {
     std::uint64_t recordings = 0;  ///< what Schedule::derive takes as the next frame: its parity is that of all
     VkExtent2D extent{};           ///< of the last frame
     std::uint64_t recorder = 0;    ///< number of the Physical that recorded last
+    std::array<float, 16> camera{};  ///< for the caller: world to camera, of the last frame
 };
 
 class HistoryPool {

@@ -201,6 +201,7 @@ void Physical::begin(VkCommandBuffer commands, const gpu::Dispatch& vk, VkExtent
         HistoryImages* const images = history(index, view_index);
         if (images == nullptr) continue;
         images->state.needs_reset |= images->state.recordings != view.recordings;
+        images->state.was_reset = false;
         goes_on |= !images->state.needs_reset;
     }
     if (goes_on && (last.width != extent.width || last.height != extent.height))
@@ -265,6 +266,7 @@ void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, s
     const std::array after{after_transfer(even, layout), after_transfer(odd, layout)};
     record_barriers(commands, vk, after, view_index);
     images->state.needs_reset = false;
+    images->state.was_reset = true;
 }
 
 void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index) const {
