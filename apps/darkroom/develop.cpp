@@ -135,8 +135,7 @@ Result<Job> job_of(const Options& options) {
     const Result<std::uint32_t> pre_roll = add_needs(job.look, delta_time, job.frame);
     if (!pre_roll) return failure(pre_roll.error());
     job.frame.keeps_halves = !options.is_reference;
-    if (Result<> done = add_steps(options, options.is_reference ? 0 : *pre_roll, job); !done)
-        return failure(std::move(done));
+    if (Result<> done = add_steps(options, *pre_roll, job); !done) return failure(std::move(done));
     // One file is decoded by all threads, several by one each.
     if (job.steps.size() > 1) job.frame.max_threads = job.write.max_threads = 1;
     return job;
@@ -232,7 +231,7 @@ class Develop {
         if (options_.is_reference) {
             std::vector<std::string> left_out;
             Result<darkroom::DevelopedPicture> picture =
-                develop_by_reference(*composer_, item.input, job_.develop.target, left_out);
+                develop_by_reference(*composer_, item.input, job_.develop.target, histories_, left_out);
             if (!picture) return failure(std::move(picture));
             item.picture = std::move(*picture);
             tell_of_what_is_left_out(i, left_out);
@@ -289,6 +288,7 @@ class Develop {
     std::unique_ptr<darkroom::Developer> developer_;
     std::optional<std::vector<std::string>> last_left_out_;
     std::size_t next_place_ = 0;
+    darkroom::ReferenceHistories histories_;
     PassTimes pass_times_;
 };
 

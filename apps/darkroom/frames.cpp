@@ -182,7 +182,8 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
 }
 
 Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer, const DevelopInput& input,
-                                              DevelopTarget target, std::vector<std::string>& left_out) {
+                                              DevelopTarget target, darkroom::ReferenceHistories& histories,
+                                              std::vector<std::string>& left_out) {
     const ReferenceImage color = reference_image(input.color, input.extent, 4);
     const auto layer = [&](std::span<const float> values, std::size_t channels) {
         return values.empty() ? ReferenceImage() : reference_image(values, input.extent, channels);
@@ -199,7 +200,9 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
                                                                                      .lights = input.lights,
                                                                                      .camera = input.camera,
                                                                                      .time = input.time,
+                                                                                     .delta_time = input.delta_time,
                                                                                      .frame_index = input.frame_index,
+                                                                                     .histories = &histories,
                                                                                      .target_domain = domain});
     if (!made) return failure(made.error());
     left_out = std::move(made->left_out);

@@ -33,10 +33,12 @@ inline constexpr double assumed_field_of_view = 45;
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
                                      std::span<const std::string> left_out, std::string_view frame = {});
-/// By the CPU references alone, in the form that the target asks for. `left_out`: as in Plan.
+/// By the CPU references alone, in the form that the target asks for. `histories`: of the frame before, then of this
+/// one. `left_out`: as in Plan.
 [[nodiscard]] darkroom::Result<darkroom::DevelopedPicture> develop_by_reference(const darkroom::Composer& composer,
                                                                                 const darkroom::DevelopInput& input,
                                                                                 darkroom::DevelopTarget target,
+                                                                                darkroom::ReferenceHistories& histories,
                                                                                 std::vector<std::string>& left_out);
 [[nodiscard]] darkroom::Result<> write(const std::filesystem::path& path, darkroom::DevelopedPicture picture,
                                        const darkroom::WriteOptions& options);

@@ -6,7 +6,10 @@
 #include <cstdint>
 #include <darkroom/frame.hpp>
 #include <darkroom/resource.hpp>
+#include <functional>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace darkroom {
@@ -42,6 +45,10 @@ struct ReferenceLight {
     std::vector<std::vector<float>> cascades;
 };
 
+/// What the reference of an effect keeps from frame to frame: images under names of its own. Empty where the histories
+/// of the GPU would be zero (docs/conventions.md, "Histories").
+using ReferenceHistory = std::map<std::string, ReferenceImage, std::less<>>;
+
 /// What a reference reads beside its parameters. Images that are not there are null.
 struct ReferenceInput {
     const ReferenceImage* picture = nullptr;
@@ -56,6 +63,7 @@ struct ReferenceInput {
     double time = 0;
     double delta_time = 0;
     std::uint64_t frame_index = 0;
+    ReferenceHistory* history = nullptr;  ///< of this entry, to be read and written; null: a frame by itself
 };
 
 using ReferenceFunction = ReferenceImage (*)(const void* parameters, const ReferenceInput&);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "../effects/shared/blend_modes_reference.hpp"
+#include "compose/camera_jump.hpp"
 
 namespace darkroom {
 
@@ -51,6 +52,7 @@ class Chain {
     Chain(const Composer& composer, const ReferenceChainInput& input) : composer_(composer), input_(input) {}
 
     Result<ReferenceChainOutput> run() {
+        begin_histories();
         pictures_.push_back(*input_.color);
         ReferenceImage& alpha = pictures_.emplace_back(*input_.color);
         for (Rgba& pixel : alpha.pixels) {
@@ -60,6 +62,7 @@ class Chain {
         domains_.assign(2, Domain::SceneLinear);
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
+        if (input_.histories != nullptr) input_.histories->entries = std::move(histories_);
         ReferenceChainOutput out{.picture = pictures_[values_.empty() ? 0 : values_.back()],
                                  .left_out = std::move(left_out_)};
         const Domain domain = domains_[values_.empty() ? 0 : values_.back()];
@@ -70,6 +73,25 @@ class Chain {
     }
 
   private:
+    /// What is left of the frame before is nothing after a cut, as on the GPU.
+    void begin_histories() {
+        if (input_.histories == nullptr) return;
+        ReferenceHistories& kept = *input_.histories;
+        const bool goes_on = !input_.camera.is_cut && input_.delta_time > 0 && kept.width == input_.color->width &&
+                             kept.height == input_.color->height &&
+                             !compose::is_camera_jump(kept.camera, input_.camera.view);
+        if (!goes_on) kept.entries.clear();
+        kept.width = input_.color->width;
+        kept.height = input_.color->height;
+        kept.camera = input_.camera.view;
+    }
+
+    /// Those of entries that are off in this frame are dropped. Null: a frame by itself.
+    ReferenceHistory* history_of(Handle handle) {
+        if (input_.histories == nullptr) return nullptr;
+        return &(histories_[handle.id] = std::move(input_.histories->entries[handle.id]));
+    }
+
     /// size() if it is no entry of the stack.
     std::size_t index_of(Handle handle) const {
         std::size_t index = 0;
@@ -118,7 +140,7 @@ class Chain {
     }
 
     ReferenceImage result(const EffectInfo& info, const EntryDesc& desc, const std::vector<std::uint32_t>& words,
-                          std::size_t index, std::size_t from) const {
+                          std::size_t index, std::size_t from) {
         const ReferenceImage& base = pictures_[from];
         ReferenceImage layer = info.reference(
             words.data(), {.picture = &base,
@@ -131,7 +153,9 @@ class Chain {
                            .resources = &composer_.resources(),
                            .camera = input_.camera,
                            .time = input_.time,
-                           .frame_index = input_.frame_index});
+                           .delta_time = input_.delta_time,
+                           .frame_index = input_.frame_index,
+                           .history = history_of(composer_.entry(index))});
         const bool is_plain = desc.opacity == 1 && desc.blend == BlendMode::Mix && !desc.mask.is_given();
         const bool is_same_size = layer.width == base.width && layer.height == base.height;
         if (is_plain || !is_same_size) return layer;
@@ -149,6 +173,7 @@ class Chain {
     std::vector<Domain> domains_;      // of each picture
     std::vector<std::size_t> values_;  // of each entry: its picture
     std::vector<std::string> left_out_;
+    std::map<std::uint32_t, ReferenceHistory> histories_;  // of this frame
 };
 
 }  // namespace

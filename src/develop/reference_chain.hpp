@@ -12,6 +12,13 @@
 
 namespace darkroom {
 
+/// What a stack carries from one frame to the next of a view.
+struct ReferenceHistories {
+    std::map<std::uint32_t, ReferenceHistory> entries;  ///< by Handle::id: of those that the last frame ran
+    std::uint32_t width = 0, height = 0;                ///< of the last frame
+    Matrix camera{};                                    ///< its Camera::view
+};
+
 struct ReferenceChainInput {
     const ReferenceImage* color = nullptr;
     const ReferenceImage* depth = nullptr;
@@ -20,8 +27,10 @@ struct ReferenceChainInput {
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
+    double delta_time = 1.0 / 60;
     std::uint64_t frame_index = 0;
-    Domain target_domain = Domain::Encoded;  ///< SceneLinear: encode and dither are skipped
+    ReferenceHistories* histories = nullptr;  ///< null: a frame by itself
+    Domain target_domain = Domain::Encoded;   ///< SceneLinear: encode and dither are skipped
     /// Whether a picture that the stack leaves unencoded is sRGB-encoded for an Encoded target: by a kernel or, for an
     /// SRGB format, by the format. The output is what such a target holds.
     bool encodes_target = true;
