@@ -84,7 +84,10 @@ Frame Bed::frame(WorldUse use) const {
         return ref;
     };
     out.depth = read_only(use == WorldUse::Planar ? world->distance : world->depth);
-    if (use != WorldUse::WithoutNormals) out.normals = read_only(world->normals);
+    if (use != WorldUse::WithoutNormals) {
+        out.normals = read_only(world->normals);
+        out.velocity = read_only(world->velocity);
+    }
     out.camera = world->camera;
     if (use == WorldUse::Planar) out.camera.depth = DepthKind::Planar;
     out.lights = {&world->light, 1};
@@ -102,6 +105,8 @@ CompileDesc Bed::compile_desc(WorldUse use) const {
     out.depth = {frame.depth.format, layer_use};
     out.is_depth_planar = use == WorldUse::Planar;
     out.normals = {frame.normals.format, layer_use};
+    out.velocity = {frame.velocity.format, layer_use};
+    out.is_velocity_plain = true;
     out.has_shadows = true;
     return out;
 }

@@ -96,11 +96,17 @@ Stack ssao_stack(const std::string& method, const std::string& resolution) {
     return stack_of({{"ssao", {{"method", method}, {"resolution", resolution}}}});
 }
 
+Stack motion_blur_stack(const std::string& resolution) {
+    return stack_of({{"motion_blur", {{"resolution", resolution}}}});
+}
+
 Stack default_stack() {
     Stack stack;
     for (const EffectInfo* const effect : all_effects()) {
-        // As looks do: what moves coordinates takes part only while it is on, and at its defaults none does.
-        if (effect->flat.documented < 0 || effect->touch == Touch::Warp) continue;
+        // As looks do: of what is off, only pointwise effects without images have a place, and what moves coordinates
+        // moves nothing at its defaults.
+        const bool is_in_the_way = effect->touch == Touch::Warp || (!effect->flat.starts_on && effect->build);
+        if (effect->flat.documented < 0 || is_in_the_way) continue;
         stack.push_back(step_of(*effect));
         stack.back().is_on = effect->flat.starts_on;
     }

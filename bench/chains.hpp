@@ -37,6 +37,8 @@ using Stack = std::vector<Step>;
 [[nodiscard]] Stack plain_bloom_stack();
 /// Ambient occlusion alone.
 [[nodiscard]] Stack ssao_stack(const std::string& method, const std::string& resolution);
+/// Motion blur alone.
+[[nodiscard]] Stack motion_blur_stack(const std::string& resolution);
 /// The flat table with nothing written in it, in its documented order.
 [[nodiscard]] Stack default_stack();
 /// The same with the vignette on: with the world, ambient occlusion, bloom, exposure, ACES, encode, vignette.

@@ -72,7 +72,7 @@ Recipe plain_recipe(std::string_view name, PlainPass pass, gpu::Stage stage) {
             }};
 }
 
-bool needs_what_the_world_lacks(const EffectInfo& effect) { return effect.needs.velocity || effect.needs.ui; }
+bool needs_what_the_world_lacks(const EffectInfo& effect) { return effect.needs.ui; }
 
 Stack stack_of_one(std::string_view name) {
     const EffectInfo* const effect = find_effect(name);
@@ -108,6 +108,9 @@ void add_world_chains(std::vector<Recipe>& recipes) {
         add_chain(recipes, fmt::format("volumetric/{}", stage_name(stage)), stack_of_one("volumetric"),
                   {.kernels = stage, .world = engine});
     add_chain(recipes, "volumetric/auto, all given", stack_of_one("volumetric"), {.world = WorldUse::Planar});
+    for (const char* const resolution : {"half", "full"})
+        add_chain(recipes, fmt::format("motion_blur/{}", resolution), motion_blur_stack(resolution), {.world = engine});
+    add_chain(recipes, "motion_blur/half, all given", motion_blur_stack("half"), {.world = WorldUse::Planar});
     add_chain(recipes, "tail/fog", foggy_tail_stack({}), {.world = engine});
     add_chain(recipes, "tail/fog, all given", foggy_tail_stack({}), {.world = WorldUse::Planar});
     add_chains(recipes, "documented", documented_stack(), engine);
@@ -149,8 +152,10 @@ std::vector<Recipe> recipes() {
     out.push_back({.name = std::string(floor_name), .make = floor_row});
     for (const EffectInfo* const effect : all_effects())
         if (!needs_what_the_world_lacks(*effect))
-            out.push_back(chain_recipe(fmt::format("effect/{}", effect->name), single_stack(*effect),
-                                       {.world = effect->needs.normals ? WorldUse::Full : WorldUse::WithoutNormals}));
+            out.push_back(
+                chain_recipe(fmt::format("effect/{}", effect->name), single_stack(*effect),
+                             {.world = effect->needs.normals || effect->needs.velocity ? WorldUse::Full
+                                                                                       : WorldUse::WithoutNormals}));
     if (const Stack tail = tail_stack({}); !tail.empty()) {
         add_chains(out, "tail", tail);
         for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster}) {
@@ -209,6 +214,7 @@ Result<std::vector<PassRow>> measure_passes(Bed& bed, std::uint32_t rounds) {
         {"default", default_stack()},
         {"ssao, ground_truth", ssao_stack("ground_truth", "half"), WorldUse::WithoutNormals},
         {"volumetric", stack_of_one("volumetric"), WorldUse::WithoutNormals},
+        {"motion_blur", motion_blur_stack("half"), WorldUse::WithoutNormals},
         {"documented", documented_stack(), WorldUse::WithoutNormals}};
     auto submitter = Submitter::create(bed.context);
     if (!submitter) return failure(std::move(submitter));

@@ -25,6 +25,9 @@ struct Hit {
 
 constexpr float sky_distance = 1e10F;
 constexpr Vector eye{0, 1.7F, 8};
+/// Of a camera that walks on and looks to the side, from frame to frame: metres, and radians of some 120 degrees a
+/// second.
+constexpr float walked = 0.05F, turned = 0.035F;
 constexpr std::uint32_t cascade_size = 2048;
 /// Texels that share a ray, in each direction: the cascades cost as much to read, and a sixteenth to make.
 constexpr std::uint32_t texels_per_ray = 4;
@@ -70,8 +73,24 @@ Camera street_camera(VkExtent2D extent) {
     camera.projection[11] = -1;
     camera.projection[14] = near * far / (far - near);
     camera.previous_view = camera.view;
+    camera.previous_view[0] = camera.previous_view[10] = std::cos(turned);
+    camera.previous_view[8] = std::sin(turned);
+    camera.previous_view[2] = -camera.previous_view[8];
+    const float behind = eye[2] + walked;
+    camera.previous_view[12] = -camera.previous_view[8] * behind;
+    camera.previous_view[14] = -camera.previous_view[10] * behind;
     camera.previous_projection = camera.projection;
     return camera;
+}
+
+/// Previous minus current place of a point that stands still, x and y of the picture that is 2 wide and 2 high.
+std::array<float, 2> moved(const Camera& camera, const Vector& place, float right, float down) {
+    const Matrix& view = camera.previous_view;
+    Vector seen{view[12], view[13], view[14]};
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t axis = 0; axis < 3; ++axis) seen[row] += view[axis * 4 + row] * place[axis];
+    const Matrix& projection = camera.previous_projection;
+    return {projection[0] * seen[0] / -seen[2] - right, projection[5] * seen[1] / -seen[2] - down};
 }
 
 Vector normalized(const Vector& v) {
@@ -152,6 +171,10 @@ StreetView view_street(VkExtent2D extent) {
             out.depth.push_back(hit.is_sky() ? 0 : std::max(projection[14] / hit.distance - projection[10], 0.0F));
             for (std::size_t axis = 0; axis < 3; ++axis)
                 out.normals.push_back(hit.is_sky() || axis != hit.axis ? 0 : std::copysign(1.0F, -direction[axis]));
+            const Vector place = along(eye, direction, hit.is_sky() ? 1e6F : hit.distance);
+            const auto [x_moved, y_moved] = moved(out.camera, place, right, down);
+            out.velocity.push_back(x_moved * static_cast<float>(extent.width) / 2);
+            out.velocity.push_back(y_moved * static_cast<float>(extent.height) / 2);
         }
     return out;
 }
@@ -163,6 +186,8 @@ Result<World> World::create(gpu::Context& context, VkExtent2D extent) {
         normals.push_back(half_bits(seen.normals[i]));
         if (i % 3 == 2) normals.push_back(0);
     }
+    std::vector<std::uint16_t> velocity;
+    for (const float number : seen.velocity) velocity.push_back(half_bits(number));
     World world{.camera = seen.camera, .light = sun()};
     const auto make = [&](gpu::Image& image, const char* name, VkFormat format, VkExtent2D size, std::uint32_t layers,
                           const auto& numbers) -> Result<> {
@@ -181,6 +206,7 @@ Result<World> World::create(gpu::Context& context, VkExtent2D extent) {
     auto done = make(world.depth, "depth", VK_FORMAT_D32_SFLOAT, extent, 1, seen.depth);
     if (done) done = make(world.distance, "distance", VK_FORMAT_R32_SFLOAT, extent, 1, seen.distance);
     if (done) done = make(world.normals, "normals", VK_FORMAT_R16G16B16A16_SFLOAT, extent, 1, normals);
+    if (done) done = make(world.velocity, "velocity", VK_FORMAT_R16G16_SFLOAT, extent, 1, velocity);
     if (done)
         done = make(world.cascades, "cascades", VK_FORMAT_D32_SFLOAT, {cascade_size, cascade_size}, Light::max_cascades,
                     shadows(street(), world.light));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What scene-aware effects read beside the colour: a street of columns that ends in a wall, under a low sun, as a
-// renderer would hand it over. It is traced on the CPU, once, and has nothing to do with the colours of the bed.
+// renderer would hand it over while the camera walks and looks about. It is traced on the CPU, once, and has nothing to
+// do with the colours of the bed.
 
 #include <darkroom/frame.hpp>
 #include <vector>
@@ -14,7 +15,8 @@ namespace darkroom::bench {
 struct StreetView {
     Camera camera;
     std::vector<float> depth, distance;
-    std::vector<float> normals;  ///< x, y, z of the world; 0 for sky
+    std::vector<float> normals;   ///< x, y, z of the world; 0 for sky
+    std::vector<float> velocity;  ///< x, y: previous minus current place, in pixels
 };
 [[nodiscard]] StreetView view_street(VkExtent2D extent);
 
@@ -24,6 +26,7 @@ struct World {
     gpu::Image depth;     ///< D32, reversed
     gpu::Image distance;  ///< R32F, planar
     gpu::Image normals;   ///< RGBA16F, of the world
+    gpu::Image velocity;  ///< RG16F, in pixels
     gpu::Image cascades;  ///< D32, four layers of 2048 x 2048
     Camera camera;        ///< of `depth`
     Light light;
@@ -32,9 +35,9 @@ struct World {
 /// What a frame tells of it.
 enum class WorldUse : std::uint8_t {
     None,
-    Full,            ///< device depth, normals, shadows
+    Full,            ///< device depth, normals, velocity, shadows
     WithoutNormals,  ///< device depth, shadows: what every engine has
-    Planar,          ///< planar distance, normals, shadows: the cheapest input
+    Planar,          ///< planar distance, normals, velocity, shadows: the cheapest input
 };
 
 }  // namespace darkroom::bench

@@ -75,6 +75,7 @@ TEST_F(ChainReference, TheDefaultOrders) {
 /// A floor that rises to a wall with sky above it, a post before them, and a light from above that half a roof hides.
 struct LitFloor {
     LitFloor() {
+        camera.previous_view[12] += 0.25F;  // it goes to the side
         for (std::uint32_t y = 0; y < extent.height; ++y)
             for (std::uint32_t x = 0; x < extent.width; ++x) {
                 const double v = (y + 0.5) / extent.height;
@@ -132,12 +133,23 @@ double mean_codes(const ReferenceImage& a, const ReferenceImage& b) {
 }
 
 using Names = std::vector<std::string>;
-const Names documented_order{
-    "radial_blur", "chromatic_aberration", "ssao",   "volumetric", "bloom",   "exposure", "color_grade", "tonemap",
-    "fog",         "lens_distortion",      "encode", "dither",     "vignette"};
+const Names documented_order{"radial_blur",
+                             "chromatic_aberration",
+                             "ssao",
+                             "volumetric",
+                             "motion_blur",
+                             "bloom",
+                             "exposure",
+                             "color_grade",
+                             "tonemap",
+                             "fog",
+                             "lens_distortion",
+                             "encode",
+                             "dither",
+                             "vignette"};
 const Names scene_linear_order{
-    "radial_blur", "chromatic_aberration", "ssao",     "volumetric", "bloom", "fog", "exposure", "color_grade",
-    "tonemap",     "lens_distortion",      "vignette", "encode",     "dither"};
+    "radial_blur", "chromatic_aberration", "ssao",    "volumetric",      "motion_blur", "bloom",  "fog",
+    "exposure",    "color_grade",          "tonemap", "lens_distortion", "vignette",    "encode", "dither"};
 
 /// The flat table with everything on at once, strong enough that each effect shows.
 void fill_with_everything(Composer& composer, bool is_documented) {
@@ -149,6 +161,9 @@ ssao_intensity = 4
 ssao_radius = 1.5
 volumetric_enabled = true
 volumetric_density = 40
+motion_blur_enabled = true
+motion_blur_shutter_angle = 360
+motion_blur_resolution = "full"
 bloom_intensity = 1
 bloom_threshold = 0.1
 exposure = 1.3

@@ -5,13 +5,10 @@ namespace darkroom {
 
 namespace {
 
-/// From clip.z = p10 z + p14 and clip.w = p11 z + p15, with z = -distance, solved for the distance.
-void depth_constants(const void*, const PassContext& context, std::span<PassVector> out) {
-    const Camera& camera = *context.camera;
-    const Matrix& p = camera.projection;
-    const bool is_planar = camera.depth == DepthKind::Planar;
-    out[0] = is_planar ? PassVector{1, 0, 0, 1} : PassVector{-p[15], p[14], -p[11], p[10]};
-    out[1] = {is_planar ? 1e10f : camera.depth == DepthKind::Reversed ? 0.0f : 1.0f, 0, 0, 0};
+void linear_depth_constants(const void*, const PassContext& context, std::span<PassVector> out) {
+    const DepthConstants depth = depth_constants(*context.camera);
+    out[0] = depth.distance;
+    out[1] = {depth.sky, 0, 0, 0};
 }
 
 PassImage make_linear_depth(PassBuilder& builder) {
@@ -21,7 +18,7 @@ PassImage make_linear_depth(PassBuilder& builder) {
          .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
          .output = builder.create({.name = "linear depth", .format = VK_FORMAT_R32_SFLOAT}),
          .custom_vectors = 2,
-         .constants = depth_constants});
+         .constants = linear_depth_constants});
 }
 
 PassImage make_half_depth(PassBuilder& builder) {
@@ -86,6 +83,13 @@ PassImage make_normals(PassBuilder& builder) {
 }
 
 }  // namespace
+
+DepthConstants depth_constants(const Camera& camera) {
+    // From clip.z = p10 z + p14 and clip.w = p11 z + p15, with z = -distance, solved for the distance.
+    const Matrix& p = camera.projection;
+    if (camera.depth == DepthKind::Planar) return {};
+    return {.distance = {-p[15], p[14], -p[11], p[10]}, .sky = camera.depth == DepthKind::Reversed ? 0.0f : 1.0f};
+}
 
 RayConstants ray_constants(const Camera& camera, VkExtent2D frame, float step) {
     const Matrix& p = camera.projection;

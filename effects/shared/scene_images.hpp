@@ -12,6 +12,13 @@ namespace darkroom {
 /// The same of every second pixel of every second row: half the size, floored.
 [[nodiscard]] PassImage half_depth(PassBuilder& builder, ConditionFunction condition = nullptr);
 
+/// For passes that read the depth image itself: a depth d is at the planar distance (d x + y) / (d z + w).
+struct DepthConstants {
+    PassVector distance{1, 0, 0, 1};
+    float sky = 1e10f;  ///< depth of the sky
+};
+[[nodiscard]] DepthConstants depth_constants(const Camera& camera);
+
 /// Previous minus current position, in pixels, y down, without jitter, whatever Camera::velocity says of the host's
 /// image: red and green. For effects whose needs name velocity.
 [[nodiscard]] PassImage velocity(PassBuilder& builder, ConditionFunction condition = nullptr);
