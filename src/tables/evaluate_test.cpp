@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "tables/evaluate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <sstream>
+
+#include "image/test_files.hpp"
+#include "tables/cube_file.hpp"
+#include "tables/table_image.hpp"
+#include "tables/test_tables.hpp"
+
+namespace darkroom {
+namespace {
+
+constexpr std::array both{TableInterpolation::Tetrahedral, TableInterpolation::Trilinear};
+
+/// Random entries for random ranges.
+ColorTable random_table(std::uint32_t size, std::uint32_t shaper_size) {
+    std::mt19937 random(size * 1000 + shaper_size);
+    std::uniform_real_distribution<float> any(-1, 2);
+    ColorTable table{.shaper_size = shaper_size,
+                     .shaper_min = {-1, 0, 0.5f},
+                     .shaper_max = {1, 2, 0.75f},
+                     .size = size,
+                     .min = {-1, -2, 0},
+                     .max = {2, 2, 0.5f}};
+    table.shaper.resize(std::size_t{shaper_size} * 3);
+    table.cube.resize(std::size_t{size} * size * size * 3);
+    for (std::vector<float>* const list : {&table.shaper, &table.cube})
+        for (float& value : *list) value = any(random);
+    return table;
+}
+
+TEST(TablesEvaluate, EntriesAreExact) {
+    const ColorTable table = random_table(7, 0);
+    for (std::size_t b = 0; b < 7; ++b)
+        for (std::size_t g = 0; g < 7; ++g)
+            for (std::size_t r = 0; r < 7; ++r) {
+                TableColor at{double(r) / 6, double(g) / 6, double(b) / 6};
+                for (std::size_t i = 0; i < 3; ++i)
+                    at[i] = double{table.min[i]} + at[i] * (double{table.max[i]} - double{table.min[i]});
+                const float* const entry = &table.cube[((b * 7 + g) * 7 + r) * 3];
+                for (const auto how : both)
+                    EXPECT_LE(test::distance(evaluate(table, at, how), {entry[0], entry[1], entry[2]}), 1e-14);
+            }
+}
+
+TEST(TablesEvaluate, BetweenEntriesItIsContinuousAndLinearOnTheDiagonal) {
+    const ColorTable table = random_table(5, 0);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int i = 0; i < 20000; ++i) {
+        TableColor a{3 * unit(random) - 1, 4 * unit(random) - 2, unit(random) / 2}, b = a;
+        for (double& value : b) value += 1e-9;
+        for (const auto how : both) EXPECT_LE(test::distance(evaluate(table, a, how), evaluate(table, b, how)), 1e-6);
+    }
+    // Of the first cell: a quarter of the way from black to white, by tetrahedra.
+    const ColorTable cube{.size = 2, .cube = {0, 0, 0, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 1, 2, 3}};
+    EXPECT_EQ(evaluate(cube, {0.25, 0.25, 0.25}), (TableColor{0.25, 0.5, 0.75}));
+    EXPECT_EQ(evaluate(cube, {0.5, 0.5, 0.5}, TableInterpolation::Trilinear), (TableColor{6.875, 7, 7.125}));
+}
+
+TEST(TablesEvaluate, BeyondItsInputsIsTheirEdgeAndNanTheFirst) {
+    const ColorTable table = random_table(4, 9);
+    const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto how : both) {
+        EXPECT_EQ(evaluate(table, {-infinity, 5, 0.2}, how), evaluate(table, {-1, 2, 0.5}, how));
+        EXPECT_EQ(evaluate(table, {nan, infinity, nan}, how), evaluate(table, {-1, 2, 0.5}, how));
+    }
+}
+
+TEST(TablesEvaluate, AShaperAloneIsACurveForEachChannel) {
+    const ColorTable table{.shaper_size = 3, .shaper_max = {1, 2, 4}, .shaper = {0, 1, 2, 1, 1, 0, 5, 2, 1}};
+    EXPECT_EQ(evaluate(table, {0.75, 0.5, 3}), (TableColor{3, 1, 0.5}));
+    EXPECT_EQ(evaluate({}, {-1, 0.5, 3}), (TableColor{-1, 0.5, 3}));
+}
+
+class TablesExpected : public WithData {};
+
+// What OpenColorIO made of the same files: its results are single precision.
+TEST_F(TablesExpected, EveryColourIsThatOfOpenColorIO) {
+    std::size_t files = 0, rows = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(data_ / "lut/expected")) {
+        ++files;
+        const std::string name = entry.path().stem().string();
+        const Result<TableFile> file = parse_cube(content(data_ / ("lut/" + name + ".cube")), name);
+        ASSERT_TRUE(file) << file.error().text;
+        std::istringstream lines(content(data_ / ("lut/expected/" + name + ".csv")));
+        for (std::string line; std::getline(lines, line);) {
+            if (line.starts_with('#')) continue;
+            std::ranges::replace(line, ',', ' ');
+            std::istringstream numbers(line);
+            std::array<TableColor, 3> colors{};
+            for (TableColor& color : colors) numbers >> color[0] >> color[1] >> color[2];
+            ASSERT_TRUE(numbers) << line;
+            ++rows;
+            const auto& [input, trilinear, tetrahedral] = colors;
+            for (const auto& [how, expected] : {std::pair(TableInterpolation::Trilinear, trilinear),
+                                                std::pair(TableInterpolation::Tetrahedral, tetrahedral)}) {
+                const TableColor found = evaluate(file->table, input, how);
+                for (std::size_t i = 0; i < 3; ++i)
+                    EXPECT_NEAR(found[i], expected[i], 2e-5 * std::max(1.0, std::abs(expected[i])))
+                        << name << ": " << line;
+            }
+        }
+    }
+    EXPECT_EQ(files, 10u);
+    EXPECT_EQ(rows, 1970u);
+}
+
+TEST_F(TablesExpected, AShaperWithCommentsIsItsResolveForm) {
+    const Result<TableFile> file =
+        parse_cube(content(data_ / "lut/colour_resolve_shaper.cube"), "colour_resolve_shaper.cube");
+    ASSERT_TRUE(file) << file.error().text;
+    EXPECT_EQ(file->title, "LUT3D with My Shaper");
+    EXPECT_EQ(file->table.shaper_size, 10u);
+    EXPECT_EQ(file->table.size, 3u);
+    // The shaper's first entry lies below the cube's inputs, its last one is 1.6476816 of -0.1 .. 3 in each channel.
+    EXPECT_EQ(evaluate(file->table, {-0.1, -0.1, -0.1}),
+              evaluate({.size = 3, .min = {0, 0, 0}, .max = {1, 1, 1}, .cube = file->table.cube}, {0, 0, 0}));
+}
+
+/// A picture whose pixels count: pixel i is (i, i + 0.25, i + 0.5).
+ResourceImage counted(std::uint32_t width, std::uint32_t height) {
+    ResourceImage out{width, height, {}};
+    for (std::uint32_t i = 0; i < width * height; ++i)
+        for (const float add : {0.0f, 0.25f, 0.5f, 9.0f}) out.rgba.push_back(static_cast<float>(i) + add);
+    return out;
+}
+
+TEST(TablesImage, StripsAndHaldClutsAreCubes) {
+    const auto entry = [](const ColorTable& table, std::size_t r, std::size_t g, std::size_t b) {
+        return table.cube[((b * table.size + g) * table.size + r) * 3];
+    };
+    // Slices side by side, below each other, and a HaldCLUT of level 2.
+    const Result<ColorTable> row = table_of_image(counted(256, 16)), column = table_of_image(counted(16, 256)),
+                             hald = table_of_image(counted(8, 8));
+    ASSERT_TRUE(row && column && hald);
+    EXPECT_EQ(row->size, 16u);
+    EXPECT_EQ(column->size, 16u);
+    EXPECT_EQ(hald->size, 4u);
+    EXPECT_EQ(entry(*row, 3, 5, 7), 5 * 256 + 7 * 16 + 3);
+    EXPECT_EQ(entry(*column, 3, 5, 7), (7 * 16 + 5) * 16 + 3);
+    EXPECT_EQ(entry(*hald, 3, 2, 1), 16 + 2 * 4 + 3);
+    EXPECT_EQ(row->cube[1] - row->cube[0], 0.25f);
+}
+
+TEST(TablesImage, OtherSizesAndNumbersAreRefused) {
+    for (const auto& [width, height] : {std::pair(0u, 0u), {1u, 1u}, {2u, 2u}, {16u, 255u}, {9u, 9u}, {256u, 15u}}) {
+        const Result<ColorTable> table = table_of_image(counted(width, height));
+        ASSERT_FALSE(table) << width << "x" << height;
+        EXPECT_NE(table.error().text.find(fmt::format("{}x{}", width, height)), std::string::npos);
+    }
+    ResourceImage broken = counted(4, 2);
+    broken.rgba[9] = std::numeric_limits<float>::quiet_NaN();
+    const Result<ColorTable> table = table_of_image(broken);
+    ASSERT_FALSE(table);
+    EXPECT_NE(table.error().text.find("(2, 0) is nan"), std::string::npos) << table.error().text;
+}
+
+}  // namespace
+}  // namespace darkroom
