@@ -21,6 +21,19 @@ struct NamedStep {
 };
 
 constexpr std::string_view noise_effect = "dither";
+/// Stands for a table until a Composer has one.
+constexpr std::uint32_t some_table = 1;
+
+/// A cube of the usual size, which darkens a little.
+ColorTable usual_table() {
+    ColorTable table{.size = 33};
+    for (std::uint32_t b = 0; b < table.size; ++b)
+        for (std::uint32_t g = 0; g < table.size; ++g)
+            for (std::uint32_t r = 0; r < table.size; ++r)
+                for (const std::uint32_t entry : {r, g, b})
+                    table.cube.push_back(0.95f / 32 * static_cast<float>(entry));
+    return table;
+}
 
 Step step_of(const EffectInfo& effect) {
     return {.effect = &effect, .words = {effect.parameters.defaults.begin(), effect.parameters.defaults.end()}};
@@ -51,11 +64,17 @@ Stack stack_of(const std::vector<NamedStep>& steps) {
     return stack;
 }
 
-/// Sets the first number that makes the effect do something.
+/// Sets the first number, or names a table, that makes the effect do something.
 void make_visible(Step& step) {
     const EffectInfo& effect = *step.effect;
     if (effect.is_identity == nullptr || !effect.is_identity(step.words.data())) return;
     for (const ParamInfo& row : effect.parameters.rows) {
+        if (row.kind == Kind::Resource) {
+            step.words[row.word] = some_table;
+            if (!effect.is_identity(step.words.data())) return;
+            step.words[row.word] = 0;
+            continue;
+        }
         for (const double value : {0.5 * (row.range.min + row.range.max), row.range.max, row.range.min}) {
             std::vector<std::uint32_t> words = step.words;
             if (!assign(row, words, value) || effect.is_identity(words.data())) continue;
@@ -73,6 +92,14 @@ Stack foggy_tail_stack(const TailValues& values) {
     std::vector<NamedStep> steps = tail_steps(values);
     steps.insert(std::ranges::find(steps, "tonemap", &NamedStep::effect) + 1, {.effect = "fog"});
     return stack_of(steps);
+}
+
+Stack graded_tail_stack(const TailValues& values) {
+    std::vector<NamedStep> steps = tail_steps(values);
+    steps.insert(std::ranges::find(steps, "encode", &NamedStep::effect), {.effect = "lut"});
+    Stack stack = stack_of(steps);
+    for (Step& step : stack) make_visible(step);
+    return stack;
 }
 
 const EffectInfo* tail_noise_effect() { return find_effect(noise_effect); }
@@ -136,7 +163,11 @@ void fill(Composer& composer, const Stack& stack) {
         EntryDesc desc{.source = scene_color, .enabled = step.is_on};
         if (step.joins_scene) desc.input = scene_color;
         if (step.effect->has_second) desc.second = step.joins_scene ? before : scene_color;
-        before = composer.add(*step.effect, step.words.data(), desc);
+        std::vector<std::uint32_t> words = step.words;
+        for (const ParamInfo& row : step.effect->parameters.rows)
+            if (row.kind == Kind::Resource && words[row.word] == some_table)
+                words[row.word] = composer.define(usual_table()).value_or(Resource{}).id;
+        before = composer.add(*step.effect, words.data(), desc);
     }
 }
 

@@ -29,6 +29,8 @@ using Stack = std::vector<Step>;
 [[nodiscard]] const EffectInfo* tail_noise_effect();
 /// The same with fog at its place in the documented order, after the tone mapping.
 [[nodiscard]] Stack foggy_tail_stack(const TailValues& values);
+/// The same with a colour table before the encoding, a cube of 33.
+[[nodiscard]] Stack graded_tail_stack(const TailValues& values);
 /// Bloom at five levels.
 [[nodiscard]] Stack bloom_stack();
 /// A Gaussian blur alone; `resolution`: automatic or full.

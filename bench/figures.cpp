@@ -69,6 +69,7 @@ constexpr std::array targets{
     Target{"motion blur, full size", "motion_blur/full", calibration_name, {}, "effect/encode"},
     Target{"fog in the tail", "tail/fog", calibration_name, 0.6, "tail/fused/auto"},
     Target{"fog in the tail, all given", "tail/fog, all given", calibration_name, {}, "tail/fused/auto"},
+    Target{"lut in the tail", "tail/lut", calibration_name, 2.0, "tail/fused/auto"},
     Target{"gaussian, radius 4", "gaussian/4/automatic/auto", calibration_name, 8.0, "effect/encode"},
     Target{"gaussian, radius 16", "gaussian/16/automatic/auto", calibration_name, {}, "effect/encode"},
     Target{"gaussian, radius 64", "gaussian/64/automatic/auto", calibration_name, {}, "effect/encode"},

@@ -164,6 +164,7 @@ std::vector<Recipe> recipes() {
             out.push_back(plain_recipe("copy/plain", PlainPass::Copy, stage));
         }
     }
+    add_chain(out, "tail/lut", graded_tail_stack({}), {});
     if (const Stack bloom = bloom_stack(); !bloom.empty())
         for (const KernelStage stage : stages)
             out.push_back(chain_recipe(fmt::format("bloom/{}", stage_name(stage)), bloom, {.kernels = stage}));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/files.hpp"
 #include "core/param_text.hpp"
 
 namespace darkroom {
@@ -252,6 +253,12 @@ void write_entries(fmt::memory_buffer& out, std::span<const float> entries) {
 }  // namespace
 
 Result<TableFile> parse_cube(std::string_view text, std::string_view shown) { return CubeParser(shown).parse(text); }
+
+Result<TableFile> read_cube(const std::filesystem::path& path) {
+    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = max_cube_file});
+    if (!bytes) return failure(bytes.error());
+    return parse_cube({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, printable(path.string()));
+}
 
 Result<std::string> write_cube(const TableFile& file) {
     const ColorTable& table = file.table;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <darkroom/resource.hpp>
 #include <darkroom/result.hpp>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,8 @@ struct TableFile {
 /// sizes ask for. Memory is proportional to the text, whatever its sizes say. Errors are `shown:line: thing, value,
 /// what is allowed`.
 [[nodiscard]] Result<TableFile> parse_cube(std::string_view text, std::string_view shown);
+
+[[nodiscard]] Result<TableFile> read_cube(const std::filesystem::path& path);
 
 /// The text of a file that parse_cube() reads back with the same bits. A table with a shaper and a cube is in Resolve's
 /// form, whose ranges are the same for all channels: one of another kind is refused.

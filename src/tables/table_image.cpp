@@ -21,17 +21,23 @@ bool is_edge(std::uint64_t edge) { return edge >= min_table_size && edge <= max_
 
 }  // namespace
 
+Result<std::uint32_t> table_image_edge(std::uint32_t width, std::uint32_t height) {
+    if (const std::uint32_t level = width == height ? hald_level(width) : 0; level > 0) return level * level;
+    const std::uint64_t wide = width, high = height;
+    if (is_edge(high) && wide == high * high) return height;
+    if (is_edge(wide) && high == wide * wide) return width;
+    return user_error(
+        fmt::format("a picture of {}x{} is no table: a strip is n*n x n or n x n*n, n in [{}, {}], a HaldCLUT is a "
+                    "square of 8, 27, 64 ... 4096",
+                    width, height, min_table_size, max_cube_size));
+}
+
 Result<ColorTable> table_of_image(const ResourceImage& image) {
-    const std::uint64_t width = image.width, height = image.height;
-    const std::uint32_t level = width == height ? hald_level(image.width) : 0;
-    const bool is_row = is_edge(height) && width == height * height;
-    const bool is_column = is_edge(width) && height == width * width;
-    if (level == 0 && !is_row && !is_column)
-        return user_error(
-            fmt::format("a picture of {}x{} is no table: a strip is n*n x n or n x n*n, n in [{}, {}], a HaldCLUT is "
-                        "a square of 8, 27, 64 ... 4096",
-                        width, height, min_table_size, max_cube_size));
-    ColorTable table{.size = level > 0 ? level * level : is_row ? image.height : image.width};
+    const Result<std::uint32_t> size = table_image_edge(image.width, image.height);
+    if (!size) return failure(size.error());
+    ColorTable table{.size = *size};
+    const std::size_t width = image.width;
+    const bool is_row = image.width > image.height;
     const std::size_t edge = table.size;
     table.cube.reserve(edge * edge * edge * 3);
     for (std::size_t b = 0; b < edge; ++b) {

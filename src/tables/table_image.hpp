@@ -9,7 +9,10 @@
 
 namespace darkroom {
 
-/// The pixels' numbers become entries as they are; alpha says nothing. Errors name size and what is allowed.
+/// The edge of the cube that a picture of this size is. Errors name the size and what is allowed.
+[[nodiscard]] Result<std::uint32_t> table_image_edge(std::uint32_t width, std::uint32_t height);
+/// The pixels' numbers become entries as they are; alpha says nothing. Errors name the size or the pixel, and what is
+/// allowed.
 [[nodiscard]] Result<ColorTable> table_of_image(const ResourceImage& image);
 
 }  // namespace darkroom

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Lut: looks every colour up in a table (.cube and its like), as grading programs and cameras' makers hand them out. A
+// table knows nothing of what its numbers mean: `space` says what it expects. For arithmetic that can be written down
+// (exposure, contrast) a table is the worse choice: it is cut off at its ends and approximate between its entries.
+
+#include <darkroom/effect.hpp>
+
+namespace darkroom {
+
+/// What a table is given; see lut.md for curves and primaries.
+enum class LutSpace : std::uint32_t { Display, SceneLinear, Acescct, Logc3, Slog3 };
+/// What a table gives.
+enum class LutResult : std::uint32_t { Same, Display };
+enum class LutInterpolation : std::uint32_t { Tetrahedral, Trilinear };
+
+struct Lut {
+    Resource lut;
+    Resource fade_to;
+    float fade = 0.0f;
+    float strength = 1.0f;
+    LutSpace space = LutSpace::Display;
+    LutResult result = LutResult::Same;
+    LutInterpolation interpolation = LutInterpolation::Tetrahedral;
+};
+inline constexpr auto lut_rows = describe(
+    field<&Lut::lut>("The table that colours are looked up in.").as_amount(),
+    field<&Lut::fade_to>("Another table, for the same space, to fade to."),
+    field<&Lut::fade>("How far the picture has faded to the other table.", {0, 1}),
+    field<&Lut::strength>("How much of the result goes over the picture.", {0, 1}),
+    field<&Lut::space>("What the tables are given: sRGB code values, or scene-linear light by a curve."),
+    field<&Lut::result>("What the tables give: the same as they are given, or sRGB code values for a display."),
+    field<&Lut::interpolation>("How a 3D table is read between its entries."));
+
+[[nodiscard]] const EffectInfo& effect_info(const Lut&);
+
+}  // namespace darkroom
