@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Colour tables from files of any kind: .cube by the tree's own reader, pictures (strips and HaldCLUTs) through the
+// readers of pictures, .3dl .spi1d .spi3d .csp .clf through OpenColorIO.
+
+#include <filesystem>
+#include <optional>
+
+#include "tables/cube_file.hpp"
+
+namespace darkroom {
+
+struct FoundTable {
+    TableFile file;
+    std::string format;  ///< ".cube", "a picture", ".clf"
+    /// Largest difference of the table from the file's operations, on random colours of the table's inputs; only where
+    /// OpenColorIO read the file.
+    std::optional<double> error;
+};
+
+/// Is this the name of a file of tables that is no picture?
+[[nodiscard]] bool is_table_name(const std::filesystem::path& path);
+/// Errors begin with the path.
+[[nodiscard]] Result<FoundTable> read_table_file(const std::filesystem::path& path);
+
+/// The same for looks: what a file's name in a look stands for.
+[[nodiscard]] Result<ResourceData> load_resource_file(const std::filesystem::path& path);
+
+}  // namespace darkroom
