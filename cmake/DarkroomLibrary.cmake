@@ -13,7 +13,7 @@ function(darkroom_shared_library name)
   foreach(part ${library_PARTS})
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
     target_link_libraries(${name} PRIVATE
-      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|plan|compose|effects|custom|toml|looks)$>")
+      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|plan|compose|effects|custom|toml|tables|looks)$>")
   endforeach()
   set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
     LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -36,7 +36,7 @@ darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS ${
 # The headers name Vulkan types; a host calls Vulkan through whatever loader it has.
 target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)
 if(TARGET darkroom_looks)
-  darkroom_shared_library(darkroom_looks_shared OUTPUT darkroom_looks EXPORT looks PARTS toml looks)
+  darkroom_shared_library(darkroom_looks_shared OUTPUT darkroom_looks EXPORT looks PARTS toml tables looks)
   target_link_libraries(darkroom_looks_shared PUBLIC darkroom_shared PRIVATE darkroom_fmt)
 endif()
 if(DARKROOM_STATIC)

@@ -5,8 +5,10 @@
 #include <array>
 
 #include "core/param_text.hpp"
+#include "image/table_file.hpp"
 #include "info_documents.hpp"
 #include "looks/look_parts.hpp"
+#include "looks/look_resources.hpp"
 #include "scene/scene_file.hpp"
 #include "toml/toml_text.hpp"
 
@@ -16,10 +18,10 @@ using darkroom::Result;
 
 namespace {
 
-void add_values(Json& out, const darkroom::ParamTable& table, std::span<const std::uint32_t> words) {
-    for (const darkroom::ParamInfo& row : table.rows) {
-        const std::string value = darkroom::format(row, words);
-        if (value != darkroom::format(row, table.defaults))
+void add_values(Json& out, const darkroom::LookEntry& entry) {
+    for (const darkroom::ParamInfo& row : entry.effect->parameters.rows) {
+        const std::string value = darkroom::value_text(entry, row);
+        if (value != darkroom::format(row, entry.effect->parameters.defaults))
             out[std::string(row.name)] = Json::parse(value, nullptr, false);
     }
 }
@@ -50,7 +52,7 @@ Json entries_of(const darkroom::Look& look) {
     for (const darkroom::LookEntry* const entry : darkroom::ordered(look)) {
         const darkroom::EffectInfo& effect = *entry->effect;
         Json values = Json::object();
-        add_values(values, effect.parameters, entry->words);
+        add_values(values, *entry);
         if (entry->state.opacity != 1) values["opacity"] = entry->state.opacity;
         const darkroom::EntryState plain;
         if (entry->state.blend != plain.blend)
@@ -97,6 +99,7 @@ Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects)
                                                              {.warnings = &warnings,
                                                               .is_scene = is_scene,
                                                               .allows_custom_effects = allows_custom_effects,
+                                                              .load_resource = darkroom::load_resource_file,
                                                               .folder = path.parent_path()});
     if (!look) return failure(look.error());
     if (is_scene)

@@ -6,6 +6,7 @@
 #include <darkroom/effects.hpp>
 
 #include "core/param_text.hpp"
+#include "image/table_file.hpp"
 #include "looks/look_parts.hpp"
 #include "named_effects.hpp"
 #include "report.hpp"
@@ -141,7 +142,8 @@ Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
     const darkroom::LookOptions options{.is_strict = is_strict_,
                                         .warnings = &warnings,
                                         .is_scene = file.empty() || is_scene_name(file),
-                                        .allows_custom_effects = !has_no_custom_effects_};
+                                        .allows_custom_effects = !has_no_custom_effects_,
+                                        .load_resource = darkroom::load_resource_file};
     const std::filesystem::path path = file.empty() ? scene : std::filesystem::path(file);
     Result<Look> look = path.empty() ? Result<Look>(darkroom::default_look()) : darkroom::read_look(path, options);
     for (const std::string& warning : warnings) warn(warning);
@@ -151,7 +153,7 @@ Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
     if (Result<> done = add_custom_effects(*look); !done) return failure(std::move(done));
     const Result<std::vector<LookOverride>> values = overrides();
     if (!values) return failure(values.error());
-    if (Result<> done = darkroom::override_look(*look, *values); !done) return failure(std::move(done));
+    if (Result<> done = darkroom::override_look(*look, *values, options); !done) return failure(std::move(done));
     if (is_off_) {
         *look = darkroom::default_look();
         look->is_enabled = false;

@@ -17,6 +17,7 @@
 #include <darkroom/param.hpp>
 #include <darkroom/result.hpp>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -46,12 +47,20 @@ inline constexpr auto entry_rows =
                                        {0.015625, 4}),
              field<&EntryState::format>("Of the image that its output becomes."));
 
+/// A file that a parameter of kind Resource names: a colour table or a picture.
+struct LookResource {
+    std::string parameter;  ///< name of its row
+    std::string file;       ///< as the look has it: relative to the look, or as typed
+    std::shared_ptr<const ResourceData> data;
+};
+
 /// One effect of a look. The wires are names: "scene" is the picture as it came, "alpha" its alpha as a grey picture,
 /// others are the `output` of an entry before this one; "NAME.previous" is the output of any entry, or the scene, one
 /// frame before; empty is the default of darkroom::EntryDesc.
 struct LookEntry {
     const EffectInfo* effect = nullptr;
-    std::vector<std::uint32_t> words;  ///< of the effect's struct
+    std::vector<std::uint32_t> words;  ///< of the effect's struct; a Resource is the number of one of these, from 1:
+    std::vector<LookResource> resources{};
     EntryState state;
     std::string name;  ///< empty: see entry_names
     std::string input, source, second, mask, output;
@@ -72,6 +81,9 @@ struct Look {
     std::string shown_name;                    ///< file name for messages
 };
 
+/// What is in a file that a look names; errors begin with the path.
+using ResourceLoader = std::function<Result<ResourceData>(const std::filesystem::path& path)>;
+
 struct LookOptions {
     bool is_strict = false;                        ///< unknown keys and values out of range are errors, not warnings
     std::vector<std::string>* warnings = nullptr;  ///< "file:line:column: ..." of what was passed over
@@ -79,12 +91,16 @@ struct LookOptions {
     /// Entries may name files (`effect = "duotone.glsl"`). These are code, and may keep a GPU busy for ever: a host
     /// that allows them trusts whoever made the look.
     bool allows_custom_effects = false;
-    std::filesystem::path folder;  ///< that these files are relative to; empty: read_look takes the look's own
+    ResourceLoader load_resource{};  ///< none: colour tables in .cube files alone
+    /// Numbers in all tables and pictures that the look names together: two of the largest tables.
+    std::size_t most_resource_numbers = std::size_t{1} << 27;
+    std::filesystem::path folder;  ///< that files are relative to; empty: read_look takes the look's own
 };
 
 /// The flat table with nothing written in it.
 [[nodiscard]] Look default_look();
-/// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`.
+/// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`. The files that a look
+/// names are read with it.
 [[nodiscard]] Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options = {});
 [[nodiscard]] Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options = {});
 /// An entry of the effect in this file (darkroom/custom_effect.hpp), at its defaults.
@@ -107,8 +123,10 @@ struct LookOverride {
     std::string shown;  ///< what the user typed, for errors: "--bloom-intensity"
 };
 /// Checks and applies all of them, in order. A value above 0 for an effect's main amount turns it on, 0 turns it off,
-/// unless `<effect>_enabled` is among them.
-[[nodiscard]] Result<> override_look(Look& look, std::span<const LookOverride> overrides);
+/// unless `<effect>_enabled` is among them. Of the options, that which loads files counts: their names are relative to
+/// the working directory.
+[[nodiscard]] Result<> override_look(Look& look, std::span<const LookOverride> overrides,
+                                     const LookOptions& options = {});
 
 struct ApplyOptions {
     /// Gives effects of the flat table that are off their place, so that Composer::set_enabled() finds them: they own

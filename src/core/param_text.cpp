@@ -319,7 +319,8 @@ std::string format(const ParamInfo& info, std::span<const std::uint32_t> words) 
         case Kind::Int:
             return fmt::format("{}", static_cast<std::int32_t>(own[0]));
         case Kind::Resource:
-            return fmt::format("{}", own[0]);
+            // Files have names, which only their look knows.
+            return own[0] == 0 ? "\"\"" : fmt::format("{}", own[0]);
         case Kind::Toggle:
             return own[0] != 0 ? "true" : "false";
         case Kind::Choice:
@@ -341,7 +342,7 @@ std::string format(const ParamInfo& info, std::span<const std::uint32_t> words) 
 std::string interval(const ParamInfo& info) {
     if (info.kind == Kind::Choice) return join(info.choices);
     if (info.kind == Kind::Toggle) return "true or false";
-    if (info.kind == Kind::Resource) return "the number of a resource, 0 for none";
+    if (info.kind == Kind::Resource) return "the name of a file, empty for none";
     std::string out = fmt::format("[{}, {}]", info.range.min, info.range.max);
     if (!info.unit.symbol.empty()) out += fmt::format(" {}", info.unit.symbol);
     if (info.kind == Kind::Curve)
@@ -370,7 +371,7 @@ std::string_view expected_kind(Kind kind) {
         case Kind::Curve:
             return "a curve";
         case Kind::Resource:
-            return "a resource";
+            return "the name of a file";
     }
     return "a value";
 }

@@ -9,6 +9,7 @@
 
 #include "core/param_text.hpp"
 #include "looks/look_parts.hpp"
+#include "looks/look_resources.hpp"
 
 namespace darkroom {
 
@@ -22,6 +23,23 @@ bool is_in_the_way(const Look& look, const LookEntry& entry, const ApplyOptions&
     const bool is_still =
         effect.touch == Touch::Warp && effect.is_identity != nullptr && effect.is_identity(entry.words.data());
     return is_still || (entry.state.enabled.on == 0 && !options.keeps_what_is_off);
+}
+
+/// The entry's values with the Composer's numbers of its resources.
+Result<std::vector<std::uint32_t>> words_of(const LookEntry& entry, Composer& composer) {
+    std::vector<std::uint32_t> words = entry.words;
+    for (const ParamInfo& row : entry.effect->parameters.rows) {
+        if (row.kind != Kind::Resource || words[row.word] == 0) continue;
+        const LookResource* const resource = resource_of(entry, row);
+        if (resource == nullptr || resource->data == nullptr)
+            return user_error(fmt::format("{} = {}: the entry has no such resource", row.name, words[row.word]));
+        const auto defined = composer.define(*resource->data);
+        if (!defined)
+            return failure(Error{defined.error().fault, fmt::format("{} = \"{}\": {}", row.name,
+                                                                    printable(resource->file), defined.error().text)});
+        words[row.word] = defined->id;
+    }
+    return words;
 }
 
 OutputScale fraction(float scale) {
@@ -98,8 +116,11 @@ Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options
         if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry, options)) continue;
         const auto desc = wired(index, false);
         if (!desc) return failure(desc.error());
-        const void* const words = look.is_enabled ? entry->words.data() : nullptr;
-        const Handle handle = composer.add(*entry->effect, words, *desc);
+        const auto words = words_of(*entry, composer);
+        if (!words)
+            return failure(Error{words.error().fault,
+                                 fmt::format("{}: {}: {}", look.shown_name, names[index], words.error().text)});
+        const Handle handle = composer.add(*entry->effect, look.is_enabled ? words->data() : nullptr, *desc);
         if (!entry->output.empty()) outputs[entry->output] = handle;
         const bool reads_previous = std::ranges::any_of(wires, [&](const WireInfo& end) {
             return end.is_reference && (entry->*end.member).ends_with(previous_suffix);

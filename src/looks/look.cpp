@@ -9,6 +9,7 @@
 
 #include "core/param_text.hpp"
 #include "looks/look_parts.hpp"
+#include "looks/look_resources.hpp"
 
 namespace darkroom {
 
@@ -40,8 +41,8 @@ std::vector<const LookEntry*> ordered(const Look& look) {
 
 namespace {
 
-void write_row(std::string& out, std::string_view key, const ParamInfo& row, std::span<const std::uint32_t> words) {
-    out += fmt::format("{} = {}\n", key, format(row, words));
+void write_row(std::string& out, std::string_view key, std::string_view value) {
+    out += fmt::format("{} = {}\n", key, value);
 }
 
 /// As a string of TOML.
@@ -66,7 +67,7 @@ void write_flat(std::string& out, const Look& look) {
         const EffectInfo& effect = *entry->effect;
         out += fmt::format("{} = {}\n", flat_key(effect.name, "enabled"), entry->state.enabled.on != 0);
         for (const ParamInfo& row : effect.parameters.rows)
-            write_row(out, flat_key(effect.name, row.name), row, entry->words);
+            write_row(out, flat_key(effect.name, row.name), value_text(*entry, row));
     }
 }
 
@@ -79,8 +80,8 @@ void write_stack(std::string& out, const Look& look) {
         const StateWords state = state_words(entry.state);
         for (const ParamInfo& row : entry_rows.rows)
             if (!std::equal(&state[row.word], &state[row.word] + row.words, &entry_rows.defaults[row.word]))
-                write_row(out, row.name, row, state);
-        for (const ParamInfo& row : entry.effect->parameters.rows) write_row(out, row.name, row, entry.words);
+                write_row(out, row.name, format(row, state));
+        for (const ParamInfo& row : entry.effect->parameters.rows) write_row(out, row.name, value_text(entry, row));
     }
 }
 

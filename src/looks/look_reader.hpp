@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "looks/look_resources.hpp"
 #include "toml/toml_text.hpp"
 
 namespace darkroom {
@@ -18,7 +19,7 @@ enum class Weight : std::uint8_t { Slip, Wrong };
 class LookReader {
   public:
     LookReader(std::string shown_name, const LookOptions& options)
-        : options_(options), shown_name_(std::move(shown_name)) {}
+        : options_(options), shown_name_(std::move(shown_name)), files_(options.folder, options) {}
 
     [[nodiscard]] Result<Look> read(const toml::table& file);
     [[nodiscard]] const LookOptions& options() const { return options_; }
@@ -31,6 +32,8 @@ class LookReader {
     }
     /// Sets the words of `row` to the node's value. Or reports why not, and leaves the default.
     bool take(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node, std::string_view key);
+    /// The same for a parameter of the entry's effect, which may name a file.
+    bool take(const ParamInfo& row, LookEntry& entry, const toml::node& node, std::string_view key);
     /// The same for one of the entry's own values.
     bool take(const ParamInfo& row, EntryState& state, const toml::node& node, std::string_view key);
     /// `allowed` says what the nearest known key takes.
@@ -49,6 +52,7 @@ class LookReader {
 
     const LookOptions& options_;
     std::string shown_name_;
+    ResourceFiles files_;
     std::vector<Problem> problems_;
 };
 

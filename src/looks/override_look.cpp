@@ -7,6 +7,7 @@
 
 #include "core/param_text.hpp"
 #include "looks/look_parts.hpp"
+#include "looks/look_resources.hpp"
 
 namespace darkroom {
 
@@ -27,7 +28,7 @@ const ParamInfo* find_state_row(std::string_view name) {
 
 class Overrider {
   public:
-    explicit Overrider(Look& look) : look_(look) {}
+    Overrider(Look& look, const LookOptions& options) : look_(look), files_({}, options) {}
 
     Result<> run(std::span<const LookOverride> overrides) {
         for (const LookOverride& one : overrides)
@@ -45,6 +46,12 @@ class Overrider {
         const Result<Target> target = find(one.key, shown);
         if (!target) return failure(target.error());
         const auto& [entry, row, is_state] = *target;
+        if (!is_state && row->kind == Kind::Resource) {
+            const Result<> done = files_.put(*entry, *row, one.text);
+            if (!done) return user_error(fmt::format("{}: {}", shown, done.error().text));
+            if (row->is_amount) entry->state.enabled = !one.text.empty();
+            return {};
+        }
         const Result<ParamValue> value = parse_text(*row, one.text);
         if (!value) return user_error(fmt::format("{}: {}", shown, value.error().text));
         if (!is_state) {
@@ -118,11 +125,14 @@ class Overrider {
     }
 
     Look& look_;
+    ResourceFiles files_;
     std::vector<std::pair<LookEntry*, Toggle>> toggles_;
 };
 
 }  // namespace
 
-Result<> override_look(Look& look, std::span<const LookOverride> overrides) { return Overrider(look).run(overrides); }
+Result<> override_look(Look& look, std::span<const LookOverride> overrides, const LookOptions& options) {
+    return Overrider(look, options).run(overrides);
+}
 
 }  // namespace darkroom

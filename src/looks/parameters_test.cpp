@@ -63,6 +63,8 @@ TEST(Parameters, EveryBoundIsAcceptedAndOneStepPastIsRefused) {
 
 TEST(Parameters, EveryValueSurvivesToml) {
     for_every_row([](const EffectInfo& effect, const ParamInfo& row) {
+        // Those name files: resource_test.cpp.
+        if (row.kind == Kind::Resource) return;
         std::vector<ParamValue> values;
         for (const std::string_view choice : row.choices) values.emplace_back(std::string(choice));
         if (row.kind == Kind::Toggle) values = {true, false};

@@ -71,7 +71,7 @@ class FlatReader {
         if (found == targets_.end()) return read_unknown(key, node);
         const auto& [entry, row] = found->second;
         if (row == &enabled_row) return;
-        if (reader_.take(*row, entry->words, node, key.str()) && row->is_amount)
+        if (reader_.take(*row, *entry, node, key.str()) && row->is_amount)
             entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) > 0;
     }
 

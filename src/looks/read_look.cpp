@@ -53,6 +53,17 @@ bool LookReader::take(const ParamInfo& row, std::span<std::uint32_t> words, cons
     return false;
 }
 
+bool LookReader::take(const ParamInfo& row, LookEntry& entry, const toml::node& node, std::string_view key) {
+    if (row.kind != Kind::Resource) return take(row, entry.words, node, key);
+    const auto* const name = node.as_string();
+    const std::string wrong = name == nullptr ? fmt::format("expected {}", interval(row)) : [&] {
+        const Result<> done = files_.put(entry, row, name->get());
+        return done ? std::string() : done.error().text;
+    }();
+    if (!wrong.empty()) report(node, Weight::Wrong, fmt::format("{} = {}: {}", key, show(node), wrong));
+    return wrong.empty();
+}
+
 bool LookReader::take(const ParamInfo& row, EntryState& state, const toml::node& node, std::string_view key) {
     StateWords words = state_words(state);
     const bool is_taken = take(row, words, node, key);

@@ -125,7 +125,7 @@ class StackReader {
             return;
         }
         if (const ParamInfo* const row = entry.effect->parameters.find(key.str())) {
-            reader_.take(*row, entry.words, node, shown);
+            reader_.take(*row, entry, node, shown);
             return;
         }
         read_unknown(*entry.effect, key, node);
