@@ -38,7 +38,7 @@ TEST(CustomPasses, AreReadWithTheirImagesAndTheirCode) {
     const CustomEffect trail = must(CustomEffect::load(examples / "feedback_trail.glsl"));
     EXPECT_EQ(trail.info().touch, Touch::Pointwise);
     ASSERT_TRUE(trail.info().pre_roll);
-    EXPECT_EQ(trail.info().pre_roll(trail.info().parameters.defaults.data()), 110u);
+    EXPECT_EQ(trail.info().pre_roll(trail.info().parameters.defaults.data(), 1.0 / 60), 110u);
 }
 
 TEST(CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
