@@ -6,6 +6,7 @@
 #include <darkroom/look.hpp>
 #include <functional>
 #include <span>
+#include <vector>
 
 namespace app {
 
@@ -25,5 +26,7 @@ struct Command {
 [[nodiscard]] Command add_devices(CLI::App& program);
 [[nodiscard]] Command add_compare(CLI::App& program);
 [[nodiscard]] Command add_info(CLI::App& program);
+/// One for each command below it.
+[[nodiscard]] std::vector<Command> add_lut(CLI::App& program, std::span<const darkroom::LookEntry> named);
 
 }  // namespace app

@@ -64,6 +64,15 @@ bool is_toml(const Head& head) {
     return head.extension == ".toml" || line.starts_with('[') || line.find('=') != std::string_view::npos;
 }
 
+bool is_table(const Head& head) {
+    constexpr std::array extensions{".cube", ".3dl", ".spi1d", ".spi3d", ".csp", ".clf"};
+    std::string_view line = head.first_line();
+    if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+    const auto begins = [&](std::string_view word) { return line.starts_with(word); };
+    return std::ranges::find(extensions, head.extension) != extensions.end() ||
+           std::ranges::any_of(std::array{"TITLE ", "LUT_1D_", "LUT_3D_", "DOMAIN_M"}, begins);
+}
+
 struct Kind {
     std::string_view name;
     bool (*is)(const Head& head);
@@ -71,12 +80,14 @@ struct Kind {
 };
 
 /// A file is the first of them that it looks like.
-std::array<Kind, 3> kinds_of(const Options& options) {
+std::array<Kind, 4> kinds_of(const Options& options) {
     const auto toml = [allows = !options.has_no_custom_effects](const fs::path& path) {
         return info::toml(path, allows);
     };
     return {Kind{"a picture (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)", is_picture, info::picture},
-            Kind{"a model (glTF)", is_model, info::model}, Kind{"a scene or a look (TOML)", is_toml, toml}};
+            Kind{"a model (glTF)", is_model, info::model},
+            Kind{"a colour table (.cube, .3dl, .spi1d, .spi3d, .csp, .clf)", is_table, info::table},
+            Kind{"a scene or a look (TOML)", is_toml, toml}};
 }
 
 Result<Head> head_of(const fs::path& path) {
@@ -128,8 +139,8 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_info(CLI::App& program) {
-    CLI::App* const command =
-        program.add_subcommand("info", "Tells what is in files: pictures and frames, models, scenes and looks");
+    CLI::App* const command = program.add_subcommand(
+        "info", "Tells what is in files: pictures and frames, models, scenes, looks and colour tables");
     const auto options = std::make_shared<Options>();
     command->add_option("FILE", options->files, "Files of any known kind, which is told by their content")->required();
     command->add_flag("--json", options->is_json, "For programs: a document, or an array of them for several files");

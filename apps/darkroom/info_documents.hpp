@@ -19,6 +19,9 @@ namespace app::info {
 /// A scene, a prefab or a look: told apart by their tables.
 [[nodiscard]] darkroom::Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects);
 
+/// A colour table.
+[[nodiscard]] darkroom::Result<Json> table(const std::filesystem::path& path);
+
 /// The entries in the order in which they are applied; of the flat table those that are on or have values of their own.
 [[nodiscard]] Json entries_of(const darkroom::Look& look);
 [[nodiscard]] darkroom::Result<Json> scene(const std::string& text, const std::filesystem::path& path);

@@ -63,10 +63,11 @@ int run(int argc, char** argv) {
         "DARKROOM_VALIDATE=1 turns the Vulkan validation layer on. Exit codes: 0 done, 1 the request is wrong, 2 the "
         "machine failed; `compare` has 3: they differ.");
     const std::vector<darkroom::LookEntry> named = app::effects_named_by({argv, static_cast<std::size_t>(argc)});
-    const std::array commands{app::add_render(program, named), app::add_develop(program, named),
-                              app::add_plan(program, named),   app::add_effects(program),
-                              app::add_devices(program),       app::add_compare(program),
-                              app::add_info(program)};
+    std::vector commands{app::add_render(program, named), app::add_develop(program, named),
+                         app::add_plan(program, named),   app::add_effects(program),
+                         app::add_devices(program),       app::add_compare(program),
+                         app::add_info(program)};
+    std::ranges::move(app::add_lut(program, named), std::back_inserter(commands));
     // CLI11 would take the next argument for the value.
     for (int i = 1; i < argc; ++i) {
         const std::string_view argument = argv[i];
@@ -85,6 +86,9 @@ int run(int argc, char** argv) {
         return app::fail_user(
             fmt::format("{}: one value is needed", darkroom::printable(text.substr(0, text.find(':')))));
     } catch (const CLI::RequiredError& error) {
+        for (const CLI::App* const command : program.get_subcommands())
+            if (command->get_require_subcommand_min() > 0 && command->get_subcommands().empty())
+                return app::fail_user(fmt::format("{}: {}", command->get_name(), unknown_argument(*command)));
         return app::fail_user(program.get_subcommands().empty() ? unknown_argument(program)
                                                                 : std::string(error.what()));
     } catch (const CLI::ParseError& error) {
