@@ -29,8 +29,6 @@ inline constexpr auto motion_blur_rows =
 /// Side of the square tiles whose fastest motion is known, in pixels, for pictures of at most this extent: a multiple
 /// of 8, and at least the farthest that a point smears.
 [[nodiscard]] std::uint32_t motion_blur_tile(VkExtent2D extent);
-/// How much nearer than a pixel something is, as a part of its own distance, before it is wholly in front.
-inline constexpr double motion_blur_softness = 0.1;
 
 [[nodiscard]] const EffectInfo& effect_info(const MotionBlur&);
 

@@ -174,8 +174,7 @@ inline Rgba motion_blur_reference_smear(const MotionBlur& blur, const ReferenceI
             const auto column = std::int64_t{x} + static_cast<std::int64_t>(std::floor(way.x * place + 0.5));
             const auto row = std::int64_t{y} + static_cast<std::int64_t>(std::floor(way.y * place + 0.5));
             const MotionBlurReach& reach = map.clamped(column, row);
-            const double softness = std::max(reach.planar * motion_blur_softness, 1e-6);
-            return Tap{reach, color.clamped(column, row), std::clamp((own.planar - reach.planar) / softness, 0.0, 1.0)};
+            return Tap{reach, color.clamped(column, row), std::clamp(10 * (own.planar / reach.planar - 1), 0.0, 1.0)};
         };
         const double place = 2 * (i + noise) / rounds - 1, away = std::abs(place) * peak.length;
         const Tap across = tap(peak, place);

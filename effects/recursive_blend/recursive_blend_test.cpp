@@ -87,15 +87,18 @@ TEST(EffectRecursiveBlend, EightBitsLeaveAGhostAndFloatsDoNot) {
 }
 
 TEST(EffectRecursiveBlend, TheFirstFrameAndTheFirstAfterACutAreThePicture) {
-    std::vector<Shot> shots = changing(white, black, 3);
-    shots[2].camera.is_cut = true;
-    for (const std::vector<ReferenceImage>& out :
-         {developed_sequence(stack_of({}), shots), reference_sequence(stack_of({}), shots)}) {
-        EXPECT_EQ(test::worst_difference(out[0], white), 0);
-        EXPECT_NEAR(out[1].at(0, 0).r, 0.8, 1e-6);
-        EXPECT_EQ(test::worst_difference(out[2], black), 0);
-        EXPECT_EQ(test::worst_difference(out[3], black), 0);
-    }
+    std::vector<Shot> cut = changing(white, black, 3), jump = cut, pause = cut;
+    cut[2].camera.is_cut = true;
+    jump[2].camera.view[12] = 31;  // metres
+    pause[2].delta_time = 0;
+    for (const std::vector<Shot>& shots : {cut, jump, pause})
+        for (const std::vector<ReferenceImage>& out :
+             {developed_sequence(stack_of({}), shots), reference_sequence(stack_of({}), shots)}) {
+            EXPECT_EQ(test::worst_difference(out[0], white), 0);
+            EXPECT_NEAR(out[1].at(0, 0).r, 0.8, 1e-6);
+            EXPECT_EQ(test::worst_difference(out[2], black), 0);
+            EXPECT_EQ(test::worst_difference(out[3], black), 0);
+        }
 }
 
 TEST(EffectRecursiveBlend, NanAndInfinityDoNotComeBack) {
