@@ -97,8 +97,8 @@ class CliHistoryOfFiles : public CliHistory {
 TEST_F(CliHistoryOfFiles, APieceIsTheWholeToHalfACode) {
     for (const char* const rate : {"30", "60", "144"}) {
         SCOPED_TRACE(rate);
-        develop("whole", {"--fps", rate});
-        develop("piece", {"--fps", rate, "--frames", "85-90"});
+        EXPECT_EQ(develop("whole", {"--fps", rate}).code, 0);
+        EXPECT_EQ(develop("piece", {"--fps", rate, "--frames", "85-90"}).code, 0);
         EXPECT_FALSE(fs::exists(path(file("piece", 84))));
         for (int number = 85; number <= count; ++number)
             EXPECT_LE(difference(file("piece", number), file("whole", number)), half_a_code) << number;
@@ -108,14 +108,14 @@ TEST_F(CliHistoryOfFiles, APieceIsTheWholeToHalfACode) {
 }
 
 TEST_F(CliHistoryOfFiles, WithoutTheFramesBeforeItIsAnotherPicture) {
-    develop("whole", {"--fps", "60"});
-    develop("bare", {"--fps", "60"}, "f.%04d.exr[85-90]");
+    EXPECT_EQ(develop("whole", {"--fps", "60"}).code, 0);
+    EXPECT_EQ(develop("bare", {"--fps", "60"}, "f.%04d.exr[85-90]").code, 0);
     EXPECT_GT(difference(file("bare", 85), file("whole", 85)), 20 * half_a_code);
 }
 
 TEST_F(CliHistoryOfFiles, ReferencesKeepHistoriesToo) {
-    develop("gpu", {"--fps", "60", "--frames", "60-66"});
-    develop("reference", {"--fps", "60", "--frames", "60-66", "--reference"});
+    EXPECT_EQ(develop("gpu", {"--fps", "60", "--frames", "60-66"}).code, 0);
+    EXPECT_EQ(develop("reference", {"--fps", "60", "--frames", "60-66", "--reference"}).code, 0);
     for (int number = 60; number <= 66; ++number)
         EXPECT_LE(difference(file("gpu", number), file("reference", number)), half_a_code) << number;
     EXPECT_GT(difference(file("reference", 60), file("reference", 61)), half_a_code);
@@ -123,11 +123,11 @@ TEST_F(CliHistoryOfFiles, ReferencesKeepHistoriesToo) {
 
 TEST_F(CliHistoryOfFiles, AMissingFrameIsACut) {
     // Frames that lie apart are developed each with those before it, not with each other.
-    develop("whole", {"--fps", "60", "--frames", "1-90"});
+    EXPECT_EQ(develop("whole", {"--fps", "60", "--frames", "1-90"}).code, 0);
     fs::create_directories(path("holes"));
     for (int number = 1; number < 90; ++number)
         if (number != 70) fs::copy_file(path(file("whole", number)), path(file("holes", number)));
-    develop("holes", {"--fps", "60", "--skip-existing"});
+    EXPECT_EQ(develop("holes", {"--fps", "60", "--skip-existing"}).code, 0);
     for (const int number : {70, 90})
         EXPECT_LE(difference(file("holes", number), file("whole", number)), half_a_code) << number;
 }

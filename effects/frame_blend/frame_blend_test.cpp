@@ -66,7 +66,9 @@ TEST(EffectFrameBlend, WeightsDecreaseAndEnd) {
         double sum = 0;
         for (std::size_t i = 13; i <= 19; ++i) {
             EXPECT_GT(at(i), 0);
-            if (i > 13) EXPECT_LT(at(i), at(i - 1)) << i;
+            if (i > 13) {
+                EXPECT_LT(at(i), at(i - 1)) << i;
+            }
             sum += at(i);
         }
         EXPECT_NEAR(sum, 0.5, 2e-3) << "all weights together";
@@ -119,7 +121,9 @@ TEST(EffectFrameBlend, NanAndInfinityStayContained) {
                 const Rgba& pixel = out[i].at(x, y);
                 ASSERT_TRUE(std::isfinite(pixel.r) && std::isfinite(pixel.g) && std::isfinite(pixel.b)) << i;
                 // A small texel, the one it is sampled between, and half of each.
-                if (std::abs(static_cast<int>(x) - 16) > 10) EXPECT_NEAR(pixel.g, 0.5, 1e-3) << i;
+                if (std::abs(static_cast<int>(x) - 16) > 10) {
+                    EXPECT_NEAR(pixel.g, 0.5, 1e-3) << i;
+                }
             }
     EXPECT_LE(test::worst_difference(out.back(), grey(0.5, 33, 19)), 0x1p-10) << "and it ends";
 }

@@ -163,8 +163,9 @@ TEST(EffectMotionBlur, AMovingThingSmearsBeyondItsEdgeOverAStillWall) {
             }
             for (std::uint32_t y = 0; y < height; ++y)
                 for (std::uint32_t x = 0; x < width; ++x)
-                    if (x + 13 < left || x > right + 13 || y + 3 < top || y > bottom + 3)
+                    if (x + 13 < left || x > right + 13 || y + 3 < top || y > bottom + 3) {
                         ASSERT_EQ(out.at(x, y).g, shot.color.at(x, y).g) << "the wall stays sharp: " << x << "," << y;
+                    }
         }
 }
 
@@ -228,8 +229,9 @@ TEST(EffectMotionBlur, NanAndInfinityStayContained) {
                            reach;
                 };
                 // A false velocity turns the samples of the tiles around, and no more.
-                if (is_far(60, 200, 14) && is_far(20, 60, 14) && is_far(100, 350, 48))
+                if (is_far(60, 200, 14) && is_far(20, 60, 14) && is_far(100, 350, 48)) {
                     EXPECT_EQ(pixel.g, clean.at(x, y).g) << x << "," << y;
+                }
             }
     }
 }

@@ -141,9 +141,11 @@ void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
     }
     physical_->begin(commands, context_.vk, frame.color.used_region().extent, frame.view);
     std::ranges::fill(has_history_, std::uint8_t{1});
-    for (std::uint32_t i = 0; i < before_.states.size(); ++i)
-        if (const graph::HistoryImages* const history = physical_->history(i, frame.view))
-            if (history->state.was_reset) has_history_[program_of().history_entries[i]] = 0;
+    for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
+        const std::uint32_t entry = program_of().history_entries[i];
+        const graph::HistoryImages* const history = physical_->history(i, frame.view);
+        if (entry != plan::no_entry && history != nullptr && history->state.was_reset) has_history_[entry] = 0;
+    }
 }
 
 gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,

@@ -125,8 +125,6 @@ class Graph {
             // bilinear tap.
             const bool is_exact = info.build == nullptr || is_test_effect(info);
             const EntryDesc& desc = *composer.desc(composer.entry(i));
-            const std::array wires{desc.input, desc.source, desc.second, desc.mask};
-            if (std::ranges::any_of(wires, [](Handle wire) { return wire.is_previous; })) return std::nullopt;
             if (desc.scale.denominator != 1) return std::nullopt;
             if (&info == &test::absent_effect) continue;
             // What compares or counts levels may fall to the other side by a rounding.
@@ -216,22 +214,25 @@ void expect_one_picture(std::uint32_t seed, Effort effort, Count& count) {
         if (!tries_again || round + 1 < rounds) continue;
         fused.wait_for_kernels();
         EXPECT_EQ(test::worst_difference(graph.show(fused), picture), 0) << "the lean kernels differ";
-        // What was compiled with other values must not be told from what is compiled with these.
-        if (!graph.compile(unfused, KernelStage::Auto, false)) return;
+        // What was compiled with other values must not be told from what is compiled with these, unless an effect chose
+        // other passes by them.
+        const auto again = graph.compile(unfused, KernelStage::Auto, false);
+        if (!again) return;
+        if (again->text() != unfused_plan->text()) continue;
         EXPECT_EQ(test::worst_difference(graph.show(unfused), apart), 0) << "compiled again it differs";
     }
 }
 
 TEST_F(ComposeFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {
     Count count;
-    for (std::uint32_t seed = 0; seed < 200; ++seed) expect_one_picture(seed, Effort::Small, count);
+    for (std::uint32_t seed = 0; seed < 240; ++seed) expect_one_picture(seed, Effort::Small, count);
     EXPECT_GE(count.saved, 100U) << "little was fused";
     EXPECT_GE(count.references, 50U) << "few stacks had a reference";
 }
 
 TEST_F(ComposeFusionProperty, EffectsOfManyKernelsAreNoException) {
     Count count;
-    for (std::uint32_t seed = 200; seed < 208; ++seed) expect_one_picture(seed, Effort::Thorough, count);
+    for (std::uint32_t seed = 240; seed < 248; ++seed) expect_one_picture(seed, Effort::Thorough, count);
 }
 
 TEST_F(SoakFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {

@@ -75,7 +75,7 @@ TEST_F(ComposeWires, APictureOfTheHostIsAnInputLikeAnyOther) {
         add(composer, "blend", {{"amount", 1}}, {.second = Composer::picture_of(*picture)});
         add(composer, "encode");
     };
-    const ReferenceImage out = develop(fill, uniform(8, 4, {0.5, 0.5, 0.5, 1}));
+    const ReferenceImage out = develop_both(fill, uniform(8, 4, {0.5, 0.5, 0.5, 1}));
     ASSERT_EQ(out.pixels.size(), 32u);
     EXPECT_EQ(out.at(0, 0).r, 1);
     EXPECT_EQ(out.at(0, 3).b, 0);
@@ -94,7 +94,14 @@ TEST_F(ComposeWires, TheFrameBeforeIsBlackFirstThenWhatWasMade) {
     desc.target_domain = Domain::SceneLinear;
     must(composer.compile(desc));
     EXPECT_EQ(composer.pre_roll(), previous_pre_roll);
+    ReferenceHistories histories;
+    const ReferenceImage picture = uniform(9, 5, {0.125, 0.25, 0.0625, 1});
     for (std::uint32_t number = 0; number < 4; ++number) {
+        const auto expected = run_reference(
+            composer,
+            {.color = &picture, .delta_time = 1.0 / 60, .histories = &histories, .target_domain = Domain::SceneLinear});
+        ASSERT_TRUE(expected) << expected.error().text;
+        EXPECT_EQ(expected->picture.at(3, 2).g, 0.25 * (number + 1)) << number;
         Frame frame = host.frame();
         frame.delta_time = 1.0 / 60;
         frame.frame_index = number;

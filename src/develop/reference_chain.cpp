@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "../effects/shared/blend_modes_reference.hpp"
+#include "../effects/shared/sample_reference.hpp"
 #include "compose/camera_jump.hpp"
 
 namespace darkroom {
@@ -62,7 +64,10 @@ class Chain {
         domains_.assign(2, Domain::SceneLinear);
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
-        if (input_.histories != nullptr) input_.histories->entries = std::move(histories_);
+        if (input_.histories != nullptr) {
+            input_.histories->entries = std::move(histories_);
+            input_.histories->outputs = outputs_read_later();
+        }
         ReferenceChainOutput out{.picture = pictures_[values_.empty() ? 0 : values_.back()],
                                  .left_out = std::move(left_out_)};
         const Domain domain = domains_[values_.empty() ? 0 : values_.back()];
@@ -80,7 +85,10 @@ class Chain {
         const bool goes_on = !input_.camera.is_cut && input_.delta_time > 0 && kept.width == input_.color->width &&
                              kept.height == input_.color->height &&
                              !compose::is_camera_jump(kept.camera, input_.camera.view);
-        if (!goes_on) kept.entries.clear();
+        if (!goes_on) {
+            kept.entries.clear();
+            kept.outputs.clear();
+        }
         kept.width = input_.color->width;
         kept.height = input_.color->height;
         kept.camera = input_.camera.view;
@@ -99,11 +107,72 @@ class Chain {
         return index;
     }
 
-    std::size_t value_of(Handle handle, std::size_t entry) const {
+    std::size_t value_of(Handle handle, std::size_t entry) {
         if (handle == scene_color) return 0;
         if (handle == scene_alpha) return 1;
-        if (handle.is_given()) return values_[index_of(handle)];
-        return entry == 0 ? 0 : values_[entry - 1];
+        if (!handle.is_given()) return entry == 0 ? 0 : values_[entry - 1];
+        if (handle.is_previous) return keep(before(handle));
+        if (const auto* const given = find_resource<ResourceImage>(&composer_.resources(), {handle.id}))
+            return keep(picture_of(*given));
+        return values_[index_of(handle)];
+    }
+    bool is_known(Handle wire, std::size_t index) const {
+        if (!wire.is_given() || wire == scene_color || wire == scene_alpha || wire == scene_color.previous())
+            return true;
+        if (wire.is_previous) return index_of({wire.id}) < composer_.size();
+        return index_of(wire) < index || find_resource(&composer_.resources(), {wire.id}) != nullptr;
+    }
+
+    /// What the frame before had there: nothing, where there was none.
+    ReferenceImage before(Handle handle) const {
+        if (input_.histories != nullptr)
+            if (const auto found = input_.histories->outputs.find(handle.id); found != input_.histories->outputs.end())
+                return found->second;
+        return ReferenceImage(input_.color->width, input_.color->height, {0, 0, 0, 0});
+    }
+    std::map<std::uint32_t, ReferenceImage> outputs_read_later() const {
+        std::map<std::uint32_t, ReferenceImage> out;
+        for (std::size_t i = 0; i < composer_.size(); ++i) {
+            const EntryDesc& desc = *composer_.desc(composer_.entry(i));
+            for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
+                if (wire.is_previous)
+                    out[wire.id] = pictures_[wire.id == scene_color.id ? 0 : values_[index_of({wire.id})]];
+        }
+        return out;
+    }
+    static ReferenceImage picture_of(const ResourceImage& given) {
+        ReferenceImage out(given.width, given.height);
+        for (std::size_t i = 0; i < out.pixels.size(); ++i)
+            out.pixels[i] = {given.rgba[4 * i], given.rgba[4 * i + 1], given.rgba[4 * i + 2], given.rgba[4 * i + 3]};
+        return out;
+    }
+
+    std::size_t keep(ReferenceImage image) {
+        pictures_.push_back(std::move(image));
+        domains_.push_back(Domain::SceneLinear);
+        return pictures_.size() - 1;
+    }
+    /// By one bilinear tap a pixel, as kernels read pictures of another size.
+    std::size_t at_size(std::size_t picture, std::uint32_t width, std::uint32_t height) {
+        const ReferenceImage& from = pictures_[picture];
+        if (from.width == width && from.height == height) return picture;
+        ReferenceImage out(width, height);
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x)
+                out.at(x, y) = sample_reference(from, (x + 0.5) / width, (y + 0.5) / height);
+        const Domain domain = domains_[picture];
+        const std::size_t made = keep(std::move(out));
+        domains_[made] = domain;
+        return made;
+    }
+    /// The picture that an entry gets, at the size it works at.
+    std::size_t input_of(const EntryDesc& desc, std::size_t index) {
+        std::size_t from = value_of(desc.input, index);
+        if (desc.input.is_previous) from = at_size(from, input_.color->width, input_.color->height);
+        const auto scaled = [&](std::uint32_t size) {
+            return std::max(1u, size * desc.scale.numerator / desc.scale.denominator);
+        };
+        return at_size(from, scaled(pictures_[from].width), scaled(pictures_[from].height));
     }
 
     Result<> add(std::size_t index) {
@@ -111,11 +180,10 @@ class Chain {
         const EffectInfo& info = *composer_.info(handle);
         const EntryDesc& desc = *composer_.desc(handle);
         for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
-            if (wire.is_given() && wire != scene_color && wire != scene_alpha && index_of(wire) >= index)
+            if (!is_known(wire, index))
                 return user_error(
                     fmt::format("stack entry '{}': it reads what is not the output of an earlier entry", desc.name));
-        const std::size_t from = value_of(desc.input, index);
-        values_.push_back(from);
+        values_.push_back(value_of(desc.input, index));
         std::string why = missing_needs(info.needs, input_);
         if (!why.empty()) why = fmt::format("needs {}, which the frame does not have", why);
         if (why.empty() && info.is_last_step && input_.target_domain == Domain::SceneLinear)
@@ -127,39 +195,41 @@ class Chain {
         if (info.has_second && !desc.second.is_given())
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
                                           desc.name, info.name));
+        const std::size_t from = input_of(desc, index);
         const std::vector<std::uint32_t> words = composer_.current(handle);
         const Domain before = domains_[from];
         const bool is_off =
             !desc.enabled || desc.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
         if (!is_off && info.reference == nullptr)
             return user_error(fmt::format("stack entry '{}': {} has no reference", desc.name, info.name));
-        pictures_.push_back(is_off ? pictures_[from] : result(info, desc, words, index, from));
-        domains_.push_back(is_off || info.makes == nullptr ? before : info.makes(before, words.data()));
-        values_.back() = pictures_.size() - 1;
+        values_.back() = keep(is_off ? pictures_[from] : result(info, desc, words, index, from));
+        domains_.back() = is_off || info.makes == nullptr ? before : info.makes(before, words.data());
         return {};
     }
 
     ReferenceImage result(const EffectInfo& info, const EntryDesc& desc, const std::vector<std::uint32_t>& words,
                           std::size_t index, std::size_t from) {
         const ReferenceImage& base = pictures_[from];
-        ReferenceImage layer = info.reference(
-            words.data(), {.picture = &base,
-                           .source = desc.source.is_given() ? &pictures_[value_of(desc.source, index)] : &base,
-                           .second = desc.second.is_given() ? &pictures_[value_of(desc.second, index)] : nullptr,
-                           .depth = input_.depth,
-                           .normals = input_.normals,
-                           .velocity = input_.velocity,
-                           .lights = input_.lights,
-                           .resources = &composer_.resources(),
-                           .camera = input_.camera,
-                           .time = input_.time,
-                           .delta_time = input_.delta_time,
-                           .frame_index = input_.frame_index,
-                           .history = history_of(composer_.entry(index))});
+        const auto wired = [&](Handle wire, const ReferenceImage* otherwise) {
+            return wire.is_given() ? &pictures_[at_size(value_of(wire, index), base.width, base.height)] : otherwise;
+        };
+        ReferenceImage layer = info.reference(words.data(), {.picture = &base,
+                                                             .source = wired(desc.source, &base),
+                                                             .second = wired(desc.second, nullptr),
+                                                             .depth = input_.depth,
+                                                             .normals = input_.normals,
+                                                             .velocity = input_.velocity,
+                                                             .lights = input_.lights,
+                                                             .resources = &composer_.resources(),
+                                                             .camera = input_.camera,
+                                                             .time = input_.time,
+                                                             .delta_time = input_.delta_time,
+                                                             .frame_index = input_.frame_index,
+                                                             .history = history_of(composer_.entry(index))});
         const bool is_plain = desc.opacity == 1 && desc.blend == BlendMode::Mix && !desc.mask.is_given();
         const bool is_same_size = layer.width == base.width && layer.height == base.height;
         if (is_plain || !is_same_size) return layer;
-        const ReferenceImage* const mask = desc.mask.is_given() ? &pictures_[value_of(desc.mask, index)] : nullptr;
+        const ReferenceImage* const mask = wired(desc.mask, nullptr);
         for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
             const double opacity = desc.opacity * (mask == nullptr ? 1.0 : mask_weight(mask->pixels[i]));
             layer.pixels[i] = merged(base.pixels[i], layer.pixels[i], opacity, desc.blend);
@@ -169,9 +239,9 @@ class Chain {
 
     const Composer& composer_;
     const ReferenceChainInput& input_;
-    std::vector<ReferenceImage> pictures_;
-    std::vector<Domain> domains_;      // of each picture
-    std::vector<std::size_t> values_;  // of each entry: its picture
+    std::deque<ReferenceImage> pictures_;  // that none moves while others are added
+    std::vector<Domain> domains_;          // of each picture
+    std::vector<std::size_t> values_;      // of each entry: its picture
     std::vector<std::string> left_out_;
     std::map<std::uint32_t, ReferenceHistory> histories_;  // of this frame
 };

@@ -15,6 +15,7 @@ namespace darkroom {
 /// What a stack carries from one frame to the next of a view.
 struct ReferenceHistories {
     std::map<std::uint32_t, ReferenceHistory> entries;  ///< by Handle::id: of those that the last frame ran
+    std::map<std::uint32_t, ReferenceImage> outputs;    ///< of those that are read one frame later
     std::uint32_t width = 0, height = 0;                ///< of the last frame
     Matrix camera{};                                    ///< its Camera::view
 };

@@ -45,7 +45,8 @@ Result<std::vector<std::uint32_t>> words_of(const LookEntry& entry, Composer& co
 OutputScale fraction(float scale) {
     OutputScale best{1, 1};
     for (std::uint32_t denominator = 1; denominator <= 64; ++denominator) {
-        const auto numerator = static_cast<std::uint32_t>(std::clamp(std::lround(scale * denominator), 1L, 64L));
+        const auto numerator =
+            static_cast<std::uint32_t>(std::clamp(std::lround(scale * static_cast<float>(denominator)), 1L, 64L));
         const auto error = [&](const OutputScale& of) {
             return std::abs(static_cast<float>(of.numerator) / static_cast<float>(of.denominator) - scale);
         };
@@ -72,7 +73,7 @@ VkFormat image_format(EntryFormat format) {
 }  // namespace
 
 bool is_domain_change(const EffectInfo& effect) {
-    if (effect.makes == nullptr) return false;
+    if (effect.makes == nullptr || !effect.flat.starts_on) return false;
     const void* const defaults = effect.parameters.defaults.data();
     for (const Domain before : {Domain::SceneLinear, Domain::DisplayLinear})
         if (effect.accepts.contains(before) && effect.makes(before, defaults) != before) return true;

@@ -145,7 +145,7 @@ TEST(Precedence, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
 TEST(Precedence, AmountsSwitchAndNothingElse) {
     const std::set<std::string> named{"bloom_intensity",      "ssao_intensity",     "fog_density",
                                       "dither_intensity",     "vignette_intensity", "volumetric_density",
-                                      "chromatic_aberration", "radial_blur"};
+                                      "chromatic_aberration", "radial_blur",        "motion_blur_shutter_angle"};
     std::set<std::string> switches;
     for_every_flat_row([&](const EffectInfo& effect, const ParamInfo& row) {
         const std::string key = flat_key(effect.name, row.name), enabled = flat_key(effect.name, "enabled");
