@@ -149,7 +149,9 @@ time = 2
 position = [2, 0, 0]
 )");
     const auto render = [&](const std::string& folder, const std::string& frames) {
-        run_into(folder, {"render", path("yard.scene.toml"), "--size", "32x18", "--fps", "24", "--frames", frames});
+        const Outcome run =
+            run_into(folder, {"render", path("yard.scene.toml"), "--size", "32x18", "--fps", "24", "--frames", frames});
+        EXPECT_EQ(run.code, 0) << run.err;
     };
     render("whole", "0-30");
     render("piece", "28-30");

@@ -215,24 +215,24 @@ void expect_one_picture(std::uint32_t seed, Effort effort, Count& count) {
         fused.wait_for_kernels();
         EXPECT_EQ(test::worst_difference(graph.show(fused), picture), 0) << "the lean kernels differ";
         // What was compiled with other values must not be told from what is compiled with these, unless an effect chose
-        // other passes by them.
+        // other passes, or another table, by them.
         const auto again = graph.compile(unfused, KernelStage::Auto, false);
         if (!again) return;
-        if (again->text() != unfused_plan->text()) continue;
+        if (again->text() != unfused_plan->text() || unfused.find("arena_grade")) continue;
         EXPECT_EQ(test::worst_difference(graph.show(unfused), apart), 0) << "compiled again it differs";
     }
 }
 
 TEST_F(ComposeFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {
     Count count;
-    for (std::uint32_t seed = 0; seed < 240; ++seed) expect_one_picture(seed, Effort::Small, count);
+    for (std::uint32_t seed = 0; seed < 260; ++seed) expect_one_picture(seed, Effort::Small, count);
     EXPECT_GE(count.saved, 100U) << "little was fused";
     EXPECT_GE(count.references, 50U) << "few stacks had a reference";
 }
 
 TEST_F(ComposeFusionProperty, EffectsOfManyKernelsAreNoException) {
     Count count;
-    for (std::uint32_t seed = 240; seed < 248; ++seed) expect_one_picture(seed, Effort::Thorough, count);
+    for (std::uint32_t seed = 260; seed < 268; ++seed) expect_one_picture(seed, Effort::Thorough, count);
 }
 
 TEST_F(SoakFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {
