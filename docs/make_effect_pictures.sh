@@ -100,3 +100,33 @@ stack classic_bloom forge '[[stack]]
 effect = "classic_bloom"'
 stack arena_bloom forge '[[stack]]
 effect = "arena_bloom"'
+stack arena_grade showcase '[[stack]]
+effect = "arena_grade"
+preset = "sepia"
+[[stack]]
+effect = "exposure"
+exposure = 0.5'
+# A table of what another look does to colours.
+printf '%s\n' '[[stack]]' 'effect = "color_grade"' 'temperature = 4500' 'saturation = 0.4' 'contrast = 1.4' "$tail_of_stack" >"$work/film.toml"
+is_wanted lut && "$darkroom" lut export "$work/film.toml" -o "$work/film.cube" >/dev/null
+pair lut showcase --bloom-enabled off -- --bloom-enabled off --lut "$work/film.cube" --lut-space scene_linear --lut-result display --tonemap-enabled off
+# trail NAME SCENE FPS ENTRY: the eighth frame, with those before it.
+trail() {
+    is_wanted "$1" || return 0
+    local frame=$work/frame.%04d.jpg
+    printf '%s\n' "$tail_of_stack" >"$work/off.toml"
+    printf '%s\n' "$4" "$tail_of_stack" >"$work/on.toml"
+    for state in off on; do
+        "$darkroom" render "scenes/$2.scene.toml" --size 320x180 --msaa 4 --distance 6 --fps "$3" --frames 8-8 --look "$work/$state.toml" -o "$frame" >/dev/null
+        mv "$work/frame.0008.jpg" "$out/${1}_$state.jpg"
+    done
+}
+trail frame_blend showcase 60 '[[stack]]
+effect = "frame_blend"'
+trail recursive_blend showcase 60 '[[stack]]
+effect = "recursive_blend"
+weight = 0.9'
+trail motion_blur showcase 12 '[[stack]]
+effect = "motion_blur"
+shutter_angle = 360.0
+max_radius = 3.0'
