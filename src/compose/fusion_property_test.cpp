@@ -27,9 +27,12 @@ bool is_test_effect(const EffectInfo& info) { return std::ranges::find(test_effe
 
 std::vector<const EffectInfo*> effects_for(Effort effort) {
     std::vector<const EffectInfo*> effects(test_effects.begin(), test_effects.end());
-    constexpr std::array<std::string_view, 4> large{"bloom", "god_rays", "ssao", "volumetric"};
-    for (const EffectInfo* const info : all_effects())
-        if (effort == Effort::Thorough || std::ranges::find(large, info->name) == large.end()) effects.push_back(info);
+    // Each kernel is compiled in several forms, so a test in a hurry takes few effects with passes.
+    constexpr std::array<std::string_view, 3> with_passes{"dither", "fog", "gaussian_blur"};
+    for (const EffectInfo* const info : all_effects()) {
+        const bool is_small = !info->build || std::ranges::find(with_passes, info->name) != with_passes.end();
+        if (effort == Effort::Thorough || is_small) effects.push_back(info);
+    }
     return effects;
 }
 
@@ -225,14 +228,14 @@ void expect_one_picture(std::uint32_t seed, Effort effort, Count& count) {
 
 TEST_F(ComposeFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {
     Count count;
-    for (std::uint32_t seed = 0; seed < 260; ++seed) expect_one_picture(seed, Effort::Small, count);
+    for (std::uint32_t seed = 0; seed < 200; ++seed) expect_one_picture(seed, Effort::Small, count);
     EXPECT_GE(count.saved, 100U) << "little was fused";
     EXPECT_GE(count.references, 50U) << "few stacks had a reference";
 }
 
 TEST_F(ComposeFusionProperty, EffectsOfManyKernelsAreNoException) {
     Count count;
-    for (std::uint32_t seed = 260; seed < 268; ++seed) expect_one_picture(seed, Effort::Thorough, count);
+    for (std::uint32_t seed = 200; seed < 208; ++seed) expect_one_picture(seed, Effort::Thorough, count);
 }
 
 TEST_F(SoakFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {
