@@ -93,6 +93,10 @@ Result<Composer::State::Snapshot> Composer::State::snapshot(const CompileDesc& c
         out.values.push_back(*entry);
         out.values.back().resources = resources;
         if (auto ok = check_resources(out.values.back()); !ok) return failure(std::move(ok));
+        const OutputScale& scale = entry->desc.scale;
+        if (scale.numerator == 0 || scale.denominator == 0)
+            return user_error(fmt::format("stack entry '{}': scale {}/{}: allowed are numbers above 0",
+                                          entry->desc.name, scale.numerator, scale.denominator));
         out.entries.push_back(entry);
     }
     if (auto ok = check_names(out.values); !ok) return failure(std::move(ok));

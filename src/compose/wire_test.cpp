@@ -174,6 +174,10 @@ TEST_F(ComposeWires, WhatCannotBeReadIsRefused) {
     auto plan = composer.plan(desc);
     ASSERT_FALSE(plan);
     EXPECT_EQ(plan.error().text, "stack entry 'negative': its mask is not the output of an earlier entry");
+    must(composer.rewire(later, {.scale = {1, 0}}));
+    plan = composer.plan(desc);
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().text, "stack entry 'negative': scale 1/0: allowed are numbers above 0");
     must(composer.rewire(later, {.mask = scene_alpha.previous()}));
     plan = composer.plan(desc);
     ASSERT_FALSE(plan);
