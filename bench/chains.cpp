@@ -69,6 +69,7 @@ void make_visible(Step& step) {
     const EffectInfo& effect = *step.effect;
     if (effect.is_identity == nullptr || !effect.is_identity(step.words.data())) return;
     for (const ParamInfo& row : effect.parameters.rows) {
+        if (row.is_picture) continue;
         if (row.kind == Kind::Resource) {
             step.words[row.word] = some_table;
             if (!effect.is_identity(step.words.data())) return;

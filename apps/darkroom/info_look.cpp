@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/param_text.hpp"
-#include "image/table_file.hpp"
+#include "image/resource_file.hpp"
 #include "info_documents.hpp"
 #include "looks/look_parts.hpp"
 #include "looks/look_resources.hpp"

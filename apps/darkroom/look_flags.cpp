@@ -6,7 +6,7 @@
 #include <darkroom/effects.hpp>
 
 #include "core/param_text.hpp"
-#include "image/table_file.hpp"
+#include "image/resource_file.hpp"
 #include "looks/look_parts.hpp"
 #include "named_effects.hpp"
 #include "report.hpp"

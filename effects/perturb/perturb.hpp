@@ -38,7 +38,8 @@ inline constexpr auto perturb_rows = describe(
     field<&Perturb::ring_speed>("Heights of the picture that the ring runs in a second.", {0, 16}),
     field<&Perturb::ring_period>("Time in which the ring dies down, and after which it starts again.", {0.01, 3600},
                                  unit::seconds),
-    field<&Perturb::distortion>("An image whose red and green displace the picture: 0.5 by nothing. It repeats."),
+    field<&Perturb::distortion>("An image whose red and green displace the picture: 0.5 by nothing. It repeats.")
+        .as_picture(),
     field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels),
     field<&Perturb::evaluation>("Where the displacement is worked out."),
     field<&Perturb::grid>("Columns and rows of the grid, for vertex and cpu; read at compile.", {1, 256}));

@@ -47,16 +47,16 @@ inline constexpr auto entry_rows =
                                        {0.015625, 4}),
              field<&EntryState::format>("Of the image that its output becomes."));
 
-/// A file that a parameter of kind Resource names: a colour table or a picture.
+/// A file that a parameter of kind Resource, or a wire, names: a colour table or a picture.
 struct LookResource {
-    std::string parameter;  ///< name of its row
+    std::string parameter;  ///< name of its row, or of the wire
     std::string file;       ///< as the look has it: relative to the look, or as typed
     std::shared_ptr<const ResourceData> data;
 };
 
 /// One effect of a look. The wires are names: "scene" is the picture as it came, "alpha" its alpha as a grey picture,
 /// others are the `output` of an entry before this one; "NAME.previous" is the output of any entry, or the scene, one
-/// frame before; empty is the default of darkroom::EntryDesc.
+/// frame before; a name with another dot is the file of a picture; empty is the default of darkroom::EntryDesc.
 struct LookEntry {
     const EffectInfo* effect = nullptr;
     std::vector<std::uint32_t> words;  ///< of the effect's struct; a Resource is the number of one of these, from 1:
@@ -82,7 +82,7 @@ struct Look {
 };
 
 /// What is in a file that a look names; errors begin with the path.
-using ResourceLoader = std::function<Result<ResourceData>(const std::filesystem::path& path)>;
+using ResourceLoader = std::function<Result<ResourceData>(const std::filesystem::path& path, FileUse use)>;
 
 struct LookOptions {
     bool is_strict = false;                        ///< unknown keys and values out of range are errors, not warnings

@@ -87,6 +87,7 @@ struct ParamInfo {
     Kind kind = Kind::Float;
     bool is_loop_count = false;                   ///< see field().as_loop_count()
     bool is_amount = false;                       ///< 0 switches the effect off: see field().as_amount()
+    bool is_picture = false;                      ///< of Kind::Resource: see field().as_picture()
     std::uint32_t switched_word = ~0u;            ///< of a toggle: see field().as_amount_of()
     std::uint32_t word = 0;                       ///< offset in the struct, in 4-byte words
     std::uint32_t words = 1;                      ///< size, in 4-byte words
@@ -218,6 +219,13 @@ struct Field {
         if (info.range.min < 0 || info.range.max > 255) detail::refuse("a loop count lies in [0, 255]");
         Field copy = *this;
         copy.info.is_loop_count = true;
+        return copy;
+    }
+    /// A resource that is a picture, whose numbers are taken as its file has them, and not a table of colours.
+    [[nodiscard]] constexpr Field as_picture() const {
+        static_assert(std::is_same_v<typename detail::Member<M>::Type, Resource>);
+        Field copy = *this;
+        copy.info.is_picture = true;
         return copy;
     }
     [[nodiscard]] constexpr Field formerly(std::string_view name) const {

@@ -32,6 +32,13 @@ struct ResourceImage {
 };
 
 using ResourceData = std::variant<ColorTable, ResourceImage>;
+/// What a look names a file for.
+enum class FileUse : std::uint8_t {
+    Table,    ///< a table of colours
+    Numbers,  ///< a picture whose numbers count as they are in the file: masks, displacements
+    Picture,  ///< a picture to be seen, scene-linear
+};
+
 /// By Resource::id.
 using Resources = std::map<std::uint32_t, std::shared_ptr<const ResourceData>>;
 

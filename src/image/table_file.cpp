@@ -12,7 +12,7 @@
 #include "core/param_text.hpp"
 #include "image/color_chain.hpp"
 #include "image/load_module.hpp"
-#include "image/picture_source.hpp"
+#include "image/picture_numbers.hpp"
 #include "tables/evaluate.hpp"
 #include "tables/table_image.hpp"
 
@@ -73,30 +73,15 @@ Result<FoundTable> read_chain(const fs::path& path, const std::string& extension
 }
 
 Result<FoundTable> read_picture_table(const fs::path& path) {
-    const Result<std::vector<std::byte>> bytes = read_image_file(path);
-    if (!bytes) return failure(bytes.error());
-    const auto read = [&]() -> Result<ColorTable> {
-        const Result<OpenedSource> opened = open_source(*bytes);
-        if (!opened) return failure(opened.error());
-        const FilePart& part = opened->source->parts().front();
+    const auto check = [](const FilePart& part) -> Result<> {
         if (part.channels.size() < 3)
             return user_error(fmt::format("{} channels: red, green and blue are needed", part.channels.size()));
-        // The size is checked before the pixels are read.
-        ResourceImage image{part.width, part.height, {}};
-        if (const Result<std::uint32_t> sized = table_image_edge(image.width, image.height); !sized)
-            return failure(sized.error());
-        image.rgba.resize(std::size_t{image.width} * image.height * 4);
-        std::vector<SamplePlace> places;
-        for (std::size_t i = 0; i < 3; ++i)
-            places.push_back({.channel = i,
-                              .first = reinterpret_cast<std::byte*>(image.rgba.data() + i),
-                              .pixel_bytes = 4 * sizeof(float),
-                              .row_bytes = static_cast<std::ptrdiff_t>(std::size_t{image.width} * 4 * sizeof(float))});
-        if (Result<> done = opened->source->read_rows(0, 0, part.height, places); !done)
-            return failure(std::move(done));
-        return table_of_image(image);
+        const Result<std::uint32_t> edge = table_image_edge(part.width, part.height);
+        return edge ? Result<>() : failure(edge.error());
     };
-    Result<ColorTable> table = read();
+    const Result<ResourceImage> image = read_numbers(path, check);
+    if (!image) return failure(image.error());
+    Result<ColorTable> table = table_of_image(*image);
     if (!table)
         return failure(Error{table.error().fault, fmt::format("{}: {}", printable(path.string()), table.error().text)});
     return FoundTable{.file = {.table = std::move(*table)}, .format = "a picture"};
@@ -124,12 +109,6 @@ Result<FoundTable> read_table_file(const fs::path& path) {
     }
     if (is_table_name(path)) return read_chain(path, extension);
     return read_picture_table(path);
-}
-
-Result<ResourceData> load_resource_file(const fs::path& path) {
-    Result<FoundTable> found = read_table_file(path);
-    if (!found) return failure(std::move(found));
-    return ResourceData(std::move(found->file.table));
 }
 
 }  // namespace darkroom

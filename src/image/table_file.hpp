@@ -23,7 +23,4 @@ struct FoundTable {
 /// Errors begin with the path.
 [[nodiscard]] Result<FoundTable> read_table_file(const std::filesystem::path& path);
 
-/// The same for looks: what a file's name in a look stands for.
-[[nodiscard]] Result<ResourceData> load_resource_file(const std::filesystem::path& path);
-
 }  // namespace darkroom

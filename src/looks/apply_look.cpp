@@ -25,22 +25,39 @@ bool is_in_the_way(const Look& look, const LookEntry& entry, const ApplyOptions&
     return is_still || (entry.state.enabled.on == 0 && !options.keeps_what_is_off);
 }
 
-/// The entry's values with the Composer's numbers of its resources.
-Result<std::vector<std::uint32_t>> words_of(const LookEntry& entry, Composer& composer) {
-    std::vector<std::uint32_t> words = entry.words;
-    for (const ParamInfo& row : entry.effect->parameters.rows) {
-        if (row.kind != Kind::Resource || words[row.word] == 0) continue;
-        const LookResource* const resource = resource_of(entry, row);
+/// The look's tables and pictures in a Composer, each defined once.
+class Definitions {
+  public:
+    explicit Definitions(Composer& composer) : composer_(composer) {}
+
+    Result<Resource> number_of(const LookResource* resource, std::string_view key) {
         if (resource == nullptr || resource->data == nullptr)
-            return user_error(fmt::format("{} = {}: the entry has no such resource", row.name, words[row.word]));
-        const auto defined = composer.define(*resource->data);
-        if (!defined)
-            return failure(Error{defined.error().fault, fmt::format("{} = \"{}\": {}", row.name,
-                                                                    printable(resource->file), defined.error().text)});
-        words[row.word] = defined->id;
+            return user_error(fmt::format("{}: the entry has no such resource", key));
+        const auto [found, is_new] = defined_.try_emplace(resource->data.get());
+        if (!is_new) return found->second;
+        const auto number = composer_.define(*resource->data);
+        if (!number)
+            return failure(Error{number.error().fault,
+                                 fmt::format("{} = \"{}\": {}", key, printable(resource->file), number.error().text)});
+        return found->second = *number;
     }
-    return words;
-}
+
+    /// The entry's values with the Composer's numbers of its resources.
+    Result<std::vector<std::uint32_t>> words_of(const LookEntry& entry) {
+        std::vector<std::uint32_t> words = entry.words;
+        for (const ParamInfo& row : entry.effect->parameters.rows) {
+            if (row.kind != Kind::Resource || words[row.word] == 0) continue;
+            const auto number = number_of(resource_of(entry, row), row.name);
+            if (!number) return failure(number.error());
+            words[row.word] = number->id;
+        }
+        return words;
+    }
+
+  private:
+    Composer& composer_;
+    std::map<const ResourceData*, Resource> defined_;
+};
 
 OutputScale fraction(float scale) {
     OutputScale best{1, 1};
@@ -82,10 +99,14 @@ bool is_domain_change(const EffectInfo& effect) {
 
 Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options) {
     const std::vector<std::string> names = entry_names(look);
+    Definitions definitions(composer);
     std::map<std::string, Handle, std::less<>> outputs{{std::string(scene_name), scene_color},
                                                        {std::string(alpha_name), scene_alpha}};
     // What an entry reads of the frame before may be made by a later one: those are wired when all are there.
     std::vector<std::pair<Handle, std::size_t>> unwired;
+    const auto blame = [&](std::size_t index, const Error& error) {
+        return failure(Error{error.fault, fmt::format("{}: {}: {}", look.shown_name, names[index], error.text)});
+    };
     const auto wired = [&](std::size_t index, bool is_complete) -> Result<EntryDesc> {
         const LookEntry& entry = look.entries[index];
         EntryDesc desc{.name = names[index],
@@ -98,6 +119,12 @@ Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options
         for (const WireInfo& end : wires) {
             std::string_view name = entry.*end.member;
             if (!end.is_reference || name.empty()) continue;
+            if (is_file_name(name)) {
+                const auto number = definitions.number_of(resource_of(entry, end), end.key);
+                if (!number) return blame(index, number.error());
+                desc.*end.handle = Composer::picture_of(*number);
+                continue;
+            }
             const bool is_previous = name.ends_with(previous_suffix);
             if (is_previous) name.remove_suffix(previous_suffix.size());
             const auto found = outputs.find(name);
@@ -117,14 +144,13 @@ Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options
         if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry, options)) continue;
         const auto desc = wired(index, false);
         if (!desc) return failure(desc.error());
-        const auto words = words_of(*entry, composer);
-        if (!words)
-            return failure(Error{words.error().fault,
-                                 fmt::format("{}: {}: {}", look.shown_name, names[index], words.error().text)});
+        const auto words = definitions.words_of(*entry);
+        if (!words) return blame(index, words.error());
         const Handle handle = composer.add(*entry->effect, look.is_enabled ? words->data() : nullptr, *desc);
         if (!entry->output.empty()) outputs[entry->output] = handle;
         const bool reads_previous = std::ranges::any_of(wires, [&](const WireInfo& end) {
-            return end.is_reference && (entry->*end.member).ends_with(previous_suffix);
+            return end.is_reference && (entry->*end.member).ends_with(previous_suffix) &&
+                   !is_file_name(entry->*end.member);
         });
         if (reads_previous) unwired.emplace_back(handle, index);
     }

@@ -45,20 +45,6 @@ void write_row(std::string& out, std::string_view key, std::string_view value) {
     out += fmt::format("{} = {}\n", key, value);
 }
 
-/// As a string of TOML.
-std::string quoted(std::string_view text) {
-    std::string out(1, '"');
-    for (const char c : text) {
-        if (c == '"' || c == '\\')
-            out.append(1, '\\').append(1, c);
-        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        else
-            out += c;
-    }
-    return out + '"';
-}
-
 void write_flat(std::string& out, const Look& look) {
     out += "\n[post_process]\n";
     out += fmt::format("enabled = {}\norder = \"{}\"\n", look.is_enabled,
@@ -74,9 +60,9 @@ void write_flat(std::string& out, const Look& look) {
 void write_stack(std::string& out, const Look& look) {
     for (const LookEntry& entry : look.entries) {
         const std::string_view effect = entry.effect_file.empty() ? entry.effect->name : entry.effect_file;
-        out += fmt::format("\n[[stack]]\neffect = {}\n", quoted(effect));
+        out += fmt::format("\n[[stack]]\neffect = {}\n", toml_string(effect));
         for (const WireInfo& wire : wires)
-            if (!(entry.*wire.member).empty()) out += fmt::format("{} = \"{}\"\n", wire.key, entry.*wire.member);
+            if (!(entry.*wire.member).empty()) write_row(out, wire.key, toml_string(entry.*wire.member));
         const StateWords state = state_words(entry.state);
         for (const ParamInfo& row : entry_rows.rows)
             if (!std::equal(&state[row.word], &state[row.word] + row.words, &entry_rows.defaults[row.word]))

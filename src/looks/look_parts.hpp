@@ -22,13 +22,17 @@ struct WireInfo {
     std::string LookEntry::*member;
     bool is_reference;                    ///< names another entry's output
     Handle EntryDesc::*handle = nullptr;  ///< of a reference
+    FileUse use = FileUse::Picture;       ///< of a file that it names
 };
 inline constexpr std::array<WireInfo, 6> wires{{{"name", &LookEntry::name, false},
                                                 {"input", &LookEntry::input, true, &EntryDesc::input},
                                                 {"source", &LookEntry::source, true, &EntryDesc::source},
                                                 {"second", &LookEntry::second, true, &EntryDesc::second},
-                                                {"mask", &LookEntry::mask, true, &EntryDesc::mask},
+                                                {"mask", &LookEntry::mask, true, &EntryDesc::mask, FileUse::Numbers},
                                                 {"output", &LookEntry::output, false}}};
+
+/// Is this a wire's name of a file, and not of an output?
+[[nodiscard]] bool is_file_name(std::string_view wire);
 
 using StateWords = std::array<std::uint32_t, sizeof(EntryState) / 4>;
 [[nodiscard]] inline StateWords state_words(const EntryState& state) { return std::bit_cast<StateWords>(state); }

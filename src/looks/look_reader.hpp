@@ -34,6 +34,8 @@ class LookReader {
     bool take(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node, std::string_view key);
     /// The same for a parameter of the entry's effect, which may name a file.
     bool take(const ParamInfo& row, LookEntry& entry, const toml::node& node, std::string_view key);
+    /// Wires the entry to the picture in a file. Or reports why not.
+    void take(const WireInfo& wire, LookEntry& entry, const std::string& file, const toml::node& node);
     /// The same for one of the entry's own values.
     bool take(const ParamInfo& row, EntryState& state, const toml::node& node, std::string_view key);
     /// `allowed` says what the nearest known key takes.

@@ -18,41 +18,45 @@ std::size_t count_of(const ResourceData& data) {
     return table.shaper.size() + table.cube.size();
 }
 
-std::string quoted(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f')
-            out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-        else
-            out += c;
-    }
-    return out + '"';
-}
-
 }  // namespace
 
+bool is_file_name(std::string_view wire) {
+    const std::size_t dot = wire.find('.');
+    return dot != std::string_view::npos && wire.substr(dot) != previous_suffix;
+}
+
 Result<> ResourceFiles::put(LookEntry& entry, const ParamInfo& row, const std::string& name) {
-    std::erase_if(entry.resources, [&](const LookResource& one) { return one.parameter == row.name; });
-    std::shared_ptr<const ResourceData> data;
-    if (!name.empty()) {
-        const auto loaded = load((folder_ / name).lexically_normal());
+    return put(entry, row.name, name, row.is_picture ? FileUse::Numbers : FileUse::Table);
+}
+
+Result<> ResourceFiles::put(LookEntry& entry, const WireInfo& wire, const std::string& name) {
+    if (Result<> done = put(entry, wire.key, is_file_name(name) ? name : std::string(), wire.use); !done) return done;
+    entry.*wire.member = name;
+    return {};
+}
+
+Result<> ResourceFiles::put(LookEntry& entry, std::string_view parameter, const std::string& file, FileUse use) {
+    std::erase_if(entry.resources, [&](const LookResource& one) { return one.parameter == parameter; });
+    if (!file.empty()) {
+        const auto loaded = load((folder_ / file).lexically_normal(), use);
         if (!loaded) return failure(loaded.error());
-        data = *loaded;
-        entry.resources.push_back({std::string(row.name), name, data});
+        entry.resources.push_back({std::string(parameter), file, *loaded});
     }
-    entry.words[row.word] = 0;
-    for (std::size_t i = 0; i < entry.resources.size(); ++i) {
-        const ParamInfo* const other = entry.effect->parameters.find(entry.resources[i].parameter);
-        if (other != nullptr) entry.words[other->word] = static_cast<std::uint32_t>(i + 1);
+    for (const ParamInfo& row : entry.effect->parameters.rows) {
+        if (row.kind != Kind::Resource) continue;
+        const auto found = std::ranges::find(entry.resources, row.name, &LookResource::parameter);
+        const bool is_there = found != entry.resources.end();
+        entry.words[row.word] = is_there ? static_cast<std::uint32_t>(found - entry.resources.begin() + 1) : 0;
     }
     return {};
 }
 
-Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::filesystem::path& path) {
-    if (const auto found = loaded_.find(path); found != loaded_.end()) return found->second;
+Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::filesystem::path& path, FileUse use) {
+    if (const auto found = loaded_.find({path, use}); found != loaded_.end()) return found->second;
     const auto read = [&]() -> Result<ResourceData> {
-        if (options_.load_resource) return options_.load_resource(path);
+        if (options_.load_resource) return options_.load_resource(path, use);
+        if (use != FileUse::Table)
+            return user_error(fmt::format("{}: this program reads no pictures for looks", printable(path.string())));
         Result<TableFile> file = read_cube(path);
         if (!file) return failure(std::move(file));
         return ResourceData(std::move(file->table));
@@ -63,7 +67,7 @@ Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::files
     if (numbers_ > options_.most_resource_numbers)
         return user_error(fmt::format("{}: the look's tables and pictures hold {} numbers with it, allowed are {}",
                                       printable(path.string()), numbers_, options_.most_resource_numbers));
-    return loaded_[path] = std::make_shared<const ResourceData>(std::move(*data));
+    return loaded_[{path, use}] = std::make_shared<const ResourceData>(std::move(*data));
 }
 
 const LookResource* resource_of(const LookEntry& entry, const ParamInfo& row) {
@@ -71,10 +75,29 @@ const LookResource* resource_of(const LookEntry& entry, const ParamInfo& row) {
     return number == 0 || number > entry.resources.size() ? nullptr : &entry.resources[number - 1];
 }
 
+const LookResource* resource_of(const LookEntry& entry, const WireInfo& wire) {
+    if (!is_file_name(entry.*wire.member)) return nullptr;
+    const auto found = std::ranges::find(entry.resources, wire.key, &LookResource::parameter);
+    return found == entry.resources.end() ? nullptr : &*found;
+}
+
+std::string toml_string(std::string_view text) {
+    std::string out(1, '"');
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            out.append(1, '\\').append(1, c);
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            out += c;
+    }
+    return out + '"';
+}
+
 std::string value_text(const LookEntry& entry, const ParamInfo& row) {
     if (row.kind != Kind::Resource) return format(row, entry.words);
     const LookResource* const resource = resource_of(entry, row);
-    return quoted(resource == nullptr ? std::string_view() : resource->file);
+    return toml_string(resource == nullptr ? std::string_view() : resource->file);
 }
 
 }  // namespace darkroom

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The files that parameters of kind Resource name. In a look the word of such a parameter is 0, or the number of one of
-// the entry's resources, from 1; apply() puts the Composer's number in its place.
+// The files that parameters of kind Resource, and wires, name. In a look the word of such a parameter is 0, or the
+// number of one of the entry's resources, from 1; apply() puts the Composer's number in its place.
 
 #include <darkroom/look.hpp>
 #include <filesystem>
 #include <map>
+
+#include "looks/look_parts.hpp"
 
 namespace darkroom {
 
@@ -18,18 +20,25 @@ class ResourceFiles {
 
     /// Gives the entry's parameter the file of this name; an empty one takes it away. Errors begin with the path.
     Result<> put(LookEntry& entry, const ParamInfo& row, const std::string& name);
+    /// Wires the entry to an output, or to the picture in the file of this name.
+    Result<> put(LookEntry& entry, const WireInfo& wire, const std::string& name);
 
   private:
-    Result<std::shared_ptr<const ResourceData>> load(const std::filesystem::path& path);
+    Result<> put(LookEntry& entry, std::string_view parameter, const std::string& file, FileUse use);
+    Result<std::shared_ptr<const ResourceData>> load(const std::filesystem::path& path, FileUse use);
 
     std::filesystem::path folder_;
     const LookOptions& options_;
-    std::map<std::filesystem::path, std::shared_ptr<const ResourceData>> loaded_;
+    std::map<std::pair<std::filesystem::path, FileUse>, std::shared_ptr<const ResourceData>> loaded_;
     std::size_t numbers_ = 0;  ///< of all that was loaded
 };
 
 /// The resource that an entry's parameter names; null: none.
 [[nodiscard]] const LookResource* resource_of(const LookEntry& entry, const ParamInfo& row);
+/// The file that a wire of the entry names; null: it names none.
+[[nodiscard]] const LookResource* resource_of(const LookEntry& entry, const WireInfo& wire);
+/// As a string of TOML.
+[[nodiscard]] std::string toml_string(std::string_view text);
 /// A value as TOML: of a parameter of kind Resource the file's name.
 [[nodiscard]] std::string value_text(const LookEntry& entry, const ParamInfo& row);
 

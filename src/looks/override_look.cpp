@@ -13,11 +13,12 @@ namespace darkroom {
 
 namespace {
 
-/// What a key names: a row of the entry's effect, or one of the entry's own.
+/// What a key names: a row of the entry's effect, one of the entry's own, or one of its wires.
 struct Target {
     LookEntry* entry = nullptr;
     const ParamInfo* row = nullptr;
     bool is_state = false;
+    const WireInfo* wire = nullptr;
 };
 
 const ParamInfo* find_state_row(std::string_view name) {
@@ -45,7 +46,11 @@ class Overrider {
         const std::string shown = printable(one.shown.empty() ? one.key : one.shown);
         const Result<Target> target = find(one.key, shown);
         if (!target) return failure(target.error());
-        const auto& [entry, row, is_state] = *target;
+        const auto& [entry, row, is_state, wire] = *target;
+        if (wire != nullptr) {
+            const Result<> done = files_.put(*entry, *wire, one.text);
+            return done ? done : user_error(fmt::format("{}: {}", shown, done.error().text));
+        }
         if (!is_state && row->kind == Kind::Resource) {
             const Result<> done = files_.put(*entry, *row, one.text);
             if (!done) return user_error(fmt::format("{}: {}", shown, done.error().text));
@@ -82,7 +87,7 @@ class Overrider {
             if (row == nullptr && !is_toggle) continue;
             LookEntry* const entry = find_entry(look_, effect->name);
             if (entry == nullptr) return unheld(shown, effect->name);
-            return Target{entry, is_toggle ? find_state_row("enabled") : row, is_toggle};
+            return Target{entry, is_toggle ? find_state_row("enabled") : row, is_toggle, nullptr};
         }
         return user_error(fmt::format("{}: no effect has this parameter{}", shown, suggestion(key, all_keys())));
     }
@@ -90,9 +95,15 @@ class Overrider {
     Result<Target> find_in_entry(std::string_view name, std::string_view member, const std::string& shown) const {
         LookEntry* const entry = find_entry(look_, name);
         if (entry == nullptr) return unheld(shown, name);
-        if (const ParamInfo* const row = find_state_row(member)) return Target{entry, row, true};
-        if (const ParamInfo* const row = entry->effect->parameters.find(member)) return Target{entry, row, false};
+        if (const ParamInfo* const row = find_state_row(member)) return Target{entry, row, true, nullptr};
+        if (const ParamInfo* const row = entry->effect->parameters.find(member))
+            return Target{entry, row, false, nullptr};
         std::vector<std::string> members;
+        for (const WireInfo& wire : wires) {
+            if (!wire.is_reference) continue;
+            if (wire.key == member) return Target{.entry = entry, .wire = &wire};
+            members.emplace_back(wire.key);
+        }
         for (const ParamInfo& row : entry_rows.rows) members.emplace_back(row.name);
         for (const ParamInfo& row : entry->effect->parameters.rows) members.emplace_back(row.name);
         return user_error(fmt::format("{}: '{}' has no parameter '{}', it has {}{}", shown, printable(name),

@@ -64,6 +64,11 @@ bool LookReader::take(const ParamInfo& row, LookEntry& entry, const toml::node& 
     return wrong.empty();
 }
 
+void LookReader::take(const WireInfo& wire, LookEntry& entry, const std::string& file, const toml::node& node) {
+    if (const Result<> done = files_.put(entry, wire, file); !done)
+        report(node, Weight::Wrong, fmt::format("{} = {}: {}", wire.key, show(node), done.error().text));
+}
+
 bool LookReader::take(const ParamInfo& row, EntryState& state, const toml::node& node, std::string_view key) {
     StateWords words = state_words(state);
     const bool is_taken = take(row, words, node, key);

@@ -108,16 +108,7 @@ class StackReader {
         const std::string shown = printable(key.str());
         for (const WireInfo& wire : wires) {
             if (wire.key != key.str()) continue;
-            const auto* const text = node.as_string();
-            std::string_view name = text == nullptr ? std::string_view() : text->get();
-            if (wire.is_reference && name.ends_with(previous_suffix)) name.remove_suffix(previous_suffix.size());
-            if (is_name(name)) {
-                entry.*wire.member = text->get();
-                return;
-            }
-            return reader_.report(
-                node, Weight::Wrong,
-                fmt::format("{} = {}: expected a name of letters, digits, '_' and '-'", shown, show(node)));
+            return read_wire(entry, wire, node);
         }
         for (const ParamInfo& row : entry_rows.rows) {
             if (row.name != key.str()) continue;
@@ -129,6 +120,20 @@ class StackReader {
             return;
         }
         read_unknown(*entry.effect, key, node);
+    }
+
+    void read_wire(LookEntry& entry, const WireInfo& wire, const toml::node& node) {
+        const auto* const text = node.as_string();
+        std::string_view name = text == nullptr ? std::string_view() : text->get();
+        if (wire.is_reference && is_file_name(name)) return reader_.take(wire, entry, text->get(), node);
+        if (wire.is_reference && name.ends_with(previous_suffix)) name.remove_suffix(previous_suffix.size());
+        if (is_name(name)) {
+            entry.*wire.member = text->get();
+            return;
+        }
+        reader_.report(node, Weight::Wrong,
+                       fmt::format("{} = {}: expected a name of letters, digits, '_' and '-'{}", wire.key, show(node),
+                                   wire.is_reference ? ", or the file of a picture" : ""));
     }
 
     void read_unknown(const EffectInfo& effect, const toml::key& key, const toml::node& node) {
@@ -203,6 +208,7 @@ class StackReader {
     void check_wire(std::size_t index, const WireInfo& wire, const std::map<std::string, std::size_t>& makers,
                     std::span<const std::string> known) {
         std::string name = look_.entries[index].*wire.member;
+        if (is_file_name(name)) return;
         const bool is_previous = name.ends_with(previous_suffix);
         if (is_previous) name.resize(name.size() - previous_suffix.size());
         if (name.empty() || name == scene_name || (name == alpha_name && !is_previous)) return;

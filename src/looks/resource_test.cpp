@@ -2,6 +2,7 @@
 // Files that parameters of looks name.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <darkroom/effects.hpp>
 #include <darkroom/look.hpp>
 #include <filesystem>
@@ -64,18 +65,20 @@ TEST_F(LookResources, AreFilesBesideTheLook) {
 
 TEST_F(LookResources, AreReadOnceAndGivenToTheComposer) {
     int reads = 0;
-    const LookOptions options{.load_resource = [&](const std::filesystem::path& path) -> Result<ResourceData> {
-        ++reads;
-        EXPECT_EQ(path, file("tables/a.cube"));
-        return ResourceData(ColorTable{.shaper_size = 2, .shaper = {0, 0, 0, 1, 1, 1}});
-    }};
+    const LookOptions options{
+        .load_resource = [&](const std::filesystem::path& path, FileUse use) -> Result<ResourceData> {
+            ++reads;
+            EXPECT_EQ(path, file("tables/a.cube"));
+            EXPECT_EQ(use, FileUse::Table);
+            return ResourceData(ColorTable{.shaper_size = 2, .shaper = {0, 0, 0, 1, 1, 1}});
+        }};
     const Result<Look> look = read(stack_of_two, options);
     ASSERT_TRUE(look) << look.error().text;
     EXPECT_EQ(reads, 1);
     Composer composer(Device::assumed());
     const Result<> applied = apply(*look, composer);
     ASSERT_TRUE(applied) << applied.error().text;
-    EXPECT_EQ(composer.resources().size(), 3u);
+    EXPECT_EQ(composer.resources().size(), 1u) << "named three times, defined once";
     for (std::size_t i = 0; i < 2; ++i) {
         const Handle entry = composer.entry(i);
         const ParamInfo* const row = composer.info(entry)->parameters.find("lut");
@@ -84,6 +87,46 @@ TEST_F(LookResources, AreReadOnceAndGivenToTheComposer) {
     const Result<Plan> plan = composer.plan({.max_extent = {64, 64}});
     EXPECT_TRUE(plan) << plan.error().text;
     EXPECT_EQ(write_look(*read(write_look(*look), options)), write_look(*look));
+}
+
+TEST_F(LookResources, WiresNameFilesOfPictures) {
+    std::vector<std::pair<std::string, FileUse>> asked;
+    const LookOptions options{
+        .load_resource = [&](const std::filesystem::path& path, FileUse use) -> Result<ResourceData> {
+            asked.emplace_back(path.filename().string(), use);
+            return ResourceData(ResourceImage{1, 1, {0.5f, 0.5f, 0.5f, 1}});
+        }};
+    const std::string text =
+        "[[stack]]\neffect = \"blend\"\nsecond = \"over.png\"\nmask = \"shapes/over.png\"\n"
+        "[[stack]]\neffect = \"blend\"\nsecond = \"over.png\"\ninput = \"under.exr\"\n";
+    const Result<Look> look = read(text, options);
+    ASSERT_TRUE(look) << look.error().text;
+    using Asked = std::pair<std::string, FileUse>;
+    std::ranges::sort(asked);
+    EXPECT_EQ(asked,
+              (std::vector<Asked>{
+                  {"over.png", FileUse::Numbers}, {"over.png", FileUse::Picture}, {"under.exr", FileUse::Picture}}));
+    Composer composer(Device::assumed());
+    const Result<> applied = apply(*look, composer);
+    ASSERT_TRUE(applied) << applied.error().text;
+    const EntryDesc& first = *composer.desc(composer.entry(0));
+    const EntryDesc& other = *composer.desc(composer.entry(1));
+    for (const Handle handle : {first.second, first.mask, other.input})
+        EXPECT_TRUE(composer.resources().contains(handle.id));
+    EXPECT_EQ(first.second, other.second);
+    EXPECT_NE(first.second, first.mask) << "a mask's numbers are not a picture's colours";
+    const Result<Plan> plan = composer.plan({.max_extent = {64, 64}});
+    EXPECT_TRUE(plan) << plan.error().text;
+    EXPECT_EQ(write_look(*read(write_look(*look), options)), write_look(*look));
+
+    Look flagged = *look;
+    EXPECT_TRUE(override_look(flagged, std::vector<LookOverride>{{"blend.mask", "scene", "--set"}}, options));
+    EXPECT_EQ(flagged.entries.front().mask, "scene");
+    EXPECT_EQ(flagged.entries.front().resources.size(), 1u) << "the file goes with its wire";
+    EXPECT_TRUE(override_look(flagged, std::vector<LookOverride>{{"blend#2.mask", "m.png", "--set"}}, options));
+    EXPECT_EQ(flagged.entries.back().mask, "m.png");
+    const std::string without = error_of("[[stack]]\neffect = \"negative\"\nmask = \"m.png\"\n");
+    EXPECT_TRUE(without.ends_with("m.png: this program reads no pictures for looks")) << without;
 }
 
 TEST_F(LookResources, ErrorsNameTheLookTheFileAndItsLine) {

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The files that looks name, whatever they name them for.
+
+#include <darkroom/resource.hpp>
+#include <darkroom/result.hpp>
+#include <filesystem>
+
+namespace darkroom {
+
+/// For LookOptions::load_resource. Errors begin with the path.
+[[nodiscard]] Result<ResourceData> load_resource_file(const std::filesystem::path& path, FileUse use);
+
+}  // namespace darkroom
