@@ -19,6 +19,7 @@
 #include "report.hpp"
 #include "run_flags.hpp"
 #include "sequence_run.hpp"
+#include "ui_source.hpp"
 
 namespace app {
 
@@ -170,6 +171,7 @@ class Develop {
     struct Item {
         darkroom::FrameFile frame;
         std::vector<darkroom::ReferenceLight> lights;
+        std::shared_ptr<const std::vector<std::uint8_t>> ui;
         darkroom::DevelopInput input;
         darkroom::DevelopedPicture picture;
         VkExtent2D extent{};
@@ -209,6 +211,10 @@ class Develop {
         item.frame = std::move(*sized);
         item.lights = take_lights(item.frame);
         item.input = develop_input(item.frame, item.lights);
+        const auto ui = ui_.picture(extent);
+        if (!ui) return failure(ui.error());
+        item.ui = *ui;
+        item.input.ui = *item.ui;
         set_time(step, item);
         return {};
     }
@@ -281,6 +287,7 @@ class Develop {
 
     const Options& options_;
     Job job_;
+    UiSource ui_{job_.look};
     std::vector<Item> items_;
     std::mutex making_;
     std::unique_ptr<darkroom::Device> device_;

@@ -151,6 +151,7 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, d
                                                        .normals = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
                                                        .velocity = {VK_FORMAT_R32G32_SFLOAT, sampled},
                                                        .is_velocity_plain = true,
+                                                       .ui = {VK_FORMAT_R8G8B8A8_UNORM, sampled},
                                                        .has_shadows = true});
     if (!plan) return failure(plan.error());
     const auto is_read = [&](std::string_view image) {
@@ -190,6 +191,10 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
     };
     const ReferenceImage depth = layer(input.depth, 1), normals = layer(input.normals, 3),
                          velocity = layer(input.velocity, 2);
+    ReferenceImage ui(input.ui.empty() ? 0 : input.extent.width, input.ui.empty() ? 0 : input.extent.height);
+    const auto byte = [&](std::size_t i) { return input.ui[i] / 255.0; };
+    for (std::size_t i = 0; i < ui.pixels.size(); ++i)
+        ui.pixels[i] = {byte(4 * i), byte(4 * i + 1), byte(4 * i + 2), byte(4 * i + 3)};
     const auto given = [](const ReferenceImage& image) { return image.pixels.empty() ? nullptr : &image; };
     const darkroom::Domain domain =
         target == DevelopTarget::SceneLinear ? darkroom::Domain::SceneLinear : darkroom::Domain::Encoded;
@@ -197,6 +202,7 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
                                                                                      .depth = given(depth),
                                                                                      .normals = given(normals),
                                                                                      .velocity = given(velocity),
+                                                                                     .ui = given(ui),
                                                                                      .lights = input.lights,
                                                                                      .camera = input.camera,
                                                                                      .time = input.time,

@@ -65,6 +65,12 @@ void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const da
                         "the flat table at its defaults")
             ->type_name("FILE")
             ->group(group);
+    command
+        .add_option("--ui", ui_file_,
+                    "The interface over the picture: an image with alpha, drawn at the picture's size; --ui-... and "
+                    "--contrast-gamma-... are for it")
+        ->type_name("FILE")
+        ->group(group);
     command.add_option("--order", order_, "Order of the flat table: documented or scene_linear")
         ->type_name("ORDER")
         ->group(group);
@@ -122,6 +128,13 @@ Result<> LookFlags::add_custom_effects(Look& look) const {
     return {};
 }
 
+void LookFlags::set_ui(Look& look, const std::filesystem::path& folder) const {
+    if (look.ui && !look.ui->document.empty()) look.ui->document = (folder / look.ui->document).string();
+    if (ui_file_.empty()) return;
+    darkroom::add_ui(look);
+    look.ui->document = ui_file_;
+}
+
 Result<> LookFlags::set_order(Look& look) const {
     if (order_.empty()) return {};
     if (!look.is_flat)
@@ -148,6 +161,7 @@ Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
     Result<Look> look = path.empty() ? Result<Look>(darkroom::default_look()) : darkroom::read_look(path, options);
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
+    set_ui(*look, path.parent_path());
     if (Result<> done = set_order(*look); !done) return failure(std::move(done));
     // They have no place before it is known what is on, but values already.
     if (Result<> done = add_custom_effects(*look); !done) return failure(std::move(done));

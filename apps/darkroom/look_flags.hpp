@@ -17,7 +17,8 @@ class LookFlags {
   public:
     /// `has_look_flag`: false where the look is a positional argument. `named`: effects of files.
     void add_to(CLI::App& command, bool has_look_flag, std::span<const darkroom::LookEntry> named);
-    /// Reads the look and applies the flags. Prints warnings. Without a file of its own it is that of the scene.
+    /// Reads the look and applies the flags. Prints warnings. Without a file of its own it is that of the scene. The
+    /// document of its interface is as it can be opened.
     [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& scene = {}) const;
     /// --no-postprocess. look() is then the default one, switched off.
     [[nodiscard]] bool is_off() const { return is_off_; }
@@ -38,8 +39,9 @@ class LookFlags {
     /// Puts those of --effect behind the look's entries, at their defaults.
     [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_order(darkroom::Look& look) const;
+    void set_ui(darkroom::Look& look, const std::filesystem::path& folder) const;
 
-    std::string order_;
+    std::string order_, ui_file_;
     std::vector<std::string> sets_, effect_files_;
     std::vector<std::unique_ptr<Value>> values_;  // CLI11 keeps references to the texts
     bool is_strict_ = false;

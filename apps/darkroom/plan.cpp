@@ -54,6 +54,7 @@ Result<std::string> text_of(const Options& options) {
         .target = target_for(*samples), .kernels = *stage, .fuse = options.device.is_fused()};
     darkroom::CompileDesc compile = darkroom::compile_desc_for(*device, input, desc);
     if (options.frame.empty()) compile.color.format = VK_FORMAT_R16G16B16A16_SFLOAT;  // what engines hand over
+    if (look->ui) compile.ui = {VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT};
     compile.has_shadows =
         std::ranges::any_of(frame.lights, [](const darkroom::FrameLight& light) { return !light.cascades.empty(); });
     const Result<darkroom::Plan> plan = composer.plan(compile);

@@ -16,6 +16,7 @@
 #include "scene/assets.hpp"
 #include "scene/scene.hpp"
 #include "sequence_run.hpp"
+#include "ui_source.hpp"
 
 namespace app {
 
@@ -108,6 +109,7 @@ class Render {
         Result<darkroom::Look> look = flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene);
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
+        ui_.emplace(look_);
         choose_way();
         if (flags_.run.has_timings && way_ != Way::Developed)
             return darkroom::user_error("--timings: nothing is post-processed");
@@ -277,6 +279,9 @@ class Render {
         darkroom::FrameLayers layers;
         const bool has_frame = !shot.frame.empty();
         if (way_ == Way::Developed) {
+            const auto ui = ui_->picture(job_.desc.extent);
+            if (!ui) return failure(ui.error());
+            input.ui = **ui;
             Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
             if (!made) return failure(std::move(made));
             if (i == 0) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
@@ -302,6 +307,7 @@ class Render {
     scene::Scene scene_;
     scene::Assets assets_;
     darkroom::Look look_;
+    std::optional<UiSource> ui_;
     Way way_ = Way::Developed;
     std::unique_ptr<darkroom::Device> device_;
     std::optional<render::Renderer> hdr_, display_;

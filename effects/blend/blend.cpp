@@ -14,6 +14,7 @@ const EffectInfo& effect_info(const Blend&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
         .has_second = true,
+        .has_second_in_place = true,
         .reference = blend_image_reference,
         .is_identity = [](const void* parameters) { return static_cast<const Blend*>(parameters)->amount == 0.0f; },
     };

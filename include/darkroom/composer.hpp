@@ -55,14 +55,21 @@ inline constexpr Handle scene_color{~0u};
 /// The alpha of the scene colour as a grey picture: what a scene marks with its alpha is a layer of its own.
 inline constexpr Handle scene_alpha{~0u - 1};
 
+/// The interface's image, Frame::ui: encoded, premultiplied.
+inline constexpr Handle ui_layer{~0u - 2};
+
 inline constexpr std::uint32_t previous_pre_roll = 60;
 
 /// What belongs to the stack entry, not to the effect.
 struct EntryDesc {
-    Handle input;        ///< the picture; default: the entry before
-    Handle source;       ///< what effects with passes read instead of the picture (bloom: the scene)
-    Handle second;       ///< the second picture of effects that take two
-    Handle mask;         ///< luminance of this picture scales opacity, pixel by pixel
+    Handle input;   ///< the picture; default: the entry before
+    Handle source;  ///< what effects with passes read instead of the picture (bloom: the scene)
+    Handle second;  ///< the second picture of effects that take two; by default that of effects that need ui is
+                    ///< what the interface's chain has made so far
+    Handle mask;    ///< luminance of this picture scales opacity, pixel by pixel
+    /// Of the interface's own chain: its default input is the entry before it in that chain, or the interface's image.
+    /// Entries of the picture's chain skip it. Composer::ui() adds such entries.
+    bool is_ui = false;
     std::string name;    ///< of the entry; default: the effect's name, then name#2 ...
     std::string output;  ///< a name for its output, for looks
     bool enabled = true;
@@ -138,6 +145,8 @@ struct PendingCompile {
     std::optional<Error> error;  ///< why the last one failed; the plan before it goes on
 };
 
+class UiChain;
+
 class Composer {
   public:
     /// Shares what it needs of the device: the Device object may go first.
@@ -161,6 +170,9 @@ class Composer {
         return insert(before, effect_info(parameters), &parameters, desc);
     }
     Result<Handle> insert(Handle before, const EffectInfo& info, const void* parameters, const EntryDesc& desc = {});
+    /// The interface's own stack, over the image Frame::ui, which is as large as the target. What needs a UI image
+    /// (UiComposite) joins the two; the picture's effects never see the interface, nor its effects the picture.
+    [[nodiscard]] UiChain ui();
     /// Takes an entry out. Entries that name it as an input must be removed, or wired anew, before the next compile.
     Result<> remove(Handle handle);
     /// Puts an entry in front of another; a default `before`: behind the last.
@@ -256,5 +268,25 @@ class Composer {
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// What Composer::ui() gives: entries appended here are those of the interface.
+class UiChain {
+  public:
+    explicit UiChain(Composer& composer) : composer_(&composer) {}
+    template <class Effect>
+    Handle add(const Effect& parameters, EntryDesc desc = {}) {
+        desc.is_ui = true;
+        return composer_->add(parameters, desc);
+    }
+    Handle add(const EffectInfo& info, const void* parameters, EntryDesc desc = {}) {
+        desc.is_ui = true;
+        return composer_->add(info, parameters, desc);
+    }
+
+  private:
+    Composer* composer_;
+};
+
+inline UiChain Composer::ui() { return UiChain(*this); }
 
 }  // namespace darkroom

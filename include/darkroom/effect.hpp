@@ -8,6 +8,8 @@
 // and may call sample_linear, load, ... (src/gpu/kernel.hpp) on the side images it declared in `build`, and
 // `vec4 <name>_custom(int)` for its end_constants. Every name at file scope begins with the effect's name. Alpha passes
 // unchanged unless the effect is about alpha.
+// An effect of touch Map defines `Place <name>(Place place, <Struct> parameters)` (effects/shared/place.glsl), one of
+// touch Tap `vec4 <name>(vec4 color, Place place, <Struct> parameters)`, which calls `vec4 <name>_read(vec2 uv)`.
 // A pass of its own lives in effects/<name>/<name>_<pass>.glsl and defines
 //     vec4 shade(Pixel pixel)
 // with `<Struct> <name>_parameters()` at hand, `frame_time` and its like, and custom[i] from the pass's constants; the
@@ -31,8 +33,12 @@ namespace darkroom {
 
 /// How an effect touches the picture, and so what it can share a kernel with.
 enum class Touch : std::uint8_t {
-    Pointwise,      ///< reads the colour at its own pixel, and any side image: fuses with its neighbours
-    Warp,           ///< reads the colour at moved coordinates: may only open a fused kernel
+    Pointwise,  ///< reads the colour at its own pixel, and any side image: fuses with its neighbours
+    Warp,       ///< reads the colour at moved coordinates: may only open a fused kernel
+    /// Moves where the picture is read: uv to uv. Neighbours of this touch, and taps, are one reading: their maps
+    /// compose, from the last to the first, into one sample, or three where a map parts the channels.
+    Map,
+    Tap,            ///< reads the picture at further places, behind the maps of its reading
     Neighbourhood,  ///< reads around its pixel: passes of its own
     History,        ///< reads an earlier frame: passes of its own
 };
@@ -66,6 +72,7 @@ struct FlatPlace {
     std::int32_t documented = -1;
     std::int32_t scene_linear = -1;
     bool starts_on = false;
+    bool is_of_ui = false;  ///< its keys stand in the table [ui]
 };
 
 /// Extent of an effect's output relative to its input: floored, at least 1.
@@ -218,12 +225,20 @@ struct EffectInfo {
     Domain (*makes)(Domain before, const void* parameters) = nullptr;
     Needs needs;
     FlatPlace flat;
-    OutputScale output_scale;   ///< of effects with a result of their own
-    bool has_second = false;    ///< reads a second picture, as side image `second`
+    OutputScale output_scale;  ///< of effects with a result of their own
+    bool has_second = false;   ///< reads a second picture, as side image `second`
+    /// Its text names no image `second`, but calls `vec4 <name>_second(Pixel pixel)`: a reading is then made in place.
+    bool has_second_in_place = false;
+    bool parts_channels = false;  ///< of a map: Place::barrel differs from channel to channel
+    bool is_ui = false;           ///< of the interface's own chain: see EntryDesc::is_ui
+    bool works_encoded =
+        false;  ///< where the picture is not sRGB-encoded yet, it is for this effect, and back behind it
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
     std::function<void(PassBuilder&)> build{};
     /// The published equation in double precision; see reference.hpp.
     ReferenceFunction reference = nullptr;
+    ReferenceMapFunction reference_map = nullptr;  ///< of a map, in its place
+    ReferenceTapFunction reference_tap = nullptr;  ///< of a tap
     /// What is wrong with values that are each allowed by themselves, as "end = 3: must lie beyond start = 5"; empty:
     /// nothing. Values of a frame may still be so (overrides): shaders must survive them.
     std::string (*conflict)(const void* parameters) = nullptr;

@@ -9,6 +9,8 @@
 //     exposure = 1.2                 radius = 4.0
 //                                    output = "blurred"
 //
+// With either may stand a table [ui], for the interface and its own chain.
+//
 // Part of the optional target Darkroom::looks; the core library reads no files.
 
 #include <cstdint>
@@ -64,6 +66,7 @@ struct LookEntry {
     EntryState state;
     std::string name;  ///< empty: see entry_names
     std::string input, source, second, mask, output;
+    bool is_of_ui = false;                       ///< of the table [ui]: in a stack, behind all that is listed
     std::string effect_file{};                   ///< of a custom effect: its file, as the look names it
     std::shared_ptr<const void> effect_owner{};  ///< keeps a custom effect for as long as the entry
 };
@@ -71,13 +74,20 @@ struct LookEntry {
 /// The two shipped orders of the flat table.
 enum class LookOrder : std::uint32_t { Documented, SceneLinear };
 
+/// The rest of the table [ui]: what the interface is.
+struct LookUi {
+    std::string document;                  ///< file name of a picture or an SVG document, relative to the look
+    std::vector<std::string> controllers;  ///< of Lua scripts, the same
+};
+
 struct Look {
     static constexpr std::int64_t format = 1;  ///< of the files that this build reads and writes
     bool is_flat = true;                       ///< [post_process]; false: [[stack]]
     bool was_flat = false;                     ///< a stack that place_entry made of a flat table
     bool is_enabled = true;                    ///< flat only; false: nothing but tone mapping and encoding, at defaults
     LookOrder order = LookOrder::Documented;   ///< flat only
-    std::vector<LookEntry> entries;            ///< flat: every effect with a place in the table
+    std::vector<LookEntry> entries;            ///< flat: every effect with a place in the tables
+    std::optional<LookUi> ui{};                ///< there is a table [ui]
     std::string shown_name;                    ///< file name for messages
 };
 
@@ -99,6 +109,8 @@ struct LookOptions {
 
 /// The flat table with nothing written in it.
 [[nodiscard]] Look default_look();
+/// Gives a look the interface's own chain, at its defaults where it has none: what an empty table [ui] does.
+void add_ui(Look& look);
 /// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`. The files that a look
 /// names are read with it.
 [[nodiscard]] Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options = {});

@@ -3,6 +3,7 @@
 // The CPU reference: every effect in double precision, written from the published equation. Tests compare the GPU with
 // it, and `--reference` develops with it alone. It is for truth, not for speed.
 
+#include <array>
 #include <cstdint>
 #include <darkroom/frame.hpp>
 #include <darkroom/resource.hpp>
@@ -67,6 +68,19 @@ struct ReferenceInput {
 };
 
 using ReferenceFunction = ReferenceImage (*)(const void* parameters, const ReferenceInput&);
+
+/// Where a picture is read: uv, and how strongly a barrel bends it behind that, for red, green (and alpha) and blue.
+/// Barrels of a reading add up. See effects/shared/place.glsl.
+struct ReferencePlace {
+    double u = 0, v = 0;
+    std::array<double, 3> barrel{0, 0, 0};
+    std::uint32_t height = 1;  ///< of the picture that is made
+};
+/// A picture, bilinearly.
+using ReferenceSampler = std::function<Rgba(double u, double v)>;
+using ReferenceMapFunction = ReferencePlace (*)(const void* parameters, ReferencePlace);
+using ReferenceTapFunction = Rgba (*)(const void* parameters, Rgba color, const ReferencePlace&,
+                                      const ReferenceSampler& read);
 
 /// Centre of a pixel as uv in (0,1), and its coordinates: what pointwise references are given.
 struct ReferencePixel {

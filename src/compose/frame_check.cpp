@@ -110,6 +110,12 @@ Result<> check_picture(const Given& given, const plan::Program& program, const C
                            most.width, most.height);
         return {};
     }
+    if (given.which == HostImage::Ui && !is_empty(desc.target_extent)) {
+        const VkExtent2D target = frame.target.used_region().extent;
+        if (is_same(extent, target)) return {};
+        return refused(given, " is {}x{}: with a target of {}x{} it must be as large", extent.width, extent.height,
+                       target.width, target.height);
+    }
     const VkExtent2D wanted = given.which == HostImage::Target ? program.target_size.of(color) : color;
     if (!is_same(extent, wanted))
         return refused(given, " is {}x{}: with a color of {}x{} it must be {}x{}", extent.width, extent.height,

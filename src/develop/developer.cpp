@@ -49,6 +49,7 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, c
     out.normals = use(2);
     out.velocity = use(3);
     out.is_velocity_plain = true;
+    out.ui = use(4);
     out.has_shadows = std::any_of(input.lights.begin(), input.lights.end(), has_cascades);
     return out;
 }
@@ -78,6 +79,7 @@ CompileDesc compile_desc_for(gpu::Context& context, const DeviceFrame& input, co
     out.velocity = {frame.velocity.format, input.layer_usage};
     out.is_velocity_plain = frame.camera.velocity == VelocityKind{};
     out.ui = {frame.ui.format};
+    if (!input.ui.empty()) out.ui = {VK_FORMAT_R8G8B8A8_UNORM, shader_usage(context, VK_FORMAT_R8G8B8A8_UNORM)};
     out.has_shadows = std::any_of(frame.lights.begin(), frame.lights.end(),
                                   [](const Light& light) { return light.cascades.is_given(); });
     return out;
@@ -123,18 +125,21 @@ struct Developer::State {
     gpu::Context& context() const { return *shared_context; }
     Slot& next_slot() { return slots[(oldest + in_flight) % slots.size()]; }
 
-    Result<> check(VkExtent2D extent, const UploadLayers& layers) const {
+    Result<> check(VkExtent2D extent, std::span<const UploadLayer> layers) const {
         if (Result<> done = check_extent(context(), extent); !done) return done;
         const auto [width, height] = extent;
         const std::size_t pixels = std::size_t{width} * height;
         for (const UploadLayer& layer : layers) {
-            const bool is_required = layer.given == 4;
+            const bool is_required = layer.name == std::string_view("color");
             const auto is_wrong = [&](std::size_t count, std::size_t per_pixel) {
                 return count > 0 && count != pixels * per_pixel;
             };
             if (is_wrong(layer.values.size(), layer.given) || (is_required && !layer.is_given()))
                 return user_error(fmt::format("{}: {} numbers, {}x{} pixels need {}", layer.name, layer.values.size(),
                                               width, height, pixels * layer.given));
+            if (is_wrong(layer.bytes.size(), layer.kept))
+                return user_error(fmt::format("{}: {} bytes, {}x{} pixels need {}", layer.name, layer.bytes.size(),
+                                              width, height, pixels * layer.kept));
             if (is_wrong(layer.halves.size(), layer.kept))
                 return user_error(fmt::format("{}: {} halves, {}x{} pixels need {}", layer.name, layer.halves.size(),
                                               width, height, pixels * layer.kept));
@@ -308,8 +313,22 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
         image->last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  // the read-back's
         image->last_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
     }
-    Result<> done =
-        state.begin(state.next_slot(), composer, frame, input.record_before, readback ? &*readback : nullptr);
+    Slot& slot = state.next_slot();
+    RecordBefore before = input.record_before;
+    if (!input.ui.empty()) {
+        const DevelopInput interface { .extent = frame.color.used_region().extent, .ui = input.ui };
+        const UploadLayers uploads = layers_of(interface);
+        if (Result<> done = state.check(interface.extent, std::span(uploads).last(1)); !done)
+            return failure(std::move(done));
+        if (Result<> done = slot.upload.prepare(state.context(), interface, uploads); !done)
+            return failure(std::move(done));
+        frame.ui = slot.upload.frame(interface).ui;
+        before = [&](VkCommandBuffer commands) -> Result<> {
+            slot.upload.record(state.context(), commands);
+            return input.record_before ? input.record_before(commands) : Result<>();
+        };
+    }
+    Result<> done = state.begin(slot, composer, frame, before, readback ? &*readback : nullptr);
     if (!done) return failure(std::move(done));
     Result<DevelopedPicture> picture = state.finish();
     if (picture && readback) *layers = readback->layers();

@@ -25,6 +25,8 @@ struct DevelopInput {
     std::span<const float> velocity;                             ///< x, y
     std::span<const std::uint16_t> color_halves, normal_halves;  ///< four a pixel, x, y, z, 1 of normals
     std::span<const std::uint16_t> velocity_halves;              ///< two a pixel
+    std::span<const std::uint8_t>
+        ui;  ///< the interface: red, green, blue, alpha, sRGB-encoded, premultiplied after that
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
@@ -37,7 +39,8 @@ struct DeviceFrame {
     Frame frame;                                                 ///< without target
     VkImageUsageFlags color_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of the colour image
     VkImageUsageFlags layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of depth, normals and velocity alike
-    RecordBefore record_before;                                  ///< goes first, in the same submission
+    std::span<const std::uint8_t> ui;  ///< as in DevelopInput, of the size of the colour, if frame.ui is not given
+    RecordBefore record_before;        ///< goes first, in the same submission
 };
 
 /// Encoded8: bytes for the screen, in DevelopedPicture::bytes. EncodedFloat: the same before it is rounded, for 16-bit

@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 
 #include "../effects/shared/blend_modes_reference.hpp"
-#include "../effects/shared/sample_reference.hpp"
+#include "../effects/shared/reading_reference.hpp"
 #include "compose/camera_jump.hpp"
 
 namespace darkroom {
@@ -19,6 +20,14 @@ double srgb_curve(double linear) {
     // IEC 61966-2-1.
     const double v = std::clamp(linear, 0.0, 1.0);
     return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+}
+
+// The same outside [0, 1]: the power goes on above 1, the line below 0.
+double srgb_curve_unbounded(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+double srgb_light_unbounded(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 std::string missing_needs(const Needs& needs, const ReferenceChainInput& input) {
@@ -32,7 +41,7 @@ std::string missing_needs(const Needs& needs, const ReferenceChainInput& input) 
     const bool has_shadows = std::any_of(input.lights.begin(), input.lights.end(),
                                          [](const ReferenceLight& light) { return !light.cascades.empty(); });
     say(needs.shadows, has_shadows, "shadows");
-    say(needs.ui, false, "a UI image");
+    say(needs.ui, input.ui != nullptr, "a UI image");
     return out;
 }
 
@@ -62,15 +71,18 @@ class Chain {
             pixel = {grey, grey, grey, 1};
         }
         domains_.assign(2, Domain::SceneLinear);
+        pictures_.push_back(input_.ui != nullptr ? *input_.ui : ReferenceImage());
+        domains_.push_back(Domain::Encoded);
+        lacks_ui_.assign(composer_.size(), false);
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
         if (input_.histories != nullptr) {
             input_.histories->entries = std::move(histories_);
             input_.histories->outputs = outputs_read_later();
         }
-        ReferenceChainOutput out{.picture = pictures_[values_.empty() ? 0 : values_.back()],
-                                 .left_out = std::move(left_out_)};
-        const Domain domain = domains_[values_.empty() ? 0 : values_.back()];
+        const std::size_t last = value_of({}, composer_.size());
+        ReferenceChainOutput out{.picture = pictures_[last], .left_out = std::move(left_out_)};
+        const Domain domain = domains_[last];
         if (input_.target_domain == Domain::Encoded && domain != Domain::Encoded && input_.encodes_target)
             for (Rgba& pixel : out.picture.pixels)
                 pixel = {srgb_curve(pixel.r), srgb_curve(pixel.g), srgb_curve(pixel.b), pixel.a};
@@ -110,14 +122,40 @@ class Chain {
     std::size_t value_of(Handle handle, std::size_t entry) {
         if (handle == scene_color) return 0;
         if (handle == scene_alpha) return 1;
-        if (!handle.is_given()) return entry == 0 ? 0 : values_[entry - 1];
+        if (handle == ui_layer) return 2;
+        if (!handle.is_given()) return value_of(before(entry, is_ui(entry)), entry);
         if (handle.is_previous) return keep(before(handle));
         if (const auto* const given = find_resource<ResourceImage>(&composer_.resources(), {handle.id}))
             return keep(picture_of(*given));
         return values_[index_of(handle)];
     }
+    bool is_ui(std::size_t entry) const {
+        return entry < composer_.size() && composer_.desc(composer_.entry(entry))->is_ui;
+    }
+    /// What an entry in this place of a chain gets by default.
+    Handle before(std::size_t entry, bool of_ui) const {
+        while (entry-- > 0)
+            if (is_ui(entry) == of_ui) return composer_.entry(entry);
+        return of_ui ? ui_layer : scene_color;
+    }
+    Handle second_of(std::size_t entry) const {
+        const EffectInfo& info = *composer_.info(composer_.entry(entry));
+        const EntryDesc& desc = *composer_.desc(composer_.entry(entry));
+        return desc.second.is_given() || !info.has_second || !info.needs.ui ? desc.second : before(entry, true);
+    }
+    /// Does the entry read an interface that is not there, or what is made of one?
+    bool lacks_ui(std::size_t entry) const {
+        if (input_.ui != nullptr) return false;
+        const EntryDesc& desc = *composer_.desc(composer_.entry(entry));
+        const Handle input = desc.input.is_given() ? desc.input : before(entry, desc.is_ui);
+        return std::ranges::any_of(std::array{input, desc.source, second_of(entry), desc.mask}, [&](Handle wire) {
+            const std::size_t from = wire.is_given() && !wire.is_previous ? index_of(wire) : entry;
+            return wire == ui_layer || (from < entry && lacks_ui_[from]);
+        });
+    }
     bool is_known(Handle wire, std::size_t index) const {
-        if (!wire.is_given() || wire == scene_color || wire == scene_alpha || wire == scene_color.previous())
+        if (!wire.is_given() || wire == scene_color || wire == scene_alpha || wire == scene_color.previous() ||
+            wire == ui_layer)
             return true;
         if (wire.is_previous) return index_of({wire.id}) < composer_.size();
         return index_of(wire) < index || find_resource(&composer_.resources(), {wire.id}) != nullptr;
@@ -184,15 +222,20 @@ class Chain {
                 return user_error(
                     fmt::format("stack entry '{}': it reads what is not the output of an earlier entry", desc.name));
         values_.push_back(value_of(desc.input, index));
-        std::string why = missing_needs(info.needs, input_);
+        lacks_ui_[index] = lacks_ui(index);
+        Needs needs = info.needs;
+        needs.ui |= lacks_ui_[index];
+        std::string why = missing_needs(needs, input_);
         if (!why.empty()) why = fmt::format("needs {}, which the frame does not have", why);
         if (why.empty() && info.is_last_step && input_.target_domain == Domain::SceneLinear)
             why = "the target takes scene-linear floats";
         if (!why.empty()) {
             left_out_.push_back(fmt::format("{}: {}", desc.name, why));
+            is_left_out_.push_back(true);
             return {};
         }
-        if (info.has_second && !desc.second.is_given())
+        is_left_out_.push_back(false);
+        if (info.has_second && !second_of(index).is_given())
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
                                           desc.name, info.name));
         const std::size_t from = input_of(desc, index);
@@ -202,9 +245,67 @@ class Chain {
             !desc.enabled || desc.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
         if (!is_off && info.reference == nullptr)
             return user_error(fmt::format("stack entry '{}': {} has no reference", desc.name, info.name));
-        values_.back() = keep(is_off ? pictures_[from] : result(info, desc, words, index, from));
+        const bool is_reading = (info.reference_map != nullptr || info.reference_tap != nullptr) && is_plain(desc);
+        if (is_reading)
+            values_.back() = read_on(info, words, from, is_off);
+        else
+            values_.back() = keep(is_off ? pictures_[from] : encoded_result(info, desc, words, index, from));
         domains_.back() = is_off || info.makes == nullptr ? before : info.makes(before, words.data());
         return {};
+    }
+
+    static bool is_plain(const EntryDesc& desc) {
+        return desc.opacity == 1 && desc.blend == BlendMode::Mix && !desc.mask.is_given();
+    }
+
+    /// A picture that is no more than a reading of another, so that maps may go on with it.
+    struct Reading {
+        std::size_t picture = 0;
+        std::vector<std::pair<const EffectInfo*, std::vector<std::uint32_t>>> steps;
+    };
+    ReferenceImage picture_of(const Reading& reading, std::uint32_t width, std::uint32_t height) const {
+        std::vector<ReadingStep> steps;
+        for (const auto& [info, words] : reading.steps)
+            steps.push_back({info->reference_map, info->reference_tap, words.data()});
+        return read_reference(pictures_[reading.picture], steps, width, height);
+    }
+    std::size_t read_on(const EffectInfo& info, const std::vector<std::uint32_t>& words, std::size_t from,
+                        bool is_off) {
+        const auto found = readings_.find(from);
+        Reading reading = found != readings_.end() ? found->second : Reading{from, {}};
+        if (!is_off) reading.steps.emplace_back(&info, words);
+        const std::size_t made =
+            keep(is_off ? pictures_[from] : picture_of(reading, pictures_[from].width, pictures_[from].height));
+        readings_[made] = std::move(reading);
+        return made;
+    }
+
+    /// Does an entry before this one encode, whether it is on or not?
+    bool may_be_encoded(std::size_t index) const {
+        Handle wire = composer_.entry(index);
+        for (std::size_t i = index;; i = index_of(wire)) {
+            const EntryDesc& desc = *composer_.desc(composer_.entry(i));
+            wire = desc.input.is_given() ? desc.input : before(i, desc.is_ui);
+            if (wire == ui_layer) return true;
+            if (wire.is_previous || index_of(wire) >= i) return false;
+            const EffectInfo& info = *composer_.info(wire);
+            if (info.makes == nullptr || is_left_out_[index_of(wire)]) continue;
+            for (const Domain domain : {Domain::SceneLinear, Domain::DisplayLinear})
+                if (info.makes(domain, info.parameters.defaults.data()) == Domain::Encoded) return true;
+        }
+    }
+    /// The result of an entry that wants the picture encoded, whatever it is.
+    ReferenceImage encoded_result(const EffectInfo& info, const EntryDesc& desc,
+                                  const std::vector<std::uint32_t>& words, std::size_t index, std::size_t from) {
+        if (!info.works_encoded || may_be_encoded(index)) return result(info, desc, words, index, from);
+        ReferenceImage encoded = pictures_[from];
+        const auto each = [](ReferenceImage& image, double (*curve)(double)) {
+            for (Rgba& pixel : image.pixels) pixel = {curve(pixel.r), curve(pixel.g), curve(pixel.b), pixel.a};
+        };
+        each(encoded, srgb_curve_unbounded);
+        ReferenceImage out = result(info, desc, words, index, keep(std::move(encoded)));
+        each(out, srgb_light_unbounded);
+        return out;
     }
 
     ReferenceImage result(const EffectInfo& info, const EntryDesc& desc, const std::vector<std::uint32_t>& words,
@@ -213,9 +314,16 @@ class Chain {
         const auto wired = [&](Handle wire, const ReferenceImage* otherwise) {
             return wire.is_given() ? &pictures_[at_size(value_of(wire, index), base.width, base.height)] : otherwise;
         };
+        const ReferenceImage* second = nullptr;
+        if (const Handle wire = second_of(index); info.has_second) {
+            const auto reading = readings_.find(value_of(wire, index));
+            const bool is_in_place = info.has_second_in_place && reading != readings_.end();
+            second = is_in_place ? &pictures_[keep(picture_of(reading->second, base.width, base.height))]
+                                 : wired(wire, nullptr);
+        }
         ReferenceImage layer = info.reference(words.data(), {.picture = &base,
                                                              .source = wired(desc.source, &base),
-                                                             .second = wired(desc.second, nullptr),
+                                                             .second = second,
                                                              .depth = input_.depth,
                                                              .normals = input_.normals,
                                                              .velocity = input_.velocity,
@@ -226,9 +334,8 @@ class Chain {
                                                              .delta_time = input_.delta_time,
                                                              .frame_index = input_.frame_index,
                                                              .history = history_of(composer_.entry(index))});
-        const bool is_plain = desc.opacity == 1 && desc.blend == BlendMode::Mix && !desc.mask.is_given();
         const bool is_same_size = layer.width == base.width && layer.height == base.height;
-        if (is_plain || !is_same_size) return layer;
+        if (is_plain(desc) || !is_same_size) return layer;
         const ReferenceImage* const mask = wired(desc.mask, nullptr);
         for (std::size_t i = 0; i < layer.pixels.size(); ++i) {
             const double opacity = desc.opacity * (mask == nullptr ? 1.0 : mask_weight(mask->pixels[i]));
@@ -239,9 +346,11 @@ class Chain {
 
     const Composer& composer_;
     const ReferenceChainInput& input_;
-    std::deque<ReferenceImage> pictures_;  // that none moves while others are added
-    std::vector<Domain> domains_;          // of each picture
-    std::vector<std::size_t> values_;      // of each entry: its picture
+    std::deque<ReferenceImage> pictures_;       // that none moves while others are added
+    std::vector<Domain> domains_;               // of each picture
+    std::vector<std::size_t> values_;           // of each entry: its picture
+    std::map<std::size_t, Reading> readings_;   // of pictures that are one
+    std::vector<bool> is_left_out_, lacks_ui_;  // of each entry
     std::vector<std::string> left_out_;
     std::map<std::uint32_t, ReferenceHistory> histories_;  // of this frame
 };

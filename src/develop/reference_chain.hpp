@@ -25,6 +25,7 @@ struct ReferenceChainInput {
     const ReferenceImage* depth = nullptr;
     const ReferenceImage* normals = nullptr;
     const ReferenceImage* velocity = nullptr;
+    const ReferenceImage* ui = nullptr;  ///< encoded, premultiplied
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;

@@ -20,8 +20,10 @@ VkBufferImageCopy whole(VkExtent2D extent) {
 }
 
 void fill(const UploadLayer& layer, std::byte* out) {
-    if (!layer.halves.empty()) {
-        std::memcpy(out, layer.halves.data(), layer.halves.size_bytes());
+    const std::span<const std::byte> as_it_is =
+        !layer.bytes.empty() ? std::as_bytes(layer.bytes) : std::as_bytes(layer.halves);
+    if (!as_it_is.empty()) {
+        std::memcpy(out, as_it_is.data(), as_it_is.size());
         return;
     }
     std::array<float, 4> texel{0, 0, 0, 1};
@@ -43,7 +45,7 @@ UploadLayers layers_of(const DevelopInput& input) {
     const auto layer = [](const char* name, std::span<const float> values, std::span<const std::uint16_t> halves,
                           std::uint32_t given, std::uint32_t kept, VkFormat half, VkFormat whole) -> UploadLayer {
         const bool is_half = half != whole && (!halves.empty() || is_all_half(values));
-        return {name, values, halves, given, kept, is_half ? half : whole, is_half};
+        return {name, values, halves, {}, given, kept, is_half ? half : whole, is_half};
     };
     constexpr VkFormat half4 = VK_FORMAT_R16G16B16A16_SFLOAT, float4 = VK_FORMAT_R32G32B32A32_SFLOAT;
     // Depth stays whole: a renderer's planar distance is, too.
@@ -51,7 +53,8 @@ UploadLayers layers_of(const DevelopInput& input) {
             layer("depth", input.depth, {}, 1, 1, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32_SFLOAT),
             layer("normals", input.normals, input.normal_halves, 3, 4, half4, float4),
             layer("velocity", input.velocity, input.velocity_halves, 2, 2, VK_FORMAT_R16G16_SFLOAT,
-                  VK_FORMAT_R32G32_SFLOAT)};
+                  VK_FORMAT_R32G32_SFLOAT),
+            {.name = "ui", .bytes = input.ui, .given = 4, .kept = 4, .format = VK_FORMAT_R8G8B8A8_UNORM}};
 }
 
 VkImageUsageFlags shader_usage(const gpu::Context& context, VkFormat format) {
@@ -176,7 +179,7 @@ Frame FrameUpload::frame(const DevelopInput& input) const {
                 .delta_time = input.delta_time,
                 .frame_index = input.frame_index};
     frame.camera.depth = DepthKind::Planar;
-    ImageRef* const slots[] = {&frame.color, &frame.depth, &frame.normals, &frame.velocity};
+    ImageRef* const slots[] = {&frame.color, &frame.depth, &frame.normals, &frame.velocity, &frame.ui};
     for (std::size_t i = 0; i < layers_->images.size(); ++i)
         if (layers_->images[i])
             *slots[i] =

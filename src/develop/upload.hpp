@@ -13,20 +13,21 @@
 
 namespace darkroom {
 
-/// A layer of the frame: what it is made of and where it goes. `values`, or `halves` as the image has them.
+/// A layer of the frame: what it is made of and where it goes. `values`, or `halves` or `bytes` as the image has them.
 struct UploadLayer {
     const char* name = "";
     std::span<const float> values;
     std::span<const std::uint16_t> halves;
+    std::span<const std::uint8_t> bytes;
     std::uint32_t given = 0;  ///< numbers a pixel in `values`
     std::uint32_t kept = 0;   ///< numbers a pixel in the image; three-component formats are rarely sampled
     VkFormat format = VK_FORMAT_UNDEFINED;
     bool is_half = false;
 
-    [[nodiscard]] bool is_given() const { return !values.empty() || !halves.empty(); }
-    [[nodiscard]] VkDeviceSize texel() const { return VkDeviceSize{kept} * (is_half ? 2 : 4); }
+    [[nodiscard]] bool is_given() const { return !values.empty() || !halves.empty() || !bytes.empty(); }
+    [[nodiscard]] VkDeviceSize texel() const { return VkDeviceSize{kept} * (!bytes.empty() ? 1 : is_half ? 2 : 4); }
 };
-using UploadLayers = std::array<UploadLayer, 4>;  ///< colour, depth, normals, velocity
+using UploadLayers = std::array<UploadLayer, 5>;  ///< colour, depth, normals, velocity, interface
 
 /// Layers whose numbers are all halves are kept as halves.
 [[nodiscard]] UploadLayers layers_of(const DevelopInput& input);
@@ -49,8 +50,8 @@ class FrameUpload {
   private:
     struct Layers {
         VkExtent2D extent{};
-        std::array<std::optional<gpu::Image>, 4> images;
-        std::array<std::optional<gpu::Buffer>, 4> buffers;
+        std::array<std::optional<gpu::Image>, std::tuple_size_v<UploadLayers>> images;
+        std::array<std::optional<gpu::Buffer>, std::tuple_size_v<UploadLayers>> buffers;
     };
     /// The cascades of one light, an array, and the buffer that fills it.
     struct Shadow {

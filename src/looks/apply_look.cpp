@@ -19,6 +19,7 @@ namespace {
 // or part a kernel in every frame, for what nobody asked for.
 bool is_in_the_way(const Look& look, const LookEntry& entry, const ApplyOptions& options) {
     const EffectInfo& effect = *entry.effect;
+    if (effect.needs.ui && entry.is_of_ui) return entry.state.enabled.on == 0 && !options.keeps_what_is_off;
     if (!look.is_flat || (effect.touch == Touch::Pointwise && !effect.build)) return false;
     const bool is_still =
         effect.touch == Touch::Warp && effect.is_identity != nullptr && effect.is_identity(entry.words.data());
@@ -109,7 +110,8 @@ Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options
     };
     const auto wired = [&](std::size_t index, bool is_complete) -> Result<EntryDesc> {
         const LookEntry& entry = look.entries[index];
-        EntryDesc desc{.name = names[index],
+        EntryDesc desc{.is_ui = entry.is_of_ui && entry.effect->is_ui,
+                       .name = names[index],
                        .output = entry.output,
                        .enabled = look.is_enabled ? entry.state.enabled.on != 0 : true,
                        .opacity = entry.state.opacity,
@@ -135,7 +137,7 @@ Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options
                                               is_previous ? "" : " before it"));
             desc.*end.handle = is_previous ? found->second.previous() : found->second;
         }
-        if (look.is_flat) desc.source = scene_color;
+        if (look.is_flat && !entry.is_of_ui) desc.source = scene_color;
         return desc;
     };
     for (const LookEntry* const entry : ordered(look)) {

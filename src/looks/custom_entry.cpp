@@ -21,7 +21,8 @@ void make_stack(Look& look) {
         const bool changes_domain = is_domain_change(*entry->effect);
         if (look.is_enabled ? entry->state.enabled.on == 0 && !changes_domain : !changes_domain) continue;
         entries.push_back(look.is_enabled ? *entry : entry_of(*entry->effect));
-        entries.back().source = scene_name;
+        if (!entry->is_of_ui) entries.back().source = scene_name;
+        entries.back().is_of_ui = entry->is_of_ui;
     }
     look.entries = std::move(entries);
     look.is_flat = false;
@@ -69,6 +70,7 @@ Result<> place_entry(Look& look, LookEntry entry) {
     if (is_found) place = look.entries.begin();
     for (auto other = look.entries.begin(); other != look.entries.end(); ++other) {
         const EffectInfo& effect = *other->effect;
+        if (other->is_of_ui) continue;
         if (effect.makes != nullptr && other->state.enabled.on != 0) domain = effect.makes(domain, other->words.data());
         if (!accepts.contains(domain)) continue;
         place = other + 1;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <darkroom/effects.hpp>
+#include <functional>
 #include <map>
 
 #include "core/param_text.hpp"
@@ -28,14 +29,27 @@ LookEntry entry_of(const EffectInfo& effect) {
     return {.effect = &effect, .words = {defaults.begin(), defaults.end()}, .effect_owner = effect.owner.lock()};
 }
 
+namespace {
+
+/// Noise that is laid over the finished picture, interface included.
+bool is_noise(const LookEntry& entry) { return entry.effect->is_last_step && entry.effect->makes == nullptr; }
+
+}  // namespace
+
 std::vector<const LookEntry*> ordered(const Look& look) {
     std::vector<const LookEntry*> out;
     for (const LookEntry& entry : look.entries)
         if (!look.is_flat || flat_rank(*entry.effect, look.order) >= 0) out.push_back(&entry);
-    if (look.is_flat)
-        std::stable_sort(out.begin(), out.end(), [&](const LookEntry* a, const LookEntry* b) {
-            return flat_rank(*a->effect, look.order) < flat_rank(*b->effect, look.order);
-        });
+    const auto rank = [&](const LookEntry* entry) { return flat_rank(*entry->effect, look.order); };
+    if (look.is_flat) {
+        std::ranges::stable_sort(out, {}, rank);
+        return out;
+    }
+    const auto ui = std::ranges::stable_partition(out, std::not_fn(&LookEntry::is_of_ui));
+    std::ranges::stable_sort(ui, {}, rank);
+    auto place = ui.begin();
+    while (place != out.begin() && is_noise(**(place - 1))) --place;
+    std::rotate(place, ui.begin(), out.end());
     return out;
 }
 
@@ -45,20 +59,37 @@ void write_row(std::string& out, std::string_view key, std::string_view value) {
     out += fmt::format("{} = {}\n", key, value);
 }
 
+void write_values(std::string& out, const LookEntry& entry) {
+    const EffectInfo& effect = *entry.effect;
+    out += fmt::format("{} = {}\n", flat_key(effect.name, "enabled"), entry.state.enabled.on != 0);
+    for (const ParamInfo& row : effect.parameters.rows)
+        write_row(out, flat_key(effect.name, row.name), value_text(entry, row));
+}
+
+void write_ui(std::string& out, const Look& look) {
+    if (!look.ui) return;
+    out += "\n[ui]\n";
+    if (!look.ui->document.empty()) write_row(out, "document", toml_string(look.ui->document));
+    if (!look.ui->controllers.empty()) {
+        std::vector<std::string> names;
+        for (const std::string& name : look.ui->controllers) names.push_back(toml_string(name));
+        write_row(out, "controllers", fmt::format("[{}]", fmt::join(names, ", ")));
+    }
+    for (const LookEntry* const entry : ordered(look))
+        if (entry->is_of_ui) write_values(out, *entry);
+}
+
 void write_flat(std::string& out, const Look& look) {
     out += "\n[post_process]\n";
     out += fmt::format("enabled = {}\norder = \"{}\"\n", look.is_enabled,
                        order_names[static_cast<std::size_t>(look.order)]);
-    for (const LookEntry* const entry : ordered(look)) {
-        const EffectInfo& effect = *entry->effect;
-        out += fmt::format("{} = {}\n", flat_key(effect.name, "enabled"), entry->state.enabled.on != 0);
-        for (const ParamInfo& row : effect.parameters.rows)
-            write_row(out, flat_key(effect.name, row.name), value_text(*entry, row));
-    }
+    for (const LookEntry* const entry : ordered(look))
+        if (!entry->is_of_ui) write_values(out, *entry);
 }
 
 void write_stack(std::string& out, const Look& look) {
     for (const LookEntry& entry : look.entries) {
+        if (entry.is_of_ui) continue;
         const std::string_view effect = entry.effect_file.empty() ? entry.effect->name : entry.effect_file;
         out += fmt::format("\n[[stack]]\neffect = {}\n", toml_string(effect));
         for (const WireInfo& wire : wires)
@@ -79,8 +110,21 @@ Look default_look() {
         if (effect->flat.documented < 0 && effect->flat.scene_linear < 0) continue;
         look.entries.push_back(entry_of(*effect));
         look.entries.back().state.enabled = effect->flat.starts_on;
+        look.entries.back().is_of_ui = effect->flat.is_of_ui;
     }
     return look;
+}
+
+void add_ui(Look& look) {
+    if (!look.ui) look.ui.emplace();
+    for (LookEntry& entry : default_look().entries) {
+        if (!entry.is_of_ui) continue;
+        const auto found = std::ranges::find_if(
+            look.entries, [&](const LookEntry& own) { return own.is_of_ui && own.effect == entry.effect; });
+        if (found == look.entries.end()) look.entries.push_back(std::move(entry));
+    }
+    for (LookEntry& entry : look.entries)
+        if (entry.is_of_ui) entry.state.enabled = true;
 }
 
 std::string write_look(const Look& look) {
@@ -91,6 +135,7 @@ std::string write_look(const Look& look) {
         out += "stack = []\n";
     else
         write_stack(out, look);
+    write_ui(out, look);
     return out;
 }
 

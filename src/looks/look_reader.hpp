@@ -59,6 +59,8 @@ class LookReader {
 };
 
 [[nodiscard]] Look read_flat(LookReader& reader, const toml::node* node);
+/// Adds the table [ui] to a look.
+void read_ui(LookReader& reader, Look& look, const toml::node& node);
 [[nodiscard]] Look read_stack(LookReader& reader, const toml::node& node);
 
 }  // namespace darkroom

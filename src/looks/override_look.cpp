@@ -62,7 +62,7 @@ class Overrider {
         if (!is_state) {
             if (Result<> done = assign(*row, entry->words, *value, shown); !done) return done;
             const bool is_positive = std::bit_cast<float>(entry->words[row->word]) > 0;
-            if (row->is_amount) entry->state.enabled = is_positive;
+            if (row->is_amount) entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
             if (row->switched_word < entry->words.size() && is_positive) {
                 entry->words[row->switched_word] = 1;
                 entry->state.enabled = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The flat table [post_process]: one key for each parameter of each effect that has a place in it.
+// The flat table [post_process]: one key for each parameter of each effect that has a place in it. And the table [ui],
+// which is the same for the effects of the interface.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,12 +19,14 @@ const ParamInfo order_row{.name = "order", .kind = Kind::Choice, .choices = orde
 
 class FlatReader {
   public:
-    explicit FlatReader(LookReader& reader) : reader_(reader) {
-        for (LookEntry& entry : look_.entries) add_keys(entry);
-        for (LookEntry& entry : look_.entries) add_former_keys(entry);
+    FlatReader(LookReader& reader, Look& look, bool is_of_ui) : reader_(reader), look_(look), is_of_ui_(is_of_ui) {
+        for (LookEntry& entry : look_.entries)
+            if (entry.is_of_ui == is_of_ui) add_keys(entry);
+        for (LookEntry& entry : look_.entries)
+            if (entry.is_of_ui == is_of_ui) add_former_keys(entry);
     }
 
-    Look read(const toml::table& table) {
+    void read(const toml::table& table) {
         for (const auto& [key, node] : table) read_value(key, node);
         // Toggles come last: what they say counts, whatever an amount implies.
         for (const auto& [key, node] : table) {
@@ -34,7 +37,6 @@ class FlatReader {
         for (const LookEntry& entry : look_.entries)
             if (const std::string conflict = conflict_of(entry); !conflict.empty())
                 reader_.report(table, Weight::Wrong, conflict);
-        return std::move(look_);
     }
 
   private:
@@ -65,14 +67,16 @@ class FlatReader {
     }
 
     void read_value(const toml::key& key, const toml::node& node) {
-        if (key.str() == "enabled") return read_enabled(node);
-        if (key.str() == "order") return read_order(node);
+        if (is_of_ui_ && key.str() == "document") return read_document(node);
+        if (is_of_ui_ && key.str() == "controllers") return read_controllers(node);
+        if (!is_of_ui_ && key.str() == "enabled") return read_enabled(node);
+        if (!is_of_ui_ && key.str() == "order") return read_order(node);
         const auto found = targets_.find(key.str());
         if (found == targets_.end()) return read_unknown(key, node);
         const auto& [entry, row] = found->second;
         if (row == &enabled_row) return;
-        if (reader_.take(*row, *entry, node, key.str()) && row->is_amount)
-            entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) > 0;
+        if (reader_.take(*row, *entry, node, key.str()) && row->is_amount && !is_of_ui_)
+            entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
     }
 
     void read_enabled(const toml::node& node) {
@@ -87,24 +91,57 @@ class FlatReader {
         look_.order = static_cast<LookOrder>(words[0]);
     }
 
+    std::optional<std::string> file_name(const toml::node& node, std::string_view key) {
+        if (const auto* const text = node.as_string(); text != nullptr && !text->get().empty()) return text->get();
+        reader_.report(node, Weight::Wrong, fmt::format("{} = {}: expected the name of a file", key, show(node)));
+        return std::nullopt;
+    }
+
+    void read_document(const toml::node& node) {
+        if (auto name = file_name(node, "document")) look_.ui->document = std::move(*name);
+    }
+
+    void read_controllers(const toml::node& node) {
+        constexpr std::size_t most = 16;
+        const toml::array* const names = node.as_array();
+        if (names == nullptr || names->size() > most)
+            return reader_.report(
+                node, Weight::Wrong,
+                fmt::format("controllers = {}: expected a list of at most {} files", show(node), most));
+        for (const toml::node& one : *names)
+            if (auto name = file_name(one, "controllers")) look_.ui->controllers.push_back(std::move(*name));
+    }
+
     void read_unknown(const toml::key& key, const toml::node& node) {
         reader_.report_unknown(key, node, names_, [&](const std::string& near) { return allowed(near); });
     }
 
     LookReader& reader_;
-    Look look_ = default_look();
+    Look& look_;
+    bool is_of_ui_;
     std::map<std::string, Target, std::less<>> targets_;
-    std::vector<std::string> names_{"enabled", "order"};  // of all keys, for suggestions
+    std::vector<std::string> names_ = is_of_ui_ ? std::vector<std::string>{"document", "controllers"}
+                                                : std::vector<std::string>{"enabled", "order"};  // for suggestions
 };
 
 }  // namespace
 
 Look read_flat(LookReader& reader, const toml::node* node) {
-    if (node == nullptr) return default_look();
-    const toml::table* const table = node->as_table();
-    if (table != nullptr) return FlatReader(reader).read(*table);
-    reader.report(*node, Weight::Wrong, fmt::format("post_process = {}: expected a table", show(*node)));
-    return default_look();
+    Look look = default_look();
+    if (node == nullptr) return look;
+    if (const toml::table* const table = node->as_table())
+        FlatReader(reader, look, false).read(*table);
+    else
+        reader.report(*node, Weight::Wrong, fmt::format("post_process = {}: expected a table", show(*node)));
+    return look;
+}
+
+void read_ui(LookReader& reader, Look& look, const toml::node& node) {
+    const toml::table* const table = node.as_table();
+    if (table == nullptr)
+        return reader.report(node, Weight::Wrong, fmt::format("ui = {}: expected a table", show(node)));
+    add_ui(look);
+    FlatReader(reader, look, true).read(*table);
 }
 
 }  // namespace darkroom

@@ -32,7 +32,7 @@ class FrameValues {
 
   private:
     [[nodiscard]] Domain domain_behind(std::uint32_t entry) const {
-        return entry == no_entry ? Domain::SceneLinear : domains_[entry];
+        return entry == no_entry ? Domain::SceneLinear : entry == ui_entry ? Domain::Encoded : domains_[entry];
     }
     [[nodiscard]] bool is_open(const Program& program, const Gate& gate, const PassContext& context) const;
 

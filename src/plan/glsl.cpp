@@ -307,12 +307,35 @@ std::string pass_body(const FusedStep& step) {
            step.text->glsl;
 }
 
+namespace {
+
+/// What the text of a step reads its second picture by: the steps before it hold its reading, if it has one.
+std::string second_function(const FusedStep& step, std::span<const FusedStep> before) {
+    const std::string suffix = place_suffix(step.place), image = "second" + suffix;
+    const std::string name = fmt::format("{}_second{}", step.info->name, suffix);
+    const bool has_reading = std::ranges::any_of(before, [&](const FusedStep& other) { return other.reads == image; });
+    if (has_reading) return reading_function(name, image, before);
+    const std::string_view how = step.is_second_resampled ? "sample_linear({0}, pixel.uv)" : "load({0}, pixel.texel)";
+    return fmt::format("vec4 {}(Pixel pixel) {{ return {}; }}\n", name, fmt::format(fmt::runtime(how), image));
+}
+
+}  // namespace
+
+bool is_moved(std::span<const FusedStep> steps) {
+    if (steps.empty() || steps.front().is_merge) return false;
+    return steps.front().info->touch == Touch::Warp || steps.front().reads == picture_name;
+}
+
 Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha) {
     std::string declarations, code;
     std::set<std::string_view> structs;
-    bool has_merge = false;
-    for (const FusedStep& step : steps) {
+    bool has_merge = false, has_reading = false, reads_picture = false, has_wrap = false;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const FusedStep& step = steps[i];
         const std::string suffix = place_suffix(step.place), prefix = block_prefix(*step.info, step.place);
+        const bool is_of_reading = !step.reads.empty();
+        has_reading |= is_of_reading;
+        if (step.info->has_second_in_place && !step.is_merge) declarations += second_function(step, steps.first(i));
         if (!step.is_merge) {
             if (structs.insert(step.info->parameters.struct_name).second)
                 declarations += parameter_struct(step.info->parameters);
@@ -320,9 +343,18 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
             if (step.custom_vectors > 0)
                 declarations += fmt::format("vec4 {}_custom{}(int index) {{ return custom[{} + index]; }}\n",
                                             step.info->name, suffix, step.first_vector);
+            if (step.info->touch == Touch::Tap)
+                declarations += fmt::format("vec4 {}_read{}(vec2 uv) {{ return sample_linear({}, uv); }}\n",
+                                            step.info->name, suffix, step.reads);
             declarations += step.text->glsl;
         }
-        std::string layer = step.is_merge ? fmt::format("load(layer{}, pixel.texel)", suffix)
+        if (is_of_reading && !step.is_layer) {
+            reads_picture |= step.reads == picture_name;
+            continue;
+        }
+        if (step.is_layer) declarations += reading_function("reading_" + suffix, picture_name, {&step, 1});
+        std::string layer = step.is_merge   ? fmt::format("load(layer{}, pixel.texel)", suffix)
+                            : step.is_layer ? fmt::format("reading_{}(pixel)", suffix)
                             : step.info->touch == Touch::Warp
                                 ? fmt::format("{0}{1}(pixel, {0}_parameters{1}())", step.info->name, suffix)
                                 : fmt::format("{0}{1}(color, pixel, {0}_parameters{1}())", step.info->name, suffix);
@@ -333,22 +365,31 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                               : fmt::format("{}opacity_", prefix);
             layer = fmt::format("merge_layer(color, {}, {}, {}blend_)", layer, opacity, prefix);
         }
+        if (step.is_wrapped) {
+            has_wrap = true;
+            declarations += fmt::format(
+                "vec4 wrapped{}(vec4 color, Pixel pixel) {{\n    color.rgb = srgb_encode_unbounded(color.rgb);\n"
+                "    color = {};\n    return vec4(srgb_decode_unbounded(color.rgb), color.a);\n}}\n",
+                suffix, layer);
+            layer = fmt::format("wrapped{}(color, pixel)", suffix);
+        }
         code += step.is_certain ? fmt::format("    color = {};\n", layer)
                                 : fmt::format("    if ({}enabled_ != 0u) color = {};\n", prefix, layer);
     }
+    if (reads_picture) declarations += reading_function("reading_picture", picture_name, steps);
 
     std::string helpers;
-    if (has_merge) {
-        if (auto ok = append_with_includes(helpers, file_text(shared_files(), "shared/merge.glsl"),
-                                           "effects/shared/merge.glsl", 0);
-            !ok)
-            return failure(std::move(ok));
-    }
+    const auto include = [&](std::string_view name) {
+        return append_with_includes(helpers, file_text(shared_files(), name), fmt::format("effects/{}", name), 0);
+    };
+    if (has_merge)
+        if (auto ok = include("shared/merge.glsl"); !ok) return failure(std::move(ok));
+    if (has_reading)
+        if (auto ok = include("shared/place.glsl"); !ok) return failure(std::move(ok));
+    if (has_wrap)
+        if (auto ok = include("shared/srgb_unbounded.glsl"); !ok) return failure(std::move(ok));
     if (finish != Finish::None) {
-        if (auto ok = append_with_includes(helpers, file_text(shared_files(), "shared/srgb.glsl"),
-                                           "effects/shared/srgb.glsl", 0);
-            !ok)
-            return failure(std::move(ok));
+        if (auto ok = include("shared/srgb.glsl"); !ok) return failure(std::move(ok));
         for (const auto& [kind, call] : {std::pair{Finish::EncodeSrgb, "color.rgb = srgb_encode(color.rgb);"},
                                          std::pair{Finish::DecodeSrgb, "color.rgb = srgb_decode(color.rgb);"}}) {
             if (finish == Finish::OfFrame)
@@ -357,12 +398,12 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                 code += fmt::format("    {}\n", call);
         }
     }
-    const bool is_warp = !steps.empty() && steps.front().info->touch == Touch::Warp && !steps.front().is_merge;
-    std::string_view read = is_warp ? "load_clamped(picture, pixel.texel)" : "load(picture, pixel.texel)";
+    std::string_view read = is_moved(steps) ? "load_clamped(picture, pixel.texel)" : "load(picture, pixel.texel)";
     if (resampling == Resampling::Linear) read = "sample_linear(picture, pixel.uv)";
     // The texel under the pixel's centre; in integers, because a product of floats may fall short of it.
     if (resampling == Resampling::Nearest)
         read = "load_clamped(picture, (2 * pixel.texel + 1) * size(picture) / (2 * pixel.size))";
+    if (reads_picture) read = "reading_picture(pixel)";
     if (is_alpha) read = "vec4(vec3(clamp(load(picture, pixel.texel).a, 0.0, 1.0)), 1.0)";
     return fmt::format(
         "{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",

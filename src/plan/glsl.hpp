@@ -64,6 +64,10 @@ struct FusedStep {
     std::string name;                        ///< of the entry
     std::vector<std::string> images;         ///< names that the effect's text calls its images
     std::shared_ptr<const EffectText> text;  ///< none of a merge
+    std::string reads;                       ///< of a map or tap: the image that its reading samples
+    bool is_layer = false;                   ///< of such: laid over the picture, with opacity, mode and mask
+    bool is_second_resampled = false;        ///< its second picture has another size than the kernel's
+    bool is_wrapped = false;                 ///< the picture is encoded for it, and back
     bool is_merge = false;                   ///< only lays image layer_e<place> over the picture
     bool has_mask = false;                   ///< image mask_e<place>
     ConstantsFunction constants = nullptr;   ///< of a pointwise end
@@ -80,6 +84,13 @@ enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb, OfFrame };
 [[nodiscard]] gpu::BlockMember finish_member();
 /// How a fused kernel reads a picture that may have another extent than its output.
 enum class Resampling : std::uint8_t { None, Linear, Nearest };
+/// The image that a kernel's picture is.
+inline constexpr std::string_view picture_name = "picture";
+/// Do the first steps read the picture at other places than the pixel's own?
+[[nodiscard]] bool is_moved(std::span<const FusedStep> steps);
+/// `vec4 NAME(Pixel pixel)`: an image through the maps and taps that read it.
+[[nodiscard]] std::string reading_function(std::string_view name, std::string_view image,
+                                           std::span<const FusedStep> steps);
 /// The body of a fused kernel: reads image `picture` (or only its alpha, as a grey picture), applies the steps in
 /// order, finishes for the target.
 [[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling,

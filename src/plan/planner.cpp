@@ -55,7 +55,9 @@ Result<Program> Planner::run() {
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const auto read = scaled_input(i);
         if (!read) return failure(read.error());
-        const std::size_t input = *read;
+        auto at_target = at_target_size(i, *read);
+        if (!at_target) return failure(std::move(at_target));
+        const std::size_t input = *at_target;
         program_.entry_sizes.push_back(values_[input].size);
         if (program_.is_left_out[i]) {
             entry_values_[i] = input;
@@ -71,10 +73,26 @@ Result<Program> Planner::run() {
 }
 
 void Planner::leave_out() {
+    // What reads an interface that is not there, and what reads that.
+    std::vector<bool> lacks_ui(stack_.size(), false);
+    const auto reads_missing_ui = [&](std::uint32_t entry) {
+        if (desc_.ui.format != VK_FORMAT_UNDEFINED) return false;
+        const EntryDesc& desc = stack_[entry].desc;
+        const auto is_missing = [&](std::uint32_t from) {
+            return from == ui_entry || (from < entry && lacks_ui[from]);
+        };
+        if (!desc.input.is_given() && is_missing(entry_before(entry, desc.is_ui))) return true;
+        return std::ranges::any_of(std::array{desc.input, desc.source, second_of(entry), desc.mask}, [&](Handle wire) {
+            return wire == ui_layer || (is_of_entry(wire) && is_missing(index_of(wire)));
+        });
+    };
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const EffectInfo& info = *stack_[i].info;
+        lacks_ui[i] = reads_missing_ui(i);
+        Needs needs = info.needs;
+        needs.ui |= lacks_ui[i];
         std::string why;
-        if (const std::string missing = missing_needs(info.needs, desc_); !missing.empty())
+        if (const std::string missing = missing_needs(needs, desc_); !missing.empty())
             why = fmt::format("needs {}, which the frame does not have", missing);
         else if (info.is_last_step && target_domain_ == Domain::SceneLinear)
             why = "the target takes scene-linear floats";
@@ -99,16 +117,26 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
                    .name = stack_[entry].desc.name,
                    .constants = builder.end_function,
                    .custom_vectors = builder.end_vectors};
+    step.is_wrapped = info.works_encoded && !may_be_encoded(entry);
+    if (is_reading(info.touch)) {
+        if (!builder.sides.empty()) return user_error(fmt::format("effect '{}': a map reads no images", info.name));
+        return append_reading(entry, input, std::move(step));
+    }
     std::vector<PassInput> side_inputs;
     for (Builder::Side& side : builder.sides) {
         step.images.push_back(side.name);
         side_inputs.push_back(side.input);
     }
     if (info.has_second) {
-        auto second = materialise(value_of(stack_[entry].desc.second, entry),
-                                  fmt::format("{} reads it as its second picture", stack_[entry].desc.name));
-        if (!second) return failure(std::move(second));
+        const std::size_t value = value_of(second_of(entry), entry);
         step.images.emplace_back("second");
+        if (info.has_second_in_place && desc_.fuse && values_[value].reading != no_reading) {
+            const Reading reading = readings_[values_[value].reading];
+            side_inputs.push_back({.version = reading.image});
+            return append(entry, input, std::move(step), std::move(side_inputs), &reading);
+        }
+        auto second = materialise(value, fmt::format("{} reads it as its second picture", stack_[entry].desc.name));
+        if (!second) return failure(std::move(second));
         side_inputs.push_back({.version = *second});
     }
     return append(entry, input, std::move(step), std::move(side_inputs));
@@ -136,7 +164,7 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
 }
 
 Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, FusedStep step,
-                                    std::vector<PassInput> sides) {
+                                    std::vector<PassInput> sides, const Reading* second) {
     const std::string& name = stack_[entry].desc.name;
     const Value from = values_[input];
     std::size_t kernel = from.kernel;
@@ -147,27 +175,26 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         std::string why;
         if (!desc_.fuse)
             why = "fusion is off";
-        else if (step.info->touch == Touch::Warp && !step.is_merge)
+        else if ((step.info->touch == Touch::Warp && !step.is_merge) || step.is_layer)
             why = fmt::format("{} reads the picture at moved coordinates", name);
         else if (!from.reader.empty())
             why = fmt::format("{} reads the picture before it, too", from.reader);
         else if (kernels_[kernel].images.size() + side_count >= gpu::most_images)
             why = fmt::format("a kernel reads at most {} images", gpu::most_images);
-        else if (vectors_of(kernels_[kernel].steps) + step.custom_vectors > most_fused_vectors)
+        else if (vectors_of(kernels_[kernel].steps) + step.custom_vectors +
+                     (second == nullptr ? 0 : vectors_of(second->steps)) >
+                 most_fused_vectors)
             why = fmt::format("a kernel holds at most {} vectors of its effects", most_fused_vectors);
         if (!why.empty()) {
             if (auto image = materialise(input, why); !image) return failure(std::move(image));
             kernel = open_kernel(input, std::move(why));
         }
     }
-    step.place = static_cast<std::uint32_t>(kernels_[kernel].steps.size());
-    step.first_vector = vectors_of(kernels_[kernel].steps);
-    const std::string suffix = place_suffix(step.place);
-    if (!step.is_merge) {
-        auto text = text_of(*step.info, fmt::format("{}.glsl", step.info->name), step.place, step.images);
-        if (!text) return failure(std::move(text));
-        step.text = std::move(*text);
-    }
+    // The steps of a reading come before the one that reads by it.
+    const std::size_t place = kernels_[kernel].steps.size() + (second == nullptr ? 0 : second->steps.size());
+    const std::string suffix = place_suffix(static_cast<std::uint32_t>(place));
+    if (second != nullptr)
+        if (auto ok = add_steps(kernel, *second, "second" + suffix); !ok) return failure(std::move(ok));
     if (stack_[entry].desc.mask.is_given()) {
         auto mask = materialise(value_of(stack_[entry].desc.mask, entry), fmt::format("{} reads it as its mask", name));
         if (mask) mask = at_size(*mask, from.size, fmt::format("{}.mask", name));
@@ -176,8 +203,10 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         kernels_[kernel].images.push_back({"mask" + suffix, {.version = *mask}});
     }
     for (std::size_t i = 0; i < sides.size(); ++i) {
-        const bool is_read_by_texel = step.is_merge || step.images[i] == "second";
-        if (is_read_by_texel) {
+        const bool is_second = !step.is_merge && step.images[i] == "second";
+        if (is_second && step.info->has_second_in_place) {
+            step.is_second_resampled = !has_size(sides[i].version, from.size);
+        } else if (step.is_merge || is_second) {
             auto version = at_size(sides[i].version, from.size, fmt::format("{}.resampled", name));
             if (!version) return failure(std::move(version));
             sides[i].version = *version;
@@ -185,7 +214,7 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         const std::string shown = step.is_merge ? "layer" : step.images[i];
         kernels_[kernel].images.push_back({shown + suffix, sides[i]});
     }
-    kernels_[kernel].steps.push_back(std::move(step));
+    if (auto ok = add_step(kernel, std::move(step)); !ok) return failure(std::move(ok));
     values_.push_back({.kernel = kernel, .size = from.size, .reader = image_reader_[entry]});
     return values_.size() - 1;
 }
@@ -234,15 +263,19 @@ Result<graph::Version> Planner::at_size(graph::Version version, graph::Size size
 }
 
 Result<> Planner::finish() {
-    std::size_t last = stack_.empty() ? 0 : entry_values_.back();
+    const std::uint32_t last_entry = last_of_picture();
+    const std::size_t last = last_entry == no_entry ? 0 : entry_values_[last_entry];
     // Values change after compile, and with them the domain.
     Finish finish = finish_of(Domain::SceneLinear, desc_);
     const bool is_open = finish_of(Domain::Encoded, desc_) != finish_of(Domain::SceneLinear, desc_);
-    for (std::uint32_t i = program_.last_entry; is_open && i != no_entry; i = program_.entry_inputs[i])
+    for (std::uint32_t i = program_.last_entry; is_open && i < stack_.size(); i = program_.entry_inputs[i])
         if (stack_[i].info->makes != nullptr) finish = Finish::OfFrame;
     const VkExtent2D own = desc_.target_extent;
-    const bool is_scaled = own.width != 0;
     std::size_t kernel = values_[last].kernel;
+    const graph::Size target_size{.width = own.width, .height = own.height};
+    // Where the interface is composed, the picture has been sampled already.
+    const bool is_scaled = own.width != 0 && !(kernel != no_kernel && values_[last].reader.empty() &&
+                                               is_same(kernels_[kernel].size, target_size));
     if (is_scaled || kernel == no_kernel || !values_[last].reader.empty()) {
         const std::string why = is_scaled
                                     ? "the target has an extent of its own: the picture is sampled into it"
@@ -250,14 +283,13 @@ Result<> Planner::finish() {
         if (auto image = materialise(last, why); !image) return failure(std::move(image));
         kernel = open_kernel(last, is_scaled ? why : values_[last].why);
     }
-    if (is_scaled) {
+    if (is_scaled) kernels_[kernel].size = target_size;
+    if (own.width != 0)
         // What the entries do is done at the picture's extent, fused or not: a dither that is scaled is the price.
-        kernels_[kernel].size = {.width = own.width, .height = own.height};
         program_.remarks.push_back(
             fmt::format("the target has an extent of its own, up to {}x{}: the last kernel samples the picture into "
                         "it, bilinearly.",
                         own.width, own.height));
-    }
     program_.target_size = kernels_[kernel].size;
     const graph::Version target = import_host(HostImage::Target, "target", desc_.target, program_.target_size);
     auto version = close_kernel(kernel, target, desc_.target.format, finish, true);
@@ -270,8 +302,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
                                              bool is_always_on) {
     const OpenKernel kernel = kernels_[index];
     ProgramPass pass{.boundary = kernel.boundary, .steps = kernel.steps, .is_alpha = kernel.is_alpha, .finish = finish};
-    const bool is_warp =
-        !kernel.steps.empty() && kernel.steps.front().info->touch == Touch::Warp && !kernel.steps.front().is_merge;
+    const bool is_moved_here = is_moved(kernel.steps);
 
     Gate toggle;
     for (const FusedStep& step : kernel.steps) {
@@ -291,8 +322,9 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     const bool is_shared = std::ranges::any_of(kernel.images, [&](const auto& image) {
         return image.second.table == no_table && may_share(kernel.picture, image.second.version);
     });
+    const bool is_warp = is_moved_here && kernel.steps.front().info->touch == Touch::Warp;
     if (!is_warp && !has_size(kernel.picture, kernel.size)) pass.resampling = kernel.resampling;
-    const bool is_sampled = is_warp || is_shared || pass.resampling != Resampling::None;
+    const bool is_sampled = is_moved_here || is_shared || pass.resampling != Resampling::None;
     pass.spec.images.push_back(
         {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});

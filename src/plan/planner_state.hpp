@@ -19,6 +19,9 @@ class Builder;
 inline constexpr VkImageUsageFlags own_usage =
     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
 
+/// Is it part of a reading?
+[[nodiscard]] constexpr bool is_reading(Touch touch) { return touch == Touch::Map || touch == Touch::Tap; }
+
 /// One text for equal sizes.
 [[nodiscard]] std::string fraction_text(graph::Size size);
 
@@ -40,6 +43,14 @@ class Planner {
         graph::Size size{};
         std::string why;     ///< of an image: why a new kernel starts from it
         std::string reader;  ///< of an open kernel: who else reads this picture, so that it must become an image
+        std::size_t reading = no_reading;  ///< it is no more than this, so that maps may go on with it
+    };
+    static constexpr std::size_t no_reading = ~std::size_t{0};
+    /// Maps and taps over an image. Whoever goes on with one takes its steps over.
+    struct Reading {
+        graph::Version image;
+        graph::Size size{};
+        std::vector<FusedStep> steps;  ///< without texts and places
     };
     struct OpenKernel {
         graph::Version picture;
@@ -64,8 +75,15 @@ class Planner {
     /// Does the wire name the output of an entry, of this frame?
     [[nodiscard]] bool is_of_entry(Handle handle) const;
     void leave_out();
+    /// The entry whose output one in this place gets by default; no_entry: the scene, ui_entry: the interface's image.
+    [[nodiscard]] std::uint32_t entry_before(std::uint32_t entry, bool is_ui) const;
+    /// The same in the picture's chain, behind all entries.
+    [[nodiscard]] std::uint32_t last_of_picture() const;
+    /// The second picture of an entry, which may be the interface.
+    [[nodiscard]] Handle second_of(std::uint32_t entry) const;
     /// Who gets what from whom, past the entries that are left out.
     void resolve_inputs();
+    [[nodiscard]] std::uint32_t past_what_is_left_out(std::uint32_t entry) const;
     [[nodiscard]] std::uint32_t resolved(Handle handle, std::uint32_t entry) const;
     [[nodiscard]] std::size_t value_of(Handle handle, std::uint32_t entry) const;
     /// The picture that the host defined under this handle; null: the handle names something else.
@@ -80,8 +98,19 @@ class Planner {
     [[nodiscard]] Result<std::size_t> add_entry(std::uint32_t entry, std::size_t input);
     [[nodiscard]] Result<std::size_t> add_result(std::uint32_t entry, std::size_t input, Builder& builder);
     [[nodiscard]] Result<std::size_t> append(std::uint32_t entry, std::size_t input, FusedStep step,
-                                             std::vector<PassInput> sides);
+                                             std::vector<PassInput> sides, const Reading* second = nullptr);
+    /// Where an entry joins picture and interface, the picture at the target's size, if all that follows is in its
+    /// kernel.
+    [[nodiscard]] Result<std::size_t> at_target_size(std::uint32_t entry, std::size_t input);
+    /// Does any entry before this one encode?
+    [[nodiscard]] bool may_be_encoded(std::uint32_t entry) const;
     [[nodiscard]] std::size_t open_kernel(std::size_t input, std::string why);
+    /// A map or a tap: goes on with the reading that its input is, or begins one.
+    [[nodiscard]] Result<std::size_t> append_reading(std::uint32_t entry, std::size_t input, FusedStep step);
+    /// Puts the steps of a reading into a kernel, where they read its image of this name.
+    [[nodiscard]] Result<> add_steps(std::size_t kernel, const Reading& reading, std::string_view image);
+    /// Gives a step its place in a kernel, and its text.
+    [[nodiscard]] Result<> add_step(std::size_t kernel, FusedStep step);
     /// Makes the picture an image, if it is not one yet, by closing its kernel.
     [[nodiscard]] Result<graph::Version> materialise(std::size_t value, const std::string& why);
     [[nodiscard]] Result<graph::Version> materialise_into(std::size_t value, graph::Version image, bool is_always_on,
@@ -130,6 +159,7 @@ class Planner {
     std::map<std::uint32_t, graph::Version> kept_outputs_;  ///< by entry: where its output lies for the next frame
     std::vector<std::string> image_reader_;                 ///< per entry: who reads its output as an image
     std::vector<OpenKernel> kernels_;
+    std::vector<Reading> readings_;
     std::map<std::uint32_t, Facts> facts_;  ///< by version
     std::map<HostImage, graph::Version> host_images_;
     std::map<std::tuple<const EffectInfo*, std::string, std::uint32_t, std::vector<std::string>>,

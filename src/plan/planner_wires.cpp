@@ -51,6 +51,7 @@ const ResourceImage* Planner::picture_of(std::uint32_t entry, Handle handle) con
 Result<> Planner::check_handles() const {
     const auto check = [&](std::uint32_t entry, Handle handle, std::string_view which) -> Result<> {
         if (!handle.is_given() || handle.id == scene_color.id || handle.id == scene_alpha.id) return {};
+        if (handle.id == ui_layer.id) return {};
         if (picture_of(entry, handle) != nullptr) return {};
         const std::uint32_t from = index_of(handle);
         if (handle.is_previous ? from != no_entry : from < entry) return {};
@@ -64,7 +65,7 @@ Result<> Planner::check_handles() const {
         if (auto ok = check(i, desc.source, "source"); !ok) return ok;
         if (auto ok = check(i, desc.second, "second"); !ok) return ok;
         if (auto ok = check(i, desc.mask, "mask"); !ok) return ok;
-        if (stack_[i].info->has_second && !desc.second.is_given())
+        if (stack_[i].info->has_second && !second_of(i).is_given())
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
                                           desc.name, stack_[i].info->name));
     }
@@ -76,37 +77,65 @@ std::uint32_t Planner::index_of(Handle handle) const {
     return found == stack_.end() ? no_entry : static_cast<std::uint32_t>(found - stack_.begin());
 }
 
+std::uint32_t Planner::entry_before(std::uint32_t entry, bool is_ui) const {
+    while (entry-- > 0)
+        if (stack_[entry].desc.is_ui == is_ui) return entry;
+    return is_ui ? ui_entry : no_entry;
+}
+
+std::uint32_t Planner::last_of_picture() const {
+    return entry_before(static_cast<std::uint32_t>(stack_.size()), false);
+}
+
+Handle Planner::second_of(std::uint32_t entry) const {
+    const Entry& own = stack_[entry];
+    if (own.desc.second.is_given() || !own.info->has_second || !own.info->needs.ui) return own.desc.second;
+    const std::uint32_t last = entry_before(entry, true);
+    return last == ui_entry ? ui_layer : Handle{stack_[last].id};
+}
+
+std::uint32_t Planner::past_what_is_left_out(std::uint32_t from) const {
+    return from < stack_.size() && program_.is_left_out[from] ? program_.entry_inputs[from] : from;
+}
+
 std::uint32_t Planner::resolved(Handle handle, std::uint32_t entry) const {
-    if ((handle.is_given() && !is_of_entry(handle)) || (entry == 0 && !handle.is_given())) return no_entry;
-    const std::uint32_t from = handle.is_given() ? index_of(handle) : entry - 1;
-    return program_.is_left_out[from] ? program_.entry_inputs[from] : from;
+    if (!handle.is_given()) return past_what_is_left_out(entry_before(entry, stack_[entry].desc.is_ui));
+    if (!is_of_entry(handle)) return handle == ui_layer ? ui_entry : no_entry;
+    return past_what_is_left_out(index_of(handle));
 }
 
 void Planner::resolve_inputs() {
     for (std::uint32_t i = 0; i < stack_.size(); ++i)
         program_.entry_inputs.push_back(resolved(stack_[i].desc.input, i));
-    program_.last_entry = resolved({}, static_cast<std::uint32_t>(stack_.size()));
+    program_.last_entry = past_what_is_left_out(last_of_picture());
 }
 
 std::size_t Planner::value_of(Handle handle, std::uint32_t entry) const {
     if (handle == scene_color) return 0;
+    if (!handle.is_given()) {
+        const std::uint32_t from = entry_before(entry, stack_[entry].desc.is_ui);
+        if (from < stack_.size()) return entry_values_[from];
+        if (from == no_entry) return 0;
+        handle = ui_layer;
+    }
     if (const auto found = wires_.find({handle.id, handle.is_previous}); found != wires_.end()) return found->second;
-    if (handle.is_given()) return entry_values_[index_of(handle)];
-    return entry == 0 ? 0 : entry_values_[entry - 1];
+    // Of an interface that the frames do not have: all that reads it is left out.
+    return handle == ui_layer ? 0 : entry_values_[index_of(handle)];
 }
+
 /// Who reads the output of each entry as a picture of its own: such an output must become an image.
 void Planner::count_readers() {
     image_reader_.assign(stack_.size(), {});
     std::vector<std::uint32_t> inputs(stack_.size(), 0);
     const auto read_picture = [&](std::uint32_t from, const std::string& reader) {
-        if (from != no_entry && inputs[from]++ > 0) image_reader_[from] = reader;
+        if (from < stack_.size() && inputs[from]++ > 0) image_reader_[from] = reader;
     };
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         if (program_.is_left_out[i]) continue;
         const EntryDesc& wiring = stack_[i].desc;
-        for (const Handle handle : {wiring.source, wiring.second, wiring.mask}) {
+        for (const Handle handle : {wiring.source, second_of(i), wiring.mask}) {
             const std::uint32_t from = is_of_entry(handle) ? resolved(handle, i) : no_entry;
-            if (from != no_entry) image_reader_[from] = wiring.name;
+            if (from < stack_.size()) image_reader_[from] = wiring.name;
         }
         read_picture(program_.entry_inputs[i], wiring.name);
     }
@@ -117,10 +146,11 @@ void Planner::count_readers() {
 Result<> Planner::make_wires() {
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const EntryDesc& desc = stack_[i].desc;
-        for (const Handle handle : {desc.input, desc.source, desc.second, desc.mask}) {
+        const Handle input = program_.entry_inputs[i] == ui_entry ? ui_layer : desc.input;
+        for (const Handle handle : {input, desc.source, second_of(i), desc.mask}) {
             const std::pair key{handle.id, handle.is_previous};
             // What is left out hands on its input, and reads nothing else.
-            const bool is_read = handle.is_given() && (!program_.is_left_out[i] || handle == desc.input);
+            const bool is_read = handle.is_given() && (!program_.is_left_out[i] || handle == input);
             if (!is_read || wires_.contains(key)) continue;
             if (const ResourceImage* const picture = picture_of(i, handle)) {
                 const graph::Size size{.width = picture->width, .height = picture->height};
@@ -130,6 +160,12 @@ Result<> Planner::make_wires() {
             } else if (handle.is_previous) {
                 auto value = previous_of(handle);
                 if (!value) return failure(std::move(value));
+            } else if (handle == ui_layer) {
+                if (desc_.ui.format == VK_FORMAT_UNDEFINED) continue;
+                const graph::Size size{.width = desc_.target_extent.width, .height = desc_.target_extent.height};
+                values_.push_back({.image = import_host(HostImage::Ui, "ui", desc_.ui, size),
+                                   .size = size,
+                                   .why = "the interface starts here"});
             } else if (handle == scene_alpha) {
                 kernels_.push_back(
                     {.picture = values_[0].image, .boundary = "the scene's alpha becomes a picture", .is_alpha = true});
@@ -150,8 +186,9 @@ Result<> Planner::previous_of(Handle handle) {
     const std::uint32_t entry =
         handle.id == scene_color.id || handle.id == scene_alpha.id ? no_entry : index_of(handle);
     const std::string name = entry == no_entry ? std::string("scene") : stack_[entry].desc.name;
-    if (handle.id == scene_alpha.id)
-        return user_error("the scene's alpha has no frame before: read it into an entry, and that one's");
+    if (handle.id == scene_alpha.id || handle.id == ui_layer.id)
+        return user_error(fmt::format("{} has no frame before: read it into an entry, and that one's",
+                                      handle.id == ui_layer.id ? "the interface" : "the scene's alpha"));
     const graph::Size size = entry == no_entry ? graph::Size{} : output_size(entry);
     const VkFormat wanted = entry == no_entry ? VK_FORMAT_UNDEFINED : stack_[entry].desc.format;
     const VkFormat format = wanted == VK_FORMAT_UNDEFINED ? desc_.intermediate : wanted;
@@ -181,6 +218,8 @@ graph::Size Planner::output_size(std::uint32_t entry) const {
     graph::Size size;  // of the scene, and of what is read of the frame before
     if (const ResourceImage* const picture = desc.input.is_given() ? picture_of(entry, desc.input) : nullptr)
         size = {.width = picture->width, .height = picture->height};
+    else if (!desc.input.is_previous && program_.entry_inputs[entry] == ui_entry)
+        size = {.width = desc_.target_extent.width, .height = desc_.target_extent.height};
     else if (!desc.input.is_previous && program_.entry_inputs[entry] != no_entry)
         size = output_size(program_.entry_inputs[entry]);
     if (program_.is_left_out[entry]) return size;

@@ -111,6 +111,8 @@ enum class HostImage : std::uint8_t { Color, Depth, Normals, Velocity, Ui, Targe
 
 /// In place of an entry: the scene.
 inline constexpr std::uint32_t no_entry = ~0u;
+/// In place of an entry: the interface's image.
+inline constexpr std::uint32_t ui_entry = ~0u - 1;
 
 struct Program {
     graph::Graph graph;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/contrast_gamma.hpp>
+
+#include "contrast_gamma/contrast_gamma_reference.hpp"
+
+namespace darkroom {
+
+const EffectInfo& effect_info(const ContrastGamma&) {
+    static const EffectInfo info{
+        .name = "contrast_gamma",
+        .doc = "Contrast and gamma of the finished picture, interface included.",
+        .parameters = contrast_gamma_rows.table(),
+        .files = embedded_files("contrast_gamma"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::Encoded),
+        .flat = {.documented = 125, .scene_linear = 99, .is_of_ui = true},
+        .works_encoded = true,
+        .reference = pointwise_reference<ContrastGamma, contrast_gamma_reference>,
+        .is_identity =
+            [](const void* parameters) {
+                const ContrastGamma& values = *static_cast<const ContrastGamma*>(parameters);
+                return values.contrast == 1.0f && values.gamma == 1.0f;
+            },
+    };
+    return info;
+}
+
+}  // namespace darkroom

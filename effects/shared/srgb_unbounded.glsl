@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// IEC 61966-2-1 both ways, the power going on above 1 and the line below 0: for light that is encoded only in between.
+#ifndef SHARED_SRGB_UNBOUNDED
+#define SHARED_SRGB_UNBOUNDED
+vec3 srgb_encode_unbounded(vec3 linear) {
+    vec3 power = 1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055;
+    return mix(power, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
+}
+vec3 srgb_decode_unbounded(vec3 encoded) {
+    vec3 power = pow((max(encoded, vec3(0.04045)) + 0.055) / 1.055, vec3(2.4));
+    return mix(power, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
+}
+#endif

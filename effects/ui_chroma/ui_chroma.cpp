@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/ui_chroma.hpp>
+
+#include "ui_chroma/ui_chroma_reference.hpp"
+
+namespace darkroom {
+
+const EffectInfo& effect_info(const UiChroma&) {
+    static const EffectInfo info{
+        .name = "ui_chroma",
+        .doc = "Parts the colours of the interface toward its edges.",
+        .parameters = ui_chroma_rows.table(),
+        .files = embedded_files("ui_chroma"),
+        .touch = Touch::Map,
+        .flat = {.documented = 113, .scene_linear = 93, .is_of_ui = true},
+        .parts_channels = true,
+        .is_ui = true,
+        .reference = map_reference<ui_chroma_reference>,
+        .reference_map = ui_chroma_reference,
+        .is_identity =
+            [](const void* parameters) { return !(static_cast<const UiChroma*>(parameters)->strength > 0.0f); },
+    };
+    return info;
+}
+
+}  // namespace darkroom

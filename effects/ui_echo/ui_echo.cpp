@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/ui_echo.hpp>
+
+#include "ui_echo/ui_echo_reference.hpp"
+
+namespace darkroom {
+
+const EffectInfo& effect_info(const UiEcho&) {
+    static const EffectInfo info{
+        .name = "ui_echo",
+        .doc = "A ghost of the interface, larger or smaller than it.",
+        .parameters = ui_echo_rows.table(),
+        .files = embedded_files("ui_echo"),
+        .touch = Touch::Tap,
+        .flat = {.documented = 114, .scene_linear = 94, .is_of_ui = true},
+        .is_ui = true,
+        .reference = tap_reference<ui_echo_reference>,
+        .reference_tap = ui_echo_reference,
+        .is_identity =
+            [](const void* parameters) { return !(static_cast<const UiEcho*>(parameters)->strength > 0.0f); },
+    };
+    return info;
+}
+
+}  // namespace darkroom

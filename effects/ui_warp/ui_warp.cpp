@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/effects/ui_warp.hpp>
+
+#include "ui_warp/ui_warp_reference.hpp"
+
+namespace darkroom {
+
+const EffectInfo& effect_info(const UiWarp&) {
+    static const EffectInfo info{
+        .name = "ui_warp",
+        .doc = "Bends and moves the interface.",
+        .parameters = ui_warp_rows.table(),
+        .files = embedded_files("ui_warp"),
+        .touch = Touch::Map,
+        .flat = {.documented = 112, .scene_linear = 92, .is_of_ui = true},
+        .is_ui = true,
+        .reference = map_reference<ui_warp_reference>,
+        .reference_map = ui_warp_reference,
+        .is_identity =
+            [](const void* parameters) {
+                const UiWarp& values = *static_cast<const UiWarp*>(parameters);
+                return values.strength == 0.0f && values.offset.x == 0.0f && values.offset.y == 0.0f;
+            },
+    };
+    return info;
+}
+
+}  // namespace darkroom
