@@ -177,6 +177,26 @@ TEST_F(ComposeSchedule, KernelsKeepToTheStorageImagesOfTheDevice) {
     EXPECT_GT(most, 1u) << "nothing had to be limited";
 }
 
+TEST_F(ComposeSchedule, AWarpThatOnlyLoadsHasAStorageImageWhereLoadsAreCheap) {
+    for (const bool loads_are_cheap : {true, false}) {
+        const auto format_of = [&](std::string_view effect) {
+            std::vector<Entry> stack;
+            stack.push_back(entry_of(effect, stack));
+            CompileDesc desc{.max_extent = {64, 64}};
+            desc.color.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+            const auto program = plan_program(
+                stack, desc,
+                {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Compute; },
+                 .can_load = [](VkFormat) { return true; },
+                 .loads_are_cheap = loads_are_cheap});
+            EXPECT_TRUE(program);
+            return program->passes.front().spec.images.front().storage_format;
+        };
+        EXPECT_EQ(format_of("chromatic_aberration"), VK_FORMAT_UNDEFINED);
+        EXPECT_EQ(format_of("fxaa") != VK_FORMAT_UNDEFINED, loads_are_cheap);
+    }
+}
+
 TEST_F(ComposeSchedule, TheDefaultStackHasOneTransientImage) {
     std::vector<Entry> stack;
     stack.push_back(entry_of("bloom", stack, {.source = scene_color}));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "gpu/glsl_scan.hpp"
 
@@ -282,9 +283,17 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, st
     std::set<std::string_view> members;
     const std::string prefix = std::string(info.name) + "_", loader = prefix + "parameters";
     std::string renamed;
+    std::string_view function, before;
     gpu::GlslScanner scanner(expanded);
     for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next()) {
         renamed += token.text;
+        if (token.kind == gpu::Token::Kind::Blank) continue;
+        const bool is_loaded =
+            before == "(" && (function == "load" || function == "load_clamped" || function == "size");
+        if (token.kind == gpu::Token::Kind::Word && token.text == "picture") out.loads_picture_alone &= is_loaded;
+        if (token.kind == gpu::Token::Kind::Directive && token.text.find("picture") != std::string_view::npos)
+            out.loads_picture_alone = false;
+        function = std::exchange(before, token.text);
         if (token.kind == gpu::Token::Kind::Member) members.insert(token.text);
         if (token.kind != gpu::Token::Kind::Word) continue;
         const bool is_own =

@@ -324,7 +324,9 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     });
     const bool is_warp = is_moved_here && kernel.steps.front().info->touch == Touch::Warp;
     if (!is_warp && !has_size(kernel.picture, kernel.size)) pass.resampling = kernel.resampling;
-    const bool is_sampled = is_moved_here || is_shared || pass.resampling != Resampling::None;
+    const bool loads_alone = is_warp && traits_.loads_are_cheap && kernel.steps.front().text->loads_picture_alone;
+    const bool is_filtered = is_moved_here && !loads_alone;
+    const bool is_sampled = is_filtered || is_shared || pass.resampling != Resampling::None;
     pass.spec.images.push_back(
         {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});
