@@ -8,7 +8,7 @@
 namespace darkroom {
 
 enum class FxaaQuality : std::uint32_t {
-    Low,     ///< the steps of preset 12
+    Low,     ///< the steps of preset 11
     Medium,  ///< of preset 15
     High,    ///< of preset 29
 };

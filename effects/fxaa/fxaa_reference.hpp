@@ -17,7 +17,7 @@ inline double fxaa_reference_luma(const Rgba& color) { return 0.299 * color.r + 
 
 /// Distances between the pixels that a search looks at.
 inline std::span<const int> fxaa_reference_steps(FxaaQuality quality) {
-    static constexpr std::array low{1, 2, 2, 4, 12};
+    static constexpr std::array low{1, 2, 3, 12};
     static constexpr std::array medium{1, 2, 2, 2, 2, 2, 4, 12};
     static constexpr std::array high{1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 4, 8};
     if (quality == FxaaQuality::Low) return low;
