@@ -128,19 +128,24 @@ Stack motion_blur_stack(const std::string& resolution) {
     return stack_of({{"motion_blur", {{"resolution", resolution}}}});
 }
 
-Stack default_stack() {
+Stack flat_stack(bool keeps_what_is_off) {
     Stack stack;
     for (const EffectInfo* const effect : all_effects()) {
-        // As looks do: of what is off, only pointwise effects without images have a place, and what moves coordinates
-        // moves nothing at its defaults.
-        const bool is_in_the_way = effect->touch == Touch::Warp || (!effect->flat.starts_on && effect->build);
-        if (effect->flat.documented < 0 || is_in_the_way) continue;
+        if (effect->flat.documented < 0) continue;
+        // As looks do: of what is off, only pointwise effects without images have a place unless the host keeps them,
+        // and what moves coordinates but moves nothing at its defaults has none.
+        const bool is_still = effect->touch == Touch::Warp && effect->is_identity != nullptr &&
+                              effect->is_identity(effect->parameters.defaults.data());
+        const bool has_passes = effect->touch != Touch::Pointwise || effect->build;
+        if (is_still || (!effect->flat.starts_on && has_passes && !keeps_what_is_off)) continue;
         stack.push_back(step_of(*effect));
         stack.back().is_on = effect->flat.starts_on;
     }
     std::ranges::stable_sort(stack, {}, [](const Step& step) { return step.effect->flat.documented; });
     return stack;
 }
+
+Stack default_stack() { return flat_stack(false); }
 
 Stack documented_stack() {
     Stack stack = default_stack();

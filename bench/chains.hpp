@@ -41,7 +41,9 @@ using Stack = std::vector<Step>;
 [[nodiscard]] Stack ssao_stack(const std::string& method, const std::string& resolution);
 /// Motion blur alone.
 [[nodiscard]] Stack motion_blur_stack(const std::string& resolution);
-/// The flat table with nothing written in it, in its documented order.
+/// The flat table with nothing written in it, in its documented order; keeps_what_is_off as in ApplyOptions.
+[[nodiscard]] Stack flat_stack(bool keeps_what_is_off);
+/// The same as looks have it.
 [[nodiscard]] Stack default_stack();
 /// The same with the vignette on: with the world, ambient occlusion, bloom, exposure, ACES, encode, vignette.
 [[nodiscard]] Stack documented_stack();

@@ -170,6 +170,25 @@ Result<std::vector<Figure>> compile_figures(Bed& bed) {
                                {"compile for another extent, documented chain", median(milliseconds[0]), "ms", 3.0}};
 }
 
+/// What a host pays at compile for the effects of the flat table that it keeps although they are off: the stack of all
+/// of them to that of a look's defaults, each in a new Composer, with warm caches.
+Result<std::vector<Figure>> kept_figures(Bed& bed) {
+    if (auto ok = bed.make_world(); !ok) return failure(std::move(ok));
+    std::array<std::vector<double>, 2> milliseconds;
+    for (int i = 0; i < 40; ++i) {
+        const bool keeps_what_is_off = i % 2 != 0;
+        Composer composer(bed.device, {.frames_in_flight = 1});
+        fill(composer, flat_stack(keeps_what_is_off));
+        const Stopwatch watch;
+        if (const auto made = composer.compile(bed.compile_desc(WorldUse::Full)); !made) return failure(made.error());
+        // The first of each warms the caches.
+        if (i >= 2) milliseconds[i % 2].push_back(watch.elapsed().wall_ms);
+    }
+    const double alone = median(milliseconds[0]), kept = median(milliseconds[1]);
+    return std::vector<Figure>{{"compile, flat table", alone, "ms"},
+                               {"compile, flat table with all that is off / without", kept / alone, "", 1.5}};
+}
+
 }  // namespace
 
 Result<std::vector<Figure>> counted_figures(Bed& bed) {
@@ -212,6 +231,8 @@ Result<std::vector<Figure>> counted_figures(Bed& bed) {
     }
     auto again = compile_figures(bed);
     if (!again) return failure(std::move(again));
+    const auto kept = kept_figures(bed);
+    if (!kept) return failure(kept.error());
     std::vector<Figure> figures{
         {"record, default stack", median(microseconds), "us"},
         {"record, default stack: without the driver", median(own), "us", 15.0},
@@ -236,6 +257,7 @@ Result<std::vector<Figure>> counted_figures(Bed& bed) {
                  "", 1.0});
     }
     figures.insert(figures.end(), again->begin(), again->end());
+    figures.insert(figures.end(), kept->begin(), kept->end());
     return figures;
 }
 
