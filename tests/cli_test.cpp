@@ -227,7 +227,10 @@ TEST_F(Cli, EffectsAreListedForPrograms) {
         for (const ParamInfo& row : effect->parameters.rows) {
             const std::string key = flat_key(effect->name, row.name);
             const std::string line = fmt::format("\"key\": \"{}\",\n        \"flag\": \"{}\"", key, flag_name(key));
-            EXPECT_NE(all.out.find(line), std::string::npos) << key;
+            const std::size_t at = all.out.find(line);
+            ASSERT_NE(at, std::string::npos) << key;
+            constexpr std::string_view mark = "\"at_compile\": ";
+            EXPECT_EQ(all.out.substr(all.out.find(mark, at) + mark.size(), 4) == "true", row.is_at_compile) << key;
         }
     }
     if (find_effect("fog") == nullptr) return;

@@ -57,7 +57,8 @@ Json json_of(const EffectInfo& effect, const darkroom::ParamInfo& row) {
              {"type", type_of(row.kind)},
              {"doc", row.doc},
              {"default", Json::parse(darkroom::format(row, effect.parameters.defaults))},
-             {"switches_effect", row.is_amount || row.switched_word < effect.parameters.words()}};
+             {"switches_effect", row.is_amount || row.switched_word < effect.parameters.words()},
+             {"at_compile", row.is_at_compile}};
     if (row.kind == darkroom::Kind::Choice)
         out["choices"] = row.choices;
     else if (row.kind != darkroom::Kind::Toggle && row.kind != darkroom::Kind::Resource)

@@ -51,7 +51,7 @@ void LookFlags::add_effect(CLI::App& command, const darkroom::EffectInfo& effect
     add_value(command, darkroom::flat_key(effect.name, "enabled"), "on or off", title);
     for (const darkroom::ParamInfo& row : effect.parameters.rows)
         add_value(command, darkroom::flat_key(effect.name, row.name),
-                  fmt::format("{} {}, default {}", row.doc, darkroom::interval(row),
+                  fmt::format("{} {}, default {}", darkroom::full_doc(row), darkroom::interval(row),
                               darkroom::format(row, effect.parameters.defaults)),
                   title);
 }

@@ -16,7 +16,7 @@ struct ArenaGrade {
 };
 inline constexpr auto arena_grade_rows =
     describe(field<&ArenaGrade::table>("A table, read at 16 steps of each channel; without one the preset."),
-             field<&ArenaGrade::preset>("Which of the built-in tables."));
+             field<&ArenaGrade::preset>("Which of the built-in tables.").at_compile());
 
 [[nodiscard]] const EffectInfo& effect_info(const ArenaGrade&);
 

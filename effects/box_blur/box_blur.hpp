@@ -15,7 +15,8 @@ inline constexpr auto box_blur_rows =
     describe(field<&BoxBlur::radius>("Half-width of the square; 0 leaves the picture as it is.", {0, 64}, unit::pixels)
                  .as_loop_count(),
              field<&BoxBlur::iterations>(
-                 "How many times the picture is blurred: 2 make a pyramid, 3 nearly a bell curve.", {1, 4}));
+                 "How many times the picture is blurred: 2 make a pyramid, 3 nearly a bell curve.", {1, 4})
+                 .at_compile());
 
 [[nodiscard]] const EffectInfo& effect_info(const BoxBlur&);
 

@@ -21,9 +21,11 @@ struct ClassicBloom {
 };
 inline constexpr auto classic_bloom_rows = describe(
     field<&ClassicBloom::intensity>("How much of the glow is added.", {0, 16}).as_amount(),
-    field<&ClassicBloom::source_kind>("What glows; the layer is named by the entry's source, for example alpha."),
+    field<&ClassicBloom::source_kind>("What glows; the layer is named by the entry's source, for example alpha.")
+        .at_compile(),
     field<&ClassicBloom::threshold>("Light above this glows; not used with a layer.", {0, 65504}),
-    field<&ClassicBloom::radius>("Half-width of the glow, which is not below 7.", {1, 64}, unit::pixels).as_loop_count());
+    field<&ClassicBloom::radius>("Half-width of the glow, which is not below 7.", {1, 64}, unit::pixels)
+        .as_loop_count());
 
 [[nodiscard]] const EffectInfo& effect_info(const ClassicBloom&);
 

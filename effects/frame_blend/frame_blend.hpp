@@ -19,7 +19,7 @@ struct FrameBlend {
 inline constexpr auto frame_blend_rows =
     describe(field<&FrameBlend::amount>("Weight of all earlier frames together.", {0, 1}),
              field<&FrameBlend::frames>("Length of the trail, in steps of 1/60 s.", {1, 7}),
-             field<&FrameBlend::area>("Of the picture's area, how much each earlier frame is kept at."));
+             field<&FrameBlend::area>("Of the picture's area, how much each earlier frame is kept at.").at_compile());
 
 /// Slots of the ring: one more than the longest trail, so that a slot has no weight any more when it is written anew.
 inline constexpr std::int32_t frame_blend_slots = 8;

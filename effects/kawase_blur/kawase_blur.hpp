@@ -18,8 +18,8 @@ struct KawaseBlur {
     float offset = 1.0f;
 };
 inline constexpr auto kawase_blur_rows = describe(
-    field<&KawaseBlur::mode>("Which of the two filters."),
-    field<&KawaseBlur::iterations>("Halvings of dual, passes of kawase.", {1, 8}),
+    field<&KawaseBlur::mode>("Which of the two filters.").at_compile(),
+    field<&KawaseBlur::iterations>("Halvings of dual, passes of kawase.", {1, 8}).at_compile(),
     field<&KawaseBlur::offset>("How far the taps lie apart, to what was published; 0 leaves kawase no width.", {0, 2}));
 
 [[nodiscard]] const EffectInfo& effect_info(const KawaseBlur&);

@@ -24,7 +24,7 @@ inline constexpr auto motion_blur_rows =
              field<&MotionBlur::samples>(
                  "Points along the way that are read for a pixel; an odd number is taken as one less.", {2, 64})
                  .as_loop_count(),
-             field<&MotionBlur::resolution>("Size of the picture that is smeared, in each direction."));
+             field<&MotionBlur::resolution>("Size of the picture that is smeared, in each direction.").at_compile());
 
 /// Side of the square tiles whose fastest motion is known, in pixels, for pictures of at most this extent: a multiple
 /// of 8, and at least the farthest that a point smears.

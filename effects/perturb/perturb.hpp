@@ -41,8 +41,8 @@ inline constexpr auto perturb_rows = describe(
     field<&Perturb::distortion>("An image whose red and green displace the picture: 0.5 by nothing. It repeats.")
         .as_picture(),
     field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels),
-    field<&Perturb::evaluation>("Where the displacement is worked out."),
-    field<&Perturb::grid>("Columns and rows of the grid, for vertex and cpu; read at compile.", {1, 256}));
+    field<&Perturb::evaluation>("Where the displacement is worked out.").at_compile(),
+    field<&Perturb::grid>("Columns and rows of the grid, for vertex and cpu.", {1, 256}).at_compile());
 
 /// What the CPU adds to the parameters in a frame.
 struct PerturbFrame {

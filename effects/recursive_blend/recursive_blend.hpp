@@ -19,7 +19,8 @@ struct RecursiveBlend {
 };
 inline constexpr auto recursive_blend_rows =
     describe(field<&RecursiveBlend::weight>("What is left of the past after 1/60 s.", {0, 0.99}),
-             field<&RecursiveBlend::precision>("How the past is kept: 32-bit floats, or 8 bits that leave a ghost."));
+             field<&RecursiveBlend::precision>("How the past is kept: 32-bit floats, or 8 bits that leave a ghost.")
+                 .at_compile());
 
 [[nodiscard]] const EffectInfo& effect_info(const RecursiveBlend&);
 

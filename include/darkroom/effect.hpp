@@ -158,7 +158,8 @@ class PassBuilder {
     /// A number that follows from the largest extent a frame may have here, such as the levels of a pyramid. The plan
     /// is kept for other extents that give the same.
     [[nodiscard]] virtual std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) = 0;
-    /// Values at compile; the values of a frame may differ. A plan that asks for them is made anew when one changes.
+    /// Values at compile of the rows that are read then (`field().at_compile()`); of all others the defaults. The
+    /// values of a frame may differ.
     [[nodiscard]] virtual const void* parameters() const = 0;
     /// What a parameter of kind Resource names; null: nothing. A plan that asks is made anew when such a one changes.
     [[nodiscard]] virtual const ResourceData* resource(Resource) const { return nullptr; }

@@ -88,6 +88,7 @@ struct ParamInfo {
     bool is_loop_count = false;                   ///< see field().as_loop_count()
     bool is_amount = false;                       ///< 0 switches the effect off: see field().as_amount()
     bool is_picture = false;                      ///< of Kind::Resource: see field().as_picture()
+    bool is_at_compile = false;                   ///< see field().at_compile()
     std::uint32_t switched_word = ~0u;            ///< of a toggle: see field().as_amount_of()
     std::uint32_t word = 0;                       ///< offset in the struct, in 4-byte words
     std::uint32_t words = 1;                      ///< size, in 4-byte words
@@ -228,6 +229,13 @@ struct Field {
         copy.info.is_picture = true;
         return copy;
     }
+    /// An effect's `build` chooses passes, images or tables by the value, so a change takes full effect with the next
+    /// compile. Resources are always such; build sees the defaults of all other rows.
+    [[nodiscard]] constexpr Field at_compile() const {
+        Field copy = *this;
+        copy.info.is_at_compile = true;
+        return copy;
+    }
     [[nodiscard]] constexpr Field formerly(std::string_view name) const {
         Field copy = *this;
         copy.info.formerly = name;
@@ -251,6 +259,7 @@ constexpr Field<M> field(std::string_view doc, Range range = {}, Unit unit = uni
                    .unit = unit,
                    .range = range,
                    .kind = detail::kind_of<Type>(),
+                   .is_at_compile = std::is_same_v<Type, Resource>,
                    .word = detail::word_of<M>(),
                    .words = sizeof(Type) / 4};
     if constexpr (std::is_enum_v<Type>) info.choices = detail::Enumerators<Type>::names;

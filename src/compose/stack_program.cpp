@@ -40,7 +40,7 @@ Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& 
 
 bool StackProgram::serves(std::span<const plan::Entry> other_stack, const CompileDesc& other_desc) const {
     const auto is_same = [&](const plan::Entry& a, const plan::Entry& b) {
-        return wiring_of(a) == wiring_of(b) && (!program.reads_values || a.base == b.base);
+        return wiring_of(a) == wiring_of(b) && a.values_at_compile() == b.values_at_compile();
     };
     return facts_of(desc) == facts_of(other_desc) && std::ranges::equal(stack, other_stack, is_same) &&
            std::ranges::all_of(program.extent_answers, [&](const plan::Program::ExtentAnswer& asked) {

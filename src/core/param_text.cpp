@@ -350,6 +350,10 @@ std::string interval(const ParamInfo& info) {
     return out;
 }
 
+std::string full_doc(const ParamInfo& info) {
+    return std::string(info.doc) + (info.is_at_compile ? " A change takes full effect with the next compile." : "");
+}
+
 std::string_view expected_kind(Kind kind) {
     switch (kind) {
         case Kind::Float:
@@ -379,7 +383,7 @@ std::string_view expected_kind(Kind kind) {
 std::string documentation(const ParamTable& table, std::string_view effect) {
     std::string out = "| Key | Default | Allowed | What it does |\n|---|---|---|---|\n";
     for (const ParamInfo& row : table.rows) {
-        std::string what(row.doc);
+        std::string what = full_doc(row);
         if (row.is_amount)
             what += " In a flat table or as a flag, a value above 0 turns the effect on and 0 turns it off.";
         if (!row.formerly.empty()) what += fmt::format(" Formerly `{}`.", flat_key(effect, row.formerly));

@@ -51,6 +51,8 @@ struct ParamProblem {
 [[nodiscard]] std::string format(const ParamInfo& info, std::span<const std::uint32_t> words);
 /// "[0, 16]", "[1, 64] px", "srgb, gamma22 or none", "true or false".
 [[nodiscard]] std::string interval(const ParamInfo& info);
+/// The row's sentence, and another one where a change needs a compile.
+[[nodiscard]] std::string full_doc(const ParamInfo& info);
 /// What a value of this kind looks like: "a number", "an array of 3 numbers".
 [[nodiscard]] std::string_view expected_kind(Kind kind);
 

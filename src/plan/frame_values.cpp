@@ -10,6 +10,13 @@ void Entry::evaluate(std::span<std::uint32_t> out) const {
     for (const Override& o : overrides) std::copy_n(o.value.begin(), o.words, out.begin() + o.word);
 }
 
+std::vector<std::uint32_t> Entry::values_at_compile() const {
+    std::vector<std::uint32_t> out(info->parameters.defaults.begin(), info->parameters.defaults.end());
+    for (const ParamInfo& row : info->parameters.rows)
+        if (row.is_at_compile) std::copy_n(base.begin() + row.word, row.words, out.begin() + row.word);
+    return out;
+}
+
 FrameValues::FrameValues(const Program& program, std::span<const Entry* const> entries)
     : is_on_(entries.size()),
       domains_(entries.size()),

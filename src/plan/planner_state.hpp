@@ -188,17 +188,13 @@ class Builder final : public PassBuilder {
     };
 
     Builder(Planner& planner, std::uint32_t entry, std::size_t input)
-        : planner_(planner), entry_(entry), input_(input) {}
+        : planner_(planner), entry_(entry), input_(input), values_(planner.stack_[entry].values_at_compile()) {}
 
     [[nodiscard]] PassImage picture() override;
     [[nodiscard]] PassImage source() override;
     [[nodiscard]] std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) override;
-    [[nodiscard]] const void* parameters() const override {
-        planner_.program_.reads_values = true;
-        return planner_.stack_[entry_].base.data();
-    }
+    [[nodiscard]] const void* parameters() const override { return values_.data(); }
     [[nodiscard]] const ResourceData* resource(Resource resource) const override {
-        planner_.program_.reads_values = true;
         return find_resource(planner_.stack_[entry_].resources.get(), resource);
     }
     [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
@@ -250,6 +246,7 @@ class Builder final : public PassBuilder {
     Planner& planner_;
     std::uint32_t entry_ = 0;
     std::size_t input_ = 0;
+    std::vector<std::uint32_t> values_;
     std::vector<Image> images_;
     std::int32_t shared_toggle_ = -1;         ///< of the passes that `shared` is declaring
     std::vector<std::int32_t> shared_needs_;  ///< asked for since the innermost `shared` began

@@ -38,6 +38,8 @@ struct Entry {
 
     /// Base values under the overrides, in the order they were set. `out` holds info->parameters.words() words.
     void evaluate(std::span<std::uint32_t> out) const;
+    /// What passes may depend on: base values of the rows that are read at compile, defaults of all others.
+    [[nodiscard]] std::vector<std::uint32_t> values_at_compile() const;
     /// Whether it changes anything in a frame with these values; what the plan leaves out never does.
     [[nodiscard]] bool is_on(const std::uint32_t* words) const {
         return desc.enabled && desc.opacity > 0 && (info->is_identity == nullptr || !info->is_identity(words));
@@ -136,7 +138,6 @@ struct Program {
         std::uint32_t answer = 0;
     };
     std::vector<ExtentAnswer> extent_answers;
-    bool reads_values = false;  ///< an effect's build() asked for parameters
 };
 
 struct PlannerTraits {
