@@ -21,9 +21,28 @@ double largest_factor(double k, double quartic, double first) {
 }
 
 void constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
-    const LensDistortionWay way = lens_distortion_way(lens_of(parameters), context.frame_extent);
-    out[0] = {way.half_size[0], way.half_size[1], way.scale, way.k[0] == way.k[2] ? 1.0f : 3.0f};
-    out[1] = {way.k[0], way.k[1], way.k[2], way.quartic};
+    const LensDistortion& lens = lens_of(parameters);
+    const LensDistortionWay way = lens_distortion_way(lens, context.frame_extent);
+    out[0] = {way.half_size[0], way.half_size[1], way.scale, lens.dispersion == 0 ? 1.0f : 3.0f};
+    out[1] = {lens.lens_distortion, lens.quartic, lens.dispersion, way.half_diagonal};
+}
+
+bool asks_for_grid(const void* parameters, const PassContext&, std::uint32_t) {
+    return lens_of(parameters).evaluation == LensDistortionEvaluation::Vertex;
+}
+
+void build(PassBuilder& builder) {
+    const LensDistortion& lens = lens_of(builder.parameters());
+    PassImage grid;
+    if (lens.evaluation == LensDistortionEvaluation::Vertex)
+        grid = warp_grid(builder, lens.grid,
+                         {.name = "grid",
+                          .shader = "lens_distortion_grid.glsl",
+                          .custom_vectors = 2,
+                          .constants = constants,
+                          .condition = asks_for_grid});
+    builder.side("lens_distortion_vertices", grid, {});
+    builder.end_constants(2, constants);
 }
 
 /// Nothing may be seen twice: r (1 + k r^2 + quartic r^4) must rise to the corner for every channel.
@@ -46,16 +65,16 @@ bool is_identity(const void* parameters) {
 
 LensDistortionWay lens_distortion_way(const LensDistortion& lens, VkExtent2D extent) {
     const double width = extent.width, height = extent.height, diagonal = std::hypot(width, height);
-    LensDistortionWay way{
-        .half_size = {static_cast<float>(width / diagonal), static_cast<float>(height / diagonal)},
-        .k = {lens.lens_distortion + lens.dispersion, lens.lens_distortion, lens.lens_distortion - lens.dispersion},
-        .quartic = lens.quartic};
+    LensDistortionWay way{.half_size = {static_cast<float>(width / diagonal), static_cast<float>(height / diagonal)},
+                          .half_diagonal = static_cast<float>(0.5 * diagonal)};
     // A pixel of the border reads inside exactly if its factor is at most 1, and borders lie from the middle of the
     // long sides to the corners.
     const double nearest = std::min(width, height) / diagonal;
     double largest = 0;
-    for (const float k : way.k)
-        largest = std::max(largest, largest_factor(double{k}, double{lens.quartic}, nearest * nearest));
+    for (const int side : {-1, 0, 1}) {
+        const double k = double{lens.lens_distortion} + side * double{lens.dispersion};
+        largest = std::max(largest, largest_factor(k, double{lens.quartic}, nearest * nearest));
+    }
     if (lens.fill && largest > 0) way.scale = static_cast<float>(1 / largest);
     return way;
 }
@@ -69,7 +88,7 @@ const EffectInfo& effect_info(const LensDistortion&) {
         .touch = Touch::Warp,
         .accepts = Domains::all(),
         .flat = {.documented = 85, .scene_linear = 75, .starts_on = true},
-        .build = [](PassBuilder& builder) { builder.end_constants(2, constants); },
+        .build = build,
         .reference = lens_distortion_reference,
         .conflict = conflict,
         .is_identity = is_identity,

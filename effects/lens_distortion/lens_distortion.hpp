@@ -3,15 +3,20 @@
 // Lens distortion: bends the picture as a lens does, into a barrel or a pincushion, each colour by a little more or
 // less. It bends what was made; it does not see more of the scene than the camera did.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/warp_grid.hpp>
 
 namespace darkroom {
+
+/// Where the bend is worked out: in every pixel, or in the vertices of a grid, between which it is interpolated.
+enum class LensDistortionEvaluation : std::uint32_t { Pixel, Vertex };
 
 struct LensDistortion {
     float lens_distortion = 0.0f;
     float quartic = 0.0f;
     float dispersion = 0.0f;
     Toggle fill = true;
+    LensDistortionEvaluation evaluation = LensDistortionEvaluation::Pixel;
+    Vec2 grid = default_warp_grid;
 };
 inline constexpr auto lens_distortion_rows = describe(
     field<&LensDistortion::lens_distortion>(
@@ -19,14 +24,15 @@ inline constexpr auto lens_distortion_rows = describe(
     field<&LensDistortion::quartic>("Coefficient of its fourth power: bends the corners alone.", {-0.2, 1}),
     field<&LensDistortion::dispersion>(
         "Added to the first coefficient for red and taken from it for blue: coloured fringes.", {-0.1, 0.1}),
-    field<&LensDistortion::fill>("Whether the picture is scaled to fill its frame, no more and no less."));
+    field<&LensDistortion::fill>("Whether the picture is scaled to fill its frame, no more and no less."),
+    field<&LensDistortion::evaluation>("Where the bend is worked out.").at_compile(),
+    warp_grid_field<&LensDistortion::grid>());
 
-/// r' = scale * r (1 + k[channel] r^2 + quartic r^4), with r = 1 in a corner: where each channel of the pixel at r is
-/// read.
+/// r' = scale * r (1 + k r^2 + quartic r^4), with r = 1 in a corner: where green is read for the pixel at r. For red
+/// `dispersion` is added to k, for blue it is taken from it.
 struct LensDistortionWay {
     std::array<float, 2> half_size{};  ///< of the picture, where its half diagonal is 1
-    std::array<float, 3> k{};
-    float quartic = 0;
+    float half_diagonal = 0;           ///< in pixels
     float scale = 1;
 };
 [[nodiscard]] LensDistortionWay lens_distortion_way(const LensDistortion& lens, VkExtent2D extent);

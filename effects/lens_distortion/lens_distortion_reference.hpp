@@ -11,6 +11,7 @@
 #include <darkroom/reference.hpp>
 
 #include "shared/sample_reference.hpp"
+#include "shared/warp_grid_reference.hpp"
 
 namespace darkroom {
 
@@ -39,20 +40,32 @@ inline ReferenceImage lens_distortion_reference(const void* parameters, const Re
     const ReferenceImage& picture = *input.picture;
     const double width = picture.width, height = picture.height, diagonal = std::hypot(width, height);
     const double scale = lens_distortion_reference_scale(lens, width, height);
+    // Where each channel is read for the pixel at (u, v).
+    const auto exact = [&](double u, double v) {
+        const double r = 2 * std::hypot((u - 0.5) * width, (v - 0.5) * height) / diagonal;
+        std::array<double, 6> places{};
+        for (const std::size_t channel : {0u, 1u, 2u}) {
+            const double factor = scale * lens_distortion_reference_factor(lens, static_cast<int>(channel), r);
+            places[2 * channel] = 0.5 + (u - 0.5) * factor;
+            places[2 * channel + 1] = 0.5 + (v - 0.5) * factor;
+        }
+        return places;
+    };
     ReferenceImage out(picture.width, picture.height);
     for (std::uint32_t y = 0; y < out.height; ++y) {
         for (std::uint32_t x = 0; x < out.width; ++x) {
-            const double u = (x + 0.5) / width - 0.5, v = (y + 0.5) / height - 0.5;
-            const double r = 2 * std::hypot(u * width, v * height) / diagonal;
+            const double u = (x + 0.5) / width, v = (y + 0.5) / height;
+            const auto places = lens.evaluation == LensDistortionEvaluation::Vertex
+                                    ? warp_grid_reference(lens.grid, u, v, exact)
+                                    : exact(u, v);
             std::array<Rgba, 3> taps;
-            for (const int channel : {0, 1, 2}) {
-                const double factor = scale * lens_distortion_reference_factor(lens, channel, r);
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                const double at_u = places[2 * channel], at_v = places[2 * channel + 1];
                 // Black beyond the picture, by way of one pixel.
-                const double inside = std::clamp((0.5 - std::abs(u * factor)) * width + 1, 0.0, 1.0) *
-                                      std::clamp((0.5 - std::abs(v * factor)) * height + 1, 0.0, 1.0);
-                const Rgba tap = sample_reference(picture, 0.5 + u * factor, 0.5 + v * factor);
-                taps[static_cast<std::size_t>(channel)] = {tap.r * inside, tap.g * inside, tap.b * inside,
-                                                           tap.a * inside};
+                const double inside = std::clamp((0.5 - std::abs(at_u - 0.5)) * width + 1, 0.0, 1.0) *
+                                      std::clamp((0.5 - std::abs(at_v - 0.5)) * height + 1, 0.0, 1.0);
+                const Rgba tap = sample_reference(picture, at_u, at_v);
+                taps[channel] = {tap.r * inside, tap.g * inside, tap.b * inside, tap.a * inside};
             }
             out.at(x, y) = {taps[0].r, taps[1].g, taps[2].b, taps[1].a};
         }

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "perturb/perturb_reference.hpp"
-#include "shared/warp_grid.hpp"
 
 namespace darkroom {
 
@@ -15,9 +14,16 @@ constexpr std::uint32_t own_vectors = 2, most_cpu_vertices = 1000, sine_entries 
 
 const Perturb& perturb_of(const void* parameters) { return *static_cast<const Perturb*>(parameters); }
 
-bool has_grid(const void* parameters, const PassContext&, std::uint32_t) {
-    const PerturbEvaluation evaluation = perturb_of(parameters).evaluation;
-    return evaluation == PerturbEvaluation::Vertex || evaluation == PerturbEvaluation::Cpu;
+bool has_grid(const Perturb& p) {
+    return p.evaluation == PerturbEvaluation::Vertex || p.evaluation == PerturbEvaluation::Cpu;
+}
+bool asks_for_grid(const void* parameters, const PassContext&, std::uint32_t) {
+    return has_grid(perturb_of(parameters));
+}
+
+std::size_t vertices_of(const Perturb& p) {
+    const auto [columns, rows] = warp_grid_cells(p.grid);
+    return std::size_t{columns + 1} * (rows + 1);
 }
 
 void write_own(const Perturb& p, const PassContext& context, std::span<PassVector> out) {
@@ -30,15 +36,16 @@ void end_constants(const void* parameters, const PassContext& context, std::span
     write_own(perturb_of(parameters), context, out);
 }
 
-/// The vertices, where the CPU moves them: as many as the plan has room for. It sees no image of displacements.
+/// The vertices, where the CPU moves them and the plan has room for them. It sees no image of displacements.
 void grid_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Perturb& p = perturb_of(parameters);
     write_own(p, context, out);
-    if (p.evaluation != PerturbEvaluation::Cpu) return;
+    const auto columns = context.output_extent.width, rows = context.output_extent.height;
+    if (p.evaluation != PerturbEvaluation::Cpu || out.size() < own_vectors + (columns * rows + 1) / 2) return;
+    out[1][3] = 1;
     const PerturbFrame frame = perturb_frame(p, context.time);
     const auto [width, height] = context.frame_extent;
-    const auto columns = context.output_extent.width, rows = context.output_extent.height;
-    for (std::uint32_t i = 0; i < columns * rows && own_vectors + i / 2 < out.size(); ++i) {
+    for (std::uint32_t i = 0; i < columns * rows; ++i) {
         const double u = static_cast<double>(i % columns) / (columns - 1),
                      v = static_cast<double>(i / columns) / (rows - 1);
         const PerturbShift shift = perturb_shift(p, frame, u, v, width, height, nullptr);
@@ -78,16 +85,16 @@ PassImage distortion(PassBuilder& builder, Resource resource) {
 void build(PassBuilder& builder) {
     const Perturb& p = perturb_of(builder.parameters());
     const PassImage image = distortion(builder, p.distortion);
-    const auto columns = static_cast<std::uint32_t>(perturb_columns(p)),
-               rows = static_cast<std::uint32_t>(perturb_rows_of_grid(p));
-    const std::uint32_t vertices = p.evaluation == PerturbEvaluation::Cpu ? (columns + 1) * (rows + 1) : 0;
-    const PassImage grid = warp_grid(builder, columns, rows,
-                                     {.name = "grid",
-                                      .shader = "perturb_grid.glsl",
-                                      .inputs = {{.name = "perturb_distortion", .image = image}},
-                                      .custom_vectors = own_vectors + (vertices + 1) / 2,
-                                      .constants = grid_constants,
-                                      .condition = has_grid});
+    const std::size_t cpu_vertices = p.evaluation == PerturbEvaluation::Cpu ? vertices_of(p) : 0;
+    PassImage grid;
+    if (has_grid(p))
+        grid = warp_grid(builder, p.grid,
+                         {.name = "grid",
+                          .shader = "perturb_grid.glsl",
+                          .inputs = {{.name = "perturb_distortion", .image = image}},
+                          .custom_vectors = own_vectors + static_cast<std::uint32_t>(cpu_vertices + 1) / 2,
+                          .constants = grid_constants,
+                          .condition = asks_for_grid});
     builder.side("perturb_vertices", grid, {});
     builder.side("perturb_distortion", image, {});
     builder.side("perturb_sines", sine_table(builder), {});
@@ -96,9 +103,9 @@ void build(PassBuilder& builder) {
 
 std::string conflict(const void* parameters) {
     const Perturb& p = perturb_of(parameters);
-    const std::size_t vertices = (perturb_columns(p) + 1) * (perturb_rows_of_grid(p) + 1);
     if (p.evaluation != PerturbEvaluation::Cpu) return {};
     if (p.distortion.id != 0) return "evaluation = cpu: the CPU does not read the distortion image; allowed is vertex";
+    const std::size_t vertices = vertices_of(p);
     if (vertices <= most_cpu_vertices) return {};
     return "grid of " + std::to_string(vertices) + " vertices: with evaluation = cpu at most " +
            std::to_string(most_cpu_vertices) + " are allowed";

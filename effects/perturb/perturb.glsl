@@ -21,7 +21,8 @@ vec2 perturb_sines_at(vec2 turns, Perturb parameters) {
 vec4 perturb(Pixel pixel, Perturb parameters) {
     vec2 extent = perturb_custom(1).xy;
     vec2 shift;
-    if (parameters.evaluation == Perturb_evaluation_vertex || parameters.evaluation == Perturb_evaluation_cpu) {
+    bool is_grid = parameters.evaluation == Perturb_evaluation_vertex || parameters.evaluation == Perturb_evaluation_cpu;
+    if (is_grid && size(perturb_vertices).x > 1) {
         shift = sample_linear(perturb_vertices, grid_uv(pixel.uv, size(perturb_vertices))).rg;
     } else {
         vec4 frame = perturb_custom(0);

@@ -3,7 +3,7 @@
 // Perturbation: the picture swims, as by heat, drink or a blast. Two crossed sines, a ring that runs outward from a
 // point, and an image of displacements are added up; one set of parameters, four ways to evaluate it, which agree.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/warp_grid.hpp>
 
 namespace darkroom {
 
@@ -24,7 +24,7 @@ struct Perturb {
     Resource distortion;
     float distortion_strength = 16.0f;
     PerturbEvaluation evaluation = PerturbEvaluation::Pixel;
-    Vec2 grid{32.0f, 18.0f};
+    Vec2 grid = default_warp_grid;
 };
 inline constexpr auto perturb_rows = describe(
     field<&Perturb::amount>("Scales all displacements.", {0, 8}).as_amount(),
@@ -42,7 +42,7 @@ inline constexpr auto perturb_rows = describe(
         .as_picture(),
     field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels),
     field<&Perturb::evaluation>("Where the displacement is worked out.").at_compile(),
-    field<&Perturb::grid>("Columns and rows of the grid, for vertex and cpu.", {1, 256}).at_compile());
+    warp_grid_field<&Perturb::grid>());
 
 /// What the CPU adds to the parameters in a frame.
 struct PerturbFrame {

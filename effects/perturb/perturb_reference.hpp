@@ -4,16 +4,18 @@
 //     u' = u + a d_x (s.x sin 2 pi (s.z v + t.x) + ring + image)
 //     v' = v + a d_y (s.y sin 2 pi (s.w u + t.y) + ring + image)
 // The sum of sines, and an image of displacements: Jason L. Mitchell, Marwan Y. Ansari and Evan Hart, "Advanced Image
-// Processing with DirectX 9 Pixel Shaders", ShaderX2, 2003. The ring at radius R is a bump of half-width w that moves what
-// is seen toward its centre: cos^2(pi (r - R) / 2 w), r in heights of the picture.
+// Processing with DirectX 9 Pixel Shaders", ShaderX2, 2003. The ring at radius R is a bump of half-width w that moves
+// what is seen toward its centre: cos^2(pi (r - R) / 2 w), r in heights of the picture.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <darkroom/effects/perturb.hpp>
 #include <darkroom/reference.hpp>
 #include <numbers>
 
 #include "shared/sample_reference.hpp"
+#include "shared/warp_grid_reference.hpp"
 
 namespace darkroom {
 
@@ -55,9 +57,6 @@ inline PerturbShift perturb_shift(const Perturb& p, const PerturbFrame& frame, d
     return {double{p.amount} * shift.x, double{p.amount} * shift.y};
 }
 
-inline std::size_t perturb_columns(const Perturb& p) { return static_cast<std::size_t>(std::lround(p.grid.x)); }
-inline std::size_t perturb_rows_of_grid(const Perturb& p) { return static_cast<std::size_t>(std::lround(p.grid.y)); }
-
 inline ReferenceImage perturb_reference(const void* parameters, const ReferenceInput& input) {
     const Perturb& p = *static_cast<const Perturb*>(parameters);
     const PerturbFrame frame = perturb_frame(p, input.time);
@@ -70,26 +69,16 @@ inline ReferenceImage perturb_reference(const void* parameters, const ReferenceI
     ReferenceImage out = *input.picture;
     const double width = out.width, height = out.height;
     const auto exact = [&](double u, double v) {
-        return perturb_shift(p, frame, u, v, width, height, distortion.width == 0 ? nullptr : &distortion);
+        const PerturbShift shift =
+            perturb_shift(p, frame, u, v, width, height, distortion.width == 0 ? nullptr : &distortion);
+        return std::array{shift.x, shift.y};
     };
     const bool is_grid = p.evaluation == PerturbEvaluation::Vertex || p.evaluation == PerturbEvaluation::Cpu;
-    const auto columns = static_cast<double>(perturb_columns(p)), rows = static_cast<double>(perturb_rows_of_grid(p));
     for (std::uint32_t y = 0; y < out.height; ++y) {
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const double u = (x + 0.5) / width, v = (y + 0.5) / height;
-            PerturbShift shift;
-            if (is_grid) {
-                const double left = std::floor(u * columns), top = std::floor(v * rows);
-                const double fx = u * columns - left, fy = v * rows - top;
-                for (int i = 0; i < 4; ++i) {
-                    const PerturbShift corner = exact((left + i % 2) / columns, (top + i / 2) / rows);
-                    const double weight = (i % 2 == 0 ? 1 - fx : fx) * (i / 2 == 0 ? 1 - fy : fy);
-                    shift = {shift.x + weight * corner.x, shift.y + weight * corner.y};
-                }
-            } else {
-                shift = exact(u, v);
-            }
-            out.at(x, y) = sample_reference(*input.picture, u + shift.x / width, v + shift.y / height);
+            const std::array shift = is_grid ? warp_grid_reference(p.grid, u, v, exact) : exact(u, v);
+            out.at(x, y) = sample_reference(*input.picture, u + shift[0] / width, v + shift[1] / height);
         }
     }
     return out;

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "shared/warp_grid.hpp"
+#include <cmath>
+#include <darkroom/warp_grid.hpp>
 
 namespace darkroom {
 
-PassImage warp_grid(PassBuilder& builder, std::uint32_t columns, std::uint32_t rows, KernelPassDesc pass) {
-    pass.output =
-        builder.create({.name = pass.name, .format = VK_FORMAT_R16G16B16A16_SFLOAT, .extent = {columns + 1, rows + 1}});
+VkExtent2D warp_grid_cells(Vec2 grid) {
+    return {static_cast<std::uint32_t>(std::lround(grid.x)), static_cast<std::uint32_t>(std::lround(grid.y))};
+}
+
+PassImage warp_grid(PassBuilder& builder, Vec2 grid, KernelPassDesc pass) {
+    const VkExtent2D cells = warp_grid_cells(grid);
+    pass.output = builder.create(
+        {.name = pass.name, .format = VK_FORMAT_R16G16B16A16_SFLOAT, .extent = {cells.width + 1, cells.height + 1}});
     return builder.add(pass);
 }
 
