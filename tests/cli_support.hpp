@@ -46,7 +46,7 @@ inline std::string content(const std::filesystem::path& path) {
 class CliFixture : public testing::Test {
   protected:
     void SetUp() override {
-        if (!std::filesystem::exists(program)) GTEST_SKIP() << program << " is not built";
+        ASSERT_TRUE(std::filesystem::exists(program)) << program << " is not built";
         std::string name = (std::filesystem::temp_directory_path() / "darkroom_cli_XXXXXX").string();
         ASSERT_NE(mkdtemp(name.data()), nullptr);
         folder_ = name;

@@ -54,6 +54,7 @@ TEST_F(CliLut, TheFlagLooksColoursUp) {
     expect_done({"develop", frame, "--look", path("look.toml"), "-o", path("plain.png")});
     expect_done({"develop", frame, "--look", path("with.toml"), "-o", path("look.png")});
     const Picture plain = picture("plain.png"), look = picture("look.png");
+    ASSERT_EQ(look.pixels.size(), plain.pixels.size());
     for (std::size_t i = 0; i < plain.pixels.size(); ++i)
         ASSERT_NEAR(look.pixels[i], i % 4 == 3 ? 1 : plain.pixels[i] / 2, 1.01 / 255);
     const std::vector<std::string> common{"--bloom-enabled", "off", "--ssao-enabled", "off"};
@@ -102,6 +103,7 @@ TEST_F(CliLut, ExportedLooksDoWhatTheirEffectsDo) {
     EXPECT_LT(largest, 0.03);
     EXPECT_LE(apart("effects.png", "table.png"), largest + 1.01 / 255);
     const Picture effects = picture("effects.png"), in_table = picture("table.png");
+    ASSERT_EQ(in_table.pixels.size(), effects.pixels.size());
     double sum = 0;
     for (std::size_t i = 0; i < effects.pixels.size(); ++i) sum += std::abs(effects.pixels[i] - in_table.pixels[i]);
     EXPECT_LT(sum / static_cast<double>(effects.pixels.size()), 0.5 / 255);
@@ -119,6 +121,7 @@ TEST_F(CliLut, ExportedGradesGiveLight) {
         {"develop", path("frame.exr"), "--look", path("table.toml"), "-o", path("table.exr"), "--bits", "float"});
     const Picture effects = picture("effects.exr"), table = picture("table.exr");
     ASSERT_FALSE(effects.empty());
+    ASSERT_EQ(table.pixels.size(), effects.pixels.size());
     for (std::size_t i = 0; i < effects.pixels.size(); ++i)
         ASSERT_NEAR(table.pixels[i], effects.pixels[i], 1e-3 * effects.pixels[i] + 1e-5) << i;
 }

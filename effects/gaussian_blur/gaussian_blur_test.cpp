@@ -136,6 +136,7 @@ TEST(GaussianBlur, ReferenceIsRoundAndKeepsFlatFields) {
     // Equal distances: (3, 4), (5, 0); (6, 8), (10, 0).
     EXPECT_NEAR(out.at(35, 36).r / out.at(37, 32).r, 1.0, 1e-12);
     EXPECT_NEAR(out.at(38, 40).r / out.at(42, 32).r, 1.0, 1e-12);
+    EXPECT_NEAR(out.at(37, 32).r / out.at(42, 32).r, std::exp(1.5), 1e-12) << "a bell of sigma 5, no square";
     const ReferenceImage flat = test::uniform(20, 12, {3, 2, 1, 0.25});
     EXPECT_LT(test::worst_difference(test::reference_of(GaussianBlur{.radius = 15, .resolution = full}, flat), flat),
               1e-12);
@@ -220,6 +221,7 @@ TEST(GaussianBlurGpu, SpotsAreRound) {
     EXPECT_NEAR(out.at(35, 36).r / out.at(37, 32).r, 1.0, 0x1p-8);
     EXPECT_NEAR(out.at(38, 40).r / out.at(42, 32).r, 1.0, 0x1p-8);
     EXPECT_NEAR(out.at(32, 37).r / out.at(37, 32).r, 1.0, 0x1p-8);
+    EXPECT_NEAR(out.at(37, 32).r / out.at(42, 32).r / std::exp(1.5), 1.0, 0x1p-8) << "a bell of sigma 5, no square";
 }
 
 TEST(GaussianBlurGpu, NanAndInfinityStayContained) {

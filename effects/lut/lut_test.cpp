@@ -151,6 +151,7 @@ TEST(EffectLut, StandsBetweenTonemapAndEncodeInBothOrders) {
 TEST(EffectLut, DomainsFollowWhatTheTableGives) {
     const auto made = [](Lut values, Domain before) { return effect_info(values).makes(before, &values); };
     EXPECT_EQ(made({}, Domain::DisplayLinear), Domain::DisplayLinear);
+    EXPECT_EQ(made({}, Domain::SceneLinear), Domain::DisplayLinear);
     EXPECT_EQ(made({.space = LutSpace::Acescct}, Domain::SceneLinear), Domain::SceneLinear);
     EXPECT_EQ(made({.space = LutSpace::Logc3, .result = LutResult::Display}, Domain::SceneLinear),
               Domain::DisplayLinear);
