@@ -130,6 +130,17 @@ TEST(GraphPhysical, SlotsHaveWhatTheGraphAskedFor) {
     EXPECT_EQ(fixture.physical.handle(0), fixture.result.image.handle);
     EXPECT_EQ(fixture.physical.view(0, 1), fixture.result.image.view);
     EXPECT_EQ(fixture.physical.mip_view(0, 0, 1), views[0]);
+
+    Version half;
+    Runner halved({9, 7}, 1, fixture.pool, [&](Graph& graph) {
+        half = graph.add({.name = "halve",
+                          .writes = {{graph.create(float_image("half", Size::fraction(2))), Use::StorageWrite}}})[0];
+        graph.keep(half);
+    });
+    halved.schedule->derive({}, {}, 0);
+    const VkExtent2D extent = halved.physical.extent(halved.schedule->slot_of(half));
+    EXPECT_EQ(extent.width, 4u);
+    EXPECT_EQ(extent.height, 3u);
 }
 
 TEST(GraphPhysical, DepthIsReadInTheLayoutOfTheHost) {
