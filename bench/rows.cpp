@@ -9,6 +9,7 @@
 
 #include "chains.hpp"
 #include "hand_written.hpp"
+#include "interface.hpp"
 #include "plain.hpp"
 #include "recipe.hpp"
 #include "scene.hpp"
@@ -176,6 +177,7 @@ std::vector<Recipe> recipes() {
     add_chain(out, "plain bloom", plain_bloom_stack(), {});
     add_chains(out, "default", default_stack());
     add_world_chains(out);
+    for (Recipe& recipe : interface_recipes()) out.push_back(std::move(recipe));
     for (Recipe& recipe : scene_recipes()) out.push_back(std::move(recipe));
     return out;
 }
