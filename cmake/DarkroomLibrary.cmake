@@ -1,7 +1,8 @@
 # What an engine links: libdarkroom.so, one shared object of core, gpu, graph, plan, compose, effects and
-# custom, and libdarkroom_looks.so, which reads looks (TOML) and table files; or libdarkroom.a, which is the former as an archive
-# (DARKROOM_STATIC). In the tree and installed they are Darkroom::darkroom, Darkroom::looks and Darkroom::static. Included
-# after the folders they are made of.
+# custom, libdarkroom_looks.so, which reads looks (TOML) and table files, and libdarkroom_script.so, a console and
+# controllers in Lua; or libdarkroom.a, which is the first as an archive (DARKROOM_STATIC). In the tree and installed they
+# are Darkroom::darkroom, Darkroom::looks, Darkroom::script and Darkroom::static. Included after the folders they are made
+# of.
 
 include(CMakePackageConfigHelpers)
 
@@ -13,7 +14,7 @@ function(darkroom_shared_library name)
   foreach(part ${library_PARTS})
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
     target_link_libraries(${name} PRIVATE
-      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|plan|compose|effects|custom|toml|tables|looks)$>")
+      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|plan|compose|effects|custom|toml|tables|looks|script)$>")
   endforeach()
   set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
     LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -38,6 +39,10 @@ target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)
 if(TARGET darkroom_looks)
   darkroom_shared_library(darkroom_looks_shared OUTPUT darkroom_looks EXPORT looks PARTS toml tables looks)
   target_link_libraries(darkroom_looks_shared PUBLIC darkroom_shared PRIVATE darkroom_fmt)
+endif()
+if(TARGET darkroom_script)
+  darkroom_shared_library(darkroom_script_shared OUTPUT darkroom_script EXPORT script PARTS script)
+  target_link_libraries(darkroom_script_shared PUBLIC darkroom_shared PRIVATE darkroom_fmt)
 endif()
 if(DARKROOM_STATIC)
   include(DarkroomStatic)
@@ -82,4 +87,7 @@ endfunction()
 darkroom_pkg_config(darkroom "${PROJECT_DESCRIPTION}" "Requires.private: vulkan" darkroom)
 if(TARGET darkroom_looks)
   darkroom_pkg_config(darkroom-looks "Looks (TOML) and table files for Darkroom" "Requires: darkroom" darkroom_looks)
+endif()
+if(TARGET darkroom_script)
+  darkroom_pkg_config(darkroom-script "A console and controllers in Lua for Darkroom" "Requires: darkroom" darkroom_script)
 endif()

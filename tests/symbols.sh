@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # symbols.sh LIBRARY...: a shared object or an archive exports C++ symbols of this project and no others, and a shared
-# object needs the C++ runtime and our other libraries alone.
+# object needs the C++ runtime and our other libraries alone; that of scripts needs Lua, too.
 set -euo pipefail
 for library in "$@"; do
     # What is dynamic of an archive is what is global in it.
@@ -21,7 +21,9 @@ for library in "$@"; do
 
     needed=$(readelf -d --wide "$library" | sed -nE 's/.*\(NEEDED\).*\[(.*)\]/\1/p')
     runtime='libstdc\+\+|libm|libgcc_s|libc|libpthread|libdl|ld-linux[-a-z0-9_]*'
-    foreign=$(grep -vE "^(($runtime|libdarkroom)\.so\.[0-9.]+)?\$" <<<"$needed" || true)
+    others=libdarkroom
+    [[ $library == *darkroom_script* ]] && others+='|liblua5\.4'
+    foreign=$(grep -vE "^(($runtime|$others)\.so\.[0-9.]+)?\$" <<<"$needed" || true)
     if [[ -n $foreign ]]; then
         printf '%s needs more than the C++ runtime:\n%s\n' "$library" "$foreign"
         exit 1

@@ -10,9 +10,11 @@ struct ContrastGamma {
     float contrast = 1.0f;
     float gamma = 1.0f;
 };
-inline constexpr auto contrast_gamma_rows =
-    describe(field<&ContrastGamma::contrast>("Factor of the encoded picture.", {1, 2}).as_amount(),
-             field<&ContrastGamma::gamma>("Exponent behind it: below 1 brightens.", {0.1, 4, Scale::Log}).as_amount());
+inline constexpr auto contrast_gamma_rows = describe(
+    field<&ContrastGamma::contrast>("Factor of the encoded picture.", {1, 2}).as_amount().also_named("contrast", true),
+    field<&ContrastGamma::gamma>("Exponent behind it: below 1 brightens.", {0.1, 4, Scale::Log})
+        .as_amount()
+        .also_named("gamma", true));
 
 [[nodiscard]] const EffectInfo& effect_info(const ContrastGamma&);
 

@@ -14,7 +14,8 @@ inline constexpr auto ui_chroma_rows = describe(
     field<&UiChroma::strength>("How much the barrels of red and blue differ from green's, for 1080 lines: less on "
                                "taller pictures.",
                                {0, 1})
-        .as_amount());
+        .as_amount()
+        .also_named("r_ui_chromatic"));
 
 [[nodiscard]] const EffectInfo& effect_info(const UiChroma&);
 

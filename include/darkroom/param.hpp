@@ -94,6 +94,8 @@ struct ParamInfo {
     std::uint32_t words = 1;                      ///< size, in 4-byte words
     std::span<const std::string_view> choices{};  ///< names in snake_case, for Kind::Choice
     std::string_view formerly{};                  ///< a former name of the key, still read
+    std::string_view also{};                      ///< another name of the console variable: see field().also_named()
+    bool is_archived = false;                     ///< the console keeps it in its configuration file
 };
 
 /// All rows of one struct, in the order of its members, and the words of its defaults.
@@ -198,48 +200,49 @@ constexpr bool is_inside(const T& value, const Range& range) {
 template <auto M>
 struct Field {
     ParamInfo info;
+    template <class Change>
+    [[nodiscard]] constexpr Field with(const Change& change) const {
+        Field copy = *this;
+        change(copy.info);
+        return copy;
+    }
     /// The effect's main amount: in a flat table or on the command line a value above 0 turns the effect on, 0 off.
     [[nodiscard]] constexpr Field as_amount() const {
-        Field copy = *this;
-        copy.info.is_amount = true;
-        return copy;
+        return with([&](ParamInfo& row) { row.is_amount = true; });
     }
     /// The amount of a part of the effect: a value above 0 on the command line turns that part's toggle on, and the
     /// effect with it.
     template <auto Part>
     [[nodiscard]] constexpr Field as_amount_of() const {
         static_assert(std::is_same_v<typename detail::Member<Part>::Type, Toggle>);
-        Field copy = *this;
-        copy.info.switched_word = detail::word_of<Part>();
-        return copy;
+        return with([&](ParamInfo& row) { row.switched_word = detail::word_of<Part>(); });
     }
     /// How often a loop of a shader runs: kernels of the present values hold it as a literal, so that compilers can
     /// unroll the loop and fold what follows from its number. For integers of at most 8 bits that are seldom animated.
     [[nodiscard]] constexpr Field as_loop_count() const {
         static_assert(std::is_same_v<typename detail::Member<M>::Type, std::int32_t>);
         if (info.range.min < 0 || info.range.max > 255) detail::refuse("a loop count lies in [0, 255]");
-        Field copy = *this;
-        copy.info.is_loop_count = true;
-        return copy;
+        return with([&](ParamInfo& row) { row.is_loop_count = true; });
     }
     /// A resource that is a picture, whose numbers are taken as its file has them, and not a table of colours.
     [[nodiscard]] constexpr Field as_picture() const {
         static_assert(std::is_same_v<typename detail::Member<M>::Type, Resource>);
-        Field copy = *this;
-        copy.info.is_picture = true;
-        return copy;
+        return with([&](ParamInfo& row) { row.is_picture = true; });
     }
     /// An effect's `build` chooses passes, images or tables by the value, so a change takes full effect with the next
     /// compile. Resources are always such; build sees the defaults of all other rows.
     [[nodiscard]] constexpr Field at_compile() const {
-        Field copy = *this;
-        copy.info.is_at_compile = true;
-        return copy;
+        return with([&](ParamInfo& row) { row.is_at_compile = true; });
+    }
+    /// A name under which consoles find it, too: of the first entry of a stack that has it.
+    [[nodiscard]] constexpr Field also_named(std::string_view name, bool is_archived = false) const {
+        return with([&](ParamInfo& row) {
+            row.also = name;
+            row.is_archived = is_archived;
+        });
     }
     [[nodiscard]] constexpr Field formerly(std::string_view name) const {
-        Field copy = *this;
-        copy.info.formerly = name;
-        return copy;
+        return with([&](ParamInfo& row) { row.formerly = name; });
     }
 };
 

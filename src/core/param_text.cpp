@@ -387,6 +387,7 @@ std::string documentation(const ParamTable& table, std::string_view effect) {
         if (row.is_amount)
             what += " In a flat table or as a flag, a value above 0 turns the effect on and 0 turns it off.";
         if (!row.formerly.empty()) what += fmt::format(" Formerly `{}`.", flat_key(effect, row.formerly));
+        if (!row.also.empty()) what += fmt::format(" In consoles also `{}`.", row.also);
         out += fmt::format("| `{}` | `{}` | {} | {} |\n", flat_key(effect, row.name), format(row, table.defaults),
                            interval(row), what);
     }

@@ -19,11 +19,11 @@ struct Sample {
     Vec2 offset{};
     Curve response{};
 };
-constexpr auto sample_rows =
-    describe(field<&Sample::amount>("Amount.", {0, 16}, unit::pixels).formerly("strength"),
-             field<&Sample::taps>("Taps.", {1, 64}).at_compile(), field<&Sample::is_sharp>("Sharp."),
-             field<&Sample::curve>("Curve."), field<&Sample::tint>("Tint.", {0, 10}),
-             field<&Sample::offset>("Offset.", {-1, 0.1}), field<&Sample::response>("Response.", {0, 2}));
+constexpr auto sample_rows = describe(
+    field<&Sample::amount>("Amount.", {0, 16}, unit::pixels).formerly("strength"),
+    field<&Sample::taps>("Taps.", {1, 64}).at_compile().also_named("r_taps"), field<&Sample::is_sharp>("Sharp."),
+    field<&Sample::curve>("Curve."), field<&Sample::tint>("Tint.", {0, 10}),
+    field<&Sample::offset>("Offset.", {-1, 0.1}), field<&Sample::response>("Response.", {0, 2}));
 const ParamTable table = sample_rows.table();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -154,7 +154,9 @@ TEST(ParamText, DocumentsEveryRow) {
     EXPECT_NE(page.find("| `sample_amount` | `0.5` | [0, 16] px | Amount. Formerly `sample_strength`. |"),
               std::string::npos)
         << page;
-    EXPECT_NE(page.find("| Taps. A change takes full effect with the next compile. |"), std::string::npos) << page;
+    EXPECT_NE(page.find("| Taps. A change takes full effect with the next compile. In consoles also `r_taps`. |"),
+              std::string::npos)
+        << page;
     EXPECT_NE(page.find("`sample_curve` | `\"hable\"` | aces_narkowicz or hable"), std::string::npos) << page;
 }
 

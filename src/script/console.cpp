@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// A Console's variables and its configuration file. Commands are in commands.cpp.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/files.hpp"
+#include "core/param_text.hpp"
+#include "script/console_state.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr std::size_t longest_file = std::size_t{1} << 20;
+
+/// Words of a command hold neither quotes nor control bytes.
+bool is_sayable(std::string_view text) {
+    return std::ranges::none_of(text, [](char letter) {
+        return letter == '"' || static_cast<unsigned char>(letter) < ' ' || letter == '\x7f';
+    });
+}
+
+}  // namespace
+
+Result<script::Variable> Console::State::variable(std::string_view name) const {
+    if (const auto found = script::find_variable(*composer, name)) return *found;
+    return user_error(
+        fmt::format("'{}': no such variable{}", printable(name), script::suggest_variable(*composer, name)));
+}
+
+std::span<const std::uint32_t> Console::State::defaults(const script::Variable& variable) const {
+    const std::span<const std::uint32_t> effect = composer->info(variable.entry)->parameters.defaults;
+    const auto taken = entry_defaults.find(variable.entry.id);
+    // Another effect may have come in an entry's place.
+    return taken != entry_defaults.end() && taken->second.size() == effect.size() ? taken->second : effect;
+}
+
+bool Console::State::is_read_only(const script::Variable& variable) const {
+    return variable.row->kind == Kind::Resource || locked.contains(script::name_of(*composer, variable));
+}
+
+bool Console::State::is_archived(const script::Variable& variable) const {
+    return variable.row->is_archived || archived.contains(script::name_of(*composer, variable));
+}
+
+std::string Console::State::text(const script::Variable& variable) const {
+    return script::variable_text(*variable.row, composer->words(variable.entry));
+}
+
+Result<std::string> Console::State::write(std::string_view name, const script::Variable& variable,
+                                          std::string_view value, std::optional<std::string_view> owner) {
+    if (is_read_only(variable)) return user_error(fmt::format("{} is read-only", printable(name)));
+    auto read = script::read_value(*variable.row, name, value);
+    if (!read) return failure(std::move(read));
+    const std::string_view row = variable.row->name;
+    auto written = owner ? composer->set_override(variable.entry, row, *owner, read->words)
+                         : composer->set(variable.entry, row, read->words);
+    if (!written) return failure(std::move(written));
+    return std::move(read->remark);
+}
+
+Console::Console(Composer& composer, ConsoleDesc desc) : state_(std::make_unique<State>()) {
+    state_->composer = &composer;
+    state_->desc = std::move(desc);
+    if (!state_->desc.print) state_->desc.print = [](Severity, std::string_view) {};
+    take_defaults();
+}
+Console::Console(Console&&) noexcept = default;
+Console& Console::operator=(Console&&) noexcept = default;
+Console::~Console() = default;
+
+Composer& Console::composer() const { return *state_->composer; }
+
+std::uint32_t Console::execute(std::string_view commands, const ExecuteOptions& options) {
+    return script::run_commands(*state_, commands, {.execute = options});
+}
+
+std::optional<std::string> Console::get(std::string_view name) const {
+    const auto variable = script::find_variable(*state_->composer, name);
+    return variable ? std::optional(state_->text(*variable)) : std::nullopt;
+}
+
+std::optional<double> Console::number(std::string_view name) const {
+    const auto variable = script::find_variable(*state_->composer, name);
+    if (!variable) return std::nullopt;
+    return script::variable_number(*variable->row, state_->composer->words(variable->entry));
+}
+
+Result<std::string> Console::set(std::string_view name, std::string_view value) {
+    const auto variable = state_->variable(name);
+    return variable ? state_->write(name, *variable, value) : failure(variable.error());
+}
+
+Result<std::string> Console::set_override(std::string_view name, std::string_view owner, std::string_view value) {
+    const auto variable = state_->variable(name);
+    return variable ? state_->write(name, *variable, value, owner) : failure(variable.error());
+}
+
+std::vector<std::string> Console::names(std::string_view prefix) const {
+    std::vector<std::string> out;
+    for (script::NamedVariable& variable : script::all_variables(*state_->composer, prefix))
+        out.push_back(std::move(variable.name));
+    return out;
+}
+
+void Console::take_defaults() {
+    const Composer& composer = *state_->composer;
+    state_->entry_defaults.clear();
+    for (std::size_t i = 0; i < composer.size(); ++i) {
+        const std::span<const std::uint32_t> words = composer.words(composer.entry(i));
+        state_->entry_defaults[composer.entry(i).id].assign(words.begin(), words.end());
+    }
+}
+
+bool Console::lock(std::string_view name, bool is_locked) {
+    const auto variable = script::find_variable(*state_->composer, name);
+    if (!variable) return false;
+    const std::string own = script::name_of(*state_->composer, *variable);
+    if (is_locked)
+        state_->locked.insert(own);
+    else
+        state_->locked.erase(own);
+    return true;
+}
+
+Result<> Console::read_config(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return {};
+    const auto content = read_file(path, {.max_size = longest_file});
+    if (!content) return failure(content.error());
+    const std::string_view text(reinterpret_cast<const char*>(content->data()), content->size());
+    script::run_commands(*state_, text, {.place = path.string(), .kept = &state_->kept});
+    return {};
+}
+
+Result<> Console::write_config(const std::filesystem::path& path) const {
+    const Composer& composer = *state_->composer;
+    std::map<std::string, std::string> lines = state_->kept;
+    for (const auto& [name, variable] : script::all_variables(composer)) {
+        if (!state_->is_archived(variable) || state_->is_read_only(variable)) continue;
+        // One line for each: under the name that outlives another look, if the variable has one.
+        const std::optional<script::Variable> first = script::find_variable(composer, variable.row->also);
+        const bool has_other_name = first && first->entry == variable.entry && first->row == variable.row;
+        if (has_other_name ? name != variable.row->also : !is_sayable(name)) continue;
+        const bool is_asked_for = state_->archived.contains(script::name_of(composer, variable));
+        lines[name] = fmt::format("{}\"{}\" \"{}\"", is_asked_for ? "seta " : "", name, state_->text(variable));
+    }
+    std::string text = "// Written by the program; variables that are archived.\n";
+    for (const auto& [name, line] : lines) text += line + "\n";
+    return write_file(path, std::as_bytes(std::span(text)));
+}
+
+}  // namespace darkroom
