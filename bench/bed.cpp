@@ -83,6 +83,10 @@ Frame Bed::frame(WorldUse use) const {
         ref.layout = ref.final_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         return ref;
     };
+    if (use == WorldUse::Interface) {
+        out.ui = read_only(world->ui);
+        return out;
+    }
     out.depth = read_only(use == WorldUse::Planar ? world->distance : world->depth);
     if (use != WorldUse::WithoutNormals) {
         out.normals = read_only(world->normals);
@@ -102,6 +106,10 @@ CompileDesc Bed::compile_desc(WorldUse use) const {
     if (use == WorldUse::None) return out;
     const Frame frame = this->frame(use);
     constexpr VkImageUsageFlags layer_use = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    if (use == WorldUse::Interface) {
+        out.ui = {frame.ui.format, layer_use};
+        return out;
+    }
     out.depth = {frame.depth.format, layer_use};
     out.is_depth_planar = use == WorldUse::Planar;
     out.normals = {frame.normals.format, layer_use};

@@ -103,6 +103,18 @@ Stack graded_tail_stack(const TailValues& values) {
     return stack;
 }
 
+Stack ui_tail_stack(const TailValues& values, bool is_neutral) {
+    const double on = is_neutral ? 0 : 1;
+    std::vector<NamedStep> steps = tail_steps(values);
+    const std::vector<NamedStep> ui{{"ui_warp", {{"strength", -0.15 * on}}},
+                                    {"ui_chroma", {{"strength", 0.005 * on}}},
+                                    {"ui_echo", {{"strength", 0.1 * on}, {"scale", 1.01}}},
+                                    {"ui_composite"},
+                                    {"contrast_gamma", {{"contrast", 1 + 0.4 * on}}}};
+    steps.insert(std::ranges::find(steps, "encode", &NamedStep::effect) + 1, ui.begin(), ui.end());
+    return stack_of(steps);
+}
+
 const EffectInfo* tail_noise_effect() { return find_effect(noise_effect); }
 
 Stack bloom_stack() { return stack_of({{"bloom", {{"levels", std::int64_t{5}}}}}); }
@@ -131,7 +143,7 @@ Stack motion_blur_stack(const std::string& resolution) {
 Stack flat_stack(bool keeps_what_is_off) {
     Stack stack;
     for (const EffectInfo* const effect : all_effects()) {
-        if (effect->flat.documented < 0) continue;
+        if (effect->flat.documented < 0 || effect->flat.is_of_ui) continue;
         // As looks do: of what is off, only pointwise effects without images have a place unless the host keeps them,
         // and what moves coordinates but moves nothing at its defaults has none.
         const bool is_still = effect->touch == Touch::Warp && effect->is_identity != nullptr &&
@@ -166,9 +178,9 @@ Stack single_stack(const EffectInfo& effect) {
 void fill(Composer& composer, const Stack& stack) {
     Handle before = scene_color;
     for (const Step& step : stack) {
-        EntryDesc desc{.source = scene_color, .enabled = step.is_on};
+        EntryDesc desc{.source = scene_color, .is_ui = step.effect->is_ui, .enabled = step.is_on};
         if (step.joins_scene) desc.input = scene_color;
-        if (step.effect->has_second) desc.second = step.joins_scene ? before : scene_color;
+        if (step.effect->has_second && !step.effect->needs.ui) desc.second = step.joins_scene ? before : scene_color;
         std::vector<std::uint32_t> words = step.words;
         for (const ParamInfo& row : step.effect->parameters.rows)
             if (row.kind == Kind::Resource && words[row.word] == some_table)

@@ -27,6 +27,8 @@ using Stack = std::vector<Step>;
 [[nodiscard]] Stack tail_stack(const TailValues& values);
 /// The effect of the tail that brings the tile of noise.
 [[nodiscard]] const EffectInfo* tail_noise_effect();
+/// The same with the interface over it, before the dither: its whole chain, neutral, or with warp, chroma and echo on.
+[[nodiscard]] Stack ui_tail_stack(const TailValues& values, bool is_neutral);
 /// The same with fog at its place in the documented order, after the tone mapping.
 [[nodiscard]] Stack foggy_tail_stack(const TailValues& values);
 /// The same with a colour table before the encoding, a cube of 33.

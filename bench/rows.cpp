@@ -73,8 +73,6 @@ Recipe plain_recipe(std::string_view name, PlainPass pass, gpu::Stage stage) {
             }};
 }
 
-bool needs_what_the_world_lacks(const EffectInfo& effect) { return effect.needs.ui; }
-
 Stack stack_of_one(std::string_view name) {
     const EffectInfo* const effect = find_effect(name);
     return effect == nullptr ? Stack{} : single_stack(*effect);
@@ -152,11 +150,11 @@ std::vector<Recipe> recipes() {
                    }});
     out.push_back({.name = std::string(floor_name), .make = floor_row});
     for (const EffectInfo* const effect : all_effects())
-        if (!needs_what_the_world_lacks(*effect))
-            out.push_back(
-                chain_recipe(fmt::format("effect/{}", effect->name), single_stack(*effect),
-                             {.world = effect->needs.normals || effect->needs.velocity ? WorldUse::Full
-                                                                                       : WorldUse::WithoutNormals}));
+        out.push_back(
+            chain_recipe(fmt::format("effect/{}", effect->name), single_stack(*effect),
+                         {.world = effect->needs.ui                                  ? WorldUse::Interface
+                                   : effect->needs.normals || effect->needs.velocity ? WorldUse::Full
+                                                                                     : WorldUse::WithoutNormals}));
     if (const Stack tail = tail_stack({}); !tail.empty()) {
         add_chains(out, "tail", tail);
         for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster}) {
@@ -166,6 +164,8 @@ std::vector<Recipe> recipes() {
         }
     }
     add_chain(out, "tail/lut", graded_tail_stack({}), {});
+    add_chain(out, "tail/ui, neutral", ui_tail_stack({}, true), {.world = WorldUse::Interface});
+    add_chain(out, "tail/ui", ui_tail_stack({}, false), {.world = WorldUse::Interface});
     if (const Stack bloom = bloom_stack(); !bloom.empty())
         for (const KernelStage stage : stages)
             out.push_back(chain_recipe(fmt::format("bloom/{}", stage_name(stage)), bloom, {.kernels = stage}));

@@ -188,6 +188,14 @@ Result<World> World::create(gpu::Context& context, VkExtent2D extent) {
     }
     std::vector<std::uint16_t> velocity;
     for (const float number : seen.velocity) velocity.push_back(half_bits(number));
+    std::vector<std::uint8_t> ui(std::size_t{4} * extent.width * extent.height);
+    for (std::size_t i = 0; i < ui.size() / 4; ++i) {
+        const std::size_t x = i % extent.width, y = i / extent.width;
+        const bool is_pane = (y / 64 + x / 160) % 4 == 0;
+        const std::uint8_t alpha = !is_pane ? 0 : x % 160 < 120 ? 255 : 128;
+        for (std::size_t k = 0; k < 4; ++k)
+            ui[4 * i + k] = k == 3 ? alpha : static_cast<std::uint8_t>(alpha * (k + 1) / 4);
+    }
     World world{.camera = seen.camera, .light = sun()};
     const auto make = [&](gpu::Image& image, const char* name, VkFormat format, VkExtent2D size, std::uint32_t layers,
                           const auto& numbers) -> Result<> {
@@ -208,6 +216,7 @@ Result<World> World::create(gpu::Context& context, VkExtent2D extent) {
     if (done) done = make(world.distance, "distance", VK_FORMAT_R32_SFLOAT, extent, 1, seen.distance);
     if (done) done = make(world.normals, "normals", VK_FORMAT_R16G16B16A16_SFLOAT, extent, 1, normals);
     if (done) done = make(world.velocity, "velocity", VK_FORMAT_R16G16_SFLOAT, extent, 1, velocity);
+    if (done) done = make(world.ui, "ui", VK_FORMAT_R8G8B8A8_UNORM, extent, 1, ui);
     if (done)
         done = make(world.cascades, "cascades", VK_FORMAT_D32_SFLOAT, {cascade_size, cascade_size}, Light::max_cascades,
                     shadows(street(), world.light));

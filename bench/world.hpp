@@ -27,6 +27,7 @@ struct World {
     gpu::Image distance;  ///< R32F, planar
     gpu::Image normals;   ///< RGBA16F, of the world
     gpu::Image velocity;  ///< RG16F, in pixels
+    gpu::Image ui;        ///< RGBA8, premultiplied: panes of an interface
     gpu::Image cascades;  ///< D32, four layers of 2048 x 2048
     Camera camera;        ///< of `depth`
     Light light;
@@ -37,6 +38,7 @@ enum class WorldUse : std::uint8_t {
     None,
     Full,            ///< device depth, normals, velocity, shadows
     WithoutNormals,  ///< device depth, shadows: what every engine has
+    Interface,       ///< no more than a UI image
     Planar,          ///< planar distance, normals, velocity, shadows: the cheapest input
 };
 

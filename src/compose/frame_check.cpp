@@ -267,6 +267,9 @@ Result<> check_images(const gpu::Context& context, const CompileDesc& desc) {
     if (auto ok = check_input(context, "normals", desc.normals); !ok) return ok;
     if (auto ok = check_input(context, "velocity", desc.velocity); !ok) return ok;
     if (auto ok = check_input(context, "ui", desc.ui); !ok) return ok;
+    if (desc.ui.format == VK_FORMAT_A2B10G10R10_UNORM_PACK32 || desc.ui.format == VK_FORMAT_A2R10G10B10_UNORM_PACK32)
+        return user_error(fmt::format("compile: ui.format = {}: allowed is what has 8 bits of alpha and more",
+                                      gpu::format_name(desc.ui.format)));
     return check_target(context, desc.target);
 }
 

@@ -146,7 +146,9 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
 
     gpu::test::Picture color = gpu::test::upload(context, to_pixels(picture), options.color, VK_IMAGE_LAYOUT_GENERAL);
     gpu::test::Picture target = gpu::test::blank(context, extent, options.target);
-    std::optional<gpu::test::Picture> depth, normals;
+    std::optional<gpu::test::Picture> depth, normals, ui;
+    if (options.ui != nullptr)
+        ui = gpu::test::upload(context, to_pixels(*options.ui), options.ui_format, VK_IMAGE_LAYOUT_GENERAL);
     if (options.depth != nullptr)
         depth = gpu::test::upload(context, to_pixels(*options.depth), options.depth_format, VK_IMAGE_LAYOUT_GENERAL);
     if (options.normals != nullptr)
@@ -169,6 +171,7 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
                                         .depth = {depth ? options.depth_format : VK_FORMAT_UNDEFINED},
                                         .is_depth_planar = depth && options.is_depth_planar,
                                         .normals = {normals ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_UNDEFINED},
+                                        .ui = {ui ? options.ui_format : VK_FORMAT_UNDEFINED},
                                         .has_shadows = !shadow_maps.empty(),
                                         .target = {options.target, gpu::test::all_usage(context, options.target)},
                                         .target_domain = options.target_domain,
@@ -188,6 +191,7 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
                     .target = image_ref(target)};
         if (depth) frame.depth = image_ref(*depth);
         if (normals) frame.normals = image_ref(*normals);
+        if (ui) frame.ui = image_ref(*ui);
         recorded = composer.record(commands, frame);
     });
     if (!recorded) return fail("record", recorded.error().text);

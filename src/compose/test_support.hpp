@@ -33,6 +33,8 @@ struct RunOptions {
     VkFormat depth_format = VK_FORMAT_R32_SFLOAT;
     bool is_depth_planar = true;
     const ReferenceImage* normals = nullptr;
+    const ReferenceImage* ui = nullptr;
+    VkFormat ui_format = VK_FORMAT_R8G8B8A8_UNORM;
     Camera camera{.depth = DepthKind::Planar};
     std::span<const ReferenceLight> lights;
 };

@@ -73,7 +73,6 @@ class Chain {
         domains_.assign(2, Domain::SceneLinear);
         pictures_.push_back(input_.ui != nullptr ? *input_.ui : ReferenceImage());
         domains_.push_back(Domain::Encoded);
-        lacks_ui_.assign(composer_.size(), false);
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
         if (input_.histories != nullptr) {
@@ -143,15 +142,11 @@ class Chain {
         const EntryDesc& desc = *composer_.desc(composer_.entry(entry));
         return desc.second.is_given() || !info.has_second || !info.needs.ui ? desc.second : before(entry, true);
     }
-    /// Does the entry read an interface that is not there, or what is made of one?
-    bool lacks_ui(std::size_t entry) const {
+    /// Does it name an interface that is not there, or what would be made of one?
+    bool is_missing(Handle wire, std::size_t entry) const {
         if (input_.ui != nullptr) return false;
-        const EntryDesc& desc = *composer_.desc(composer_.entry(entry));
-        const Handle input = desc.input.is_given() ? desc.input : before(entry, desc.is_ui);
-        return std::ranges::any_of(std::array{input, desc.source, second_of(entry), desc.mask}, [&](Handle wire) {
-            const std::size_t from = wire.is_given() && !wire.is_previous ? index_of(wire) : entry;
-            return wire == ui_layer || (from < entry && lacks_ui_[from]);
-        });
+        const std::size_t from = wire.is_given() && !wire.is_previous ? index_of(wire) : entry;
+        return wire == ui_layer || (from < entry && is_missing_[from]);
     }
     bool is_known(Handle wire, std::size_t index) const {
         if (!wire.is_given() || wire == scene_color || wire == scene_alpha || wire == scene_color.previous() ||
@@ -222,9 +217,10 @@ class Chain {
                 return user_error(
                     fmt::format("stack entry '{}': it reads what is not the output of an earlier entry", desc.name));
         values_.push_back(value_of(desc.input, index));
-        lacks_ui_[index] = lacks_ui(index);
+        is_missing_.push_back(is_missing(desc.input.is_given() ? desc.input : before(index, desc.is_ui), index));
         Needs needs = info.needs;
-        needs.ui |= lacks_ui_[index];
+        needs.ui |= is_missing_.back();
+        for (const Handle wire : {desc.source, second_of(index), desc.mask}) needs.ui |= is_missing(wire, index);
         std::string why = missing_needs(needs, input_);
         if (!why.empty()) why = fmt::format("needs {}, which the frame does not have", why);
         if (why.empty() && info.is_last_step && input_.target_domain == Domain::SceneLinear)
@@ -346,11 +342,12 @@ class Chain {
 
     const Composer& composer_;
     const ReferenceChainInput& input_;
-    std::deque<ReferenceImage> pictures_;       // that none moves while others are added
-    std::vector<Domain> domains_;               // of each picture
-    std::vector<std::size_t> values_;           // of each entry: its picture
-    std::map<std::size_t, Reading> readings_;   // of pictures that are one
-    std::vector<bool> is_left_out_, lacks_ui_;  // of each entry
+    std::deque<ReferenceImage> pictures_;      // that none moves while others are added
+    std::vector<Domain> domains_;              // of each picture
+    std::vector<std::size_t> values_;          // of each entry: its picture
+    std::map<std::size_t, Reading> readings_;  // of pictures that are one
+    std::vector<bool> is_left_out_;            // of each entry
+    std::vector<bool> is_missing_;             // of each entry: its picture is an interface that is not there
     std::vector<std::string> left_out_;
     std::map<std::uint32_t, ReferenceHistory> histories_;  // of this frame
 };

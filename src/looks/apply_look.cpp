@@ -19,7 +19,7 @@ namespace {
 // or part a kernel in every frame, for what nobody asked for.
 bool is_in_the_way(const Look& look, const LookEntry& entry, const ApplyOptions& options) {
     const EffectInfo& effect = *entry.effect;
-    if (effect.needs.ui && entry.is_of_ui) return entry.state.enabled.on == 0 && !options.keeps_what_is_off;
+    if (entry.is_of_ui) return entry.state.enabled.on == 0 && !options.keeps_what_is_off;
     if (!look.is_flat || (effect.touch == Touch::Pointwise && !effect.build)) return false;
     const bool is_still =
         effect.touch == Touch::Warp && effect.is_identity != nullptr && effect.is_identity(entry.words.data());
@@ -101,8 +101,7 @@ bool is_domain_change(const EffectInfo& effect) {
 Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options) {
     const std::vector<std::string> names = entry_names(look);
     Definitions definitions(composer);
-    std::map<std::string, Handle, std::less<>> outputs{{std::string(scene_name), scene_color},
-                                                       {std::string(alpha_name), scene_alpha}};
+    std::map<std::string, Handle, std::less<>> outputs(given_wires.begin(), given_wires.end());
     // What an entry reads of the frame before may be made by a later one: those are wired when all are there.
     std::vector<std::pair<Handle, std::size_t>> unwired;
     const auto blame = [&](std::size_t index, const Error& error) {

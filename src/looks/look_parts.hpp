@@ -6,13 +6,17 @@
 #include <bit>
 #include <darkroom/look.hpp>
 #include <string_view>
+#include <utility>
 
 namespace darkroom {
 
 /// The wire to the picture as it came.
 inline constexpr std::string_view scene_name = "scene";
-/// That to its alpha, as a grey picture.
-inline constexpr std::string_view alpha_name = "alpha";
+/// All wires to pictures that no entry makes: that one, its alpha as a grey picture, and the interface's image. Of the
+/// last two nobody has the frame before.
+using GivenWire = std::pair<std::string_view, Handle>;
+inline constexpr std::array<GivenWire, 3> given_wires{
+    {{scene_name, scene_color}, {"alpha", scene_alpha}, {"ui", ui_layer}}};
 /// Behind another name: that picture one frame before.
 inline constexpr std::string_view previous_suffix = ".previous";
 inline constexpr const auto& order_names = detail::Enumerators<LookOrder>::names;

@@ -198,7 +198,7 @@ TEST(Look, StackErrorsNameBothEnds) {
         "a.toml:6:10: output 'blurred' is made by stack entry 1 (gaussian_blur) and by stack entry 2 (gaussian_blur)");
     EXPECT_EQ(
         error_of(blur + "[[stack]]\neffect = \"blend\"\nsecond = \"blured\"\n"),
-        "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, known are scene, alpha, "
+        "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, known are scene, alpha, ui, "
         "blurred, did you "
         "mean 'blurred'?");
     EXPECT_TRUE(contains(error_of("[[stack]]\neffect = \"blom\"\n"), "did you mean 'bloom'?"));
@@ -437,7 +437,7 @@ TEST(Look, WiresToTheFrameBeforeNameAnOutput) {
         return error_of(fmt::format("[[stack]]\neffect = \"blend\"\nsecond = \"{}\"\noutput = \"a\"\n", wire));
     };
     EXPECT_EQ(error("a.previous"), "accepted");
-    EXPECT_TRUE(contains(error("b.previous"), "no entry has this output, known are scene, alpha, a"))
+    EXPECT_TRUE(contains(error("b.previous"), "no entry has this output, known are scene, alpha, ui, a"))
         << error("b.previous");
     EXPECT_TRUE(contains(error("alpha.previous"), "no entry has this output")) << error("alpha.previous");
     EXPECT_TRUE(contains(error(".previous"), "expected a name")) << error(".previous");

@@ -187,9 +187,10 @@ class StackReader {
         for (std::size_t i = 0; i < look_.entries.size(); ++i) {
             const std::string& output = look_.entries[i].output;
             if (output.empty()) continue;
-            if (output == scene_name || output == alpha_name) {
-                reader_.report(node_of(i, "output"), Weight::Wrong,
-                               fmt::format("output '{}' of {}: this name is the scene's", output, shown(i)));
+            if (std::ranges::find(given_wires, output, &GivenWire::first) != given_wires.end()) {
+                reader_.report(
+                    node_of(i, "output"), Weight::Wrong,
+                    fmt::format("output '{}' of {}: this name is that of what frames bring", output, shown(i)));
                 continue;
             }
             const auto [found, is_new] = makers.try_emplace(output, i);
@@ -198,7 +199,8 @@ class StackReader {
                     node_of(i, "output"), Weight::Wrong,
                     fmt::format("output '{}' is made by {} and by {}", output, shown(found->second), shown(i)));
         }
-        std::vector<std::string> known{std::string(scene_name), std::string(alpha_name)};
+        std::vector<std::string> known;
+        for (const auto& [name, handle] : given_wires) known.emplace_back(name);
         for (const auto& [name, maker] : makers) known.push_back(name);
         for (std::size_t i = 0; i < look_.entries.size(); ++i)
             for (const WireInfo& wire : wires)
@@ -211,7 +213,8 @@ class StackReader {
         if (is_file_name(name)) return;
         const bool is_previous = name.ends_with(previous_suffix);
         if (is_previous) name.resize(name.size() - previous_suffix.size());
-        if (name.empty() || name == scene_name || (name == alpha_name && !is_previous)) return;
+        const bool is_given = std::ranges::find(given_wires, name, &GivenWire::first) != given_wires.end();
+        if (name.empty() || name == scene_name || (is_given && !is_previous)) return;
         const auto found = makers.find(name);
         if (found == makers.end())
             return reader_.report(node_of(index, wire.key), Weight::Wrong,

@@ -73,24 +73,23 @@ Result<Program> Planner::run() {
 }
 
 void Planner::leave_out() {
-    // What reads an interface that is not there, and what reads that.
-    std::vector<bool> lacks_ui(stack_.size(), false);
-    const auto reads_missing_ui = [&](std::uint32_t entry) {
-        if (desc_.ui.format != VK_FORMAT_UNDEFINED) return false;
-        const EntryDesc& desc = stack_[entry].desc;
-        const auto is_missing = [&](std::uint32_t from) {
-            return from == ui_entry || (from < entry && lacks_ui[from]);
-        };
-        if (!desc.input.is_given() && is_missing(entry_before(entry, desc.is_ui))) return true;
-        return std::ranges::any_of(std::array{desc.input, desc.source, second_of(entry), desc.mask}, [&](Handle wire) {
-            return wire == ui_layer || (is_of_entry(wire) && is_missing(index_of(wire)));
-        });
-    };
+    // Entries whose picture would be an interface that is not there. What reads one of those is left out.
+    std::vector<bool> is_missing(stack_.size(), desc_.ui.format == VK_FORMAT_UNDEFINED);
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const EffectInfo& info = *stack_[i].info;
-        lacks_ui[i] = reads_missing_ui(i);
+        const EntryDesc& desc = stack_[i].desc;
+        const auto reads_missing = [&](Handle wire) {
+            if (desc_.ui.format != VK_FORMAT_UNDEFINED) return false;
+            return wire == ui_layer || (is_of_entry(wire) && index_of(wire) < i && is_missing[index_of(wire)]);
+        };
+        const std::uint32_t before = entry_before(i, desc.is_ui);
+        is_missing[i] = desc.input.is_given() ? reads_missing(desc.input)
+                                              : reads_missing(before < i           ? Handle{stack_[before].id}
+                                                              : before == ui_entry ? ui_layer
+                                                                                   : Handle{});
         Needs needs = info.needs;
-        needs.ui |= lacks_ui[i];
+        needs.ui |=
+            is_missing[i] || std::ranges::any_of(std::array{desc.source, second_of(i), desc.mask}, reads_missing);
         std::string why;
         if (const std::string missing = missing_needs(needs, desc_); !missing.empty())
             why = fmt::format("needs {}, which the frame does not have", missing);
