@@ -108,7 +108,7 @@ Stack ui_tail_stack(const TailValues& values, bool is_neutral) {
     std::vector<NamedStep> steps = tail_steps(values);
     const std::vector<NamedStep> ui{{"ui_warp", {{"strength", -0.15 * on}}},
                                     {"ui_chroma", {{"strength", 0.005 * on}}},
-                                    {"ui_echo", {{"strength", 0.1 * on}, {"scale", 1.01}}},
+                                    {"ui_echo", {{"strength", 0.1 * on}, {"size", 1.01}}},
                                     {"ui_composite"},
                                     {"contrast_gamma", {{"contrast", 1 + 0.4 * on}}}};
     steps.insert(std::ranges::find(steps, "encode", &NamedStep::effect) + 1, ui.begin(), ui.end());

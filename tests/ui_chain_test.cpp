@@ -192,7 +192,7 @@ TEST_F(ChainUi, FusedAndUnfusedAndReferenceAreOnePicture) {
     const auto build = [](Composer& composer) {
         add_ui(composer, "ui_warp", {{"strength", -0.3}});
         add_ui(composer, "ui_chroma", {{"strength", 0.004}});
-        const Handle hud = add_ui(composer, "ui_echo", {{"strength", 0.3}, {"scale", 1.1}});
+        const Handle hud = add_ui(composer, "ui_echo", {{"strength", 0.3}, {"size", 1.1}});
         add(composer, "encode");
         add(composer, "ui_composite", {{"additive", 0.2}}, {.opacity = 0.8F});
         add(composer, "blend", {{"amount", 0.3}}, {.second = hud});

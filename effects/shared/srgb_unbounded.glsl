@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // IEC 61966-2-1 both ways, the power going on above 1 and the line below 0: for light that is encoded only in between.
+// Precise, because a compiler that sees both may fold them, and lean kernels let it see more.
 #ifndef SHARED_SRGB_UNBOUNDED
 #define SHARED_SRGB_UNBOUNDED
 vec3 srgb_encode_unbounded(vec3 linear) {
-    vec3 power = 1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055;
-    return mix(power, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
+    precise vec3 power = 1.055 * pow(max(linear, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055;
+    precise vec3 line = 12.92 * linear;
+    return mix(power, line, lessThanEqual(linear, vec3(0.0031308)));
 }
 vec3 srgb_decode_unbounded(vec3 encoded) {
-    vec3 power = pow((max(encoded, vec3(0.04045)) + 0.055) / 1.055, vec3(2.4));
-    return mix(power, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
+    precise vec3 power = pow((max(encoded, vec3(0.04045)) + 0.055) / 1.055, vec3(2.4));
+    precise vec3 line = encoded / 12.92;
+    return mix(power, line, lessThanEqual(encoded, vec3(0.04045)));
 }
 #endif

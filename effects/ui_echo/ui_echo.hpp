@@ -8,11 +8,11 @@ namespace darkroom {
 
 struct UiEcho {
     float strength = 0.0f;
-    float scale = 1.0f;
+    float size = 1.0f;
 };
 inline constexpr auto ui_echo_rows =
     describe(field<&UiEcho::strength>("How bright the ghost is.", {0, 4}).as_amount().also_named("r_ui_echo"),
-             field<&UiEcho::scale>("Size of the ghost, relative to the interface's.", {0.05, 20, Scale::Log})
+             field<&UiEcho::size>("Sides of the ghost, relative to the interface's.", {0.05, 20, Scale::Log})
                  .also_named("r_ui_echo_scale"));
 
 [[nodiscard]] const EffectInfo& effect_info(const UiEcho&);

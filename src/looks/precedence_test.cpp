@@ -60,8 +60,11 @@ std::string flag_text(std::string toml) {
     return toml;
 }
 
+/// The table that an effect's keys stand in.
+std::string table_of(const EffectInfo& effect) { return effect.flat.is_of_ui ? "[ui]\n" : "[post_process]\n"; }
+
 Look with_file(const EffectInfo& effect, const ParamInfo& row, const std::string& value) {
-    const std::string text = "[post_process]\n" + flat_key(effect.name, row.name) + " = " + value + "\n";
+    const std::string text = table_of(effect) + flat_key(effect.name, row.name) + " = " + value + "\n";
     const Result<Look> look = parse_look(text, "a.toml", {.is_strict = true});
     EXPECT_TRUE(look) << look.error().text;
     return look ? *look : Look{};
@@ -108,7 +111,9 @@ TEST(Precedence, AKeyChangesItsOwnValueAlone) {
                 EXPECT_EQ(value_of(file, *other, kept) == usual, &kept != &row) << flat_key(other->name, kept.name);
             }
             if (other != &effect) {
-                EXPECT_EQ(is_on(file, *other), other->flat.starts_on) << other->name;
+                // The table [ui] turns all of its effects on.
+                const bool is_of_table = effect.flat.is_of_ui && other->flat.is_of_ui;
+                EXPECT_EQ(is_on(file, *other), other->flat.starts_on || is_of_table) << other->name;
             }
         }
     });
@@ -119,7 +124,7 @@ TEST(Precedence, EveryEffectHasASwitch) {
         if (effect->flat.documented < 0) continue;
         for (const bool is_wanted : {true, false}) {
             const std::string key = flat_key(effect->name, "enabled");
-            const Result<Look> file = parse_look("[post_process]\n" + key + (is_wanted ? " = true\n" : " = false\n"),
+            const Result<Look> file = parse_look(table_of(*effect) + key + (is_wanted ? " = true\n" : " = false\n"),
                                                  "a.toml", {.is_strict = true});
             ASSERT_TRUE(file) << file.error().text;
             EXPECT_EQ(is_on(*file, *effect), is_wanted) << key;
@@ -132,7 +137,7 @@ TEST(Precedence, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
     for_every_flat_row([](const EffectInfo& effect, const ParamInfo& row) {
         const std::string key = flat_key(effect.name, row.name), slip = key + key.back();
         std::vector<std::string> warnings;
-        const Result<Look> look = parse_look("[post_process]\n" + slip + " = 0\n", "a.toml", {.warnings = &warnings});
+        const Result<Look> look = parse_look(table_of(effect) + slip + " = 0\n", "a.toml", {.warnings = &warnings});
         ASSERT_TRUE(look) << look.error().text;
         ASSERT_EQ(warnings.size(), 1U);
         EXPECT_NE(warnings[0].find("unknown key '" + slip + "'"), std::string::npos) << warnings[0];
