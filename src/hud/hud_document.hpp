@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// An SVG document with bindings ({{health}}) as a picture over the game: load it, set() values in every frame, take
+// picture() in every frame. It is drawn when its size, a value that it names or its file has changed, and at no other
+// time; off the calling thread unless it is headless. What cannot be drawn leaves the last picture, and says why.
+// Not for what moves smoothly in every frame: a drawing takes milliseconds.
+
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "hud/svg_process.hpp"
+#include "hud/svg_text.hpp"
+
+namespace darkroom {
+
+struct HudOptions {
+    bool is_headless = false;    ///< picture() draws what it returns, and looks at the file each time
+    double poll_seconds = 0.25;  ///< between two looks at the file
+    HudLimits limits{};
+};
+
+class HudDocument {
+  public:
+    /// Reads and checks the file, draws nothing. Errors are "file:line: reason".
+    [[nodiscard]] static Result<std::unique_ptr<HudDocument>> load(const std::filesystem::path& path,
+                                                                   const HudOptions& options = {});
+    ~HudDocument();
+
+    void set(std::string_view name, HudValue value);
+    /// The newest drawing: headless, of this size and all values; else what was drawn last, perhaps at another size,
+    /// and null before the first. What changed is begun now, and returned by the first call after it is done. The same
+    /// pointer is the same picture.
+    [[nodiscard]] std::shared_ptr<const HudPicture> picture(std::uint32_t width, std::uint32_t height);
+    /// Why the picture is not that of the file, the values and the size; one line, empty where it is.
+    [[nodiscard]] const std::string& error() const;
+    /// Successful ones, so far.
+    [[nodiscard]] std::uint64_t drawings() const;
+
+  private:
+    struct State;
+    explicit HudDocument(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace darkroom

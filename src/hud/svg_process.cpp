@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "hud/svg_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <string>
+
+#include "core/param_text.hpp"
+#include "hud/svg_messages.hpp"
+
+namespace darkroom {
+
+namespace {
+
+/// Longer ones are no error texts.
+constexpr std::uint32_t most_error_bytes = 65536;
+
+Failure failed(const char* what) {
+    return machine_error(fmt::format("drawing SVG: {}: {}", what, std::strerror(errno)));
+}
+
+bool send_all(int socket, const void* data, std::size_t size) {
+    for (const auto* at = static_cast<const char*>(data); size > 0;) {
+        const ssize_t sent = send(socket, at, size, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent <= 0) return false;
+        at += sent;
+        size -= static_cast<std::size_t>(sent);
+    }
+    return true;
+}
+
+bool receive(int socket, void* data, std::size_t size) {
+    for (auto* at = static_cast<char*>(data); size > 0;) {
+        const ssize_t got = recv(socket, at, size, 0);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) return false;
+        at += got;
+        size -= static_cast<std::size_t>(got);
+    }
+    return true;
+}
+
+/// Out of the way of the numbers that the process will give to its own.
+int lifted(int descriptor) {
+    if (descriptor < 0) return descriptor;
+    const int high = fcntl(descriptor, F_DUPFD_CLOEXEC, 10);
+    close(descriptor);
+    return high;
+}
+
+}  // namespace
+
+Result<> SvgProcess::start() {
+    if (process_ >= 0) return {};
+    std::error_code ignored;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+    const std::string path = (program.parent_path() / "../lib/darkroom/darkroom_svg").string();
+    int ends[2] = {-1, -1};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return failed("making a socket");
+    const int other = lifted(ends[1]);
+    {
+        const std::lock_guard lock(mutex_);
+        socket_ = lifted(ends[0]);
+        if (is_cancelled_) shutdown(socket_, SHUT_RDWR);
+    }
+    memory_ = lifted(memfd_create("darkroom_svg", MFD_CLOEXEC));
+    // A drawing ends itself in time; a second more, and it hangs.
+    const timeval most{.tv_sec = static_cast<time_t>(limits_.seconds) + 1, .tv_usec = 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &most, sizeof most);
+    setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
+
+    posix_spawn_file_actions_t actions{};
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, other, STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, memory_, svg_memory_descriptor);
+    posix_spawn_file_actions_addclosefrom_np(&actions, svg_memory_descriptor + 1);
+    std::string name = "darkroom_svg";
+    char* arguments[] = {name.data(), nullptr};
+    const int reason = posix_spawn(&process_, path.c_str(), &actions, nullptr, arguments, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(other);
+    if (reason == 0) return {};
+    process_ = -1;
+    stop();
+    errno = reason;
+    return failed(path.c_str());
+}
+
+void SvgProcess::cancel() {
+    const std::lock_guard lock(mutex_);
+    is_cancelled_ = true;
+    if (socket_ >= 0) shutdown(socket_, SHUT_RDWR);
+}
+
+void SvgProcess::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        if (socket_ >= 0) close(socket_);
+        socket_ = -1;
+    }
+    if (memory_ >= 0) close(memory_);
+    if (process_ >= 0) {
+        kill(process_, SIGKILL);
+        while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+        }
+    }
+    process_ = memory_ = -1;
+}
+
+Result<HudPicture> SvgProcess::draw(std::string_view document, std::uint32_t width, std::uint32_t height) {
+    const std::uint64_t pixels = std::uint64_t{width} * height;
+    if (width == 0 || height == 0 || width > limits_.side || height > limits_.side || pixels > limits_.pixels)
+        return user_error(fmt::format("a picture of {}x{}: allowed is 1 to {} a side, at most {} pixels", width, height,
+                                      limits_.side, limits_.pixels));
+    if (document.size() > limits_.document_bytes)
+        return user_error(fmt::format("{} bytes: allowed are {}", document.size(), limits_.document_bytes));
+    if (auto started = start(); !started) return failure(std::move(started));
+
+    const std::size_t size = pixels * 4;
+    if (ftruncate(memory_, static_cast<off_t>(size)) != 0) return failed("memory for a picture");
+    const SvgRequest request{static_cast<std::uint32_t>(document.size()), width, height, limits_.seconds};
+    SvgReply reply;
+    std::string error;
+    bool is_answered = send_all(socket_, &request, sizeof request) &&
+                       send_all(socket_, document.data(), document.size()) && receive(socket_, &reply, sizeof reply) &&
+                       reply.error_size <= most_error_bytes;
+    if (is_answered) {
+        error.resize(reply.error_size);
+        is_answered = receive(socket_, error.data(), error.size());
+    }
+    if (!is_answered) {
+        stop();
+        return user_error(fmt::format("it takes more than {} s or too much memory to draw", limits_.seconds));
+    }
+    if (!error.empty()) return user_error(std::move(error));
+
+    void* const memory = mmap(nullptr, size, PROT_READ, MAP_SHARED, memory_, 0);
+    if (memory == MAP_FAILED) return failed("memory of a picture");
+    const auto* const first = static_cast<const std::uint8_t*>(memory);
+    HudPicture picture{width, height, {first, first + size}};
+    munmap(memory, size);
+    return picture;
+}
+
+}  // namespace darkroom

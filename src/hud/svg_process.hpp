@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Draws SVG documents in a process of its own, darkroom_svg, which alone links librsvg and what comes with it (cairo,
+// GLib, fonts): a program that draws none starts no slower, and a document that takes too long, too much memory or
+// brings librsvg down costs no more than that process. Started with the first drawing, again after it was lost.
+
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <mutex>
+#include <string_view>
+#include <vector>
+
+namespace darkroom {
+
+/// Premultiplied, sRGB-encoded, 8 bits a channel, rows from the top.
+struct HudPicture {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba{};
+};
+
+/// Budgets of a document and a drawing; what exceeds them is an error, not a wait.
+struct HudLimits {
+    std::uint32_t document_bytes = 1u << 20;
+    std::uint32_t elements = 20'000;
+    std::uint32_t side = 8192;  ///< of a picture, pixels
+    std::uint32_t pixels = 7680 * 4320;
+    std::uint32_t seconds = 5;  ///< a drawing may take; the first one of a machine may make caches of fonts
+};
+
+class SvgProcess {
+  public:
+    explicit SvgProcess(const HudLimits& limits = {}) : limits_(limits) {}
+    SvgProcess(const SvgProcess&) = delete;
+    SvgProcess& operator=(const SvgProcess&) = delete;
+    ~SvgProcess() { stop(); }
+
+    /// The document fitted to the picture, as its preserveAspectRatio says. The user's errors are one line: librsvg's
+    /// own words, with "line N" in them where it names one. The document must have been checked (check_svg).
+    [[nodiscard]] Result<HudPicture> draw(std::string_view document, std::uint32_t width, std::uint32_t height);
+    /// From any thread, at the end: a drawing that runs fails soon, and so does any other.
+    void cancel();
+
+  private:
+    [[nodiscard]] Result<> start();
+    void stop();
+
+    HudLimits limits_;
+    std::mutex mutex_;  // of the socket's number and of is_cancelled_
+    bool is_cancelled_ = false;
+    int process_ = -1, socket_ = -1, memory_ = -1;
+};
+
+}  // namespace darkroom

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include "hud/svg_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/param_text.hpp"
+
+namespace darkroom {
+
+namespace {
+
+/// librsvg and what it is made of go into each by a call.
+constexpr std::size_t most_depth = 200;
+constexpr std::string_view blanks = " \t\r\n";
+
+std::size_t line_of(std::string_view text, std::size_t at) {
+    return 1 + static_cast<std::size_t>(std::ranges::count(text.substr(0, at), '\n'));
+}
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    std::ranges::transform(out, out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return out;
+}
+
+std::string_view without_prefix(std::string_view name) {
+    const std::size_t colon = name.rfind(':');
+    return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+/// Reads a document from its beginning to its end, and stops at the first thing that is refused.
+class Checker {
+  public:
+    Checker(std::string_view text, std::uint32_t most_elements) : text_(text), most_elements_(most_elements) {}
+
+    Result<> run() {
+        if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+        start_ = at_;
+        if (text_.find('\0') != std::string_view::npos) return refuse("a zero byte: allowed is text in UTF-8");
+        while (error_.empty() && at_ < text_.size()) {
+            const std::size_t tag = std::min(text_.find('<', at_), text_.size());
+            if (is_in_style_) check_style(text_.substr(at_, tag - at_));
+            at_ = tag;
+            if (error_.empty() && at_ < text_.size()) read_markup();
+        }
+        if (error_.empty() && !open_.empty()) {
+            at_ = open_.back().at;
+            refuse(fmt::format("<{}> is not closed", printable(open_.back().name)));
+        }
+        return error_.empty() ? Result<>{} : Result<>(user_error(error_));
+    }
+
+  private:
+    [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
+
+    Result<> refuse(std::string_view reason) {
+        if (error_.empty()) error_ = fmt::format("{}: {}", line_of(text_, at_), reason);
+        return user_error(error_);
+    }
+
+    /// To behind `end`.
+    void skip_past(std::string_view end) {
+        const std::size_t found = text_.find(end, at_);
+        if (found == std::string_view::npos)
+            refuse(fmt::format("something ends without '{}'", end));
+        else
+            at_ = found + end.size();
+    }
+
+    void read_markup() {
+        if (rest().starts_with("<!--")) return skip_past("-->");
+        if (rest().starts_with("<![CDATA[")) {
+            const std::size_t begin = at_;
+            skip_past("]]>");
+            if (is_in_style_) check_style(text_.substr(begin, at_ - begin));
+            return;
+        }
+        if (rest().starts_with("<!")) {
+            refuse("a document type or an entity: a document stands by itself, without");
+        } else if (rest().starts_with("<?")) {
+            read_declaration();
+        } else if (rest().starts_with("</")) {
+            read_end();
+        } else {
+            read_tag();
+        }
+    }
+
+    void read_declaration() {
+        if (at_ != start_ || !rest().starts_with("<?xml ")) {
+            refuse("a processing instruction: allowed is '<?xml ...?>' at the beginning");
+            return;
+        }
+        const std::size_t begin = at_;
+        skip_past("?>");
+        const std::string declaration = lower(text_.substr(begin, at_ - begin));
+        if (declaration.find("encoding") != std::string::npos && declaration.find("utf-8") == std::string::npos)
+            refuse("an encoding other than UTF-8");
+    }
+
+    void read_end() {
+        is_in_style_ = false;
+        const std::size_t end = std::min(text_.find_first_of(" \t\r\n>", at_), text_.size());
+        const std::string_view name = text_.substr(at_ + 2, end - at_ - 2);
+        if (open_.empty() || open_.back().name != name) {
+            refuse(open_.empty() ? fmt::format("</{}> closes nothing", printable(name))
+                                 : fmt::format("</{}> where <{}> of line {} is open", printable(name),
+                                               printable(open_.back().name), line_of(text_, open_.back().at)));
+            return;
+        }
+        open_.pop_back();
+        skip_past(">");
+    }
+
+    std::string_view read_name() {
+        const std::size_t end = std::min(text_.find_first_of(" \t\r\n=/><\"'", at_), text_.size());
+        const std::string_view name = text_.substr(at_, end - at_);
+        at_ = end;
+        return name;
+    }
+
+    void read_tag() {
+        if (++elements_ > most_elements_) {
+            refuse(fmt::format("more than {} elements", most_elements_));
+            return;
+        }
+        const std::size_t begin = at_++;
+        const std::string_view full_name = read_name(), element = without_prefix(full_name);
+        if (element == "image" || element == "feImage" || element == "include") {
+            refuse(fmt::format("<{}> takes in other files: a document stands by itself", element));
+            return;
+        }
+        while (error_.empty()) {
+            at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
+            if (rest().starts_with(">") || rest().starts_with("/>")) {
+                is_in_style_ = element == "style" && rest().front() == '>';
+                if (rest().front() == '>') open_.push_back({full_name, begin});
+                if (open_.size() > most_depth) refuse(fmt::format("elements in more than {} others", most_depth));
+                at_ += rest().front() == '>' ? 1 : 2;
+                return;
+            }
+            read_attribute(element);
+        }
+    }
+
+    void read_attribute(std::string_view element) {
+        const std::size_t begin = at_;
+        const std::string_view name = read_name();
+        at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
+        const bool has_value = rest().starts_with("=");
+        at_ = std::min(text_.find_first_not_of(blanks, at_ + (has_value ? 1 : 0)), text_.size());
+        const std::string_view quote = rest().substr(0, 1);
+        const std::size_t end = quote == "\"" || quote == "'" ? text_.find(quote, at_ + 1) : std::string_view::npos;
+        if (name.empty() || !has_value || end == std::string_view::npos) {
+            at_ = begin;
+            refuse(fmt::format("<{}>: allowed are attributes as name=\"value\"", printable(element)));
+            return;
+        }
+        const std::string_view value = text_.substr(at_ + 1, end - at_ - 1);
+        const std::string_view kind = without_prefix(name);
+        const bool is_reference = kind == "href" || kind == "src" || (kind == "base" && kind != name);
+        // What a link or a script names is nothing that is drawn.
+        if (is_reference && element != "a" && element != "script" && !value.starts_with('#'))
+            refuse(fmt::format("{}=\"{}\": allowed is #name, of an element of the document", name, printable(value)));
+        check_style(value);
+        at_ = end + 1;
+    }
+
+    /// References as CSS and presentation attributes have them.
+    void check_style(std::string_view text) {
+        if (text.find_first_of("(@") == std::string_view::npos) return;
+        const std::string words = lower(text);
+        if (words.find("@import") != std::string::npos) refuse("@import: a document stands by itself");
+        for (std::size_t i = words.find("url("); i != std::string::npos; i = words.find("url(", i + 1)) {
+            const std::size_t target = words.find_first_not_of(" \t\r\n\"'", i + 4);
+            const bool is_own = target != std::string::npos && words[target] == '#';
+            if (!is_own && !words.substr(i + 4).starts_with("&quot;#"))
+                refuse(fmt::format("{}: allowed is url(#name), of an element of the document",
+                                   printable(text.substr(i, 60))));
+        }
+    }
+
+    struct Open {
+        std::string_view name;
+        std::size_t at = 0;
+    };
+
+    std::string_view text_;
+    std::vector<Open> open_;
+    std::uint32_t most_elements_;
+    std::size_t at_ = 0, start_ = 0;
+    std::uint32_t elements_ = 0;
+    bool is_in_style_ = false;
+    std::string error_;
+};
+
+/// As text of a tag's content or of an attribute in either kind of quotes, and as no word of CSS that refers:
+/// check_svg() shall refuse documents, not what the game says in them.
+void append_escaped(std::string& out, std::string_view text) {
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            case '\'':
+            case '(':
+            case '@':
+                out += fmt::format("&#{};", static_cast<int>(c));
+                break;
+            default:
+                out += c;
+        }
+    }
+}
+
+bool is_name(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+    });
+}
+
+}  // namespace
+
+Result<> check_svg(std::string_view document, std::uint32_t most_elements) {
+    return Checker(document, most_elements).run();
+}
+
+Result<SvgTemplate> SvgTemplate::parse(std::string document) {
+    SvgTemplate out;
+    const auto error = [&](std::size_t at, std::string_view reason) {
+        return user_error(fmt::format("{}: {}", line_of(document, at), reason));
+    };
+    for (std::size_t at = document.find("{{"); at != std::string::npos; at = document.find("{{", at)) {
+        const std::size_t close = document.find("}}", at);
+        const std::size_t line_end = std::min(document.find('\n', at), document.size());
+        if (close == std::string::npos || close > line_end) return error(at, "'{{' without '}}' on its line");
+        const std::string inside = document.substr(at + 2, close - at - 2);
+        const std::size_t first = std::min(inside.find_first_not_of(blanks), inside.size());
+        const std::string name = inside.substr(first, inside.find_last_not_of(blanks) + 1 - first);
+        if (!is_name(name))
+            return error(at, fmt::format("{{{{{}}}}}: allowed is a name of letters, digits, '_', '-' and '.'",
+                                         printable(inside)));
+        out.bindings_.push_back({at, close + 2, name});
+        at = close + 2;
+    }
+    out.document_ = std::move(document);
+    return out;
+}
+
+Result<std::string> SvgTemplate::fill(const HudValues& values) const {
+    std::string out;
+    out.reserve(document_.size() + 64 * bindings_.size());
+    std::size_t at = 0;
+    for (const Binding& binding : bindings_) {
+        out.append(document_, at, binding.begin - at);
+        at = binding.end;
+        const auto found = values.find(binding.name);
+        if (found == values.end()) {
+            std::vector<std::string> names;
+            for (const auto& [name, value] : values) names.push_back(name);
+            return user_error(fmt::format("{}: {{{{{}}}}}: nothing has this name{}", line_of(document_, binding.begin),
+                                          binding.name, suggestion(binding.name, names)));
+        }
+        if (const double* const number = std::get_if<double>(&found->second))
+            out += fmt::format("{}", *number);
+        else
+            append_escaped(out, printable(std::get<std::string>(found->second)));
+    }
+    return out.append(document_, at);
+}
+
+bool SvgTemplate::binds(std::string_view name) const {
+    return std::ranges::find(bindings_, name, &Binding::name) != bindings_.end();
+}
+
+}  // namespace darkroom

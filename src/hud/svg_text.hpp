@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// SVG documents as text: what is refused before anything draws them, and their bindings, {{name}}, filled with values.
+// It reads tags and attributes; whether they are well-formed XML, librsvg says.
+
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace darkroom {
+
+/// Of the game: a number is shown in the shortest form that reads back the same.
+using HudValue = std::variant<double, std::string>;
+using HudValues = std::map<std::string, HudValue, std::less<>>;
+
+/// A document that stands by itself: tags that close each other, no document type (and so no entities), no processing
+/// instructions, UTF-8, and no reference but to its own elements (#name). The error is "line: reason".
+[[nodiscard]] Result<> check_svg(std::string_view document, std::uint32_t most_elements);
+
+/// A document cut at its bindings, which may stand wherever text may: between tags and in attributes' values.
+class SvgTemplate {
+  public:
+    /// Names are words of letters, digits, '_', '-' and '.'. The error is "line: reason".
+    [[nodiscard]] static Result<SvgTemplate> parse(std::string document);
+    /// The document with the values in place, escaped, so that they are text and never tags. A name without a value is
+    /// an error, "line: reason".
+    [[nodiscard]] Result<std::string> fill(const HudValues& values) const;
+    [[nodiscard]] bool binds(std::string_view name) const;
+
+  private:
+    struct Binding {
+        std::size_t begin = 0, end = 0;  ///< with its braces
+        std::string name;
+    };
+    std::string document_;
+    std::vector<Binding> bindings_;
+};
+
+}  // namespace darkroom

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "hud/svg_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace darkroom {
+namespace {
+
+constexpr std::uint32_t plenty = 1000;
+
+std::string checked(const std::string& document, std::uint32_t most_elements = plenty) {
+    const auto result = check_svg(document, most_elements);
+    return result ? std::string() : result.error().text;
+}
+
+std::string filled(const std::string& document, const HudValues& values) {
+    const auto parsed = SvgTemplate::parse(document);
+    if (!parsed) return parsed.error().text;
+    const auto out = parsed->fill(values);
+    return out ? *out : out.error().text;
+}
+
+TEST(HudText, PlainDocumentsPass) {
+    EXPECT_EQ(
+        checked("<?xml version=\"1.0\" encoding='utf-8'?>\n<!-- file:///x --><svg xmlns=\"http://www.w3.org/2000/svg\">"
+                "<style>a { fill: url( '#b' ); }</style><use href='#b'/><rect fill=\"url(#b)\"/>"
+                "<text>url(here), @import, a &lt; b</text><script href=\"visor.lua\"/></svg>"),
+        "");
+}
+
+TEST(HudText, RefusesWhatLeadsOutOfTheDocument) {
+    const std::string start = "<svg>\n";
+    for (const std::string& part :
+         {std::string("<use href=\"file:///etc/passwd#a\"/>"), std::string("<use xlink:href='http://host/a.svg#a'/>"),
+          std::string("<use href=\"&#35;a\"/>"), std::string("<image href=\"#a\"/>"), std::string("<svg:image/>"),
+          std::string("<feImage href='#a'/>"), std::string("<xi:include href='#a'/>"),
+          std::string("<g xml:base='file:///'/>"), std::string("<rect fill=\"url(file:///a.svg#b)\"/>"),
+          std::string("<rect style='fill:URL( &quot;http://host&quot;)'/>"),
+          std::string("<style>@import 'a.css';</style>"), std::string("<style><![CDATA[a{fill:url(b)}]]></style>"),
+          std::string("<?xml-stylesheet href='a.css'?>"), std::string("<!DOCTYPE svg SYSTEM 'http://host/a.dtd'>")})
+        EXPECT_TRUE(checked(start + part).starts_with("2: ")) << part << ": " << checked(start + part);
+    EXPECT_TRUE(checked("<?xml version='1.0' encoding='UTF-16'?><svg/>").starts_with("1: "));
+    EXPECT_TRUE(checked(std::string("<svg>\0</svg>", 12)).starts_with("1: "));
+}
+
+TEST(HudText, RefusesEntitiesAndTooManyElements) {
+    EXPECT_EQ(checked("<!DOCTYPE svg [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]><svg>&b;</svg>"),
+              "1: a document type or an entity: a document stands by itself, without");
+    EXPECT_EQ(checked("<svg><g/><g/></svg>", 3), "");
+    EXPECT_EQ(checked("<svg><g/>\n<g/></svg>", 2), "2: more than 2 elements");
+}
+
+TEST(HudText, NamesTheLineOfATagThatIsNotClosed) {
+    EXPECT_EQ(checked("<svg>\n<g><rect>\n</g></svg>"), "3: </g> where <rect> of line 2 is open");
+    EXPECT_EQ(checked("<svg/>\n</svg>"), "2: </svg> closes nothing");
+    EXPECT_EQ(checked("<svg>\n<g a='<'>"), "2: <g> is not closed");
+    std::string deep, ends;
+    for (int i = 0; i < 300; ++i) deep += "<g>", ends += "</g>";
+    EXPECT_EQ(checked(deep + ends), "1: elements in more than 200 others");
+}
+
+TEST(HudText, EndsOnEveryCutOffDocument) {
+    const std::string document =
+        "<?xml version='1.0'?><!-- a --><svg a=\"b\" c='d'><style>a{fill:url(#b)}</style><![CDATA[x]]><g/></svg>";
+    EXPECT_EQ(checked(document), "");
+    for (std::size_t size = 0; size < document.size(); ++size) (void)checked(document.substr(0, size));
+    EXPECT_NE(checked("<svg a=b>"), "");
+    EXPECT_NE(checked("<svg a=\"b>"), "");
+    EXPECT_NE(checked("<svg "), "");
+}
+
+TEST(HudText, FillsTextAndAttributes) {
+    EXPECT_EQ(filled("<rect width=\"{{health}}\"/><text>{{ health }} of {{name}}</text>",
+                     {{"health", 74.5}, {"name", "Ranger"}}),
+              "<rect width=\"74.5\"/><text>74.5 of Ranger</text>");
+    EXPECT_EQ(filled("{{a}}{{b}}", {{"a", 100.0}, {"b", -0.125}}), "100-0.125");
+}
+
+TEST(HudText, ValuesAreTextAndNeverTags) {
+    const std::string out = filled("<text a=\"{{name}}\" b='{{name}}'>{{name}}</text>",
+                                   {{"name", "\"/><image href='file:///etc/passwd'/> & {{name}} url(x) \n\x01\xFF"}});
+    EXPECT_EQ(out.find("<image"), std::string::npos);
+    EXPECT_EQ(std::ranges::count(out, '"'), 2);
+    EXPECT_EQ(std::ranges::count(out, '\''), 2);
+    EXPECT_EQ(std::ranges::count(out, '\n'), 0);
+    EXPECT_NE(out.find("&amp; {{name}} url&#40;x)"), std::string::npos) << out;
+    EXPECT_EQ(checked(out), "");
+}
+
+TEST(HudText, NamesTheLineOfABindingThatCannotBeFilled) {
+    EXPECT_EQ(filled("<svg>\n\n{{helth}}</svg>", {{"health", 1.0}}),
+              "3: {{helth}}: nothing has this name, did you mean 'health'?");
+    EXPECT_EQ(filled("<svg>\n{{a b}}</svg>", {}), "2: {{a b}}: allowed is a name of letters, digits, '_', '-' and '.'");
+    EXPECT_EQ(filled("<svg>\n{{a\n}}</svg>", {}), "2: '{{' without '}}' on its line");
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// darkroom_svg: draws SVG documents for the program that started it (hud/svg_process.hpp), by librsvg. A process of its
+// own, so that no document can hold up that program, take its memory or read files: it has no base for references.
+#include <librsvg/rsvg.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hud/svg_messages.hpp"
+
+namespace darkroom {
+namespace {
+
+/// The layers of a document as large as budgets allow; beyond it librsvg ends the process.
+constexpr rlim_t most_memory = rlim_t{4} << 30;
+
+struct Free {
+    void operator()(GError* error) const { g_error_free(error); }
+    void operator()(RsvgHandle* handle) const { g_object_unref(handle); }
+    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+    void operator()(cairo_t* context) const { cairo_destroy(context); }
+};
+template <class T>
+using Owned = std::unique_ptr<T, Free>;
+
+bool receive(void* data, std::size_t size) {
+    for (auto* at = static_cast<char*>(data); size > 0;) {
+        const ssize_t got = recv(STDIN_FILENO, at, size, 0);
+        if (got <= 0) return false;
+        at += got;
+        size -= static_cast<std::size_t>(got);
+    }
+    return true;
+}
+
+bool send_all(const void* data, std::size_t size) {
+    for (const auto* at = static_cast<const char*>(data); size > 0;) {
+        const ssize_t sent = send(STDIN_FILENO, at, size, MSG_NOSIGNAL);
+        if (sent <= 0) return false;
+        at += sent;
+        size -= static_cast<std::size_t>(sent);
+    }
+    return true;
+}
+
+std::string text_of(GError* error) {
+    const Owned<GError> owned(error);
+    return error == nullptr ? "it cannot be drawn" : error->message;
+}
+
+/// Cairo's pixels are words, alpha uppermost.
+void write_pixels(const cairo_surface_t* surface, const SvgRequest& request, std::uint8_t* out) {
+    auto* const image = const_cast<cairo_surface_t*>(surface);
+    const unsigned char* const data = cairo_image_surface_get_data(image);
+    const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(image));
+    for (std::size_t y = 0; y < request.height; ++y) {
+        const auto* row = reinterpret_cast<const std::uint32_t*>(data + y * stride);
+        for (std::size_t x = 0; x < request.width; ++x, out += 4) {
+            const std::uint32_t pixel = row[x];
+            out[0] = static_cast<std::uint8_t>(pixel >> 16);
+            out[1] = static_cast<std::uint8_t>(pixel >> 8);
+            out[2] = static_cast<std::uint8_t>(pixel);
+            out[3] = static_cast<std::uint8_t>(pixel >> 24);
+        }
+    }
+}
+
+/// Empty: drawn.
+std::string draw(const std::string& document, const SvgRequest& request) {
+    GError* error = nullptr;
+    const Owned<RsvgHandle> handle(
+        rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(document.data()), document.size(), &error));
+    if (handle == nullptr) return text_of(error);
+    rsvg_handle_set_dpi(handle.get(), 96);
+    const Owned<cairo_surface_t> surface(cairo_image_surface_create(
+        CAIRO_FORMAT_ARGB32, static_cast<int>(request.width), static_cast<int>(request.height)));
+    const Owned<cairo_t> context(cairo_create(surface.get()));
+    const RsvgRectangle viewport{0, 0, static_cast<double>(request.width), static_cast<double>(request.height)};
+    if (!rsvg_handle_render_document(handle.get(), context.get(), &viewport, &error)) return text_of(error);
+    cairo_surface_flush(surface.get());
+    if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return cairo_status_to_string(cairo_status(context.get()));
+
+    const std::size_t size = std::size_t{4} * request.width * request.height;
+    void* const memory = mmap(nullptr, size, PROT_WRITE, MAP_SHARED, svg_memory_descriptor, 0);
+    if (memory == MAP_FAILED) return "the memory of its picture cannot be reached";
+    write_pixels(surface.get(), request, static_cast<std::uint8_t*>(memory));
+    munmap(memory, size);
+    return {};
+}
+
+void serve() {
+    SvgRequest request;
+    while (receive(&request, sizeof request)) {
+        std::string document(request.document_size, '\0');
+        if (!receive(document.data(), document.size())) return;
+        alarm(request.most_seconds);
+        const std::string error = draw(document, request);
+        alarm(0);
+        const SvgReply reply{.error_size = static_cast<std::uint32_t>(error.size())};
+        if (!send_all(&reply, sizeof reply) || !send_all(error.data(), error.size())) return;
+    }
+}
+
+}  // namespace
+}  // namespace darkroom
+
+int main() {
+    const rlimit memory{darkroom::most_memory, darkroom::most_memory}, nothing{0, 0};
+#ifndef __SANITIZE_ADDRESS__  // whose shadow alone is terabytes
+    setrlimit(RLIMIT_AS, &memory);
+#endif
+    setrlimit(RLIMIT_CORE, &nothing);
+    darkroom::serve();
+    return 0;
+}
