@@ -230,5 +230,35 @@ TEST(HudProcess, ADrawingCanBeCancelled) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
+TEST(HudVisor, ShowsItsValues) {
+    auto visor = HudDocument::load(DARKROOM_SOURCE_FOLDER "/hud/visor.svg", {.is_headless = true});
+    ASSERT_TRUE(visor) << visor.error().text;
+    const auto with = [&](double health, double heading) {
+        for (const auto& [name, value] :
+             {std::pair{"health", health}, {"heading", heading}, {"ammunition", 24.0}, {"reserve", 180.0}})
+            (*visor)->set(name, value);
+        (*visor)->set("weapon", std::string("RAIL"));
+        return (*visor)->picture(960, 540);
+    };
+    const auto lit = [](const std::shared_ptr<const HudPicture>& picture, std::uint32_t left, std::uint32_t top,
+                        std::uint32_t right, std::uint32_t bottom) {
+        int count = 0;
+        for (std::uint32_t y = top; y < bottom; ++y)
+            for (std::uint32_t x = left; x < right; ++x) count += pixel(picture, x, y)[1] > 128 ? 1 : 0;
+        return count;
+    };
+    const auto full = with(100, 0), low = with(20, 0), turned = with(20, 90);
+    ASSERT_NE(turned, nullptr) << (*visor)->error();
+    // The bar of health is at the lower left, the compass at the top, the crosshair in the middle.
+    EXPECT_GT(lit(full, 56, 461, 206, 469), 3 * lit(low, 56, 461, 206, 469));
+    EXPECT_GT(lit(low, 56, 461, 206, 469), 0);
+    EXPECT_NE(lit(low, 380, 25, 580, 50), 0);
+    EXPECT_NE(lit(low, 380, 25, 580, 50), lit(turned, 380, 25, 580, 50));
+    EXPECT_GT(lit(low, 460, 250, 500, 290), 40);
+    EXPECT_EQ(lit(low, 460, 150, 500, 200), 0);
+    // Right where the ammunition is.
+    EXPECT_GT(lit(low, 800, 400, 920, 470), 100);
+}
+
 }  // namespace
 }  // namespace darkroom
