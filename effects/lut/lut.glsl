@@ -11,14 +11,14 @@ vec4 lut_listed(sampler3D list, int number) {
     return texelFetch(list, ivec3(number >> 1 & 255, number >> 9, number & 1), 0);
 }
 
-/// Coordinates in a cube whose inputs are 0 to 1, and that has no shaper.
-vec3 lut_place(sampler2D none, vec3 color, out int edge) {
+/// Coordinates in a cube whose inputs are 0 to 1, as a display's code values are, and that has no shaper.
+vec3 lut_place(sampler2D none, vec3 color, uint space, out int edge) {
     edge = textureSize(none, 0).x;
-    return clamp(color, 0.0, 1.0) * float(edge - 1);
+    return (space == Lut_space_display ? color : clamp(color, 0.0, 1.0)) * float(edge - 1);
 }
 
 /// The same of one that has a shaper, or inputs of its own.
-vec3 lut_place(sampler3D shaper, vec3 color, out int edge) {
+vec3 lut_place(sampler3D shaper, vec3 color, uint space, out int edge) {
     vec4 inputs = lut_listed(shaper, 0), cube = lut_listed(shaper, 2);
     if (inputs.a > 0.0) {
         vec3 place = clamp(color * inputs.rgb + lut_listed(shaper, 1).rgb, 0.0, inputs.a - 1.0);
@@ -68,7 +68,7 @@ vec3 lut_faded(sampler2D none, vec3 found, vec3 given, Lut parameters) { return 
 
 vec3 lut_faded(sampler3D shaper, vec3 found, vec3 given, Lut parameters) {
     int edge;
-    vec3 place = lut_place(shaper, given, edge);
+    vec3 place = lut_place(shaper, given, parameters.space, edge);
     return mix(found, lut_between(true, edge, place, parameters.interpolation), parameters.fade);
 }
 
@@ -89,13 +89,21 @@ const mat3 lut_from_sgamut3_cine = mat3(1.626947410, -0.178515527, -0.044436115,
 const float lut_log2_10 = 3.321928095;
 const float lut_log10_2 = 0.301029996;
 
-// srgb_encode() to 1.5e-4, which a lookup does not show, and for one square root less: they are what it costs most. The
-// polynomial in t = 1 - sqrt(x) is fitted by Remez exchange for its absolute error, with 1 kept exact.
+// srgb_encode() to 2e-5 for one square root less: they are what it costs most. The fraction in t = 1 - sqrt(x) is fitted for
+// the smallest absolute error, with 1 kept exact.
 vec3 lut_display_code(vec3 light) {
     light = srgb_range(light);
     vec3 t = 1.0 - sqrt(light);
-    vec3 power = 1.0 - t * (0.870775806 + t * (0.215335452 - t * (0.754796851 - t * (1.91017961 - t * (2.0912883 - t * 0.891947538)))));
+    vec3 power = 1.0 - t * (0.879580014 + t * (0.262059838 * t - 1.07524384)) / (1.0 + t * (0.366263865 * t - 1.30285064));
     return mix(power, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
+}
+
+// srgb_decode() of a number, with a polynomial of one degree less: encoded again it is within 5.3e-5.
+vec3 lut_display_light(vec3 code) {
+    code = clamp(code, 0.0, 1.0);
+    vec3 t = 1.0 - code;
+    vec3 power = 1.0 - t * (2.27819837 - t * (1.54170827 - t * (0.295465332 - t * (0.115809177 - t * 0.0829329001))));
+    return mix(power, code * (1.0 / 12.92), lessThanEqual(code, vec3(0.04045)));
 }
 
 vec3 lut_encode(vec3 light, uint space) {
@@ -123,7 +131,7 @@ vec3 lut_encode(vec3 light, uint space) {
 }
 
 vec3 lut_decode(vec3 value, uint space) {
-    if (space == Lut_space_display) return srgb_decode(value);
+    if (space == Lut_space_display) return lut_display_light(value);
     if (space == Lut_space_acescct)
         return lut_from_ap1 * clamp(mix((value - 0.0729055341958355) / 10.5402377416545, exp2(value * 17.52 - 9.72),
                                         greaterThan(value, vec3(0.155251141552511))),
@@ -145,9 +153,9 @@ vec3 lut_decode(vec3 value, uint space) {
 vec4 lut(vec4 color, Pixel pixel, Lut parameters) {
     vec3 given = lut_encode(color.rgb, parameters.space);
     int edge;
-    vec3 place = lut_place(lut_shaper, given, edge);
+    vec3 place = lut_place(lut_shaper, given, parameters.space, edge);
     vec3 found = lut_between(false, edge, place, parameters.interpolation);
     found = lut_faded(lut_next_shaper, found, given, parameters);
-    vec3 light = parameters.result == Lut_result_display ? srgb_decode(found) : lut_decode(found, parameters.space);
+    vec3 light = parameters.result == Lut_result_display ? lut_display_light(found) : lut_decode(found, parameters.space);
     return vec4(parameters.strength == 1.0 ? light : mix(color.rgb, light, parameters.strength), color.a);
 }
