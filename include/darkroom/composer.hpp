@@ -27,6 +27,7 @@
 #include <darkroom/device.hpp>
 #include <darkroom/effect.hpp>
 #include <darkroom/frame.hpp>
+#include <darkroom/modulation.hpp>
 #include <darkroom/plan.hpp>
 #include <darkroom/resource.hpp>
 #include <darkroom/result.hpp>
@@ -38,25 +39,6 @@
 #include <vector>
 
 namespace darkroom {
-
-/// An entry of a stack, and its output as an input for others. A default one is "the output of the entry before". No
-/// number is given twice, in any Composer: the handle of an entry that was removed names nothing.
-struct Handle {
-    std::uint32_t id = 0;
-    bool is_previous = false;
-    [[nodiscard]] bool is_given() const { return id != 0; }
-    /// The same picture one frame before: an input for any entry, also for those before the one that makes it. Black
-    /// where there was no such frame. Read as `input` it is brought to the scene's size.
-    [[nodiscard]] Handle previous() const { return {id, true}; }
-    friend bool operator==(Handle, Handle) = default;
-};
-/// The scene colour as the host gives it: an input for any entry.
-inline constexpr Handle scene_color{~0u};
-/// The alpha of the scene colour as a grey picture: what a scene marks with its alpha is a layer of its own.
-inline constexpr Handle scene_alpha{~0u - 1};
-
-/// The interface's image, Frame::ui: encoded, premultiplied.
-inline constexpr Handle ui_layer{~0u - 2};
 
 inline constexpr std::uint32_t previous_pre_roll = 60;
 
@@ -220,19 +202,41 @@ class Composer {
     Result<> set(Handle handle, const Effect& parameters) {
         return set_all(handle, effect_info(parameters), &parameters);
     }
-    /// A per-frame override by `owner` (a pulse, a script slot, a layer): replaces the base value until dropped; the
-    /// last owner to set wins. The base value is never touched.
+    /// A per-frame override by `owner` (a script slot, a timeline): replaces the value, and what layers and pulses make
+    /// of it, until dropped; the last owner to set wins. The base value is never touched.
     Result<> set_override(Handle, std::string_view parameter, std::string_view owner,
                           std::span<const std::uint32_t> words);
     void drop_overrides(std::string_view owner);
-    /// The values that the next record uses; empty: the handle names no entry.
+    /// The values at the time and from the camera of the last record; empty: the handle names no entry.
     [[nodiscard]] std::vector<std::uint32_t> current(Handle) const;
+    /// The same at any time and from any camera, and what layers make of the entry's `enabled` and `opacity`.
+    struct EntryValues {
+        std::vector<std::uint32_t> words;
+        bool is_enabled = true;
+        float opacity = 1;
+    };
+    [[nodiscard]] EntryValues values_at(Handle, double time, const Camera& camera) const;
     /// How many frames to develop before the first that is wanted, so that a run which begins in the middle gives the
     /// picture of an unbroken one: the sum of EffectInfo::pre_roll over the entries that are on, with their current
     /// values, because a history that is made from a picture with a history settles after it; and previous_pre_roll for
     /// every picture that is read as the frame before, of which nobody knows when it settles. `delta_time`: seconds
     /// between frames. Needs no compile.
     [[nodiscard]] std::uint32_t pre_roll(double delta_time = 1.0 / 60) const;
+
+    // Layers and pulses (darkroom/modulation.hpp). Each lasts until its entry is removed, or another effect is there.
+    /// Errors: an entry or parameter that is not there, one that is not made of numbers, a duration that is not above
+    /// 0.
+    Result<> add_pulse(const PulseDesc& desc);
+    /// Starts all pulses of this event anew at `time`, as Frame::time has it; by default with the next record. Returns
+    /// how many there are. Allocates nothing.
+    std::size_t fire(std::string_view event, std::optional<double> time = std::nullopt);
+    /// Errors: a name that another layer has, no values, one that is out of range, a distance that is none.
+    Result<> add_layer(const LayerDesc& desc);
+    /// Of a layer: from 0, where it changes nothing, to 1, where its values replace the base. Refused outside of that.
+    Result<> set_layer_weight(std::string_view name, float weight);
+    [[nodiscard]] std::vector<std::string> layer_names() const;
+    void remove_pulses();
+    void remove_layer(std::string_view name);
 
     /// Plans the stack, makes the kernels that the device does not have yet, allocates what it needs. The previous plan
     /// stays alive until the recordings made with it have finished. Waits for a compile_later() that has begun.

@@ -189,7 +189,7 @@ std::span<const std::uint32_t> Chain::write_words(const ProgramPass& pass) {
         const plan::Entry& entry = *entries_[step.entry];
         if (pass.is_fused) {
             words_[count++] = values_.is_on(step.entry) ? 1 : 0;
-            words_[count++] = std::bit_cast<std::uint32_t>(entry.desc.opacity);
+            words_[count++] = std::bit_cast<std::uint32_t>(values_.opacity(step.entry));
             words_[count++] = static_cast<std::uint32_t>(entry.desc.blend);
         } else if (!step.text->asks_parameters) {
             continue;
@@ -218,7 +218,8 @@ Shape Chain::shape_of(const ProgramPass& pass, std::span<const plan::Entry* cons
         for (std::size_t i = 0; i < pass.steps.size(); ++i) {
             const std::uint32_t entry = pass.steps[i].entry;
             if (!values_.is_on(entry)) continue;
-            shape.steps |= (entries[entry]->is_plain() ? std::uint64_t{1} : std::uint64_t{3}) << (2 * i);
+            shape.steps |= (entries[entry]->is_plain(values_.opacity(entry)) ? std::uint64_t{1} : std::uint64_t{3})
+                           << (2 * i);
         }
     }
     for (const plan::Literal& literal : pass.literals) {

@@ -198,6 +198,8 @@ Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* pa
     made->id = old.id;
     if (old.info == &info) {
         made->overrides = old.overrides;
+        made->layers = old.layers;
+        made->pulses = old.pulses;
         made->history_owner = old.history_owner;
     }
     state_->stack[state_->index_of(handle)] = std::move(made);
@@ -359,14 +361,6 @@ void Composer::drop_overrides(std::string_view owner) {
         std::erase_if(entry->overrides, [&](const auto& o) { return o.owner == owner; });
 }
 
-std::vector<std::uint32_t> Composer::current(Handle handle) const {
-    const plan::Entry* const entry = state_->entry(handle);
-    if (entry == nullptr) return {};
-    std::vector<std::uint32_t> out(entry->base.size());
-    entry->evaluate(out);
-    return out;
-}
-
 std::uint32_t Composer::pre_roll(double delta_time) const {
     std::uint64_t frames = 0;
     for (const auto& entry : state_->stack) {
@@ -374,8 +368,9 @@ std::uint32_t Composer::pre_roll(double delta_time) const {
         for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
             if (wire.is_previous) frames += previous_pre_roll;
         if (entry->info->pre_roll == nullptr) continue;
-        const std::vector<std::uint32_t> words = current({entry->id});
-        if (entry->is_on(words.data())) frames += entry->info->pre_roll(words.data(), delta_time);
+        std::vector<std::uint32_t> words(entry->base.size());
+        if (entry->is_on(entry->evaluate(words, state_->last), words.data()))
+            frames += entry->info->pre_roll(words.data(), delta_time);
     }
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(frames, std::numeric_limits<std::uint32_t>::max()));
 }

@@ -245,6 +245,8 @@ Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {
         state.take(std::unique_ptr<compose::Chain>(state.ready.exchange(nullptr, std::memory_order_acquire)));
     if (!state.chain) return user_error("record: the composer has no plan; compile it first");
     if (state.retired != nullptr) state.put_away_retired();
+    state.last = plan::moment_of(frame.time, frame.camera);
+    if (state.is_any_waiting) state.start_pulses(frame.time);
     auto ok = state.chain->record(commands, frame);
     for (compose::Chain* old = state.retired; ok && old != nullptr; old = old->next_retired) --old->recordings_left;
     state.record_microseconds =

@@ -30,6 +30,9 @@ struct Composer::State {
     /// Which of the entry's rows; the error names the nearest.
     [[nodiscard]] static Result<const ParamInfo*> row(const plan::Entry& entry, std::string_view parameter);
 
+    /// What was fired begins now; modulation.cpp.
+    void start_pulses(double time);
+
     // Compiling; composer_run.cpp.
     /// Is there one to compile on?
     [[nodiscard]] Result<> check_device() const;
@@ -58,6 +61,8 @@ struct Composer::State {
     std::unique_ptr<compose::Chain> chain;
     compose::Chain* retired = nullptr;  ///< that unfinished recordings may still use; owned
     double record_microseconds = 0;
+    plan::Moment last;            ///< of the last record
+    bool is_any_waiting = false;  ///< has a pulse been fired that no record has seen?
 
     std::mutex compile_mutex;  ///< guards the next two; record() never takes it
     graph::HistoryPool histories;

@@ -236,6 +236,35 @@ TEST_F(ComposeRecord, TogglesAndValuesAllocateCreateAndWaitForNothing) {
     EXPECT_EQ(overrides.forbidden, 0u);
 }
 
+TEST_F(ComposeRecord, LayersAndPulsesAllocateNothing) {
+    Composer composer(*device);
+    fill(composer);
+    const auto word = [](float value) { return std::vector{std::bit_cast<std::uint32_t>(value)}; };
+    test::must(composer.add_layer({.name = "a layer with a long name",
+                                   .distance = LayerDistance{},
+                                   .values = {{exposure, "exposure", word(3)}, {blur, "opacity", word(0.25f)}}}));
+    for (const Envelope shape : {Envelope::Linear, Envelope::Exponential, Envelope::Spring})
+        test::must(composer.add_pulse({.event = "an event with a long name",
+                                       .entry = vignette,
+                                       .parameter = "intensity",
+                                       .amount = {0.3f},
+                                       .envelope = shape}));
+    test::must(composer.compile(desc()));
+    bool is_good = true;
+    const Counted seen = counted([&] {
+        for (std::uint32_t i = 0; i < 64; ++i) {
+            Frame next = frame();
+            next.time = i / 60.0;
+            if (i % 9 == 0) is_good = composer.fire("an event with a long name") == 3 && is_good;
+            is_good = composer.set_layer_weight("a layer with a long name", static_cast<float>(i % 5) / 4) && is_good;
+            is_good = is_recorded(composer, next) && is_good;
+        }
+    });
+    EXPECT_TRUE(is_good);
+    EXPECT_EQ(seen.allocations, 0u);
+    EXPECT_EQ(seen.forbidden, 0u);
+}
+
 TEST_F(ComposeRecord, ChangedValuesAllocateNothing) {
     Composer composer(*device);
     fill(composer);

@@ -211,7 +211,10 @@ class Chain {
     Result<> add(std::size_t index) {
         const Handle handle = composer_.entry(index);
         const EffectInfo& info = *composer_.info(handle);
-        const EntryDesc& desc = *composer_.desc(handle);
+        const auto [words, is_enabled, opacity] = composer_.values_at(handle, input_.time, input_.camera);
+        EntryDesc desc = *composer_.desc(handle);
+        desc.enabled = is_enabled;
+        desc.opacity = opacity;
         for (const Handle wire : {desc.input, desc.source, desc.second, desc.mask})
             if (!is_known(wire, index))
                 return user_error(
@@ -235,7 +238,6 @@ class Chain {
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
                                           desc.name, info.name));
         const std::size_t from = input_of(desc, index);
-        const std::vector<std::uint32_t> words = composer_.current(handle);
         const Domain before = domains_[from];
         const bool is_off =
             !desc.enabled || desc.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));

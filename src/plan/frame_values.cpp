@@ -5,9 +5,13 @@
 
 namespace darkroom::plan {
 
-void Entry::evaluate(std::span<std::uint32_t> out) const {
+Presence Entry::evaluate(std::span<std::uint32_t> out, const Moment& moment) const {
     std::copy(base.begin(), base.end(), out.begin());
+    Presence presence{desc.enabled, desc.opacity};
+    for (const Layer& layer : layers) layer.apply(out, presence, moment);
+    apply(pulses, out, moment);
     for (const Override& o : overrides) std::copy_n(o.value.begin(), o.words, out.begin() + o.word);
+    return presence;
 }
 
 std::vector<std::uint32_t> Entry::values_at_compile() const {
@@ -19,6 +23,7 @@ std::vector<std::uint32_t> Entry::values_at_compile() const {
 
 FrameValues::FrameValues(const Program& program, std::span<const Entry* const> entries)
     : is_on_(entries.size()),
+      opacities_(entries.size()),
       domains_(entries.size()),
       gates_(std::make_unique<bool[]>(program.gates.size() + 1)),
       gate_count_(program.gates.size()) {
@@ -32,11 +37,13 @@ FrameValues::FrameValues(const Program& program, std::span<const Entry* const> e
 
 void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
                            const PassContext& context) {
+    const Moment moment = moment_of(context.time, context.camera == nullptr ? Camera{} : *context.camera);
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         const Entry& entry = *entries[i];
         std::uint32_t* const words = words_.data() + first_word_[i];
-        entry.evaluate({words, entry.info->parameters.words()});
-        is_on_[i] = !program.is_left_out[i] && entry.is_on(words) ? 1 : 0;
+        const Presence presence = entry.evaluate({words, entry.info->parameters.words()}, moment);
+        opacities_[i] = presence.opacity;
+        is_on_[i] = !program.is_left_out[i] && entry.is_on(presence, words) ? 1 : 0;
         domains_[i] = entry.domain_after(domain_before(program, i), words, is_on(i));
     }
     finish_ = finish_of(last_domain(program), desc);

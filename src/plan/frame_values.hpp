@@ -18,10 +18,11 @@ class FrameValues {
     void evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
                   const PassContext& context);
 
-    /// The parameters of an entry, overrides included.
+    /// The parameters of an entry, modulation and overrides included.
     [[nodiscard]] const std::uint32_t* words(std::uint32_t entry) const { return words_.data() + first_word_[entry]; }
     /// Does it change anything? What is left out never does.
     [[nodiscard]] bool is_on(std::uint32_t entry) const { return is_on_[entry] != 0; }
+    [[nodiscard]] float opacity(std::uint32_t entry) const { return opacities_[entry]; }
     /// What the picture is that an entry gets, and that the target gets.
     [[nodiscard]] Domain domain_before(const Program& program, std::uint32_t entry) const {
         return domain_behind(program.entry_inputs[entry]);
@@ -38,6 +39,7 @@ class FrameValues {
 
     std::vector<std::uint32_t> words_, first_word_;
     std::vector<std::uint8_t> is_on_;
+    std::vector<float> opacities_;
     std::vector<Domain> domains_;  ///< behind each entry
     Finish finish_ = Finish::None;
     std::unique_ptr<bool[]> gates_;

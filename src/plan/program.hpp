@@ -3,6 +3,7 @@
 // What the planner makes of a stack: passes with their kernels, images and toggles, and the graph that orders them.
 // Pure data: no device objects, no pointers into the stack but to the effects' static descriptions.
 
+#include <algorithm>
 #include <darkroom/composer.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "gpu/kernel.hpp"
 #include "graph/graph.hpp"
 #include "plan/glsl.hpp"
+#include "plan/modulation.hpp"
 #include "plan/shape.hpp"
 
 namespace darkroom::plan {
@@ -36,20 +38,31 @@ struct Entry {
     };
     std::vector<Override> overrides;
 
-    /// Base values under the overrides, in the order they were set. `out` holds info->parameters.words() words.
-    void evaluate(std::span<std::uint32_t> out) const;
+    std::vector<Layer> layers;
+    std::vector<Pulse> pulses;
+
+    /// Base values, the layers over them, pulses added, then overrides in the order they were set. `out` holds
+    /// info->parameters.words() words. Allocates nothing.
+    Presence evaluate(std::span<std::uint32_t> out, const Moment& moment) const;
     /// What passes may depend on: base values of the rows that are read at compile, defaults of all others.
     [[nodiscard]] std::vector<std::uint32_t> values_at_compile() const;
     /// Whether it changes anything in a frame with these values; what the plan leaves out never does.
-    [[nodiscard]] bool is_on(const std::uint32_t* words) const {
-        return desc.enabled && desc.opacity > 0 && (info->is_identity == nullptr || !info->is_identity(words));
+    [[nodiscard]] bool is_on(const Presence& presence, const std::uint32_t* words) const {
+        return presence.is_enabled && presence.opacity > 0 &&
+               (info->is_identity == nullptr || !info->is_identity(words));
     }
     /// What the picture is behind it, in a frame with these values.
     [[nodiscard]] Domain domain_after(Domain before, const std::uint32_t* words, bool is_on) const {
         return is_on && info->makes != nullptr ? info->makes(before, words) : before;
     }
+    /// At this opacity: is its result the output as it is?
+    [[nodiscard]] bool is_plain(float opacity) const {
+        return opacity == 1.0f && desc.blend == BlendMode{} && !desc.mask.is_given();
+    }
+    /// In every frame: layers may move the opacity.
     [[nodiscard]] bool is_plain() const {
-        return desc.opacity == 1.0f && desc.blend == BlendMode{} && !desc.mask.is_given();
+        return is_plain(desc.opacity) &&
+               std::ranges::none_of(layers, [](const Layer& l) { return l.opacity.has_value(); });
     }
 };
 
