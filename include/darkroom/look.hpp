@@ -71,6 +71,44 @@ struct LookEntry {
     std::shared_ptr<const void> effect_owner{};  ///< keeps a custom effect for as long as the entry
 };
 
+/// What a pulse or a layer has beside its name and what it moves.
+struct PulseState {
+    Envelope envelope = Envelope::Linear;
+    float duration = 0.3f;
+};
+inline constexpr auto pulse_rows =
+    describe(field<&PulseState::envelope>("How it dies down."),
+             field<&PulseState::duration>("How long it lasts.", {0.001, 3600}, unit::seconds));
+struct LayerState {
+    float weight = 0.0f;
+};
+inline constexpr auto layer_rows = describe(field<&LayerState::weight>("How much of it goes over the base.", {0, 1}));
+inline constexpr auto distance_rows =
+    describe(field<&LayerDistance::near>("Where it has its whole weight, and nearer.", {0, 1e6}, unit::metres),
+             field<&LayerDistance::far>("Where it has none, and farther.", {0, 1e6}, unit::metres),
+             field<&LayerDistance::point>("Of the world, that distances are from.", {-1e6, 1e6}, unit::metres));
+
+/// See PulseDesc.
+struct LookPulse {
+    std::string event;
+    std::string entry, parameter;  ///< names
+    std::array<float, 4> amount{};
+    PulseState state;
+};
+/// See LayerDesc. Of a layer that is a look, the values are all those in which that look's entries differ, or may come
+/// to differ, from this one's of the same names.
+struct LookLayer {
+    struct Value {
+        std::string entry, parameter;  ///< names; or the entry's `enabled` or `opacity`
+        std::vector<std::uint32_t> words;
+    };
+    std::string name;
+    std::string file;  ///< of its look, relative to this one; empty: it is the values alone
+    LayerState state;
+    std::optional<LayerDistance> distance;
+    std::vector<Value> values;
+};
+
 /// The two shipped orders of the flat table.
 enum class LookOrder : std::uint32_t { Documented, SceneLinear };
 
@@ -88,7 +126,9 @@ struct Look {
     LookOrder order = LookOrder::Documented;   ///< flat only
     std::vector<LookEntry> entries;            ///< flat: every effect with a place in the tables
     std::optional<LookUi> ui{};                ///< there is a table [ui]
-    std::string shown_name;                    ///< file name for messages
+    std::vector<LookPulse> pulses;
+    std::vector<LookLayer> layers;  ///< in the order they are blended
+    std::string shown_name;         ///< file name for messages
 };
 
 /// What is in a file that a look names; errors begin with the path.
@@ -101,6 +141,7 @@ struct LookOptions {
     /// Entries may name files (`effect = "duotone.glsl"`). These are code, and may keep a GPU busy for ever: a host
     /// that allows them trusts whoever made the look.
     bool allows_custom_effects = false;
+    bool allows_modulation = true;   ///< false: [[pulse]] and [[layer]] are passed over, as in the look of a layer
     ResourceLoader load_resource{};  ///< none: colour tables in .cube files alone
     /// Numbers in all tables and pictures that the look names together: two of the largest tables.
     std::size_t most_resource_numbers = std::size_t{1} << 27;
@@ -144,9 +185,12 @@ struct ApplyOptions {
     /// Gives effects of the flat table that are off their place, so that Composer::set_enabled() finds them: they own
     /// images then, and those with passes part kernels. Those that move coordinates by nothing have none in any case.
     bool keeps_what_is_off = false;
+    /// The same for entries of these names: what a timeline may switch on. Entries that a pulse or a layer moves are
+    /// there in any case.
+    std::span<const std::string> keeps{};
 };
-/// Appends the look's entries to the Composer. The flat table wires `source` to the scene, as its documented order has
-/// it, and of its effects that are off those with images or passes get no place.
+/// Appends the look's entries, pulses and layers to the Composer. The flat table wires `source` to the scene, as its
+/// documented order has it, and of its effects that are off those with images or passes get no place.
 [[nodiscard]] Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options = {});
 
 }  // namespace darkroom

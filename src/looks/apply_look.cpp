@@ -17,8 +17,13 @@ namespace {
 
 // Of the flat table's effects that are off, the pointwise ones without images cost nothing. The others would own memory
 // or part a kernel in every frame, for what nobody asked for.
-bool is_in_the_way(const Look& look, const LookEntry& entry, const ApplyOptions& options) {
+bool is_in_the_way(const Look& look, const LookEntry& entry, const std::string& name, const ApplyOptions& options) {
     const EffectInfo& effect = *entry.effect;
+    const auto moves = [&](const auto& one) { return one.entry == name; };
+    const auto moves_any = [&](const LookLayer& layer) { return std::ranges::any_of(layer.values, moves); };
+    if (std::ranges::any_of(look.pulses, moves) || std::ranges::any_of(look.layers, moves_any) ||
+        std::ranges::count(options.keeps, name) > 0)
+        return false;
     if (entry.is_of_ui) return entry.state.enabled.on == 0 && !options.keeps_what_is_off;
     if (!look.is_flat || (effect.touch == Touch::Pointwise && !effect.build)) return false;
     const bool is_still =
@@ -142,7 +147,7 @@ Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options
     for (const LookEntry* const entry : ordered(look)) {
         const std::size_t index = static_cast<std::size_t>(entry - look.entries.data());
         const bool is_kept = look.is_enabled || is_domain_change(*entry->effect);
-        if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry, options)) continue;
+        if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry, names[index], options)) continue;
         const auto desc = wired(index, false);
         if (!desc) return failure(desc.error());
         const auto words = definitions.words_of(*entry);
@@ -160,7 +165,7 @@ Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options
         if (!desc) return failure(desc.error());
         if (auto ok = composer.rewire(handle, *desc); !ok) return ok;
     }
-    return {};
+    return apply_modulation(look, composer);
 }
 
 }  // namespace darkroom

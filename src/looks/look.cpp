@@ -136,6 +136,7 @@ std::string write_look(const Look& look) {
     else
         write_stack(out, look);
     write_ui(out, look);
+    write_modulation(out, look);
     return out;
 }
 

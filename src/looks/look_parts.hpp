@@ -41,6 +41,22 @@ inline constexpr std::array<WireInfo, 6> wires{{{"name", &LookEntry::name, false
 using StateWords = std::array<std::uint32_t, sizeof(EntryState) / 4>;
 [[nodiscard]] inline StateWords state_words(const EntryState& state) { return std::bit_cast<StateWords>(state); }
 
+/// What a key names: a row of the entry's effect, one of the entry's own, or one of its wires.
+struct LookTarget {
+    LookEntry* entry = nullptr;
+    const ParamInfo* row = nullptr;
+    bool is_state = false;
+    const WireInfo* wire = nullptr;
+};
+/// Of "bloom_intensity", or "ENTRY.parameter". Errors begin with `shown`, and name the nearest.
+[[nodiscard]] Result<LookTarget> find_target(Look& look, std::string_view key, const std::string& shown);
+/// What pulses and layers add to a file.
+void write_modulation(std::string& out, const Look& look);
+/// Adds them to a Composer that has the look's entries.
+[[nodiscard]] Result<> apply_modulation(const Look& look, Composer& composer);
+/// Letters, digits, '_' and '-', up to 64.
+[[nodiscard]] bool is_look_name(std::string_view text);
+
 [[nodiscard]] std::int32_t flat_rank(const EffectInfo& effect, LookOrder order);
 /// The entries as they go into a Composer: the flat table in its order and without what that order lacks.
 [[nodiscard]] std::vector<const LookEntry*> ordered(const Look& look);

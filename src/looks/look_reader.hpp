@@ -58,6 +58,8 @@ class LookReader {
     std::vector<Problem> problems_;
 };
 
+/// The pulses and layers that the file has for a look.
+void read_modulation(LookReader& reader, const toml::table& file, Look& look);
 [[nodiscard]] Look read_flat(LookReader& reader, const toml::node* node);
 /// Adds the table [ui] to a look.
 void read_ui(LookReader& reader, Look& look, const toml::node& node);

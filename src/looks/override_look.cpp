@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <darkroom/effects.hpp>
 #include <darkroom/look.hpp>
 
 #include "core/param_text.hpp"
@@ -12,20 +11,6 @@
 namespace darkroom {
 
 namespace {
-
-/// What a key names: a row of the entry's effect, one of the entry's own, or one of its wires.
-struct Target {
-    LookEntry* entry = nullptr;
-    const ParamInfo* row = nullptr;
-    bool is_state = false;
-    const WireInfo* wire = nullptr;
-};
-
-const ParamInfo* find_state_row(std::string_view name) {
-    for (const ParamInfo& row : entry_rows.rows)
-        if (row.name == name) return &row;
-    return nullptr;
-}
 
 class Overrider {
   public:
@@ -44,7 +29,7 @@ class Overrider {
   private:
     Result<> set(const LookOverride& one) {
         const std::string shown = printable(one.shown.empty() ? one.key : one.shown);
-        const Result<Target> target = find(one.key, shown);
+        const Result<LookTarget> target = find_target(look_, one.key, shown);
         if (!target) return failure(target.error());
         const auto& [entry, row, is_state, wire] = *target;
         if (wire != nullptr) {
@@ -74,65 +59,6 @@ class Overrider {
         entry->state = std::bit_cast<EntryState>(words);
         if (row->kind == Kind::Toggle) toggles_.emplace_back(entry, entry->state.enabled);
         return {};
-    }
-
-    Result<Target> find(std::string_view key, const std::string& shown) const {
-        const std::size_t dot = key.rfind('.');
-        if (dot != std::string_view::npos) return find_in_entry(key.substr(0, dot), key.substr(dot + 1), shown);
-        for (const EffectInfo* const effect : effects()) {
-            const ParamInfo* row = nullptr;
-            for (const ParamInfo& candidate : effect->parameters.rows)
-                if (flat_key(effect->name, candidate.name) == key) row = &candidate;
-            const bool is_toggle = row == nullptr && flat_key(effect->name, "enabled") == key;
-            if (row == nullptr && !is_toggle) continue;
-            LookEntry* const entry = find_entry(look_, effect->name);
-            if (entry == nullptr) return unheld(shown, effect->name);
-            return Target{entry, is_toggle ? find_state_row("enabled") : row, is_toggle, nullptr};
-        }
-        return user_error(fmt::format("{}: no effect has this parameter{}", shown, suggestion(key, all_keys())));
-    }
-
-    Result<Target> find_in_entry(std::string_view name, std::string_view member, const std::string& shown) const {
-        LookEntry* const entry = find_entry(look_, name);
-        if (entry == nullptr) return unheld(shown, name);
-        if (const ParamInfo* const row = find_state_row(member)) return Target{entry, row, true, nullptr};
-        if (const ParamInfo* const row = entry->effect->parameters.find(member))
-            return Target{entry, row, false, nullptr};
-        std::vector<std::string> members;
-        for (const WireInfo& wire : wires) {
-            if (!wire.is_reference) continue;
-            if (wire.key == member) return Target{.entry = entry, .wire = &wire};
-            members.emplace_back(wire.key);
-        }
-        for (const ParamInfo& row : entry_rows.rows) members.emplace_back(row.name);
-        for (const ParamInfo& row : entry->effect->parameters.rows) members.emplace_back(row.name);
-        return user_error(fmt::format("{}: '{}' has no parameter '{}', it has {}{}", shown, printable(name),
-                                      printable(member), fmt::join(members, ", "), suggestion(member, members)));
-    }
-
-    Failure unheld(const std::string& shown, std::string_view name) const {
-        const std::vector<std::string> names = entry_names(look_);
-        if (names.empty()) return user_error(fmt::format("{}: {} has no entries", shown, look_.shown_name));
-        return user_error(fmt::format("{}: {} has no entry '{}', it has {}{}", shown, look_.shown_name, printable(name),
-                                      fmt::join(names, ", "), suggestion(name, names)));
-    }
-
-    /// Those that are built in, and those of files.
-    std::vector<const EffectInfo*> effects() const {
-        const std::span<const EffectInfo* const> known = all_effects();
-        std::vector<const EffectInfo*> out(known.begin(), known.end());
-        for (const LookEntry& entry : look_.entries)
-            if (entry.effect_owner && std::ranges::find(out, entry.effect) == out.end()) out.push_back(entry.effect);
-        return out;
-    }
-
-    std::vector<std::string> all_keys() const {
-        std::vector<std::string> keys;
-        for (const EffectInfo* const effect : effects()) {
-            keys.push_back(flat_key(effect->name, "enabled"));
-            for (const ParamInfo& row : effect->parameters.rows) keys.push_back(flat_key(effect->name, row.name));
-        }
-        return keys;
     }
 
     Look& look_;

@@ -20,11 +20,12 @@ Result<Look> LookReader::read(const toml::table& file) {
         report(*stack, Weight::Wrong, "[[stack]] beside [post_process]: a look has one of them");
     Look look = stack != nullptr ? read_stack(*this, *stack) : read_flat(*this, flat);
     if (const toml::node* const ui = file.get("ui")) read_ui(*this, look, *ui);
+    if (options_.allows_modulation) read_modulation(*this, file, look);
     return finish(std::move(look));
 }
 
 void LookReader::read_top(const toml::table& file) {
-    const std::vector<std::string> names{"format", "post_process", "stack", "ui"};
+    const std::vector<std::string> names{"format", "post_process", "stack", "ui", "pulse", "layer"};
     // Of a scene's other tables the reader of scenes reports what it does not know.
     for (const auto& [key, node] : file)
         if (!options_.is_scene && std::find(names.begin(), names.end(), key.str()) == names.end())

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <darkroom/effects.hpp>
 #include <map>
 #include <optional>
@@ -16,15 +15,6 @@
 namespace darkroom {
 
 namespace {
-
-// Names are typed at a command line ("blurred.radius"), so they hold no dot, no '#', no blank.
-bool is_name(std::string_view text) {
-    constexpr std::size_t longest = 64;
-    const auto is_part = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-    };
-    return !text.empty() && text.size() <= longest && std::all_of(text.begin(), text.end(), is_part);
-}
 
 class StackReader {
   public:
@@ -127,7 +117,7 @@ class StackReader {
         std::string_view name = text == nullptr ? std::string_view() : text->get();
         if (wire.is_reference && is_file_name(name)) return reader_.take(wire, entry, text->get(), node);
         if (wire.is_reference && name.ends_with(previous_suffix)) name.remove_suffix(previous_suffix.size());
-        if (is_name(name)) {
+        if (is_look_name(name)) {
             entry.*wire.member = text->get();
             return;
         }

@@ -39,12 +39,12 @@ Result<Scene> SceneReader::read() {
     return std::move(scene_);
 }
 
-// Of the same file, [post_process], [[stack]] and format are the look's, [ui] is the interface layer's, and [prefab] is
-// the heading of files that are templates.
+// Of the same file, [post_process], [[stack]], [[pulse]], [[layer]] and format are the look's, [ui] is the interface
+// layer's, and [prefab] is the heading of files that are templates.
 void SceneReader::read_top() {
-    const std::vector<std::string> names{"scene",     "camera",     "environment", "prefabs",
-                                         "templates", "archetypes", "entities",    "post_process",
-                                         "stack",     "format",     "ui",          "prefab"};
+    const std::vector<std::string> names{"scene",      "camera",   "environment",  "prefabs", "templates",
+                                         "archetypes", "entities", "post_process", "stack",   "pulse",
+                                         "layer",      "format",   "ui",           "prefab"};
     for (const auto& [key, node] : file_) {
         if (std::find(names.begin(), names.end(), key.str()) != names.end()) continue;
         report_.slip(place_of(key.source(), 0), [&, &name = key] {

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Pulses and layers of looks: into a file, and into a Composer.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/param_text.hpp"
+#include "looks/look_parts.hpp"
+#include "looks/look_resources.hpp"
+
+namespace darkroom {
+
+namespace {
+
+template <class State>
+auto words_of(const State& state) {
+    return std::bit_cast<std::array<std::uint32_t, sizeof(State) / 4>>(state);
+}
+
+void write_rows(std::string& out, const ParamTable& table, std::span<const std::uint32_t> words,
+                std::string_view separator) {
+    for (const ParamInfo& row : table.rows)
+        out += fmt::format("{}{} = {}", &row == table.rows.data() ? "" : separator, row.name, format(row, words));
+}
+
+/// What a value of a layer is, as TOML.
+std::string text_of(const Look& look, const LookLayer::Value& value) {
+    Look copy{.is_flat = look.is_flat, .entries = look.entries};
+    const auto target = find_target(copy, fmt::format("{}.{}", value.entry, value.parameter), "");
+    if (!target || target->row == nullptr) return "0";
+    std::vector<std::uint32_t> words(target->row->word);
+    words.insert(words.end(), value.words.begin(), value.words.end());
+    return format(*target->row, words);
+}
+
+std::string amount_text(const Look& look, const LookPulse& pulse) {
+    const std::vector<std::string> names = entry_names(look);
+    const auto at = static_cast<std::size_t>(std::ranges::find(names, pulse.entry) - names.begin());
+    const ParamInfo* const row =
+        at < names.size() ? look.entries[at].effect->parameters.find(pulse.parameter) : nullptr;
+    const std::uint32_t count = row == nullptr ? 1 : row->words;
+    std::string out;
+    for (std::uint32_t i = 0; i < std::min(count, 4u); ++i)
+        out += fmt::format("{}{}", i == 0 ? "" : ", ", format({.name = "amount"}, words_of(pulse.amount[i])));
+    return count == 1 ? out : "[" + out + "]";
+}
+
+}  // namespace
+
+void write_modulation(std::string& out, const Look& look) {
+    for (const LookPulse& pulse : look.pulses) {
+        out += fmt::format("\n[[pulse]]\nevent = {}\nparameter = {}\namount = {}\n", toml_string(pulse.event),
+                           toml_string(fmt::format("{}.{}", pulse.entry, pulse.parameter)), amount_text(look, pulse));
+        write_rows(out, pulse_rows.table(), words_of(pulse.state), "\n");
+        out += '\n';
+    }
+    for (const LookLayer& layer : look.layers) {
+        out += fmt::format("\n[[layer]]\nname = {}\n", toml_string(layer.name));
+        if (!layer.file.empty()) out += fmt::format("look = {}\n", toml_string(layer.file));
+        write_rows(out, layer_rows.table(), words_of(layer.state), "\n");
+        out += '\n';
+        if (layer.distance) {
+            out += "distance = { ";
+            write_rows(out, distance_rows.table(), words_of(*layer.distance), ", ");
+            out += " }\n";
+        }
+        if (!layer.file.empty()) continue;
+        out += "[layer.values]\n";
+        for (const LookLayer::Value& value : layer.values)
+            out += fmt::format("{} = {}\n", toml_string(fmt::format("{}.{}", value.entry, value.parameter)),
+                               text_of(look, value));
+    }
+}
+
+Result<> apply_modulation(const Look& look, Composer& composer) {
+    const auto blame = [&](const Error& error) {
+        return failure(Error{error.fault, fmt::format("{}: {}", look.shown_name, error.text)});
+    };
+    // What a look that is off leaves out, and what its order has no place for, is not there to be moved.
+    for (const LookPulse& pulse : look.pulses) {
+        const auto entry = composer.find(pulse.entry);
+        if (!entry) continue;
+        if (const auto ok = composer.add_pulse({.event = pulse.event,
+                                                .entry = *entry,
+                                                .parameter = pulse.parameter,
+                                                .amount = pulse.amount,
+                                                .envelope = pulse.state.envelope,
+                                                .duration = double{pulse.state.duration}});
+            !ok)
+            return blame(ok.error());
+    }
+    for (const LookLayer& layer : look.layers) {
+        LayerDesc desc{.name = layer.name, .weight = layer.state.weight, .distance = layer.distance, .values = {}};
+        for (const LookLayer::Value& value : layer.values)
+            if (const auto entry = composer.find(value.entry))
+                desc.values.push_back({*entry, value.parameter, value.words});
+        if (desc.values.empty()) continue;
+        if (const auto ok = composer.add_layer(desc); !ok) return blame(ok.error());
+    }
+    return {};
+}
+
+}  // namespace darkroom
