@@ -37,7 +37,7 @@ struct Options {
     WriteFlags write;
     RunFlags run;
     std::vector<std::string> inputs, maps;
-    std::string out, size, camera;
+    std::string out, size, camera, events;
     std::optional<std::string> frames;
     NumberFlag fov{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
@@ -58,6 +58,7 @@ struct Job {
     std::vector<Step> steps;
     std::size_t jobs = 0;
     darkroom::Look look;
+    Timeline timeline;
     darkroom::FrameOptions frame;
     darkroom::WriteOptions write;
     darkroom::DevelopDesc develop;
@@ -132,8 +133,13 @@ Result<Job> job_of(const Options& options) {
     Result<darkroom::Look> look = options.look.look();
     if (!look) return failure(std::move(look));
     job.look = std::move(*look);
+    if (!options.events.empty()) {
+        Result<Timeline> timeline = Timeline::read(options.events, job.look);
+        if (!timeline) return failure(std::move(timeline));
+        job.timeline = std::move(*timeline);
+    }
     const double delta_time = 1 / job.frames_per_second.value_or(usual_frames_per_second);
-    const Result<std::uint32_t> pre_roll = add_needs(job.look, delta_time, job.frame);
+    const Result<std::uint32_t> pre_roll = add_needs(job.look, delta_time, job.timeline, job.frame);
     if (!pre_roll) return failure(pre_roll.error());
     job.frame.keeps_halves = !options.is_reference;
     if (Result<> done = add_steps(options, *pre_roll, job); !done) return failure(std::move(done));
@@ -188,7 +194,8 @@ class Develop {
         auto composer = std::make_unique<darkroom::Composer>(
             *made, darkroom::ComposerDesc{.frames_in_flight = job_.develop.frames_in_flight,
                                           .has_timers = options_.run.has_timings});
-        if (Result<> done = darkroom::apply(job_.look, *composer); !done) return done;
+        if (Result<> done = darkroom::apply(job_.look, *composer, {.keeps = job_.timeline.entries()}); !done)
+            return done;
         developer_ = std::make_unique<darkroom::Developer>(*made, job_.develop);
         device_ = std::move(made);
         composer_ = std::move(composer);
@@ -234,6 +241,7 @@ class Develop {
         for (const std::string& warning : item.frame.warnings) warn(fmt::format("{}: {}", shown(i), warning));
         item.input.camera.is_cut = job_.steps[i].place != next_place_;
         next_place_ = job_.steps[i].place + 1;
+        if (Result<> done = job_.timeline.advance(*composer_, item.input.time); !done) return done;
         if (options_.is_reference) {
             std::vector<std::string> left_out;
             Result<darkroom::DevelopedPicture> picture =
@@ -330,6 +338,8 @@ Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> name
     options->frames_per_second
         .add_to(*command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")
         ->type_name("N");
+    command->add_option("--events", options->events, "What happens to the look: a file of [[event]]s (TOML)")
+        ->type_name("FILE");
     const std::string frame_group = "The frame";
     command
         ->add_option("--map", options->maps,

@@ -140,9 +140,11 @@ darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLaye
     return out;
 }
 
-Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, darkroom::FrameOptions& frame) {
+Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, Timeline timeline,
+                                darkroom::FrameOptions& frame) {
     darkroom::Composer composer(darkroom::Device::assumed());
-    if (Result<> done = darkroom::apply(look, composer); !done) return failure(std::move(done));
+    if (Result<> done = darkroom::apply(look, composer, {.keeps = timeline.entries()}); !done)
+        return failure(std::move(done));
     constexpr VkImageUsageFlags sampled = VK_IMAGE_USAGE_SAMPLED_BIT;
     const Result<darkroom::Plan> plan = composer.plan({.max_extent = {64, 64},
                                                        .color = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
@@ -161,7 +163,12 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, d
     frame.has_normals = is_read("normals");
     frame.has_velocity = is_read("velocity");
     frame.has_shadow_depths = is_read("shadows");
-    return composer.pre_roll(delta_time);
+    std::uint32_t frames = composer.pre_roll(delta_time);
+    for (const double time : timeline.times()) {
+        if (Result<> done = timeline.advance(composer, time); !done) return failure(std::move(done));
+        frames = std::max(frames, composer.pre_roll(delta_time));
+    }
+    return frames;
 }
 
 // Linear targets skip the last steps by definition; that is no news.

@@ -9,6 +9,7 @@
 #include "image/frame_file.hpp"
 #include "image/picture.hpp"
 #include "image/write.hpp"
+#include "timeline.hpp"
 
 namespace app {
 
@@ -26,9 +27,9 @@ inline constexpr double assumed_field_of_view = 45;
 /// The camera as develop_input would have it of a file with this one: what a file does not store is left behind.
 [[nodiscard]] darkroom::Camera as_stored(const darkroom::Camera& camera);
 /// Says of `frame` which layers a stack of this look reads. Gives how many frames before one its histories need, where
-/// frames are `delta_time` seconds apart.
+/// frames are `delta_time` seconds apart, at the worst of the moments of a timeline.
 [[nodiscard]] darkroom::Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time,
-                                                        darkroom::FrameOptions& frame);
+                                                        Timeline timeline, darkroom::FrameOptions& frame);
 /// One warning, `frame` first, for each entry that is on and has no place in the plan, but for those that are on by
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,

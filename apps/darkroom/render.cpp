@@ -110,6 +110,11 @@ class Render {
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
         ui_.emplace(look_);
+        if (!flags_.events.empty()) {
+            Result<Timeline> timeline = Timeline::read(flags_.events, look_);
+            if (!timeline) return failure(std::move(timeline));
+            timeline_ = std::move(*timeline);
+        }
         choose_way();
         if (flags_.run.has_timings && way_ != Way::Developed)
             return darkroom::user_error("--timings: nothing is post-processed");
@@ -121,6 +126,7 @@ class Render {
         for (const std::string& warning : assets_.warnings) warn(warning);
         std::vector<std::filesystem::path> inputs = assets_.files;
         if (!flags_.look.file.empty()) inputs.emplace_back(flags_.look.file);
+        if (!flags_.events.empty()) inputs.emplace_back(flags_.events);
         const FileSet files(inputs);
         for (const Shot& shot : job_.shots)
             for (const std::filesystem::path& path : {shot.picture, shot.frame})
@@ -140,7 +146,7 @@ class Render {
     Result<> add_pre_roll() {
         darkroom::FrameOptions ignored;
         if (job_.shots.empty()) return {};
-        const Result<std::uint32_t> pre_roll = add_needs(look_, job_.shots.front().delta_time, ignored);
+        const Result<std::uint32_t> pre_roll = add_needs(look_, job_.shots.front().delta_time, timeline_, ignored);
         if (!pre_roll) return failure(pre_roll.error());
         std::vector<Shot> all;
         for (const Shot& shot : job_.shots) {
@@ -208,7 +214,7 @@ class Render {
         composer_ = std::make_unique<darkroom::Composer>(
             *device_, darkroom::ComposerDesc{.frames_in_flight = 1, .has_timers = flags_.run.has_timings});
         developer_ = std::make_unique<darkroom::Developer>(*device_, develop_);
-        return darkroom::apply(look_, *composer_);
+        return darkroom::apply(look_, *composer_, {.keeps = timeline_.entries()});
     }
 
     Result<> make_renderer(const render::RenderDesc& desc, std::optional<render::Renderer>& to) {
@@ -282,6 +288,7 @@ class Render {
             const auto ui = ui_->picture(job_.desc.extent);
             if (!ui) return failure(ui.error());
             input.ui = **ui;
+            if (Result<> done = timeline_.advance(*composer_, shot.time); !done) return done;
             Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
             if (!made) return failure(std::move(made));
             if (i == 0) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
@@ -308,6 +315,7 @@ class Render {
     scene::Assets assets_;
     darkroom::Look look_;
     std::optional<UiSource> ui_;
+    Timeline timeline_;
     Way way_ = Way::Developed;
     std::unique_ptr<darkroom::Device> device_;
     std::optional<render::Renderer> hdr_, display_;
