@@ -197,8 +197,9 @@ TEST(EffectLensDistortion, GpuNanStaysWhereItIsRead) {
     ASSERT_EQ(out.pixels.size(), picture.pixels.size());
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x)
-            if (std::abs(static_cast<int>(x) - 24) > 2 || std::abs(static_cast<int>(y) - 24) > 2)
+            if (std::abs(static_cast<int>(x) - 24) > 2 || std::abs(static_cast<int>(y) - 24) > 2) {
                 EXPECT_TRUE(std::isfinite(out.at(x, y).g)) << x << "," << y;
+            }
 }
 
 }  // namespace
