@@ -191,6 +191,22 @@ Result<std::vector<Figure>> kept_figures(Bed& bed) {
                                {"compile, flat table with all that is off / without", kept / alone, "", 1.5}};
 }
 
+/// A pulse that is under way and a layer on every number of the stack.
+Result<> modulate(Composer& composer) {
+    LayerDesc layer{.name = "layer", .weight = 0.5f, .values = {}};
+    for (std::size_t i = 0; i < composer.size(); ++i) {
+        const Handle entry = composer.entry(i);
+        for (const ParamInfo& row : composer.info(entry)->parameters.rows) {
+            if (row.kind != Kind::Float) continue;
+            const std::string parameter(row.name);
+            if (auto ok = composer.add_pulse({.event = "hit", .entry = entry, .parameter = parameter}); !ok) return ok;
+            layer.values.push_back({entry, parameter, {composer.words(entry)[row.word]}});
+        }
+    }
+    composer.fire("hit", 0.0);
+    return composer.add_layer(layer);
+}
+
 }  // namespace
 
 Result<std::vector<Figure>> counted_figures(Bed& bed) {
@@ -222,22 +238,29 @@ Result<std::vector<Figure>> counted_figures(Bed& bed) {
         allocations += made;
         microseconds.push_back(fused->composer->record_microseconds());
     }
-    std::vector<double> own;
-    {
+    const auto own_time = [&]() -> Result<double> {
+        std::vector<double> own;
         const NullCommands null(bed.context.vk);
         for (int i = 0; i < 10 * recordings; ++i) {
             if (const auto recorded = fused->composer->record(VK_NULL_HANDLE, bed.frame()); !recorded)
                 return failure(recorded.error());
             own.push_back(fused->composer->record_microseconds());
         }
-    }
+        return median(own);
+    };
+    const auto own = own_time();
+    if (!own) return failure(own.error());
+    if (auto ok = modulate(*fused->composer); !ok) return failure(std::move(ok));
+    const auto modulated = own_time();
+    if (!modulated) return failure(modulated.error());
     auto again = compile_figures(bed);
     if (!again) return failure(std::move(again));
     const auto kept = kept_figures(bed);
     if (!kept) return failure(kept.error());
     std::vector<Figure> figures{
         {"record, default stack", median(microseconds), "us"},
-        {"record, default stack: without the driver", median(own), "us", 15.0},
+        {"record, default stack: without the driver", *own, "us", 15.0},
+        {"pulses: one and a layer on each number of that stack", *modulated - *own, "us"},
         {"transient memory, default stack fused", megabytes(fused->plan.transient_bytes), "MB"},
         {"transient memory, default stack unfused", megabytes(unfused->plan.transient_bytes), "MB"},
     };
