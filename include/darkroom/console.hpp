@@ -31,6 +31,8 @@ struct ConsoleDesc {
 /// Where commands come from.
 struct ExecuteOptions {
     bool allows_files = true;  ///< `exec` is not refused
+    bool suggests = true;      ///< unknown names are answered with the nearest, which takes longer than all else
+    LogSink print{};           ///< instead of the console's
     /// Of the commands that are run, files included; what comes behind is left out, and printed to be.
     std::uint32_t most_commands = 10000;
 };
@@ -46,6 +48,7 @@ class Console {
     /// Runs commands. Returns how many were refused; each refusal is printed, the first 64 in full.
     std::uint32_t execute(std::string_view commands, const ExecuteOptions& options = {});
 
+    [[nodiscard]] bool has(std::string_view name) const;
     /// The base value as text; nothing: there is no such variable.
     [[nodiscard]] std::optional<std::string> get(std::string_view name) const;
     /// The same as a number, 0 where it is none.

@@ -58,6 +58,8 @@ class Run {
     }
     /// Puts a line of a configuration file aside whose variable is not there. False: it is none.
     bool keep(std::string_view name, Words values, bool is_archived);
+    [[nodiscard]] bool suggests() const { return options_.execute.suggests && refused_ < most_shown_refusals; }
+    [[nodiscard]] Result<Variable> look_up(std::string_view name) const { return state_.variable(name, suggests()); }
     void print(Severity severity, std::string_view line);
     /// Commands that do the work of many count as many.
     bool spend(std::size_t count);
@@ -83,7 +85,9 @@ constexpr std::array<Run::Known, 11> Run::commands{{
 }};
 
 void Run::print(Severity severity, std::string_view line) {
-    if (lines_++ < most_lines) state_.desc.print(severity, line);
+    if (lines_++ >= most_lines) return;
+    const LogSink& own = options_.execute.print;
+    (own ? own : state_.desc.print)(severity, line);
 }
 
 bool Run::spend(std::size_t count) {
@@ -127,10 +131,11 @@ Result<> Run::command(Words words) {
     }
     if (find_variable(*state_.composer, name)) return arguments.empty() ? get(words) : set(words);
     if (keep(name, arguments, false)) return {};
-    if (refused_ >= most_shown_refusals) return user_error({});
     std::vector<std::string> names = {};
-    for (const Known& one : commands) names.emplace_back(one.name);
-    for (NamedVariable& one : all_variables(*state_.composer)) names.push_back(std::move(one.name));
+    if (suggests()) {
+        for (const Known& one : commands) names.emplace_back(one.name);
+        for (NamedVariable& one : all_variables(*state_.composer)) names.push_back(std::move(one.name));
+    }
     return user_error(fmt::format("'{}': no such command or variable{}", printable(name), suggestion(name, names)));
 }
 
@@ -150,19 +155,19 @@ Result<> Run::write(std::string_view name, const Variable& variable, std::string
 }
 
 Result<> Run::get(Words arguments) {
-    const auto variable = state_.variable(arguments[0]);
+    const auto variable = look_up(arguments[0]);
     if (!variable) return failure(variable.error());
-    print(Severity::Info, fmt::format("\"{}\" is \"{}\"", arguments[0], state_.text(*variable)));
+    print(Severity::Info, fmt::format("\"{}\" is \"{}\"", printable(arguments[0]), state_.text(*variable)));
     return {};
 }
 
 Result<> Run::set(Words arguments) {
-    const auto variable = state_.variable(arguments[0]);
+    const auto variable = look_up(arguments[0]);
     if (!variable) return keep(arguments[0], arguments.subspan(1), false) ? Result<>{} : failure(variable.error());
     // A vector may be given as words: `fog.color 1 0.5 0`.
     if (arguments.size() - 1 > variable->row->words)
-        return user_error(fmt::format("{}: {} values are given, it takes {}", arguments[0], arguments.size() - 1,
-                                      expected_kind(variable->row->kind)));
+        return user_error(fmt::format("{}: {} values are given, it takes {}", printable(arguments[0]),
+                                      arguments.size() - 1, expected_kind(variable->row->kind)));
     return write(arguments[0], *variable, fmt::format("{}", fmt::join(arguments.subspan(1), ",")));
 }
 
@@ -190,7 +195,7 @@ Result<> Run::write_next(std::string_view name, const Variable& variable, std::s
 }
 
 Result<> Run::toggle(Words arguments) {
-    const auto variable = state_.variable(arguments[0]);
+    const auto variable = look_up(arguments[0]);
     if (!variable) return failure(variable.error());
     if (arguments.size() > 1) {
         const std::string other = arguments.size() > 2 ? std::string(arguments[2]) : default_text(*variable);
@@ -198,38 +203,42 @@ Result<> Run::toggle(Words arguments) {
     }
     const auto number = parse_number(state_.text(*variable));
     if (!number)
-        return user_error(fmt::format("{} is no number: name the values that it toggles between", arguments[0]));
+        return user_error(
+            fmt::format("{} is no number: name the values that it toggles between", printable(arguments[0])));
     return write(arguments[0], *variable, *number == 0 ? "1" : "0");
 }
 
 Result<> Run::cycle(Words arguments) {
-    const auto variable = state_.variable(arguments[0]);
+    const auto variable = look_up(arguments[0]);
     if (!variable) return failure(variable.error());
     const std::span<const std::string_view> choices = variable->row->choices;
     const Words given = arguments.size() > 1 ? arguments.subspan(1) : choices;
-    if (given.empty()) return user_error(fmt::format("{}: name the values that it cycles through", arguments[0]));
+    if (given.empty())
+        return user_error(fmt::format("{}: name the values that it cycles through", printable(arguments[0])));
     return write_next(arguments[0], *variable, std::vector<std::string>(given.begin(), given.end()));
 }
 
 Result<> Run::inc(Words arguments) {
-    const auto variable = state_.variable(arguments[0]);
+    const auto variable = look_up(arguments[0]);
     if (!variable) return failure(variable.error());
     const auto number = parse_number(state_.text(*variable));
     const auto amount = arguments.size() > 1 ? parse_number(arguments[1]) : std::optional(1.0);
-    if (!amount) return user_error(fmt::format("inc {}: '{}' is not a number", arguments[0], printable(arguments[1])));
-    if (!number) return user_error(fmt::format("inc {}: it is not a number", arguments[0]));
+    if (!amount)
+        return user_error(
+            fmt::format("inc {}: '{}' is not a number", printable(arguments[0]), printable(arguments[1])));
+    if (!number) return user_error(fmt::format("inc {}: it is not a number", printable(arguments[0])));
     return write(arguments[0], *variable, fmt::format("{}", *number + *amount));
 }
 
 Result<> Run::reset(Words arguments) {
-    const auto variable = state_.variable(arguments[0]);
+    const auto variable = look_up(arguments[0]);
     if (!variable) return failure(variable.error());
     return write(arguments[0], *variable, default_text(*variable));
 }
 
 Result<> Run::reset_where(bool archived_alone) {
+    if (!spend(variable_count(*state_.composer))) return {};
     const std::vector<NamedVariable> all = all_variables(*state_.composer);
-    if (!spend(all.size())) return {};
     for (const auto& [name, variable] : all) {
         if (state_.is_read_only(variable) || (archived_alone && !state_.is_archived(variable))) continue;
         if (auto done = write(name, variable, default_text(variable)); !done) return done;
@@ -239,11 +248,11 @@ Result<> Run::reset_where(bool archived_alone) {
 
 Result<> Run::list(Words arguments) {
     const std::string_view prefix = arguments.empty() ? std::string_view() : arguments[0];
+    if (!spend(variable_count(*state_.composer))) return {};
     const std::vector<NamedVariable> all = all_variables(*state_.composer, prefix);
-    if (!spend(all.size())) return {};
     for (const auto& [name, variable] : all)
-        print(Severity::Info,
-              fmt::format("{} {} \"{}\"", state_.is_archived(variable) ? '*' : ' ', name, state_.text(variable)));
+        print(Severity::Info, fmt::format("{} {} \"{}\"", state_.is_archived(variable) ? '*' : ' ', printable(name),
+                                          state_.text(variable)));
     print(Severity::Info, prefix.empty()
                               ? fmt::format("{} variables", all.size())
                               : fmt::format("{} variables beginning with \"{}\"", all.size(), printable(prefix)));

@@ -24,10 +24,10 @@ bool is_sayable(std::string_view text) {
 
 }  // namespace
 
-Result<script::Variable> Console::State::variable(std::string_view name) const {
+Result<script::Variable> Console::State::variable(std::string_view name, bool suggests) const {
     if (const auto found = script::find_variable(*composer, name)) return *found;
-    return user_error(
-        fmt::format("'{}': no such variable{}", printable(name), script::suggest_variable(*composer, name)));
+    return user_error(fmt::format("'{}': no such variable{}", printable(name),
+                                  suggests ? script::suggest_variable(*composer, name) : ""));
 }
 
 std::span<const std::uint32_t> Console::State::defaults(const script::Variable& variable) const {
@@ -51,8 +51,9 @@ std::string Console::State::text(const script::Variable& variable) const {
 
 Result<std::string> Console::State::write(std::string_view name, const script::Variable& variable,
                                           std::string_view value, std::optional<std::string_view> owner) {
-    if (is_read_only(variable)) return user_error(fmt::format("{} is read-only", printable(name)));
-    auto read = script::read_value(*variable.row, name, value);
+    const std::string shown = printable(name);
+    if (is_read_only(variable)) return user_error(fmt::format("{} is read-only", shown));
+    auto read = script::read_value(*variable.row, shown, value);
     if (!read) return failure(std::move(read));
     const std::string_view row = variable.row->name;
     auto written = owner ? composer->set_override(variable.entry, row, *owner, read->words)
@@ -76,6 +77,8 @@ Composer& Console::composer() const { return *state_->composer; }
 std::uint32_t Console::execute(std::string_view commands, const ExecuteOptions& options) {
     return script::run_commands(*state_, commands, {.execute = options});
 }
+
+bool Console::has(std::string_view name) const { return script::find_variable(*state_->composer, name).has_value(); }
 
 std::optional<std::string> Console::get(std::string_view name) const {
     const auto variable = script::find_variable(*state_->composer, name);
@@ -131,7 +134,10 @@ Result<> Console::read_config(const std::filesystem::path& path) {
     const auto content = read_file(path, {.max_size = longest_file});
     if (!content) return failure(content.error());
     const std::string_view text(reinterpret_cast<const char*>(content->data()), content->size());
-    script::run_commands(*state_, text, {.place = path.string(), .kept = &state_->kept});
+    script::RunOptions options;
+    options.place = path.string();
+    options.kept = &state_->kept;
+    script::run_commands(*state_, text, options);
     return {};
 }
 

@@ -11,7 +11,7 @@
 namespace darkroom {
 
 struct Console::State {
-    [[nodiscard]] Result<script::Variable> variable(std::string_view name) const;
+    [[nodiscard]] Result<script::Variable> variable(std::string_view name, bool suggests = true) const;
     /// With an owner: a frame's override of that owner; else the base value.
     Result<std::string> write(std::string_view name, const script::Variable& variable, std::string_view value,
                               std::optional<std::string_view> owner = std::nullopt);
@@ -32,7 +32,7 @@ namespace script {
 
 /// See ExecuteOptions. `kept`: where values of unknown variables go that would be refused otherwise.
 struct RunOptions {
-    ExecuteOptions execute;
+    ExecuteOptions execute{};
     std::string place{};  ///< of the text, for messages; empty: it was typed
     std::map<std::string, std::string>* kept = nullptr;
 };

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <bit>
+#include <darkroom/effects.hpp>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "script/command_reader.hpp"
@@ -162,6 +164,15 @@ TEST(Console, UnknownNamesSayTheNearest) {
     EXPECT_EQ(bed.run("reset \"x\x1b[2J\""), "'x\\x1B[2J': no such variable");
 }
 
+TEST(Console, NamesOfEntriesArePrintedFitForATerminal) {
+    ConsoleBed bed;
+    bed.composer.add(test::Warp{}, {.name = "a\x1b[2J"});
+    for (const char* const line :
+         {"\"a\x1b[2J.strength\"", "cvarlist a", "\"a\x1b[2J.strength\" 7", "\"a\x1b[2J.strength\" x",
+          "\"a\x1b[2J.strength\" 1 2", "inc \"a\x1b[2J.strength\" x"})
+        for (const char letter : bed.run(line)) EXPECT_TRUE(letter >= ' ' || letter == '\n') << line;
+}
+
 TEST(Console, ToggleCycleAndInc) {
     ConsoleBed bed;
     const auto after = [&](const std::string& commands, const std::string& name) {
@@ -245,6 +256,48 @@ TEST(Console, AnOverrideLeavesTheBaseAlone) {
     EXPECT_EQ(bed.run("r_ui_warp"), "\"r_ui_warp\" is \"-0.15\"");
     bed.composer.drop_overrides("a pulse");
     EXPECT_EQ(std::bit_cast<float>(bed.composer.current(warp)[0]), -0.15f);
+}
+
+struct Known {
+    const char *name, *effect, *member, *value;
+    bool is_archived;
+};
+// The game's names and defaults, and what they are here.
+constexpr std::array known{Known{"r_ui_warp", "ui_warp", "strength", "-0.1", false},
+                           Known{"r_ui_chromatic", "ui_chroma", "strength", "0.003", false},
+                           Known{"r_ui_echo", "ui_echo", "strength", "0", false},
+                           Known{"r_ui_echo_scale", "ui_echo", "scale", "1", false},
+                           Known{"r_ui_additive", "ui_composite", "additive", "0", false},
+                           Known{"gamma", "contrast_gamma", "gamma", "0.9", true},
+                           Known{"contrast", "contrast_gamma", "contrast", "1.4", true},
+                           Known{"scr_sbaralpha", "ui_composite", "ui_opacity", "0.75", true}};
+
+TEST(ConsoleNames, OfTheReferenceAreParametersOfTheInterfacesEffects) {
+    const Folder folder;
+    Composer composer(Device::assumed());
+    for (const EffectInfo* const effect : all_effects()) composer.add(*effect, nullptr);
+    std::vector<std::string> printed;
+    Console console(composer, {.print = [&](Severity, std::string_view line) { printed.emplace_back(line); }});
+    ASSERT_TRUE(console.write_config(folder.path / "out.cfg"));
+    const std::string config = folder.read("out.cfg");
+    for (const Known& one : known) {
+        SCOPED_TRACE(one.name);
+        if (find_effect(one.effect) == nullptr) continue;
+        EXPECT_EQ(console.execute(std::string(one.name) + " " + one.value), 0u);
+        EXPECT_EQ(console.get(std::string(one.effect) + "." + one.member), one.value);
+        EXPECT_EQ(config.find("\"" + std::string(one.name) + "\"") != std::string::npos, one.is_archived);
+    }
+    EXPECT_TRUE(printed.empty()) << printed.front();
+}
+
+TEST(ConsoleNames, NoNameIsTwoThings) {
+    std::set<std::string_view> seen{"get",   "set",      "seta",     "toggle",   "cycle", "inc",
+                                    "reset", "resetall", "resetcfg", "cvarlist", "exec"};
+    for (const EffectInfo* const effect : all_effects()) {
+        EXPECT_EQ(effect->name.find('.'), std::string_view::npos);
+        for (const ParamInfo& row : effect->parameters.rows)
+            EXPECT_TRUE(row.also.empty() || seen.insert(row.also).second) << row.also;
+    }
 }
 
 TEST(ConsoleConfig, HoldsWhatIsArchivedAndReadsBack) {

@@ -77,6 +77,12 @@ std::vector<NamedVariable> all_variables(const Composer& composer, std::string_v
     return out;
 }
 
+std::size_t variable_count(const Composer& composer) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < composer.size(); ++i) count += composer.info(composer.entry(i))->parameters.rows.size();
+    return count;
+}
+
 std::string suggest_variable(const Composer& composer, std::string_view name) {
     std::vector<std::string> names;
     for (NamedVariable& variable : all_variables(composer)) names.push_back(std::move(variable.name));

@@ -27,6 +27,8 @@ struct NamedVariable {
 };
 /// All names that begin with `prefix`, in alphabetical order.
 [[nodiscard]] std::vector<NamedVariable> all_variables(const Composer& composer, std::string_view prefix = {});
+/// What finding all of them costs, roughly: parameters of the stack.
+[[nodiscard]] std::size_t variable_count(const Composer& composer);
 /// ", did you mean 'x'?" or nothing.
 [[nodiscard]] std::string suggest_variable(const Composer& composer, std::string_view name);
 
