@@ -7,11 +7,9 @@ namespace darkroom::bench {
 
 namespace {
 
-constexpr int frames = 1000;
-
 Result<Row> inertia_row(Bed&, const std::string& name) {
     return Row{.name = name, .host = [inertia = HudInertia(), yaw = 0.0]() mutable {
-                   for (int frame = 0; frame < frames; ++frame)
+                   for (int frame = 0; frame < frames_of_a_row; ++frame)
                        inertia.step(1.0 / 144, yaw += 1, frame % 100 < 50, 200);
                }};
 }

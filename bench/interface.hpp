@@ -8,6 +8,10 @@
 
 namespace darkroom::bench {
 
+inline constexpr int frames_of_a_row = 1000;
+
 [[nodiscard]] std::vector<Recipe> interface_recipes();
+/// None where scripts are not built.
+[[nodiscard]] std::vector<Recipe> controller_recipes();
 
 }  // namespace darkroom::bench

@@ -178,6 +178,7 @@ std::vector<Recipe> recipes() {
     add_chains(out, "default", default_stack());
     add_world_chains(out);
     for (Recipe& recipe : interface_recipes()) out.push_back(std::move(recipe));
+    for (Recipe& recipe : controller_recipes()) out.push_back(std::move(recipe));
     for (Recipe& recipe : scene_recipes()) out.push_back(std::move(recipe));
     return out;
 }

@@ -52,6 +52,10 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/darkroom DESTINATION ${CMAKE_INS
   FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/looks/ DESTINATION ${CMAKE_INSTALL_DATADIR}/darkroom/looks
   FILES_MATCHING PATTERN "*.toml")
+if(TARGET darkroom_script)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/controllers/ DESTINATION ${CMAKE_INSTALL_DATADIR}/darkroom/controllers
+    FILES_MATCHING PATTERN "*.lua")
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Before 1.0 a minor version may change the interface, a patch version may not.

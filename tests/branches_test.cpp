@@ -134,7 +134,7 @@ effect = "blend"
 second = "scene"
 mode = "lighten"
 )"},
-    {"a quarter of the picture over the whole", 5, 9, R"(
+    {"a quarter of the picture over the whole", 4, 8, R"(
 [[stack]]
 effect = "gaussian_blur"
 radius = 2

@@ -57,7 +57,7 @@ std::set<std::string> first_cells(const std::vector<std::pair<std::string, std::
 std::vector<std::string> flat_names(std::int32_t FlatPlace::*order, bool only_those_on = false) {
     std::vector<const EffectInfo*> effects;
     for (const EffectInfo* const effect : all_effects())
-        if (effect->flat.*order >= 0 && (!only_those_on || effect->flat.starts_on)) effects.push_back(effect);
+        if (effect->flat.*order >= 0 && !effect->flat.is_of_ui && (!only_those_on || effect->flat.starts_on)) effects.push_back(effect);
     std::ranges::sort(effects, {}, [order](const EffectInfo* effect) { return effect->flat.*order; });
     std::vector<std::string> names;
     for (const EffectInfo* const effect : effects) names.emplace_back(effect->name);
