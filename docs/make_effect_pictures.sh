@@ -130,3 +130,9 @@ trail motion_blur showcase 12 '[[stack]]
 effect = "motion_blur"
 shutter_angle = 360.0
 max_radius = 3.0'
+ui=(--ui hud/visor.svg --game health=82 --game ammunition=24 --game reserve=120 --game heading=40 --game weapon=RIFLE)
+pair ui_warp showcase "${ui[@]}" -- "${ui[@]}" --ui-warp-strength -0.5
+pair ui_chroma showcase "${ui[@]}" -- "${ui[@]}" --ui-chroma-strength 0.01
+pair ui_echo showcase "${ui[@]}" -- "${ui[@]}" --ui-echo-strength 0.6 --ui-echo-size 1.08
+pair ui_composite showcase -- "${ui[@]}"
+pair contrast_gamma showcase "${ui[@]}" -- "${ui[@]}" --contrast-gamma-contrast 1.4 --contrast-gamma-gamma 0.9

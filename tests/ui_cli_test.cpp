@@ -79,6 +79,61 @@ TEST_F(CliUi, TheTableHasTheChainsParameters) {
         << slip.err;
 }
 
+// The game says that there is little health, the controller fires, and the pulse doubles the light.
+TEST_F(CliUi, EventsControllersAndPulsesMeet) {
+    write("c.lua", "engine.on_frame('low', function() if game.health < 50 then engine.fire('hit') end end)\n");
+    write("game.toml",
+          "[[stack]]\neffect = \"exposure\"\n[[stack]]\neffect = \"encode\"\n"
+          "[[pulse]]\nevent = \"hit\"\nparameter = \"exposure.exposure\"\namount = 1\nduration = 1\n"
+          "[ui]\ncontrollers = [\"c.lua\"]\ngame = { health = 100 }\n");
+    write("events.toml", "[[event]]\ntime = 2\ngame = { health = 20 }\n");
+    const auto at = [&](const std::string& time) {
+        return developed({"--look", path("game.toml"), "--events", path("events.toml"), "--time", time}).at(9, 9)[0];
+    };
+    const auto encoded = [](double light) { return 1.055 * std::pow(light, 1 / 2.4) - 0.055; };
+    EXPECT_NEAR(at("1"), encoded(0.2), 1.01 / 255);
+    EXPECT_NEAR(at("2"), encoded(0.4), 1.01 / 255);
+    write("c.lua", "engine.on_frame('low', function() error('no such luck') end)\n");
+    const Outcome outcome = run({"develop", path("frame.exr"), "--look", path("game.toml"), "-o", path("out.png")});
+    EXPECT_EQ(outcome.code, 0) << "a script's fault is told, and the picture made";
+    EXPECT_NE(outcome.err.find("no such luck"), std::string::npos) << outcome.err;
+    write("c.lua", "this is no Lua\n");
+    EXPECT_EQ(run({"develop", path("frame.exr"), "--look", path("game.toml"), "-o", path("never.png")}).code, 1);
+}
+
+TEST_F(CliUi, DocumentsShowWhatTheGameSays) {
+    write("hud.svg",
+          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100%\" height=\"100%\" viewBox=\"0 0 48 32\">"
+          "<rect width=\"{{width}}\" height=\"32\" fill=\"#00ff00\"/></svg>");
+    write("svg.toml", "[[stack]]\neffect = \"encode\"\n[ui]\ndocument = \"hud.svg\"\ngame = { width = 12 }\n");
+    write("events.toml", "[[event]]\ntime = 1\njump = true\ngame = { width = 36 }\n");
+    const auto green = [&](const std::vector<std::string>& more, std::uint32_t x) {
+        std::vector<std::string> flags{"--look", path("svg.toml")};
+        flags.insert(flags.end(), more.begin(), more.end());
+        return code(developed(flags).at(x, 9)[1]) == 255;
+    };
+    EXPECT_TRUE(green({}, 6));
+    EXPECT_FALSE(green({}, 20));
+    EXPECT_TRUE(green({"--game", "width=24"}, 20));
+    EXPECT_TRUE(green({"--events", path("events.toml"), "--time", "1"}, 30));
+    const Outcome none = run(
+        {"develop", path("frame.exr"), "--look", path("plain.toml"), "--ui", path("hud.svg"), "-o", path("never.png")});
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.err.find("hud.svg:1: "), std::string::npos) << none.err;
+}
+
+// 55.6 ms after a jump the interface is read 0.0041 of the height further up, which is nothing a second later.
+TEST_F(CliUi, AJumpMovesTheInterface) {
+    write("events.toml", "[[event]]\ntime = 1\njump = true\n");
+    const auto at = [&](const std::string& time) {
+        return developed({"--look", path("ui.toml"), "--set", "contrast_gamma.contrast=1", "--events",
+                          path("events.toml"), "--time", time, "--bits", "16"});
+    };
+    const Picture before = at("0.9"), in_the_air = at("1.0556"), after = at("3");
+    EXPECT_EQ(before.pixels, after.pixels);
+    EXPECT_NEAR((in_the_air.at(3, 9)[1] - before.at(3, 9)[1]) * 255, -0.004088 * height, 0.01);
+}
+
 TEST_F(CliUi, ErrorsAreOneLine) {
     for (const std::string name : {"none.png", "plain.toml", "frame.exr"}) {
         const Outcome outcome = run({"develop", path("frame.exr"), "--ui", path(name), "-o", path("never.png")});

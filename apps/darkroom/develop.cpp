@@ -218,10 +218,6 @@ class Develop {
         item.frame = std::move(*sized);
         item.lights = take_lights(item.frame);
         item.input = develop_input(item.frame, item.lights);
-        const auto ui = ui_.picture(extent);
-        if (!ui) return failure(ui.error());
-        item.ui = *ui;
-        item.input.ui = *item.ui;
         set_time(step, item);
         return {};
     }
@@ -242,6 +238,11 @@ class Develop {
         item.input.camera.is_cut = job_.steps[i].place != next_place_;
         next_place_ = job_.steps[i].place + 1;
         if (Result<> done = job_.timeline.advance(*composer_, item.input.time); !done) return done;
+        if (Result<> done = ui_.advance(*composer_, item.input.time); !done) return done;
+        const auto ui = ui_.picture(item.input.extent);
+        if (!ui) return failure(ui.error());
+        item.ui = *ui;
+        item.input.ui = *item.ui;
         if (options_.is_reference) {
             std::vector<std::string> left_out;
             Result<darkroom::DevelopedPicture> picture =
@@ -295,7 +296,7 @@ class Develop {
 
     const Options& options_;
     Job job_;
-    UiSource ui_{job_.look};
+    UiSource ui_{job_.look, job_.timeline};
     std::vector<Item> items_;
     std::mutex making_;
     std::unique_ptr<darkroom::Device> device_;

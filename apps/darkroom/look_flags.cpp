@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
 #include <darkroom/effects.hpp>
 
 #include "core/param_text.hpp"
@@ -67,9 +69,14 @@ void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const da
             ->group(group);
     command
         .add_option("--ui", ui_file_,
-                    "The interface over the picture: an image with alpha, drawn at the picture's size; --ui-... and "
+                    "The interface over the picture: an image with alpha, or an SVG document; --ui-... and "
                     "--contrast-gamma-... are for it")
         ->type_name("FILE")
+        ->group(group);
+    command.add_option("--game", game_, "What a document's binding {{NAME}} shows: health=80")
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group(group);
     command.add_option("--order", order_, "Order of the flat table: documented or scene_linear")
         ->type_name("ORDER")
@@ -128,11 +135,29 @@ Result<> LookFlags::add_custom_effects(Look& look) const {
     return {};
 }
 
-void LookFlags::set_ui(Look& look, const std::filesystem::path& folder) const {
+Result<> LookFlags::set_ui(Look& look, const std::filesystem::path& folder) const {
     if (look.ui && !look.ui->document.empty()) look.ui->document = (folder / look.ui->document).string();
-    if (ui_file_.empty()) return;
-    darkroom::add_ui(look);
-    look.ui->document = ui_file_;
+    if (look.ui)
+        for (std::string& script : look.ui->controllers) script = (folder / script).string();
+    if (!ui_file_.empty()) {
+        darkroom::add_ui(look);
+        look.ui->document = ui_file_;
+    }
+    for (const std::string& set : game_) {
+        const std::size_t equals = set.find('=');
+        if (equals == std::string::npos || equals == 0)
+            return user_error(fmt::format("--game {}: expected NAME=VALUE", darkroom::printable(set)));
+        if (!look.ui) return user_error("--game: there is no interface; --ui or a look's table [ui] brings one");
+        const std::string name = set.substr(0, equals), value = set.substr(equals + 1);
+        double number = 0;
+        const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+        const bool is_number = error == std::errc() && end == value.data() + value.size() && std::isfinite(number);
+        if (is_number)
+            look.ui->game.insert_or_assign(name, number);
+        else
+            look.ui->game.insert_or_assign(name, value);
+    }
+    return {};
 }
 
 Result<> LookFlags::set_order(Look& look) const {
@@ -161,7 +186,7 @@ Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
     Result<Look> look = path.empty() ? Result<Look>(darkroom::default_look()) : darkroom::read_look(path, options);
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
-    set_ui(*look, path.parent_path());
+    if (Result<> done = set_ui(*look, path.parent_path()); !done) return failure(std::move(done));
     if (Result<> done = set_order(*look); !done) return failure(std::move(done));
     // They have no place before it is known what is on, but values already.
     if (Result<> done = add_custom_effects(*look); !done) return failure(std::move(done));

@@ -39,10 +39,10 @@ class LookFlags {
     /// Puts those of --effect behind the look's entries, at their defaults.
     [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_order(darkroom::Look& look) const;
-    void set_ui(darkroom::Look& look, const std::filesystem::path& folder) const;
+    [[nodiscard]] darkroom::Result<> set_ui(darkroom::Look& look, const std::filesystem::path& folder) const;
 
     std::string order_, ui_file_;
-    std::vector<std::string> sets_, effect_files_;
+    std::vector<std::string> sets_, effect_files_, game_;
     std::vector<std::unique_ptr<Value>> values_;  // CLI11 keeps references to the texts
     bool is_strict_ = false;
     bool has_no_custom_effects_ = false;

@@ -109,12 +109,12 @@ class Render {
         Result<darkroom::Look> look = flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene);
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
-        ui_.emplace(look_);
         if (!flags_.events.empty()) {
             Result<Timeline> timeline = Timeline::read(flags_.events, look_);
             if (!timeline) return failure(std::move(timeline));
             timeline_ = std::move(*timeline);
         }
+        ui_ = UiSource(look_, timeline_);
         choose_way();
         if (flags_.run.has_timings && way_ != Way::Developed)
             return darkroom::user_error("--timings: nothing is post-processed");
@@ -285,10 +285,11 @@ class Render {
         darkroom::FrameLayers layers;
         const bool has_frame = !shot.frame.empty();
         if (way_ == Way::Developed) {
-            const auto ui = ui_->picture(job_.desc.extent);
+            if (Result<> done = timeline_.advance(*composer_, shot.time); !done) return done;
+            if (Result<> done = ui_.advance(*composer_, shot.time); !done) return done;
+            const auto ui = ui_.picture(job_.desc.extent);
             if (!ui) return failure(ui.error());
             input.ui = **ui;
-            if (Result<> done = timeline_.advance(*composer_, shot.time); !done) return done;
             Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
             if (!made) return failure(std::move(made));
             if (i == 0) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
@@ -314,7 +315,7 @@ class Render {
     scene::Scene scene_;
     scene::Assets assets_;
     darkroom::Look look_;
-    std::optional<UiSource> ui_;
+    UiSource ui_;
     Timeline timeline_;
     Way way_ = Way::Developed;
     std::unique_ptr<darkroom::Device> device_;

@@ -10,6 +10,7 @@
 #include "core/files.hpp"
 #include "core/param_text.hpp"
 #include "looks/look_parts.hpp"
+#include "looks/look_reader.hpp"
 #include "toml/toml_text.hpp"
 
 namespace app {
@@ -29,6 +30,7 @@ constexpr std::size_t most_events = 65536;
 constexpr std::string_view owner = "timeline";
 const ParamInfo time_row{.name = "time", .unit = darkroom::unit::seconds, .range = {0, 1e9}};
 const ParamInfo over_row{.name = "over", .unit = darkroom::unit::seconds, .range = {0, 1e6}};
+const ParamInfo yaw_row{.name = "yaw", .unit = darkroom::unit::degrees, .range = {-3600, 3600}};
 const ParamInfo weight_row{.name = "weight", .range = {0, 1}};
 
 }  // namespace
@@ -99,7 +101,8 @@ class TimelineReader {
             return read_table(node, "layer", [&](std::string_view name, const toml::node& value) {
                 return read_weight(std::string(name), value, event);
             });
-        return failure(unknown(key, {"time", "set", "fire", "layer", "over"}));
+        if (key.str() == "game" || key.str() == "jump" || key.str() == "yaw") return read_game(key, node, event.game);
+        return failure(unknown(key, {"time", "set", "fire", "layer", "over", "game", "jump", "yaw"}));
     }
 
     Result<float> read_number(const ParamInfo& row, const toml::node& node, std::string_view key) {
@@ -115,6 +118,25 @@ class TimelineReader {
                                                 darkroom::expected_kind(row.kind), darkroom::interval(row))));
         const auto problem = darkroom::try_assign(row, words, *value, key);
         return problem ? failure(at(node, problem->text)) : Result<>{};
+    }
+
+    Result<> read_game(const toml::key& key, const toml::node& node, GameEvent& event) {
+        if (key.str() == "game") {
+            Result<darkroom::GameTable> values = darkroom::game_values(node);
+            if (!values) return failure(at(node, values.error().text));
+            event.values = std::move(*values);
+            return {};
+        }
+        if (key.str() == "jump") {
+            const auto* const jumps = node.as_boolean();
+            if (jumps == nullptr) return failure(at(node, fmt::format("jump = {}: expected true", show(node))));
+            event.is_jump = jumps->get();
+            return {};
+        }
+        const Result<float> yaw = read_number(yaw_row, node, key.str());
+        if (!yaw) return failure(yaw.error());
+        event.yaw = double{*yaw};
+        return {};
     }
 
     template <class Read>
@@ -227,6 +249,16 @@ std::vector<double> Timeline::times() const {
     std::vector<double> out;
     for (const Event& event : events_)
         if (out.empty() || event.time > out.back()) out.push_back(event.time);
+    return out;
+}
+
+std::vector<GameEvent> Timeline::game() const {
+    std::vector<GameEvent> out;
+    for (const Event& event : events_) {
+        if (event.game.values.empty() && !event.game.is_jump && !event.game.yaw) continue;
+        out.push_back(event.game);
+        out.back().time = event.time;
+    }
     return out;
 }
 

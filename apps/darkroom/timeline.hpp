@@ -10,6 +10,14 @@
 
 namespace app {
 
+/// What an event says of the game.
+struct GameEvent {
+    double time = 0;
+    darkroom::GameTable values;
+    bool is_jump = false;
+    std::optional<double> yaw;  ///< degrees: where the view looks from then on
+};
+
 class Timeline {
   public:
     /// Nothing ever happens.
@@ -21,6 +29,8 @@ class Timeline {
     [[nodiscard]] const std::vector<std::string>& entries() const { return entries_; }
     /// When events happen, in order.
     [[nodiscard]] std::vector<double> times() const;
+    /// What is said of the game, in order.
+    [[nodiscard]] std::vector<GameEvent> game() const;
     /// Brings a Composer that holds the look to what is the case at `time`: the same whatever was advanced to before.
     /// Values are overrides named "timeline".
     [[nodiscard]] darkroom::Result<> advance(darkroom::Composer& composer, double time);
@@ -43,6 +53,7 @@ class Timeline {
         std::vector<Value> values;
         std::vector<std::string> fired;
         std::vector<Weight> weights;
+        GameEvent game{};
     };
     /// A layer's way from one weight to another.
     struct Way {

@@ -1,30 +1,48 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The interface that commands put over their pictures: a file, drawn at each picture's size.
+// The interface that commands put over their pictures: an image, or an SVG document, drawn at each picture's size; what
+// the game says to it, how it lags behind the head, and the controllers that move it.
 
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <darkroom/controllers.hpp>
 #include <darkroom/look.hpp>
-#include <darkroom/result.hpp>
-#include <filesystem>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <vector>
+
+#include "hud/hud_document.hpp"
+#include "timeline.hpp"
 
 namespace app {
 
 class UiSource {
   public:
+    UiSource() = default;
     /// Of a look as LookFlags gives it.
-    explicit UiSource(const darkroom::Look& look) : file_(look.ui ? look.ui->document : std::string()) {}
-    /// As DevelopInput::ui has it; empty: there is none. From any thread.
+    UiSource(const darkroom::Look& look, const Timeline& timeline)
+        : ui_(look.ui.value_or(darkroom::LookUi{})), events_(timeline.game()), game_(ui_.game) {}
+    /// Before a frame: the game at this time, the offset of the interface, and one call of each controller. Values are
+    /// overrides. Frames come in order; a frame at an earlier time starts anew.
+    [[nodiscard]] darkroom::Result<> advance(darkroom::Composer& composer, double time);
+    /// As DevelopInput::ui has it; empty: there is none.
     [[nodiscard]] darkroom::Result<std::shared_ptr<const std::vector<std::uint8_t>>> picture(VkExtent2D extent);
 
   private:
-    std::filesystem::path file_;
-    std::mutex drawing_;
+    [[nodiscard]] darkroom::Result<> start(darkroom::Composer& composer);
+    [[nodiscard]] darkroom::Vec2 offset_at(double time) const;
+
+    darkroom::LookUi ui_;
+    std::vector<GameEvent> events_;
+    darkroom::GameTable game_;
+    const darkroom::Composer* composer_ = nullptr;  ///< that the controllers move
+    std::unique_ptr<darkroom::Console> console_;
+    std::optional<darkroom::Controllers> controllers_;
+    double last_time_ = 0;
+
     VkExtent2D extent_{};
+    std::unique_ptr<darkroom::HudDocument> document_;
     std::shared_ptr<const std::vector<std::uint8_t>> picture_ = std::make_shared<const std::vector<std::uint8_t>>();
 };
 

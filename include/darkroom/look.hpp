@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <darkroom/composer.hpp>
 #include <darkroom/effect.hpp>
+#include <darkroom/game_table.hpp>
 #include <darkroom/param.hpp>
 #include <darkroom/result.hpp>
 #include <filesystem>
@@ -116,6 +117,8 @@ enum class LookOrder : std::uint32_t { Documented, SceneLinear };
 struct LookUi {
     std::string document;                  ///< file name of a picture or an SVG document, relative to the look
     std::vector<std::string> controllers;  ///< of Lua scripts, the same
+    /// What the document's bindings show, and controllers read, until the game says something else.
+    GameTable game;
 };
 
 struct Look {

@@ -75,6 +75,19 @@ void write_ui(std::string& out, const Look& look) {
         for (const std::string& name : look.ui->controllers) names.push_back(toml_string(name));
         write_row(out, "controllers", fmt::format("[{}]", fmt::join(names, ", ")));
     }
+    if (!look.ui->game.empty()) {
+        std::vector<std::string> values;
+        for (const auto& [name, value] : look.ui->game) {
+            const auto text = [](const auto& own) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(own)>, std::string>)
+                    return toml_string(own);
+                else
+                    return fmt::format("{}", own);
+            };
+            values.push_back(fmt::format("{} = {}", toml_string(name), std::visit(text, value)));
+        }
+        write_row(out, "game", fmt::format("{{ {} }}", fmt::join(values, ", ")));
+    }
     for (const LookEntry* const entry : ordered(look))
         if (entry->is_of_ui) write_values(out, *entry);
 }

@@ -60,6 +60,8 @@ class LookReader {
 
 /// The pulses and layers that the file has for a look.
 void read_modulation(LookReader& reader, const toml::table& file, Look& look);
+/// A table as what the game says: at most 256 numbers, strings and booleans. Errors without a place.
+[[nodiscard]] Result<GameTable> game_values(const toml::node& node);
 [[nodiscard]] Look read_flat(LookReader& reader, const toml::node* node);
 /// Adds the table [ui] to a look.
 void read_ui(LookReader& reader, Look& look, const toml::node& node);

@@ -196,11 +196,11 @@ TEST(Look, StackErrorsNameBothEnds) {
     EXPECT_EQ(
         error_of(blur + blur),
         "a.toml:6:10: output 'blurred' is made by stack entry 1 (gaussian_blur) and by stack entry 2 (gaussian_blur)");
-    EXPECT_EQ(
-        error_of(blur + "[[stack]]\neffect = \"blend\"\nsecond = \"blured\"\n"),
-        "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, known are scene, alpha, ui, "
-        "blurred, did you "
-        "mean 'blurred'?");
+    EXPECT_EQ(error_of(blur + "[[stack]]\neffect = \"blend\"\nsecond = \"blured\"\n"),
+              "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, known are scene, "
+              "alpha, ui, "
+              "blurred, did you "
+              "mean 'blurred'?");
     EXPECT_TRUE(contains(error_of("[[stack]]\neffect = \"blom\"\n"), "did you mean 'bloom'?"));
     EXPECT_TRUE(contains(error_of("[[stack]]\nradius = 1\n"), "stack entry 1 has no key 'effect'"));
     EXPECT_TRUE(contains(error_of("stack = 1\n"), "expected [[stack]] entries"));

@@ -69,6 +69,7 @@ class FlatReader {
     void read_value(const toml::key& key, const toml::node& node) {
         if (is_of_ui_ && key.str() == "document") return read_document(node);
         if (is_of_ui_ && key.str() == "controllers") return read_controllers(node);
+        if (is_of_ui_ && key.str() == "game") return read_game(node);
         if (!is_of_ui_ && key.str() == "enabled") return read_enabled(node);
         if (!is_of_ui_ && key.str() == "order") return read_order(node);
         const auto found = targets_.find(key.str());
@@ -112,6 +113,13 @@ class FlatReader {
             if (auto name = file_name(one, "controllers")) look_.ui->controllers.push_back(std::move(*name));
     }
 
+    void read_game(const toml::node& node) {
+        if (Result<GameTable> values = game_values(node))
+            look_.ui->game = std::move(*values);
+        else
+            reader_.report(node, Weight::Wrong, values.error().text);
+    }
+
     void read_unknown(const toml::key& key, const toml::node& node) {
         reader_.report_unknown(key, node, names_, [&](const std::string& near) { return allowed(near); });
     }
@@ -120,7 +128,7 @@ class FlatReader {
     Look& look_;
     bool is_of_ui_;
     std::map<std::string, Target, std::less<>> targets_;
-    std::vector<std::string> names_ = is_of_ui_ ? std::vector<std::string>{"document", "controllers"}
+    std::vector<std::string> names_ = is_of_ui_ ? std::vector<std::string>{"document", "controllers", "game"}
                                                 : std::vector<std::string>{"enabled", "order"};  // for suggestions
 };
 

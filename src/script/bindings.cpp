@@ -56,6 +56,12 @@ int exec(lua_State* lua) {
     return 0;
 }
 
+int fire(lua_State* lua) {
+    Sandbox::of(lua).spend(cost_of_setting);
+    host_of(lua).fire(text_argument(lua, 1, longest_name));
+    return 0;
+}
+
 int on_frame(lua_State* lua) {
     Sandbox::of(lua).spend(cost_of_setting);
     const std::string_view slot = text_argument(lua, 1, longest_name);
@@ -122,10 +128,11 @@ int game_pairs(lua_State* lua) {
     return 2;
 }
 
-constexpr luaL_Reg engine_functions[] = {{"cvar_get", cvar_get},       {"cvar_get_number", cvar_get_number},
-                                         {"cvar_set", cvar_set},       {"exec", exec},
-                                         {"on_frame", on_frame},       {"time", time},
-                                         {"hud_visible", hud_visible}, {nullptr, nullptr}};
+constexpr luaL_Reg engine_functions[] = {{"cvar_get", cvar_get}, {"cvar_get_number", cvar_get_number},
+                                         {"cvar_set", cvar_set}, {"exec", exec},
+                                         {"fire", fire},         {"on_frame", on_frame},
+                                         {"time", time},         {"hud_visible", hud_visible},
+                                         {nullptr, nullptr}};
 constexpr luaL_Reg game_functions[] = {
     {"__index", game_index}, {"__newindex", game_newindex}, {"__pairs", game_pairs}, {nullptr, nullptr}};
 

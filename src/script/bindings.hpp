@@ -21,6 +21,7 @@ class Host {
     virtual void cvar_set(std::string_view name, std::string_view value) noexcept = 0;
     virtual void cvar_set(std::string_view name, double value) noexcept = 0;
     virtual void exec(std::string_view commands) noexcept = 0;
+    virtual void fire(std::string_view event) noexcept = 0;
     virtual void print(std::string_view text) noexcept = 0;
     /// `function`: a reference in the registry, which the host owns from now on. False: refused, and not taken.
     virtual bool on_frame(std::string_view slot, int function) noexcept = 0;

@@ -69,6 +69,7 @@ struct Controllers::State final : script::Host {
     void cvar_set(std::string_view name, std::string_view value) noexcept override;
     void cvar_set(std::string_view name, double value) noexcept override;
     void exec(std::string_view commands) noexcept override;
+    void fire(std::string_view event) noexcept override { console->composer().fire(event, frame.time); }
     void print(std::string_view text) noexcept override;
     bool on_frame(std::string_view slot, int function) noexcept override;
     [[nodiscard]] double time() const noexcept override { return frame.time; }
