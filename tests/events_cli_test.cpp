@@ -108,6 +108,31 @@ TEST_F(CliEvents, WhatEventsSwitchOnIsGivenItsHistory) {
     for (std::size_t i = 0; i < piece.size(); ++i) EXPECT_NEAR(piece[i], all[i + 6], 2e-3) << i;
 }
 
+// What a flat table has off, or on without an effect, is there to be moved all the same.
+TEST_F(CliEvents, FlatTablesKeepWhatMoves) {
+    write("look.toml",
+          "[post_process]\nbloom_enabled = false\nssao_enabled = false\ntonemap_curve = \"linear\"\n"
+          "vignette_enabled = false\n[[pulse]]\nevent = \"hit\"\nparameter = \"exposure\"\namount = 1\n"
+          "duration = 0.5\n[[layer]]\nname = \"night\"\nvalues = { vignette_intensity = 1 }\n");
+    write(
+        "events.toml",
+        "[[event]]\ntime = 0.2\nfire = \"hit\"\n[[event]]\ntime = 0.8\nset = { fog_enabled = false, exposure = 4 }\n");
+    const std::vector<double> all = develop("all", "");
+    ASSERT_EQ(all.size(), 13u);
+    EXPECT_NEAR(all[2] / all[0], 2, 0.01);
+    EXPECT_NEAR(all[9] / all[0], 4, 0.02);
+    write("events.toml", "[[event]]\ntime = 0\nlayer = { night = 1 }\n");
+    EXPECT_LT(develop("night", "1").at(0), 0.99 * all[0]) << "the middle of so small a picture is near its corners";
+    // Without a timeline a layer's own weight counts.
+    write("look.toml", test::content(path("look.toml")) + "weight = 1\n");
+    const Outcome outcome =
+        run({"develop", path("in.0000.exr"), "-o", path("alone.exr"), "--look", path("look.toml"), "--bits", "float"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Picture alone = picture("alone.exr");
+    ASSERT_FALSE(alone.empty());
+    EXPECT_LT(alone.at(4, 3)[1] / 0.125, 0.99 * all[0]);
+}
+
 TEST_F(CliEvents, TimeMayGoBack) {
     const std::vector<double> all = develop("all", "");
     write("events.toml", test::content(path("events.toml")) +

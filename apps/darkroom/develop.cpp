@@ -37,7 +37,7 @@ struct Options {
     WriteFlags write;
     RunFlags run;
     std::vector<std::string> inputs, maps;
-    std::string out, size, camera, events;
+    std::string out, size, camera;
     std::optional<std::string> frames;
     NumberFlag fov{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
@@ -133,8 +133,8 @@ Result<Job> job_of(const Options& options) {
     Result<darkroom::Look> look = options.look.look();
     if (!look) return failure(std::move(look));
     job.look = std::move(*look);
-    if (!options.events.empty()) {
-        Result<Timeline> timeline = Timeline::read(options.events, job.look);
+    if (!options.look.events.empty()) {
+        Result<Timeline> timeline = Timeline::read(options.look.events, job.look);
         if (!timeline) return failure(std::move(timeline));
         job.timeline = std::move(*timeline);
     }
@@ -339,8 +339,6 @@ Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> name
     options->frames_per_second
         .add_to(*command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")
         ->type_name("N");
-    command->add_option("--events", options->events, "What happens to the look: a file of [[event]]s (TOML)")
-        ->type_name("FILE");
     const std::string frame_group = "The frame";
     command
         ->add_option("--map", options->maps,

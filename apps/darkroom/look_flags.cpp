@@ -29,8 +29,9 @@ bool is_scene_name(const std::filesystem::path& path) { return path.filename().s
 // What changes the domain stays: an encoding that is off is not the same as none.
 void drop_what_is_off(Look& look) {
     if (!look.is_flat || !look.is_enabled) return;
-    std::erase_if(look.entries, [](const darkroom::LookEntry& entry) {
+    std::erase_if(look.entries, [&](const darkroom::LookEntry& entry) {
         const darkroom::EffectInfo& effect = *entry.effect;
+        if (darkroom::is_moved(look, effect.name)) return false;
         const bool is_identity = effect.is_identity != nullptr && effect.is_identity(entry.words.data());
         return effect.makes == nullptr && (entry.state.enabled.on == 0 || is_identity);
     });
@@ -78,6 +79,10 @@ void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const da
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->group(group);
+    if (has_look_flag)
+        command.add_option("--events", events, "What happens to the look: a file of [[event]]s (TOML)")
+            ->type_name("FILE")
+            ->group(group);
     command.add_option("--order", order_, "Order of the flat table: documented or scene_linear")
         ->type_name("ORDER")
         ->group(group);
@@ -201,7 +206,7 @@ Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
     const auto first = look->entries.end() - static_cast<std::ptrdiff_t>(effect_files_.size());
     const std::vector<darkroom::LookEntry> customs(first, look->entries.end());
     look->entries.erase(first, look->entries.end());
-    drop_what_is_off(*look);
+    if (events.empty()) drop_what_is_off(*look);
     for (const darkroom::LookEntry& entry : customs)
         if (Result<> done = darkroom::place_entry(*look, entry); !done) return failure(std::move(done));
     return look;

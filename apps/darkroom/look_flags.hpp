@@ -25,6 +25,7 @@ class LookFlags {
     [[nodiscard]] bool is_strict() const { return is_strict_; }
 
     std::string file;
+    std::string events;  ///< of a timeline, for which what is off keeps its place; empty: none
 
   private:
     struct Value {

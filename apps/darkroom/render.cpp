@@ -109,8 +109,8 @@ class Render {
         Result<darkroom::Look> look = flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene);
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
-        if (!flags_.events.empty()) {
-            Result<Timeline> timeline = Timeline::read(flags_.events, look_);
+        if (!flags_.look.events.empty()) {
+            Result<Timeline> timeline = Timeline::read(flags_.look.events, look_);
             if (!timeline) return failure(std::move(timeline));
             timeline_ = std::move(*timeline);
         }
@@ -126,7 +126,7 @@ class Render {
         for (const std::string& warning : assets_.warnings) warn(warning);
         std::vector<std::filesystem::path> inputs = assets_.files;
         if (!flags_.look.file.empty()) inputs.emplace_back(flags_.look.file);
-        if (!flags_.events.empty()) inputs.emplace_back(flags_.events);
+        if (!flags_.look.events.empty()) inputs.emplace_back(flags_.look.events);
         const FileSet files(inputs);
         for (const Shot& shot : job_.shots)
             for (const std::filesystem::path& path : {shot.picture, shot.frame})

@@ -96,7 +96,6 @@ void RenderFlags::add_to(CLI::App& command, std::span<const darkroom::LookEntry>
     write.add_to(command);
     run.add_to(command);
     device.add_to(command);
-    command.add_option("--events", events, "What happens to the look: a file of [[event]]s (TOML)")->type_name("FILE");
     look.add_to(command, true, named);
 }
 

@@ -50,7 +50,7 @@ class RenderFlags {
     DeviceFlags device;
     WriteFlags write;
     RunFlags run;
-    std::string scene, events;
+    std::string scene;
     bool is_tone_mapped() const { return !has_no_tone_mapping_; }
     /// Do the flags say a time? Else it is the scene's.
     bool has_time() const { return time_.is_given() || frames_; }

@@ -19,11 +19,7 @@ namespace {
 // or part a kernel in every frame, for what nobody asked for.
 bool is_in_the_way(const Look& look, const LookEntry& entry, const std::string& name, const ApplyOptions& options) {
     const EffectInfo& effect = *entry.effect;
-    const auto moves = [&](const auto& one) { return one.entry == name; };
-    const auto moves_any = [&](const LookLayer& layer) { return std::ranges::any_of(layer.values, moves); };
-    if (std::ranges::any_of(look.pulses, moves) || std::ranges::any_of(look.layers, moves_any) ||
-        std::ranges::count(options.keeps, name) > 0)
-        return false;
+    if (is_moved(look, name) || std::ranges::count(options.keeps, name) > 0) return false;
     if (entry.is_of_ui) return entry.state.enabled.on == 0 && !options.keeps_what_is_off;
     if (!look.is_flat || (effect.touch == Touch::Pointwise && !effect.build)) return false;
     const bool is_still =

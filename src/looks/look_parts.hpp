@@ -52,6 +52,8 @@ struct LookTarget {
 [[nodiscard]] Result<LookTarget> find_target(Look& look, std::string_view key, const std::string& shown);
 /// What pulses and layers add to a file.
 void write_modulation(std::string& out, const Look& look);
+/// Does a pulse or a layer move the entry of this name?
+[[nodiscard]] bool is_moved(const Look& look, std::string_view entry);
 /// Adds them to a Composer that has the look's entries.
 [[nodiscard]] Result<> apply_modulation(const Look& look, Composer& composer);
 /// Letters, digits, '_' and '-', up to 64.

@@ -47,6 +47,13 @@ std::string amount_text(const Look& look, const LookPulse& pulse) {
 
 }  // namespace
 
+bool is_moved(const Look& look, std::string_view entry) {
+    const auto is_of_entry = [&](const auto& one) { return one.entry == entry; };
+    return std::ranges::any_of(look.pulses, is_of_entry) ||
+           std::ranges::any_of(look.layers,
+                               [&](const LookLayer& layer) { return std::ranges::any_of(layer.values, is_of_entry); });
+}
+
 void write_modulation(std::string& out, const Look& look) {
     for (const LookPulse& pulse : look.pulses) {
         out += fmt::format("\n[[pulse]]\nevent = {}\nparameter = {}\namount = {}\n", toml_string(pulse.event),
