@@ -175,7 +175,7 @@ TEST_F(CliEvents, SlipsAreOneLineWithTheirPlace) {
     refused("[[event]]\nfire = \"hit\"\n", "wrong.toml:1:1: an event has no key 'time'");
     refused(event, "wrong.toml:1:1: at this time nothing happens");
     refused("[[event]]\ntime = -1\nfire = \"hit\"\n", "wrong.toml:2:8: time = -1");
-    refused(event + "jump = 3\n", "wrong.toml:3:1: unknown key 'jump': allowed are time, set, fire, layer, over");
+    refused(event + "leap = 3\n", "wrong.toml:3:1: unknown key 'leap': allowed are time, set, fire, layer, over");
     refused(event + "fire = \"hti\"\n", "known are hit, did you mean 'hit'?");
     refused(event + "set = { exposur = 1 }\n", "wrong.toml:3:19: exposur: no effect has this parameter");
     refused(event + "set = { exposure = 5000 }\n", "wrong.toml:3:20: exposure = 5000: ");

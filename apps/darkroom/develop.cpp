@@ -296,11 +296,11 @@ class Develop {
 
     const Options& options_;
     Job job_;
-    UiSource ui_{job_.look, job_.timeline};
     std::vector<Item> items_;
     std::mutex making_;
     std::unique_ptr<darkroom::Device> device_;
     std::unique_ptr<darkroom::Composer> composer_;
+    UiSource ui_{job_.look, job_.timeline};  ///< moves the composer, so it goes first
     std::unique_ptr<darkroom::Developer> developer_;
     std::optional<std::vector<std::string>> last_left_out_;
     std::size_t next_place_ = 0;

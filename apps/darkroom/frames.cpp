@@ -179,8 +179,9 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
         const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
         if (!entry) continue;
         const darkroom::EffectInfo& info = *composer.info(*entry);
-        // What the flat table has on by itself, nobody asked for.
-        const bool is_usual = (look.is_flat || look.was_flat) && info.flat.starts_on &&
+        // What a table has on by itself, nobody asked for.
+        const bool is_flat = (look.is_flat || look.was_flat) && info.flat.starts_on;
+        const bool is_usual = (is_flat || (look.ui && info.flat.is_of_ui)) &&
                               std::ranges::equal(composer.words(*entry), info.parameters.defaults);
         if (!composer.desc(*entry)->enabled || info.is_last_step || is_usual) continue;
         warn(fmt::format("{}left out: {}", frame, text));

@@ -315,12 +315,12 @@ class Render {
     scene::Scene scene_;
     scene::Assets assets_;
     darkroom::Look look_;
-    UiSource ui_;
     Timeline timeline_;
     Way way_ = Way::Developed;
     std::unique_ptr<darkroom::Device> device_;
     std::optional<render::Renderer> hdr_, display_;
     std::unique_ptr<darkroom::Composer> composer_;
+    UiSource ui_;  ///< moves the composer, so it goes first
     std::unique_ptr<darkroom::Developer> developer_;
     std::vector<Item> items_;
     PassTimes pass_times_;

@@ -66,7 +66,7 @@ darkroom::Vec2 UiSource::offset_at(double time) const {
     for (const GameEvent& event : events_) {
         if (event.time >= time) break;
         move(event.time);
-        jumps |= event.is_jump && event.time >= now;
+        jumps |= event.is_jump && event.time > time - memory;
         yaw = event.yaw.value_or(yaw);
     }
     move(time);
