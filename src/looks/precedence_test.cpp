@@ -158,7 +158,8 @@ TEST(Precedence, AmountsSwitchAndNothingElse) {
         const Look off = with_flag(default_look(), enabled, "off");
         const bool does_switch = is_on(with_flag(off, key, value), effect);
         if (does_switch) switches.insert(key);
-        EXPECT_EQ(is_on(with_file(effect, row, value), effect), named.contains(key) || effect.flat.starts_on);
+        EXPECT_EQ(is_on(with_file(effect, row, value), effect),
+                  named.contains(key) || effect.flat.starts_on || effect.flat.is_of_ui);
         Look typed = default_look();
         ASSERT_TRUE(override_look(
             typed, std::array{LookOverride{enabled, "off", ""}, LookOverride{key, flag_text(value), ""}}));
@@ -172,7 +173,7 @@ TEST(Precedence, AmountsSwitchAndNothingElse) {
     for (const EffectInfo* const effect : all_effects())
         for (const ParamInfo& row : effect->parameters.rows)
             if (const std::string key = flat_key(effect->name, row.name);
-                named.contains(key) || key == "fog_height_falloff")
+                named.contains(key) || key == "fog_height_falloff" || (effect->flat.is_of_ui && row.is_amount))
                 expected.insert(key);
     EXPECT_EQ(switches, expected);
 }

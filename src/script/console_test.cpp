@@ -266,7 +266,7 @@ struct Known {
 constexpr std::array known{Known{"r_ui_warp", "ui_warp", "strength", "-0.1", false},
                            Known{"r_ui_chromatic", "ui_chroma", "strength", "0.003", false},
                            Known{"r_ui_echo", "ui_echo", "strength", "0", false},
-                           Known{"r_ui_echo_scale", "ui_echo", "scale", "1", false},
+                           Known{"r_ui_echo_scale", "ui_echo", "size", "1", false},
                            Known{"r_ui_additive", "ui_composite", "additive", "0", false},
                            Known{"gamma", "contrast_gamma", "gamma", "0.9", true},
                            Known{"contrast", "contrast_gamma", "contrast", "1.4", true},
