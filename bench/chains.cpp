@@ -110,7 +110,7 @@ Stack ui_tail_stack(const TailValues& values, bool is_neutral) {
                                     {"ui_chroma", {{"strength", 0.005 * on}}},
                                     {"ui_echo", {{"strength", 0.1 * on}, {"size", 1.01}}},
                                     {"ui_composite"},
-                                    {"contrast_gamma", {{"contrast", 1 + 0.4 * on}}}};
+                                    {"contrast_gamma"}};
     steps.insert(std::ranges::find(steps, "encode", &NamedStep::effect) + 1, ui.begin(), ui.end());
     return stack_of(steps);
 }

@@ -72,7 +72,7 @@ constexpr std::array targets{
     Target{"fog in the tail, all given", "tail/fog, all given", calibration_name, {}, "tail/fused/auto"},
     Target{"lut in the tail", "tail/lut", calibration_name, 2.0, "tail/fused/auto"},
     Target{"interface in the tail, neutral", "tail/ui, neutral", calibration_name, 1.0, "tail/fused/auto"},
-    Target{"interface in the tail, echo and chroma on", "tail/ui", calibration_name, 5.0, "tail/fused/auto"},
+    Target{"interface in the tail, warp, chroma and echo on", "tail/ui", calibration_name, 5.0, "tail/fused/auto"},
     Target{"gaussian, radius 4", "gaussian/4/automatic/auto", calibration_name, 8.0, "effect/encode"},
     Target{"gaussian, radius 16", "gaussian/16/automatic/auto", calibration_name, {}, "effect/encode"},
     Target{"gaussian, radius 64", "gaussian/64/automatic/auto", calibration_name, {}, "effect/encode"},
