@@ -205,6 +205,7 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         const bool is_second = !step.is_merge && step.images[i] == "second";
         if (is_second && step.info->has_second_in_place) {
             step.is_second_resampled = !has_size(sides[i].version, from.size);
+            sides[i].is_loaded = second == nullptr && !step.is_second_resampled;
         } else if (step.is_merge || is_second) {
             auto version = at_size(sides[i].version, from.size, fmt::format("{}.resampled", name));
             if (!version) return failure(std::move(version));
@@ -330,8 +331,14 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});
     for (const auto& [name, input] : kernel.images) {
-        pass.spec.images.push_back(kernel_image(name, input));
-        if (is_storage_side(kernel, input)) pass.spec.images.back().storage_format = storage_format(input.version);
+        gpu::KernelImage image = kernel_image(name, input);
+        if (is_storage_side(kernel, input)) image.storage_format = storage_format(input.version);
+        if (is_loaded_beside(kernel, name)) {
+            image.loads_by = name + "_texels";
+            pass.spec.images.push_back({.name = image.loads_by, .storage_format = storage_format(input.version)});
+            pass.inputs.push_back(input);
+        }
+        pass.spec.images.push_back(std::move(image));
         pass.inputs.push_back(input);
     }
     // Unfused, a kernel whose entry is off copies: else every picture would live as long as those it may stand in for.
