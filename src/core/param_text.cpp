@@ -385,7 +385,8 @@ std::string documentation(const ParamTable& table, std::string_view effect) {
     for (const ParamInfo& row : table.rows) {
         std::string what = full_doc(row);
         if (row.is_amount)
-            what += " In a flat table or as a flag, a value above 0 turns the effect on and 0 turns it off.";
+            what += fmt::format(" In a flat table or as a flag, a value {} 0 turns the effect on and 0 turns it off.",
+                                row.range.min < 0 ? "other than" : "above");
         if (!row.formerly.empty()) what += fmt::format(" Formerly `{}`.", flat_key(effect, row.formerly));
         if (!row.also.empty()) what += fmt::format(" In consoles also `{}`.", row.also);
         out += fmt::format("| `{}` | `{}` | {} | {} |\n", flat_key(effect, row.name), format(row, table.defaults),
