@@ -153,9 +153,10 @@ TEST_F(CliInfo, ALookIsItsEntriesWithWhatIsTheirOwn) {
         ASSERT_TRUE(assign(*row, words, middle(*row)));
         const bool is_default = std::ranges::equal(words, effect->parameters.defaults);
         ASSERT_EQ(entry.at("values").size(), is_default ? 0u : 1u) << "what differs, alone: " << entry.dump();
-        if (!is_default)
+        if (!is_default) {
             EXPECT_NEAR(entry.at("values").at(std::string(row->name)).get<double>(), middle(*row),
                         1e-6 * std::abs(middle(*row)));
+        }
     }
 }
 
