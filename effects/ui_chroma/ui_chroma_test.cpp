@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <darkroom/effects/ui_chroma.hpp>
 
-#include "compose/test_support.hpp"
+#include "shared/test_readings.hpp"
 #include "ui_chroma/ui_chroma_reference.hpp"
 
 namespace darkroom {
@@ -18,19 +18,8 @@ TEST(EffectUiChroma, PartsRedAndBlueAboutGreenLessOnTallerPictures) {
     }
 }
 
-// What differs is how finely a sampler places texels: 1/256 of one, in each direction.
 TEST(EffectUiChroma, GpuMatchesReference) {
-    for (const auto& [width, height] : {std::pair{67u, 41u}, {1u, 1u}, {1u, 7u}, {64u, 36u}}) {
-        const ReferenceImage picture = test::round_to_float(test::random_display(width, height, 3));
-        for (const UiChroma& parameters : {UiChroma{.strength = 0.002f}, UiChroma{.strength = 0.02f}}) {
-            const ReferenceImage expected = test::reference_of(parameters, picture);
-            for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
-                const ReferenceImage out =
-                    test::develop([&](Composer& composer) { composer.add(parameters); }, picture, {.kernels = stage});
-                EXPECT_LE(test::worst_difference(out, expected), 8e-3) << width << "x" << height;
-            }
-        }
-    }
+    test::expect_reading_is_the_reference({UiChroma{.strength = 0.002f}, UiChroma{.strength = 0.02f}}, 8e-3);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <darkroom/effects/ui_echo.hpp>
 
-#include "compose/test_support.hpp"
+#include "shared/test_readings.hpp"
 #include "ui_echo/ui_echo_reference.hpp"
 
 namespace darkroom {
@@ -30,20 +30,9 @@ TEST(EffectUiEcho, IsBentAsGreenIs) {
     EXPECT_NEAR(seen, 0.5 * (1 - 0.4 * 0.25) + 0.5, 1e-7);
 }
 
-// What differs is how finely a sampler places texels: 1/256 of one, in each direction.
 TEST(EffectUiEcho, GpuMatchesReference) {
-    for (const auto& [width, height] : {std::pair{67u, 41u}, {1u, 1u}, {1u, 7u}, {64u, 36u}}) {
-        const ReferenceImage picture = test::round_to_float(test::random_display(width, height, 3));
-        for (const UiEcho& parameters :
-             {UiEcho{.strength = 0.5f}, UiEcho{.strength = 4, .size = 0.3f}, UiEcho{.strength = 1, .size = 3}}) {
-            const ReferenceImage expected = test::reference_of(parameters, picture);
-            for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
-                const ReferenceImage out =
-                    test::develop([&](Composer& composer) { composer.add(parameters); }, picture, {.kernels = stage});
-                EXPECT_LE(test::worst_difference(out, expected), 2e-2) << width << "x" << height;
-            }
-        }
-    }
+    test::expect_reading_is_the_reference(
+        {UiEcho{.strength = 0.5f}, UiEcho{.strength = 4, .size = 0.3f}, UiEcho{.strength = 1, .size = 3}}, 2e-2);
 }
 
 }  // namespace
