@@ -138,6 +138,22 @@ TEST_F(CliUi, AJumpMovesTheInterface) {
     EXPECT_NEAR(in_the_air.at(3, height / 2)[1], 1 - 0.004088 * height, 1.5 / 255);
 }
 
+TEST_F(CliUi, IsNotOverwritten) {
+    const Outcome outcome = run({"develop", path("frame.exr"), "--ui", path("hud.png"), "-o", path("hud.png")});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("hud.png: is an input, and would be overwritten"), std::string::npos) << outcome.err;
+}
+
+// Where the look has moved it, inertia comes on top.
+TEST_F(CliUi, InertiaKeepsTheLooksOffset) {
+    write("events.toml", "[[event]]\ntime = 1\njump = true\n");
+    const std::vector<std::string> moved{"--look", path("ui.toml"), "--set", "ui_warp.offset=0.25,0"};
+    std::vector<std::string> with_events = moved;
+    with_events.insert(with_events.end(), {"--events", path("events.toml"), "--time", "9"});
+    EXPECT_EQ(developed(with_events).pixels, developed(moved).pixels);
+    EXPECT_NE(developed(moved).pixels, developed({"--look", path("ui.toml")}).pixels);
+}
+
 TEST_F(CliUi, ErrorsAreOneLine) {
     for (const std::string name : {"none.png", "plain.toml", "frame.exr"}) {
         const Outcome outcome = run({"develop", path("frame.exr"), "--ui", path(name), "-o", path("never.png")});

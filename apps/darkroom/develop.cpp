@@ -70,7 +70,7 @@ struct Job {
 Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     const Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
     if (!inputs) return failure(inputs.error());
-    const Result<std::vector<std::filesystem::path>> outputs = output_paths(*inputs, options.out);
+    const Result<std::vector<std::filesystem::path>> outputs = output_paths(*inputs, options.out, ui_files(job.look));
     if (!outputs) return failure(outputs.error());
     FrameRange range{.first = 0, .last = ~std::uint64_t{0}};
     if (options.frames) {

@@ -65,7 +65,8 @@ Result<> check_output(const fs::path& output, const FileSet& inputs) {
     return {};
 }
 
-Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, const std::string& out) {
+Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, const std::string& out,
+                                           std::span<const fs::path> also_read) {
     std::error_code error;
     if (out.empty()) return user_error("-o: an output file is needed");
     const bool is_folder = fs::is_directory(out, error) || out.ends_with('/');
@@ -79,7 +80,9 @@ Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, con
     const std::vector<long long> numbers = numbers_of(inputs);
     std::vector<fs::path> outputs;
     std::map<fs::path, fs::path> makers;
-    const FileSet files(inputs);
+    std::vector<fs::path> read(inputs.begin(), inputs.end());
+    read.insert(read.end(), also_read.begin(), also_read.end());
+    const FileSet files(read);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         fs::path path = out;
         if (is_folder) {

@@ -31,8 +31,9 @@ class FileSet {
 [[nodiscard]] std::vector<long long> numbers_of(std::span<const std::filesystem::path> inputs);
 
 /// One output for each input. Errors: one file for several inputs, two inputs for one output, an output that is one of
-/// the inputs, a folder that does not exist, a name that cannot be written.
+/// the inputs or of what is `also_read`, a folder that does not exist, a name that cannot be written.
 [[nodiscard]] darkroom::Result<std::vector<std::filesystem::path>> output_paths(
-    std::span<const std::filesystem::path> inputs, const std::string& out);
+    std::span<const std::filesystem::path> inputs, const std::string& out,
+    std::span<const std::filesystem::path> also_read);
 
 }  // namespace app

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -127,6 +128,7 @@ class Render {
         std::vector<std::filesystem::path> inputs = assets_.files;
         if (!flags_.look.file.empty()) inputs.emplace_back(flags_.look.file);
         if (!flags_.look.events.empty()) inputs.emplace_back(flags_.look.events);
+        std::ranges::move(ui_files(look_), std::back_inserter(inputs));
         const FileSet files(inputs);
         for (const Shot& shot : job_.shots)
             for (const std::filesystem::path& path : {shot.picture, shot.frame})

@@ -34,6 +34,13 @@ darkroom::HudValue shown(const darkroom::GameValue& value) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> ui_files(const darkroom::Look& look) {
+    if (!look.ui) return {};
+    std::vector<std::filesystem::path> out(look.ui->controllers.begin(), look.ui->controllers.end());
+    if (!look.ui->document.empty()) out.emplace_back(look.ui->document);
+    return out;
+}
+
 Result<> UiSource::start(Composer& composer) {
     composer_ = &composer;
     controllers_.reset();
@@ -84,7 +91,11 @@ Result<> UiSource::advance(Composer& composer, double time) {
             for (const auto& [name, value] : event.values) game_.insert_or_assign(name, value);
     if (const auto entry = events_.empty() ? std::nullopt : moved_entry(composer)) {
         const darkroom::Vec2 offset = offset_at(time);
-        const std::array words{std::bit_cast<std::uint32_t>(offset.x), std::bit_cast<std::uint32_t>(offset.y)};
+        // On top of where the look has it.
+        const auto base = composer.words(*entry).subspan(composer.info(*entry)->parameters.find("offset")->word, 2);
+        const std::array words{
+            std::bit_cast<std::uint32_t>(std::clamp(std::bit_cast<float>(base[0]) + offset.x, -1.0f, 1.0f)),
+            std::bit_cast<std::uint32_t>(std::clamp(std::bit_cast<float>(base[1]) + offset.y, -1.0f, 1.0f))};
         if (Result<> done = composer.set_override(*entry, "offset", "inertia", words); !done) return done;
     }
     if (controllers_) controllers_->frame({.time = time, .game = &game_});

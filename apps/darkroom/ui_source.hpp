@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <darkroom/controllers.hpp>
 #include <darkroom/look.hpp>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -16,6 +17,9 @@
 #include "timeline.hpp"
 
 namespace app {
+
+/// What the interface of a look, as LookFlags gives it, is read from.
+[[nodiscard]] std::vector<std::filesystem::path> ui_files(const darkroom::Look& look);
 
 class UiSource {
   public:
