@@ -71,13 +71,6 @@ class CliFixture : public testing::Test {
         return names;
     }
     [[nodiscard]] Outcome run(const std::vector<std::string>& arguments) const {
-        Outcome outcome = run_once(arguments);
-        // The leak checker of some compilers falls now and then over a thread of the driver that ends.
-        if (outcome.err.find("LeakSanitizer has encountered a fatal error") != std::string::npos)
-            outcome = run_once(arguments);
-        return outcome;
-    }
-    [[nodiscard]] Outcome run_once(const std::vector<std::string>& arguments) const {
         const std::filesystem::path out = folder_.string() + ".out", err = folder_.string() + ".err";
         std::string command = quoted(program);
         for (const std::string& argument : arguments) command.append(1, ' ').append(quoted(argument));
