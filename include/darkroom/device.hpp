@@ -47,6 +47,9 @@ struct DeviceDesc {
     std::filesystem::path cache_folder;
     /// False: no file is read or written. DARKROOM_SHADER_CACHE=off does the same for all devices.
     bool caches_on_disk = true;
+    /// Enabled beside the library's own, for who shows pictures in a window: what the window system asks for, and
+    /// VK_KHR_swapchain. Errors name what is missing.
+    std::span<const char*const> instance_extensions{}, device_extensions{};
 };
 
 /// Who gives the library its device memory: a few large pieces for images, one for each buffer. Both functions or none.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdlib>
 #include <darkroom/device.hpp>
+#include <iterator>
 #include <string_view>
 
 #include "gpu/assumed_device.hpp"
@@ -65,7 +66,16 @@ bool has_instance_extension(const Dispatch& vk, const char* layer, std::string_v
     return std::ranges::any_of(extensions, [&](const VkExtensionProperties& e) { return name == e.extensionName; });
 }
 
-Result<> create_instance(Context& context, bool validate) {
+/// Refuses what is not there.
+Result<> check_extensions(std::span<const char* const> wanted, const auto& has, std::string_view who) {
+    std::vector<std::string_view> missing;
+    for (const char* const name : wanted)
+        if (!has(name)) missing.emplace_back(name);
+    if (missing.empty()) return {};
+    return machine_error(fmt::format("{} lacks {}", who, fmt::join(missing, ", ")));
+}
+
+Result<> create_instance(Context& context, bool validate, std::span<const char* const> wanted = {}) {
     Dispatch& vk = context.vk;
     const Result<PFN_vkGetInstanceProcAddr> loader = gpu::open_vulkan_loader();
     if (!loader) return failure(loader.error());
@@ -85,7 +95,9 @@ Result<> create_instance(Context& context, bool validate) {
     context.traits.has_debug_labels =
         has_instance_extension(vk, nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
         (validate && has_instance_extension(vk, validation_layer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
-    std::vector<const char*> extensions;
+    const auto has = [&](std::string_view name) { return has_instance_extension(vk, nullptr, name); };
+    if (Result<> checked = check_extensions(wanted, has, "the Vulkan loader"); !checked) return checked;
+    std::vector<const char*> extensions(wanted.begin(), wanted.end());
     if (context.traits.has_debug_labels) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (validate) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
 
@@ -178,8 +190,12 @@ Result<Candidate> choose(std::span<const Candidate> candidates, const std::strin
     return chosen;
 }
 
-Result<> create_device(Context& context) {
+Result<> create_device(Context& context, std::span<const char* const> wanted) {
     const Dispatch& vk = context.vk;
+    const auto there = gpu::device_extensions(vk, context.physical_device);
+    const auto has = [&](std::string_view name) { return gpu::has_extension(there, name); };
+    if (Result<> checked = check_extensions(wanted, has, fmt::format("device \"{}\"", context.info.name)); !checked)
+        return checked;
     VkPhysicalDeviceFeatures2 queried{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     vk.GetPhysicalDeviceFeatures2(context.physical_device, &queried);
     const VkPhysicalDeviceFeatures& available = queried.features;
@@ -217,6 +233,8 @@ Result<> create_device(Context& context) {
                      .shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat},
     };
     const gpu::PromotedNames names = gpu::promoted_names(context.info.api_version);
+    std::vector<const char*> extensions(wanted.begin(), wanted.end());
+    if (names == gpu::PromotedNames::Khr) std::ranges::copy(gpu::promoted_extensions, std::back_inserter(extensions));
     constexpr float priority = 1.0F;
     const VkDeviceQueueCreateInfo queue_info{
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -229,9 +247,8 @@ Result<> create_device(Context& context) {
         .pNext = &features,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &queue_info,
-        .enabledExtensionCount =
-            names == gpu::PromotedNames::Khr ? static_cast<std::uint32_t>(gpu::promoted_extensions.size()) : 0U,
-        .ppEnabledExtensionNames = gpu::promoted_extensions.data(),
+        .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+        .ppEnabledExtensionNames = extensions.data(),
     };
     VkDevice device = VK_NULL_HANDLE;
     const VkResult created = vk.CreateDevice(context.physical_device, &create_info, context.allocator, &device);
@@ -272,7 +289,7 @@ Result<Device> Device::create(const DeviceDesc& desc) {
     auto context = std::make_shared<Context>();
     context->log = desc.log;
     context->cache_folder = gpu::cache_folder_of(desc.cache_folder, desc.caches_on_disk);
-    if (Result<> created = create_instance(*context, wants_validation(desc)); !created)
+    if (Result<> created = create_instance(*context, wants_validation(desc), desc.instance_extensions); !created)
         return failure(std::move(created));
     const Result<std::vector<Candidate>> candidates = find_devices(*context);
     if (!candidates) return failure(candidates.error());
@@ -281,7 +298,8 @@ Result<Device> Device::create(const DeviceDesc& desc) {
     context->physical_device = chosen->device;
     context->info = std::move(chosen->info);
     context->queue_family = gpu::find_queue_family(context->vk, context->physical_device).value_or(0);
-    if (Result<> created = create_device(*context); !created) return failure(std::move(created));
+    if (Result<> created = create_device(*context, desc.device_extensions); !created)
+        return failure(std::move(created));
     if (Result<> finished = context->finish(); !finished) return failure(std::move(finished));
     return Device(std::move(context));
 }

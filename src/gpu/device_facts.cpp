@@ -11,8 +11,6 @@
 
 namespace darkroom::gpu {
 
-namespace {
-
 bool has_extension(std::span<const VkExtensionProperties> extensions, std::string_view name) {
     return std::ranges::any_of(extensions, [&](const VkExtensionProperties& e) { return name == e.extensionName; });
 }
@@ -24,8 +22,6 @@ std::vector<VkExtensionProperties> device_extensions(const Dispatch& vk, VkPhysi
     vk.EnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
     return extensions;
 }
-
-}  // namespace
 
 std::string version_text(std::uint32_t version) {
     return fmt::format("{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version));

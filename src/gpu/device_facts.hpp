@@ -4,7 +4,9 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gpu/context.hpp"
@@ -16,6 +18,9 @@ namespace darkroom::gpu {
 
 /// The names that a device of this version, made for an application of this version, has the promoted functions by.
 [[nodiscard]] PromotedNames promoted_names(std::uint32_t api_version);
+
+[[nodiscard]] std::vector<VkExtensionProperties> device_extensions(const Dispatch& vk, VkPhysicalDevice device);
+[[nodiscard]] bool has_extension(std::span<const VkExtensionProperties> extensions, std::string_view name);
 
 /// Name, driver and version. Needs an instance of Vulkan 1.1.
 [[nodiscard]] DeviceInfo identify(const Dispatch& vk, VkPhysicalDevice device, std::uint32_t index);

@@ -51,6 +51,17 @@ TEST(GpuDevice, UnknownSelectionNamesWhatThereIs) {
     EXPECT_FALSE(Device::create({.select = "999"}));
 }
 
+TEST(GpuDevice, ExtensionsThatAreMissingAreNamed) {
+    constexpr std::array wanted{"VK_KHR_nowhere", "VK_KHR_neither"};
+    const Result<Device> no_instance = Device::create({.cache_folder = cache_folder, .instance_extensions = wanted});
+    ASSERT_FALSE(no_instance);
+    EXPECT_EQ(no_instance.error().fault, Fault::Machine);
+    EXPECT_EQ(no_instance.error().text, "the Vulkan loader lacks VK_KHR_nowhere, VK_KHR_neither");
+    const Result<Device> no_device = Device::create({.cache_folder = cache_folder, .device_extensions = wanted});
+    ASSERT_FALSE(no_device);
+    EXPECT_TRUE(has(no_device.error().text, "lacks VK_KHR_nowhere, VK_KHR_neither")) << no_device.error().text;
+}
+
 TEST(GpuDevice, ValidationMessagesAreCountedAndLogged) {
     std::vector<std::string> messages;
     const Result<Device> device =
