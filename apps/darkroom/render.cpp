@@ -189,7 +189,7 @@ class Render {
             way_ = Way::Developed;
         else
             way_ = !is_debug && develop_.target == DevelopTarget::SceneLinear ? Way::Linear : Way::Display;
-        if (way_ == Way::Developed && !flags_.is_tone_mapped() && !switch_tone_mapping_off(look_))
+        if (way_ == Way::Developed && !flags_.drawn.is_tone_mapped() && !switch_tone_mapping_off(look_))
             warn("--no-tonemapping: the look has no tone mapping");
     }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The flags of `render` and what they ask for: size, camera, moments, files, what is drawn. Everything that can be
-// known without the scene and without a device is checked here.
+// The flags of `render` and what they ask for: moments, files, and what all that draw scenes have. Everything that can
+// be known without the scene and without a device is checked here.
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
@@ -14,9 +14,8 @@
 #include "image/write.hpp"
 #include "look_flags.hpp"
 #include "number_flag.hpp"
-#include "render/renderer.hpp"
 #include "run_flags.hpp"
-#include "scene/snapshot.hpp"
+#include "scene_flags.hpp"
 
 namespace app {
 
@@ -46,45 +45,25 @@ class RenderFlags {
     void add_to(CLI::App& command, std::span<const darkroom::LookEntry> named);
     [[nodiscard]] darkroom::Result<RenderJob> job() const;
 
+    SceneFlags drawn;
     LookFlags look;
     DeviceFlags device;
     WriteFlags write;
     RunFlags run;
     std::string scene;
-    bool is_tone_mapped() const { return !has_no_tone_mapping_; }
     /// Do the flags say a time? Else it is the scene's.
     bool has_time() const { return time_.is_given() || frames_; }
 
   private:
-    void add_camera(CLI::App& command);
-    void add_drawing(CLI::App& command);
     void add_moments(CLI::App& command);
-    [[nodiscard]] darkroom::Result<VkExtent2D> extent() const;
-    [[nodiscard]] darkroom::Result<darkroom::scene::OrbitOverride> orbit() const;
-    [[nodiscard]] darkroom::Result<darkroom::render::RenderDesc> desc() const;
     [[nodiscard]] darkroom::Result<std::vector<Shot>> shots() const;
     [[nodiscard]] darkroom::Result<> check_files(const std::vector<Shot>& shots) const;
 
     // Optional, so that an empty text is a wrong value, not a missing one.
     std::string out_ = "render.png";
-    std::optional<std::string> frame_, size_, target_, debug_mode_, frames_;
-    std::vector<std::string> schemas_;
-    // More pixels than any device takes. Its own limit is said once it is known.
-    NumberFlag width_{"--width", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
-    NumberFlag height_{"--height", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
+    std::optional<std::string> frame_, frames_;
     NumberFlag time_{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames_per_second_{"--fps", {.least = 0.001, .most = 1e6}};
-    // The whole numbers that a double holds.
-    NumberFlag seed_{"--seed", {.least = 0, .most = 9007199254740991, .is_whole = true}};
-    NumberFlag distance_{"--distance", {.least = 0, .most = 1e9, .is_open = true, .unit = "m"}};
-    NumberFlag yaw_{"--yaw", {.least = -1e6, .most = 1e6, .unit = "deg"}};
-    NumberFlag pitch_{"--pitch", {.least = -90, .most = 90, .unit = "deg"}};
-    NumberFlag field_of_view_{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
-    NumberFlag shadow_resolution_{"--shadow-resolution",
-                                  {.least = 16, .most = 16384, .is_whole = true, .unit = "texels"}};
-    NumberFlag samples_{"--msaa", {.least = 1, .most = 64, .is_whole = true}};
-    bool has_no_grid_ = false, has_wireframe_overlay_ = false, has_normal_arrows_ = false;
-    bool has_no_tone_mapping_ = false, has_no_shadows_ = false;
 };
 
 }  // namespace app
