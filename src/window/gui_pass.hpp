@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Draws the lists of Dear ImGui, and the panes in them (window/pane.hpp), by dynamic rendering. It makes neither the
+// lists nor the images.
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <memory>
+
+#include "window/pane.hpp"
+
+struct ImDrawData;
+struct ImFontAtlas;
+
+namespace darkroom::gpu {
+class Context;
+}
+
+namespace darkroom::window {
+
+class GuiPass {
+  public:
+    /// Different panes in one frame's lists.
+    static constexpr std::uint32_t most_panes = 256;
+
+    struct Desc {
+        VkFormat format = VK_FORMAT_UNDEFINED;  ///< of the colour attachment; an sRGB one is given decoded colours
+        std::uint32_t slots = 2;                ///< recordings that may be unfinished
+    };
+    /// Uploads the atlas, which is built if it was not. Errors: VkResult.
+    [[nodiscard]] static Result<GuiPass> create(gpu::Context& context, const Desc& desc, ImFontAtlas& atlas);
+    /// The atlas has changed, for a screen with other pixels, say. No recorded frame may be waiting to be submitted;
+    /// waits for the context's queue.
+    Result<> upload_fonts(ImFontAtlas& atlas);
+
+    /// Draws inside a rendering instance over one colour attachment of the format, as large as
+    /// DisplaySize * FramebufferScale. Slot: no recording with it is unfinished. A texture is a Pane, or null or the
+    /// atlas's for the fonts. Errors: more panes than most_panes, VkResult.
+    Result<> record(VkCommandBuffer commands, const ImDrawData& data, std::uint32_t slot);
+
+  private:
+    struct State;
+    std::shared_ptr<State> state_;
+};
+
+}  // namespace darkroom::window

@@ -1,0 +1,74 @@
+layout(location = 0) in vec2 texel;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 result;
+
+const uint transfer_encoded = 0, transfer_scene_linear = 1, transfer_raw = 2;
+const uint channels_rgb = 0, channels_alpha = 4, channels_luminance = 5;
+const uint flag_second = 1, flag_false_color = 2, flag_clipping = 4;
+const vec3 rec709_weights = vec3(0.2126, 0.7152, 0.0722);
+const float middle_grey = 0.18;
+
+vec4 fetch(sampler2D image, View view) {
+    vec2 half_texel = 0.5 / vec2(textureSize(image, 0));
+    vec2 place = view.region.xy + texel * view.region.zw;
+    // Never a texel beside the region.
+    return textureLod(image, clamp(place, view.region.xy + half_texel, view.region.xy + view.region.zw - half_texel), 0.0);
+}
+
+// The numbers that are shown: exposed light or code, or data mapped to 0..1, of the channels that were chosen.
+vec3 shown_numbers(vec4 value, View view) {
+    vec3 rgb = value.rgb;
+    if (view.transfer == transfer_raw) {
+        vec4 mapped = (value - view.low) / (view.high - view.low);
+        if (block.channels == channels_alpha) return mapped.aaa;
+        rgb = mapped.rgb;
+    } else {
+        if (block.channels == channels_alpha) return value.aaa;
+        if (view.transfer == transfer_scene_linear)
+            rgb *= block.exposure;
+        else if (block.exposure != 1.0)
+            rgb = srgb_encode(srgb_decode(rgb) * block.exposure);
+    }
+    if (block.channels == channels_rgb) return rgb;
+    if (block.channels != channels_luminance) return vec3(rgb[block.channels - 1]);
+    if (view.transfer == transfer_encoded) return vec3(srgb_encode(dot(rec709_weights, srgb_decode(rgb))));
+    return vec3(dot(rec709_weights, rgb));
+}
+
+vec3 false_color(vec3 numbers, bool is_linear) {
+    float grey = dot(rec709_weights, numbers);
+    if (is_linear) return stop_color(log2(max(grey, 1e-30) / middle_grey), srgb_encode(grey));
+    return code_color(grey, grey);
+}
+
+vec3 shown_color(vec4 value, View view) {
+    bool is_alpha = block.channels == channels_alpha;
+    vec3 numbers = shown_numbers(value, view);
+    bool is_marked = (block.flags & flag_clipping) != 0;
+    bvec3 is_broken = is_alpha ? bvec3(isnan(value.a) || isinf(value.a))
+                               : bvec3(any(isnan(value.rgb)), any(isinf(value.rgb)), false);
+    if (is_marked && any(is_broken)) return vec3(1.0, 0.0, 1.0);
+    if (any(isnan(numbers))) numbers = vec3(0.0);
+    bool is_linear = view.transfer == transfer_scene_linear && !is_alpha;
+    vec3 picture = is_linear ? srgb_encode(clamp(numbers, 0.0, 1.0)) : clamp(numbers, 0.0, 1.0);
+    if ((block.flags & flag_false_color) != 0 && view.transfer != transfer_raw && !is_alpha)
+        picture = false_color(numbers, is_linear);
+    // Stripes of four pixels, so that what is under them stays visible.
+    bool is_stripe = (uint(gl_FragCoord.x + gl_FragCoord.y) & 7u) < 4u;
+    if (is_marked && is_stripe) {
+        if (any(greaterThanEqual(numbers, vec3(1.0)))) return vec3(1.0, 0.1, 0.1);
+        if (any(lessThan(numbers, vec3(0.0)))) return vec3(0.1, 0.3, 1.0);
+    }
+    return picture;
+}
+
+void main() {
+    bool has_second = (block.flags & flag_second) != 0;
+    float from_divider = texel.x - block.divider;
+    float pixel = fwidth(texel.x);
+    vec3 picture = has_second && from_divider >= 0.0 ? shown_color(fetch(second_image, block.second), block.second)
+                                                     : shown_color(fetch(first_image, block.first), block.first);
+    // Two pixels wide: one on either side.
+    if (has_second && abs(from_divider) < pixel) picture = vec3(0.9);
+    result = to_target(color * vec4(picture, 1.0));
+}
