@@ -80,6 +80,7 @@ Json json_of(const EffectInfo& effect) {
             {"is_flat", is_flat},
             {"starts_on", is_flat && effect.flat.starts_on},
             {"flag", darkroom::flag_name(darkroom::flat_key(effect.name, "enabled"))},
+            {"toggle_key", effect.toggle_key},
             {"needs", std::move(needs)},
             {"parameters", std::move(rows)}};
 }
@@ -123,6 +124,7 @@ int show(const Options& options) {
         fmt::print("# {}\n\n{}\n", effect->name, effect->doc);
     else
         fmt::print("{}", found->text);
+    if (effect->toggle_key != 0) fmt::print("\nA viewer switches it by F{}.\n", effect->toggle_key);
     fmt::print("\n## Parameters\n\n{}", darkroom::documentation(effect->parameters, effect->name));
     return exit_ok;
 }

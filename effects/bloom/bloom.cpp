@@ -105,6 +105,7 @@ const EffectInfo& effect_info(const Bloom&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
         .flat = {.documented = 50, .scene_linear = 50, .starts_on = true},
+        .toggle_key = 5,
         .build = build,
         .reference = bloom_reference,
         .is_identity = is_identity,

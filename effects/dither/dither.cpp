@@ -65,6 +65,7 @@ const EffectInfo& effect_info(const Dither&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::Encoded),
         .flat = {.documented = 100, .scene_linear = 100, .starts_on = false},
+        .toggle_key = 9,
         .is_last_step = true,
         .build = build,
         .reference = dither_image_reference,

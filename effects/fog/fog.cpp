@@ -30,6 +30,7 @@ const EffectInfo& effect_info(const Fog&) {
         .accepts = Domains::all(),
         .needs = {.depth = true},
         .flat = {.documented = 80, .scene_linear = 55, .starts_on = false},
+        .toggle_key = 8,
         .build =
             [](PassBuilder& builder) {
                 builder.loaded_side("fog_distance", linear_depth(builder), {1e10f, 0, 0, 0});

@@ -177,6 +177,7 @@ const EffectInfo& effect_info(const Ssao&) {
         .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
         .needs = {.depth = true},
         .flat = {.documented = 30, .scene_linear = 30, .starts_on = true},
+        .toggle_key = 7,
         .build = build,
         .reference = ssao_reference,
         .conflict = conflict,

@@ -161,6 +161,7 @@ const EffectInfo& effect_info(const Volumetric&) {
         .accepts = Domains::only(Domain::SceneLinear),
         .needs = {.depth = true, .shadows = true},
         .flat = {.documented = 40, .scene_linear = 40, .starts_on = false},
+        .toggle_key = 10,
         .build = build,
         .reference = volumetric_reference,
         .is_identity = [](const void* parameters) { return volumetric_of(parameters).density == 0.0f; },

@@ -226,8 +226,9 @@ struct EffectInfo {
     Domain (*makes)(Domain before, const void* parameters) = nullptr;
     Needs needs;
     FlatPlace flat;
-    OutputScale output_scale;  ///< of effects with a result of their own
-    bool has_second = false;   ///< reads a second picture, as side image `second`
+    std::uint32_t toggle_key = 0;  ///< of a viewer: F1 .. F12 that switches it; 0: none
+    OutputScale output_scale;      ///< of effects with a result of their own
+    bool has_second = false;       ///< reads a second picture, as side image `second`
     /// Its text names no image `second`, but calls `vec4 <name>_second(Pixel pixel)`: a reading is then made in place.
     bool has_second_in_place = false;
     bool parts_channels = false;  ///< of a map: Place::barrel differs from channel to channel
