@@ -35,7 +35,7 @@ Result<std::shared_ptr<Drawing>> draw(Bed& bed, scene::Scene scene) {
     constexpr float aspect = static_cast<float>(scene_extent.width) / static_cast<float>(scene_extent.height);
     out->snapshot = scene::snapshot(out->scene, out->assets, {.aspect = aspect});
     auto renderer = render::Renderer::create(bed.device, out->scene, out->assets,
-                                             {.extent = scene_extent, .has_grid = out->scene.has_grid});
+                                             {.extent = scene_extent, .draw = {.has_grid = out->scene.has_grid}});
     if (!renderer) return failure(std::move(renderer));
     out->renderer.emplace(std::move(*renderer));
     if (auto done = out->renderer->prepare(out->snapshot); !done) return failure(std::move(done));

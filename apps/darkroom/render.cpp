@@ -183,7 +183,7 @@ class Render {
     }
 
     void choose_way() {
-        const bool is_debug = job_.desc.debug != render::DebugView::None;
+        const bool is_debug = job_.desc.draw.debug != render::DebugView::None;
         const bool is_off = flags_.look.is_off() || !look_.is_enabled;
         if (!is_debug && !is_off)
             way_ = Way::Developed;
@@ -199,7 +199,7 @@ class Render {
         device_ = std::make_unique<darkroom::Device>(std::move(*device));
         render::RenderDesc& desc = job_.desc;
         if (Result<> done = darkroom::check_extent(*device_, desc.extent); !done) return done;
-        desc.has_grid = desc.has_grid && scene_.has_grid;
+        desc.draw.has_grid = desc.draw.has_grid && scene_.has_grid;
         const bool has_frames = !job_.shots.back().frame.empty();
         if (way_ == Way::Display) {
             desc.output = render::Output::Display;
@@ -209,7 +209,7 @@ class Render {
         }
         if (way_ != Way::Display || has_frames) {
             desc.output = render::Output::Hdr;
-            desc.debug = render::DebugView::None;
+            desc.draw.debug = render::DebugView::None;
             if (Result<> done = make_renderer(desc, hdr_); !done) return done;
         }
         if (way_ != Way::Developed) return {};
@@ -220,7 +220,8 @@ class Render {
     }
 
     Result<> make_renderer(const render::RenderDesc& desc, std::optional<render::Renderer>& to) {
-        Result<render::Renderer> made = render::Renderer::create(*device_, scene_, assets_, desc);
+        Result<render::Renderer> made =
+            display_ ? display_->sharing(desc) : render::Renderer::create(*device_, scene_, assets_, desc);
         if (!made) return failure(std::move(made));
         to.emplace(std::move(*made));
         return {};

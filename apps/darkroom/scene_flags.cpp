@@ -116,13 +116,13 @@ Result<darkroom::render::RenderDesc> SceneFlags::desc() const {
     if (debug_mode_) {
         const Result<DebugView> view = parse_debug_mode(*debug_mode_);
         if (!view) return failure(view.error());
-        out.debug = *view;
+        out.draw.debug = *view;
     }
     out.is_tone_mapped = !has_no_tone_mapping_;
-    out.has_shadows = !has_no_shadows_;
-    out.has_grid = !has_no_grid_;
-    out.has_wireframe_overlay = has_wireframe_overlay_;
-    out.has_normal_arrows = has_normal_arrows_;
+    out.draw.has_shadows = !has_no_shadows_;
+    out.draw.has_grid = !has_no_grid_;
+    out.draw.has_wireframe_overlay = has_wireframe_overlay_;
+    out.draw.has_normal_arrows = has_normal_arrows_;
     return out;
 }
 

@@ -7,10 +7,15 @@ namespace darkroom::render {
 
 namespace {
 
-MeshVariant variant_of(const scene::Snapshot& snapshot, const Batch& batch, const GpuScene& scene, MeshKind kind) {
-    const scene::SnapshotMaterial& material = snapshot.materials[batch.material];
+/// What surfaces are drawn as.
+MeshKind surface_kind(const MeshLook& look) {
+    return look.debug == DebugView::Wireframe ? MeshKind::Edges : MeshKind::Surface;
+}
+
+MeshVariant variant_of(const MeshDraw& draw, const Batch& batch, const GpuScene& scene, MeshKind kind) {
+    const scene::SnapshotMaterial& material = draw.snapshot->materials[batch.material];
     const scene::ModelMaterial& surface = material.surface;
-    MeshVariant variant{.kind = kind, .is_skinned = batch.is_skinned};
+    MeshVariant variant{.kind = kind, .debug = draw.look.debug, .is_skinned = batch.is_skinned};
     variant.is_morphed = scene.mesh(batch.mesh).morph_targets > 0;
     if (kind != MeshKind::Surface) return variant;
     variant.is_mirrored = batch.is_mirrored;
@@ -28,17 +33,13 @@ MeshVariant variant_of(const scene::Snapshot& snapshot, const Batch& batch, cons
 struct MeshPass::State {
     gpu::Context* context = nullptr;
     MeshPipelines pipelines;
-    DebugView debug = DebugView::None;
     std::uint64_t draw_calls = 0;
 
-    /// What surfaces are drawn as.
-    [[nodiscard]] MeshKind surface_kind() const {
-        return debug == DebugView::Wireframe ? MeshKind::Edges : MeshKind::Surface;
-    }
     Result<const gpu::Pipeline*> bind(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene,
                                       const Batch& batch, MeshKind kind);
     Result<> record(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene, const std::vector<Batch>& batches,
                     MeshKind kind);
+    Result<> record_normal_arrows(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene);
 
     // Of the recording that is going on.
     VkPipeline bound_pipeline = VK_NULL_HANDLE;
@@ -53,7 +54,7 @@ struct MeshPass::State {
 Result<const gpu::Pipeline*> MeshPass::State::bind(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene,
                                                    const Batch& batch, MeshKind kind) {
     const gpu::Dispatch& vk = context->vk;
-    Result<const gpu::Pipeline*> pipeline = pipelines.find(variant_of(*draw.snapshot, batch, scene, kind));
+    Result<const gpu::Pipeline*> pipeline = pipelines.find(variant_of(draw, batch, scene, kind));
     if (!pipeline) return pipeline;
     Result<VkDescriptorSet> textures = scene.textures(draw.snapshot->materials[batch.material]);
     if (!textures) return failure(std::move(textures));
@@ -88,56 +89,12 @@ Result<> MeshPass::State::record(VkCommandBuffer commands, const MeshDraw& draw,
     return {};
 }
 
-Result<MeshPass> MeshPass::create(gpu::Context& context, const PassSetup& setup, GpuScene& scene, DebugView debug) {
-    if (debug == DebugView::Wireframe && !context.traits.has_wireframe)
-        return user_error("debug view wireframe: " + context.info.name + " cannot draw the edges of triangles");
-    MeshPass out;
-    out.state_ = std::make_shared<State>();
-    out.state_->context = &context;
-    out.state_->debug = debug;
-    out.state_->pipelines.create(context, setup, scene.material_layout.handle, debug);
-    return out;
-}
-
-Result<> MeshPass::prepare(const scene::Snapshot& snapshot, const DrawList& list, GpuScene& scene) {
-    const auto make = [&](const std::vector<Batch>& batches, MeshKind kind) -> Result<> {
-        for (const Batch& batch : batches) {
-            Result<const gpu::Pipeline*> made = state_->pipelines.find(variant_of(snapshot, batch, scene, kind));
-            if (!made) return failure(std::move(made));
-        }
-        return {};
-    };
-    if (Result<> made = make(list.opaque, state_->surface_kind()); !made) return made;
-    if (Result<> made = make(list.transparent, state_->surface_kind()); !made) return made;
-    return make(list.wireframe, MeshKind::RoomEdges);
-}
-
-Result<> MeshPass::record_opaque(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
-    return state_->record(commands, draw, scene, draw.list->opaque, state_->surface_kind());
-}
-
-Result<> MeshPass::record_transparent(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
-    Result<> rooms = state_->record(commands, draw, scene, draw.list->wireframe, MeshKind::RoomEdges);
-    if (!rooms) return rooms;
-    return state_->record(commands, draw, scene, draw.list->transparent, state_->surface_kind());
-}
-
-Result<> MeshPass::record_wireframe_overlay(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
-    if (!state_->context->traits.has_wireframe)
-        return user_error("wireframe overlay: " + state_->context->info.name + " cannot draw the edges of triangles");
-    for (const std::vector<Batch>* batches : {&draw.list->opaque, &draw.list->transparent}) {
-        Result<> done = state_->record(commands, draw, scene, *batches, MeshKind::Overlay);
-        if (!done) return done;
-    }
-    return {};
-}
-
-Result<> MeshPass::record_normal_arrows(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
-    const gpu::Dispatch& vk = state_->context->vk;
-    state_->forget_bindings();
+Result<> MeshPass::State::record_normal_arrows(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) {
+    const gpu::Dispatch& vk = context->vk;
+    forget_bindings();
     for (const std::vector<Batch>* batches : {&draw.list->opaque, &draw.list->transparent}) {
         for (const Batch& batch : *batches) {
-            Result<const gpu::Pipeline*> pipeline = state_->bind(commands, draw, scene, batch, MeshKind::NormalArrows);
+            Result<const gpu::Pipeline*> pipeline = bind(commands, draw, scene, batch, MeshKind::NormalArrows);
             if (!pipeline) return failure(std::move(pipeline));
             const GpuMesh& mesh = scene.mesh(batch.mesh);
             scene.bind_vertices(commands, mesh);
@@ -147,11 +104,57 @@ Result<> MeshPass::record_normal_arrows(VkCommandBuffer commands, const MeshDraw
                                     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof instance,
                                     &instance);
                 vk.CmdDraw(commands, 2, mesh.vertex_count, 0, 0);
-                ++state_->draw_calls;
+                ++draw_calls;
             }
         }
     }
     return {};
+}
+
+MeshPass MeshPass::create(gpu::Context& context, const PassSetup& setup, const GpuScene& scene) {
+    MeshPass out;
+    out.state_ = std::make_shared<State>();
+    out.state_->context = &context;
+    out.state_->pipelines.create(context, setup, scene.material_layout.handle);
+    return out;
+}
+
+Result<> MeshPass::prepare(const MeshDraw& draw, const GpuScene& scene) {
+    const auto make = [&](const std::vector<Batch>& batches, MeshKind kind) -> Result<> {
+        for (const Batch& batch : batches) {
+            Result<const gpu::Pipeline*> made = state_->pipelines.find(variant_of(draw, batch, scene, kind));
+            if (!made) return failure(std::move(made));
+        }
+        return {};
+    };
+    std::vector<MeshKind> kinds{surface_kind(draw.look)};
+    if (draw.look.has_edges) kinds.push_back(MeshKind::Overlay);
+    if (draw.look.has_normal_arrows) kinds.push_back(MeshKind::NormalArrows);
+    for (const MeshKind kind : kinds)
+        for (const std::vector<Batch>* batches : {&draw.list->opaque, &draw.list->transparent})
+            if (Result<> made = make(*batches, kind); !made) return made;
+    return make(draw.list->wireframe, MeshKind::RoomEdges);
+}
+
+Result<> MeshPass::record_opaque(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
+    return state_->record(commands, draw, scene, draw.list->opaque, surface_kind(draw.look));
+}
+
+Result<> MeshPass::record_transparent(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
+    Result<> rooms = state_->record(commands, draw, scene, draw.list->wireframe, MeshKind::RoomEdges);
+    if (!rooms) return rooms;
+    return state_->record(commands, draw, scene, draw.list->transparent, surface_kind(draw.look));
+}
+
+Result<> MeshPass::record_overlays(VkCommandBuffer commands, const MeshDraw& draw, GpuScene& scene) const {
+    if (draw.look.has_edges) {
+        for (const std::vector<Batch>* batches : {&draw.list->opaque, &draw.list->transparent}) {
+            Result<> done = state_->record(commands, draw, scene, *batches, MeshKind::Overlay);
+            if (!done) return done;
+        }
+    }
+    if (!draw.look.has_normal_arrows) return {};
+    return state_->record_normal_arrows(commands, draw, scene);
 }
 
 std::uint64_t MeshPass::draw_calls() const { return state_->draw_calls; }

@@ -33,12 +33,10 @@ gpu::ColorTarget blended_target(SurfaceBlend blend, bool has_alpha_layer) {
     return target;
 }
 
-void MeshPipelines::create(gpu::Context& context, const PassSetup& setup, VkDescriptorSetLayout textures,
-                           DebugView debug) {
+void MeshPipelines::create(gpu::Context& context, const PassSetup& setup, VkDescriptorSetLayout textures) {
     context_ = &context;
     setup_ = setup;
     textures_ = textures;
-    debug_ = debug;
 }
 
 Result<const gpu::Pipeline*> MeshPipelines::find(const MeshVariant& variant) {
@@ -71,7 +69,7 @@ gpu::PipelineDesc MeshPipelines::describe(const MeshVariant& variant) const {
 
 void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant& variant) const {
     // Views of one property show what is nearest; only the unlit one still is a picture.
-    const bool shows_property = debug_ != DebugView::None && debug_ != DebugView::Unlit;
+    const bool shows_property = variant.debug != DebugView::None && variant.debug != DebugView::Unlit;
     const bool is_transparent = is_blend(variant.blend) && !shows_property;
     desc.name = "mesh";
     desc.vertex = shader_text("mesh_vertex.glsl");
@@ -82,7 +80,7 @@ void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant&
     desc.specialization[2] = word(setup_.has_environment);
     desc.specialization[3] = word(variant.blend == SurfaceBlend::Mask);
     desc.specialization[4] = static_cast<std::uint32_t>(setup_.output);
-    desc.specialization[5] = static_cast<std::uint32_t>(debug_);
+    desc.specialization[5] = static_cast<std::uint32_t>(variant.debug);
     desc.specialization[6] = word(setup_.is_tone_mapped);
     desc.specialization[7] = word(is_transparent || variant.writes_alpha_only);
     desc.specialization[8] = setup_.shadow_maps;
@@ -115,7 +113,7 @@ void MeshPipelines::describe_lines(gpu::PipelineDesc& desc, const MeshVariant& v
     if (are_arrows || variant.kind == MeshKind::RoomEdges) desc.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
     if (are_arrows) return;
     desc.specialization[0] = word(variant.kind == MeshKind::Overlay);
-    desc.specialization[1] = word(setup_.output == Output::Display && debug_ == DebugView::None);
+    desc.specialization[1] = word(setup_.output == Output::Display && variant.debug == DebugView::None);
     if (variant.kind == MeshKind::RoomEdges) return;
     desc.polygon_mode = VK_POLYGON_MODE_LINE;
     if (variant.kind == MeshKind::Overlay) {

@@ -19,6 +19,7 @@ enum class MeshKind : std::uint8_t {
 
 struct MeshVariant {
     MeshKind kind = MeshKind::Surface;
+    DebugView debug = DebugView::None;
     bool is_skinned = false, is_morphed = false;
     // Of surfaces:
     bool is_mirrored = false, is_double_sided = false, writes_alpha_only = false, has_textures = false;
@@ -28,7 +29,7 @@ struct MeshVariant {
 
 class MeshPipelines {
   public:
-    void create(gpu::Context& context, const PassSetup& setup, VkDescriptorSetLayout textures, DebugView debug);
+    void create(gpu::Context& context, const PassSetup& setup, VkDescriptorSetLayout textures);
     [[nodiscard]] Result<const gpu::Pipeline*> find(const MeshVariant& variant);
 
   private:
@@ -39,7 +40,6 @@ class MeshPipelines {
     gpu::Context* context_ = nullptr;
     PassSetup setup_;
     VkDescriptorSetLayout textures_ = VK_NULL_HANDLE;
-    DebugView debug_ = DebugView::None;
     std::map<MeshVariant, gpu::Pipeline> pipelines_;  ///< nodes stay where they are
 };
 

@@ -266,16 +266,17 @@ TEST(RenderGpuMesh, OverlaysDrawEdgesAndArrowsOverThePicture) {
         return lit;
     };
     EXPECT_EQ(lit_pixels({.extent = small}), 0);
-    const int diagonal = lit_pixels({.extent = small, .has_wireframe_overlay = true});
+    const int diagonal = lit_pixels({.extent = small, .draw = {.has_wireframe_overlay = true}});
     EXPECT_GE(diagonal, 25);
     EXPECT_LE(diagonal, 60);
     add_box(snapshot, {0, 0, -4}, {0.5F, 0.5F, -3.5F}, plain({0, 0, 0, 1}));
-    EXPECT_GT(lit_pixels({.extent = small, .has_normal_arrows = true}), 0);
+    EXPECT_GT(lit_pixels({.extent = small, .draw = {.has_normal_arrows = true}}), 0);
 }
 
 TEST(RenderGpuMesh, TheViewOfEdgesShowsNoSurface) {
     if (!gpu::test::context().traits.has_wireframe) GTEST_SKIP() << "the device draws no edges of triangles";
-    Renderer renderer = renderer_for({.extent = small, .output = Output::Display, .debug = DebugView::Wireframe});
+    Renderer renderer =
+        renderer_for({.extent = small, .output = Output::Display, .draw = {.debug = DebugView::Wireframe}});
     scene::Snapshot snapshot = snapshot_of(small);
     add_wall(snapshot, 4, 3, plain({1, 1, 1, 1}));
     const Pixels picture = shoot(renderer, snapshot).color;

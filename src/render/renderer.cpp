@@ -11,12 +11,11 @@
 
 #include "core/assert.hpp"
 #include "render/billboard_pass.hpp"
-#include "render/environment.hpp"
 #include "render/frame_buffers.hpp"
-#include "render/gpu_scene.hpp"
 #include "render/mesh_pass.hpp"
 #include "render/renderer_blocks.hpp"
 #include "render/resolve.hpp"
+#include "render/scene_on_device.hpp"
 #include "render/shadow_pass.hpp"
 #include "render/sky_pass.hpp"
 #include "render/targets.hpp"
@@ -25,33 +24,43 @@ namespace darkroom::render {
 
 namespace {
 
-Result<> check(const Device& device, const RenderDesc& desc) {
-    const gpu::Traits& traits = device.context().traits;
-    const std::string& name = device.info().name;
-    const std::uint32_t limit = traits.max_image_dimension;
-    const auto [width, height] = desc.extent;
-    if (width == 0 || height == 0 || width > limit || height > limit)
-        return user_error(fmt::format("size {}x{}: {} allows 1x1 to {}x{}", width, height, name, limit, limit));
-    const bool is_count = std::has_single_bit(desc.samples) && (desc.samples & traits.sample_counts) != 0;
-    if (!is_count) return user_error(fmt::format("samples {}: {} has {}", desc.samples, name, sample_counts(device)));
-    if (desc.debug != DebugView::None && desc.output == Output::Hdr)
-        return user_error("debug view: it is a picture of its own and needs the display output, not hdr");
-    if (desc.has_wireframe_overlay && !traits.has_wireframe)
-        return user_error(fmt::format("wireframe overlay: {} cannot draw the edges of triangles", name));
-    return {};
+std::string counts_of(const gpu::Traits& traits) {
+    std::string out;
+    for (std::uint32_t count = 1; count <= VK_SAMPLE_COUNT_64_BIT; count *= 2)
+        if ((traits.sample_counts & count) != 0) out += fmt::format("{}{}", out.empty() ? "" : ", ", count);
+    return out;
 }
 
-TargetFormats formats_of(const RenderDesc& desc, bool has_alpha_layer) {
-    TargetFormats formats{.samples = static_cast<VkSampleCountFlagBits>(desc.samples),
-                          .has_layers = desc.output == Output::Hdr,
-                          .has_alpha_layer = has_alpha_layer};
-    if (desc.output == Output::Display) formats.color = desc.display_format;
-    return formats;
+Result<> check(const gpu::Context& context, VkExtent2D extent) {
+    const std::uint32_t limit = context.traits.max_image_dimension;
+    const auto [width, height] = extent;
+    if (width != 0 && height != 0 && width <= limit && height <= limit) return {};
+    return user_error(
+        fmt::format("size {}x{}: {} allows 1x1 to {}x{}", width, height, context.info.name, limit, limit));
+}
+
+Result<> check(const gpu::Context& context, const DrawOptions& options, Output output) {
+    if (options.debug != DebugView::None && output == Output::Hdr)
+        return user_error("debug view: it is a picture of its own and needs the display output, not hdr");
+    const bool has_edges = options.has_wireframe_overlay || options.debug == DebugView::Wireframe;
+    if (!has_edges || context.traits.has_wireframe) return {};
+    return user_error(fmt::format("{}: {} cannot draw the edges of triangles",
+                                  options.has_wireframe_overlay ? "wireframe overlay" : "debug view wireframe",
+                                  context.info.name));
+}
+
+Result<> check(const gpu::Context& context, const RenderDesc& desc) {
+    if (Result<> checked = check(context, desc.extent); !checked) return checked;
+    const std::uint32_t counts = context.traits.sample_counts;
+    if (!std::has_single_bit(desc.samples) || (desc.samples & counts) == 0)
+        return user_error(
+            fmt::format("samples {}: {} has {}", desc.samples, context.info.name, counts_of(context.traits)));
+    return check(context, desc.draw, desc.output);
 }
 
 /// Moves the value into `out`, or passes the error on.
-template <class T>
-Result<> take(Result<T>&& made, T& out) {
+template <class T, class Out>
+Result<> take(Result<T>&& made, Out& out) {
     if (!made) return failure(std::move(made));
     out = std::move(*made);
     return {};
@@ -62,12 +71,9 @@ Result<> take(Result<T>&& made, T& out) {
 struct Renderer::State {
     gpu::Context* context = nullptr;
     RenderDesc desc;
-    bool has_alpha_layer = false;
+    std::shared_ptr<SceneOnDevice> scene;
     FrameSettings settings;
-    gpu::SetLayout frame_layout;
     std::unique_ptr<SetAllocator> sets;
-    std::optional<GpuScene> scene;
-    std::optional<GpuEnvironment> environment;
     std::optional<ShadowPass> shadows;
     std::optional<MeshPass> meshes;
     std::optional<SkyPass> sky;
@@ -85,102 +91,110 @@ struct Renderer::State {
     ImageRef picture;
     RenderCounters counters;
 
-    Result<> create(Device& device, const scene::Scene& source, const scene::Assets& assets);
-    Result<> create_passes(const scene::Snapshot& first);
-    Result<> create_targets();
+    Result<> create();
+    Result<> create_passes();
+    Result<> create_targets(VkExtent2D extent);
+    void apply(const DrawOptions& options);
     Result<> prepare(const scene::Snapshot& next);
     Result<> fill_buffers(FrameBuffers& buffers);
     void fill_frame();
     Result<> record(VkCommandBuffer commands);
     Result<> record_scene(VkCommandBuffer commands);
 
+    [[nodiscard]] TargetFormats formats() const;
+    [[nodiscard]] MeshDraw mesh_draw(const scene::Snapshot& drawn, const DrawList& drawn_list) const;
     /// Views of one property show meshes alone.
     [[nodiscard]] bool shows_surroundings() const {
-        return desc.debug == DebugView::None || desc.debug == DebugView::Unlit;
+        return desc.draw.debug == DebugView::None || desc.draw.debug == DebugView::Unlit;
     }
     [[nodiscard]] ResolveUse resolve_use() const { return resolve ? resolve->use() : ResolveUse{}; }
 };
 
-Result<> Renderer::State::create(Device& device, const scene::Scene& source, const scene::Assets& assets) {
-    context = &device.context();
-    has_alpha_layer = source.has_alpha_layer;
-    Result<> done = take(create_frame_layout(*context), frame_layout);
-    if (!done) return done;
-    Result<GpuScene> uploaded = GpuScene::create(*context, assets);
-    if (!uploaded) return failure(std::move(uploaded));
-    scene.emplace(std::move(*uploaded));
-    Result<GpuEnvironment> surroundings = GpuEnvironment::create(*context, assets.skybox);
-    if (!surroundings) return failure(std::move(surroundings));
-    environment.emplace(std::move(*surroundings));
-    settings = {.extent = desc.extent,
-                .output = desc.output,
-                .is_tone_mapped = desc.is_tone_mapped && desc.debug == DebugView::None,
-                .debug = desc.debug,
-                .environment = source.environment,
-                .irradiance = environment->irradiance,
-                .environment_levels = environment->levels,
-                .has_environment = environment->is_given};
-    // What the scene is like at its start says how many shadow maps and which pipelines it needs.
-    const scene::Snapshot first = scene::snapshot(source, assets, {});
-    if (done = create_targets(); !done) return done;
-    if (done = create_passes(first); !done) return done;
+Result<> Renderer::State::create() {
+    settings = {.output = desc.output,
+                .environment = scene->surroundings,
+                .irradiance = scene->environment.irradiance,
+                .environment_levels = scene->environment.levels,
+                .has_environment = scene->environment.is_given};
+    apply(desc.draw);
+    if (desc.output == Output::Hdr) {
+        Result<> made = take(Resolve::create(*context, formats(), desc.frames_in_flight), resolve);
+        if (!made) return made;
+    }
+    if (Result<> done = create_targets(desc.extent); !done) return done;
+    if (Result<> done = create_passes(); !done) return done;
     sets = std::make_unique<SetAllocator>(*context, frame_set_sizes(), desc.frames_in_flight);
     for (std::uint32_t i = 0; i < desc.frames_in_flight; ++i) {
-        Result<FrameBuffers> made = FrameBuffers::create(*context, *sets, frame_layout.handle);
+        Result<FrameBuffers> made = FrameBuffers::create(*context, *sets, scene->frame_layout.handle);
         if (!made) return failure(std::move(made));
         slots.push_back(std::move(*made));
     }
-    return meshes->prepare(first, draw_list(first), *scene);
+    const DrawList all = draw_list(scene->first);
+    return meshes->prepare(mesh_draw(scene->first, all), scene->meshes);
 }
 
-Result<> Renderer::State::create_targets() {
-    const TargetFormats formats = formats_of(desc, has_alpha_layer);
-    Result<> done = take(Targets::create(*context, {.extent = desc.extent, .formats = formats}), targets);
-    if (!done) return done;
-    if (!formats.has_layers) {
-        picture = targets.copied_picture();
-        return {};
-    }
-    Result<Resolve> made = Resolve::create(*context, formats, desc.frames_in_flight);
-    if (!made) return failure(std::move(made));
-    resolve.emplace(std::move(*made));
-    picture = targets.drawn(targets.color, resolve->use());
+void Renderer::State::apply(const DrawOptions& options) {
+    desc.draw = options;
+    settings.debug = options.debug;
+    settings.is_tone_mapped = desc.is_tone_mapped && options.debug == DebugView::None;
+}
+
+TargetFormats Renderer::State::formats() const {
+    TargetFormats out{.samples = static_cast<VkSampleCountFlagBits>(desc.samples),
+                      .has_layers = desc.output == Output::Hdr,
+                      .has_alpha_layer = scene->has_alpha_layer};
+    if (desc.output == Output::Display) out.color = desc.display_format;
+    return out;
+}
+
+Result<> Renderer::State::create_targets(VkExtent2D extent) {
+    Result<> made = take(Targets::create(*context, {.extent = extent, .formats = formats()}), targets);
+    if (!made) return made;
+    desc.extent = settings.extent = extent;
+    picture = resolve ? targets.drawn(targets.color, resolve->use()) : targets.copied_picture();
+    frame = {};
+    snapshot = nullptr;
     return {};
 }
 
-Result<> Renderer::State::create_passes(const scene::Snapshot& first) {
-    const auto directional = directional_lights(first);
+Result<> Renderer::State::create_passes() {
+    const auto directional = directional_lights(scene->first);
     const auto casting = static_cast<std::uint32_t>(std::ranges::count_if(directional, is_caster));
-    const std::uint32_t maps = desc.has_shadows ? casting : 0;
-    Result<ShadowPass> made_shadows = ShadowPass::create(*context, frame_layout.handle, *scene, desc.cascades, maps);
-    if (!made_shadows) return failure(std::move(made_shadows));
-    shadows.emplace(std::move(*made_shadows));
-    shadows->prepare(first);
-    const PassSetup setup{.frame_layout = frame_layout.handle,
-                          .formats = formats_of(desc, has_alpha_layer),
+    const std::uint32_t maps = desc.draw.has_shadows ? casting : 0;
+    const VkDescriptorSetLayout layout = scene->frame_layout.handle;
+    Result<> made = take(ShadowPass::create(*context, layout, scene->meshes, desc.cascades, maps), shadows);
+    if (!made) return made;
+    const PassSetup setup{.frame_layout = layout,
+                          .formats = formats(),
                           .output = desc.output,
-                          .is_tone_mapped = settings.is_tone_mapped,
+                          .is_tone_mapped = desc.is_tone_mapped,
                           .shadow_maps = maps,
                           .has_environment = settings.has_environment};
-    Result<MeshPass> made_meshes = MeshPass::create(*context, setup, *scene, desc.debug);
-    if (!made_meshes) return failure(std::move(made_meshes));
-    meshes.emplace(std::move(*made_meshes));
-    Result<SkyPass> made_sky = SkyPass::create(*context, setup);
-    if (!made_sky) return failure(std::move(made_sky));
-    sky.emplace(std::move(*made_sky));
-    Result<BillboardPass> made_billboards = BillboardPass::create(*context, setup, *scene);
-    if (!made_billboards) return failure(std::move(made_billboards));
-    billboards.emplace(std::move(*made_billboards));
-    return {};
+    meshes = MeshPass::create(*context, setup, scene->meshes);
+    if (made = take(SkyPass::create(*context, setup), sky); !made) return made;
+    return take(BillboardPass::create(*context, setup, scene->meshes), billboards);
+}
+
+MeshDraw Renderer::State::mesh_draw(const scene::Snapshot& drawn, const DrawList& drawn_list) const {
+    return {.frame_set = slots[slot].set,
+            .snapshot = &drawn,
+            .list = &drawn_list,
+            .look = {.debug = desc.draw.debug,
+                     .has_edges = desc.draw.has_wireframe_overlay,
+                     .has_normal_arrows = desc.draw.has_normal_arrows}};
 }
 
 Result<> Renderer::State::prepare(const scene::Snapshot& next) {
     snapshot = &next;
     slot = (slot + 1) % desc.frames_in_flight;
     list = draw_list(next);
-    shadows->prepare(next);
-    Result<> done = meshes->prepare(next, list, *scene);
-    if (done) done = billboards->prepare(next, *scene, slot);
+    if (desc.draw.has_shadows && desc.draw.debug == DebugView::None) {
+        shadows->prepare(next);
+    } else {
+        shadows->clear();
+    }
+    Result<> done = meshes->prepare(mesh_draw(next, list), scene->meshes);
+    if (done) done = billboards->prepare(next, scene->meshes, slot);
     if (done) done = fill_buffers(slots[slot]);
     if (!done) return done;
     if (resolve) resolve->prepare(next.camera, targets, slot);
@@ -212,7 +226,7 @@ Result<> Renderer::State::fill_buffers(FrameBuffers& buffers) {
     const auto write = [&](const DrawList& drawn) {
         for (const std::uint32_t index : drawn.order) {
             const scene::Instance& source = snapshot->instances[index];
-            *instance++ = instance_block(source, scene->mesh(source.mesh));
+            *instance++ = instance_block(source, scene->meshes.mesh(source.mesh));
         }
     };
     write(list);
@@ -228,7 +242,7 @@ Result<> Renderer::State::fill_buffers(FrameBuffers& buffers) {
             i < snapshot->previous_weights.size() ? snapshot->previous_weights[i] : snapshot->weights[i];
         buffers.weights()[i] = scene::vec2(snapshot->weights[i], before);
     }
-    buffers.write_set(*context, *scene, *shadows, *environment);
+    buffers.write_set(*context, scene->meshes, *shadows, scene->environment);
     return {};
 }
 
@@ -271,11 +285,11 @@ Result<> Renderer::State::record(VkCommandBuffer commands) {
     DARKROOM_ASSERT(snapshot != nullptr);
     gpu::begin_label(*context, commands, "scene");
     const auto first_caster = static_cast<std::uint32_t>(list.order.size());
-    Result<> done = shadows->record(commands, slots[slot].set, *snapshot, *scene, first_caster);
+    Result<> done = shadows->record(commands, slots[slot].set, *snapshot, scene->meshes, first_caster);
     if (done) {
         // A display picture is cleared to what has no code of its own; the sky pass fills it.
         const scene::vec3 clear = desc.output == Output::Hdr ? settings.environment.background : scene::vec3(0);
-        targets.begin(commands, {clear.r, clear.g, clear.b, has_alpha_layer ? 0.0F : 1.0F}, resolve_use());
+        targets.begin(commands, {clear.r, clear.g, clear.b, scene->has_alpha_layer ? 0.0F : 1.0F}, resolve_use());
         done = record_scene(commands);
         if (resolve) {
             targets.end_for_resolve(commands, resolve->use());
@@ -291,19 +305,16 @@ Result<> Renderer::State::record(VkCommandBuffer commands) {
 
 Result<> Renderer::State::record_scene(VkCommandBuffer commands) {
     const VkDescriptorSet set = slots[slot].set;
-    const MeshDraw draw{.frame_set = set, .snapshot = snapshot, .list = &list};
-    if (Result<> done = meshes->record_opaque(commands, draw, *scene); !done) return done;
+    const MeshDraw draw = mesh_draw(*snapshot, list);
+    if (Result<> done = meshes->record_opaque(commands, draw, scene->meshes); !done) return done;
     if (shows_surroundings()) {
         billboards->record_sprites(commands, set, slot);
         sky->record_sky(commands, set);
-        if (desc.has_grid) sky->record_grid(commands, set);
+        if (desc.draw.has_grid) sky->record_grid(commands, set);
     }
-    if (Result<> done = meshes->record_transparent(commands, draw, *scene); !done) return done;
+    if (Result<> done = meshes->record_transparent(commands, draw, scene->meshes); !done) return done;
     if (shows_surroundings()) billboards->record_particles(commands, set, slot);
-    if (desc.has_wireframe_overlay)
-        if (Result<> done = meshes->record_wireframe_overlay(commands, draw, *scene); !done) return done;
-    if (desc.has_normal_arrows) return meshes->record_normal_arrows(commands, draw, *scene);
-    return {};
+    return meshes->record_overlays(commands, draw, scene->meshes);
 }
 
 Renderer::Renderer() : state_(std::make_unique<State>()) {}
@@ -313,12 +324,37 @@ Renderer::~Renderer() = default;
 
 Result<Renderer> Renderer::create(Device& device, const scene::Scene& scene, const scene::Assets& assets,
                                   const RenderDesc& desc) {
-    if (Result<> checked = check(device, desc); !checked) return failure(std::move(checked));
+    gpu::Context& context = device.context();
+    if (Result<> checked = check(context, desc); !checked) return failure(std::move(checked));
+    Result<std::shared_ptr<SceneOnDevice>> uploaded = SceneOnDevice::create(context, scene, assets);
+    if (!uploaded) return failure(std::move(uploaded));
+    return create(context, std::move(*uploaded), desc);
+}
+
+Result<Renderer> Renderer::create(gpu::Context& context, std::shared_ptr<SceneOnDevice> scene, const RenderDesc& desc) {
     Renderer out;
+    out.state_->context = &context;
+    out.state_->scene = std::move(scene);
     out.state_->desc = desc;
     out.state_->desc.frames_in_flight = std::max(desc.frames_in_flight, 1U);
-    if (Result<> made = out.state_->create(device, scene, assets); !made) return failure(std::move(made));
+    if (Result<> made = out.state_->create(); !made) return failure(std::move(made));
     return out;
+}
+
+Result<Renderer> Renderer::sharing(const RenderDesc& desc) const {
+    if (Result<> checked = check(*state_->context, desc); !checked) return failure(std::move(checked));
+    return create(*state_->context, state_->scene, desc);
+}
+
+Result<> Renderer::resize(VkExtent2D extent) {
+    if (Result<> checked = check(*state_->context, extent); !checked) return checked;
+    return state_->create_targets(extent);
+}
+
+Result<> Renderer::set(const DrawOptions& options) {
+    if (Result<> checked = check(*state_->context, options, state_->desc.output); !checked) return checked;
+    state_->apply(options);
+    return {};
 }
 
 Result<> Renderer::prepare(const scene::Snapshot& snapshot) { return state_->prepare(snapshot); }
@@ -332,12 +368,6 @@ const ImageRef& Renderer::picture() const { return state_->picture; }
 const RenderCounters& Renderer::counters() const { return state_->counters; }
 const RenderDesc& Renderer::desc() const { return state_->desc; }
 
-std::string sample_counts(const Device& device) {
-    std::string out;
-    for (std::uint32_t count = 1; count <= VK_SAMPLE_COUNT_64_BIT; count *= 2)
-        if ((device.context().traits.sample_counts & count) != 0)
-            out += fmt::format("{}{}", out.empty() ? "" : ", ", count);
-    return out;
-}
+std::string sample_counts(const Device& device) { return counts_of(device.context().traits); }
 
 }  // namespace darkroom::render

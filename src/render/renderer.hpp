@@ -6,6 +6,9 @@
 //     auto renderer = Renderer::create(device, scene, assets, {.extent = {1280, 720}});
 //     renderer->prepare(snapshot);
 //     renderer->record(commands);      // then composer.record(commands, renderer->frame())
+//
+// Size and options change while it runs: resize() makes targets, set() nothing. Renderers of one scene share its
+// assets: a display picture beside the linear one costs no second upload (sharing()).
 
 #include <darkroom/device.hpp>
 #include <darkroom/frame.hpp>
@@ -20,19 +23,27 @@
 
 namespace darkroom::render {
 
+struct SceneOnDevice;
+
+/// What may change from frame to frame. Nothing is uploaded for it; the pipelines of debug views, edges and arrows are
+/// made by the prepare() that first needs them, which takes milliseconds.
+struct DrawOptions {
+    bool has_shadows = true;  ///< a renderer that is made without them has no place for them and stays without
+    bool has_grid = true;
+    bool has_wireframe_overlay = false;
+    bool has_normal_arrows = false;
+    DebugView debug = DebugView::None;  ///< others need Output::Display, and are neither tone-mapped nor encoded
+};
+
 struct RenderDesc {
     VkExtent2D extent{1920, 1080};
     std::uint32_t samples = 1;
     Output output = Output::Hdr;
     /// Of the picture for Output::Display; its first channels red, green, blue, alpha, sRGB-encoded by the shader.
     VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
-    bool is_tone_mapped = true;         ///< Output::Display: ACES (Narkowicz) before encoding
-    DebugView debug = DebugView::None;  ///< others need Output::Display, and are neither tone-mapped nor encoded
-    bool has_shadows = true;
+    bool is_tone_mapped = true;  ///< Output::Display: ACES (Narkowicz) before encoding
     CascadeDesc cascades;
-    bool has_grid = true;
-    bool has_wireframe_overlay = false;
-    bool has_normal_arrows = false;
+    DrawOptions draw;
     std::uint32_t frames_in_flight = 1;
 };
 
@@ -47,9 +58,19 @@ class Renderer {
     /// names those it has), a debug view with Output::Hdr, VkResult.
     [[nodiscard]] static Result<Renderer> create(Device& device, const scene::Scene& scene, const scene::Assets& assets,
                                                  const RenderDesc& desc);
+    /// Another renderer of the same scene, which uploads nothing. Either may go first; errors are those of create().
+    [[nodiscard]] Result<Renderer> sharing(const RenderDesc& desc) const;
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
     ~Renderer();
+
+    /// New targets, and nothing else: no upload and no pipeline. Every recording of this renderer, and of whoever reads
+    /// its images, has finished. What frame() and picture() named is gone, and prepare() comes before the next
+    /// record(). Errors: a size that the device lacks, VkResult; the old targets stay.
+    Result<> resize(VkExtent2D extent);
+    /// From the next prepare() on. Errors: a debug view with Output::Hdr, edges on a device that cannot draw them; the
+    /// old options stay.
+    Result<> set(const DrawOptions& options);
 
     /// Culls, sorts and fills the buffers of the next frame; the recording made `frames_in_flight` frames ago must have
     /// finished. The snapshot must stay until record() has returned. Errors are those of the machine.
@@ -60,7 +81,7 @@ class Renderer {
 
     /// The images as record() leaves them, the camera and the lights, for Composer::record. Depth is planar distance in
     /// R32F (1e10 where there is no surface). Lights refer to memory of the renderer. Target, frame_index and view are
-    /// the caller's. Only for Output::Hdr.
+    /// the caller's. Only for Output::Hdr, after a prepare().
     [[nodiscard]] Frame frame() const;
     /// What all of the frame's layers beside the colour were created for.
     [[nodiscard]] VkImageUsageFlags layer_usage() const;
@@ -72,6 +93,8 @@ class Renderer {
 
   private:
     Renderer();
+    [[nodiscard]] static Result<Renderer> create(gpu::Context& context, std::shared_ptr<SceneOnDevice> scene,
+                                                 const RenderDesc& desc);
     struct State;
     std::unique_ptr<State> state_;
 };

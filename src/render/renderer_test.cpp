@@ -199,7 +199,7 @@ TEST(RenderGpuRenderer, WhatTheDeviceLacksIsRefusedInOneLine) {
     EXPECT_NE(refusal({.extent = {1, 1U << 30U}}).find("allows 1x1 to"), std::string::npos);
     EXPECT_EQ(refusal({.extent = small, .samples = 3}),
               "samples 3: " + name + " has " + sample_counts(gpu::test::device()));
-    EXPECT_NE(refusal({.extent = small, .debug = DebugView::Depth}).find("debug view"), std::string::npos);
+    EXPECT_NE(refusal({.extent = small, .draw = {.debug = DebugView::Depth}}).find("debug view"), std::string::npos);
     EXPECT_EQ(sample_counts(gpu::test::device()).substr(0, 1), "1");
 }
 

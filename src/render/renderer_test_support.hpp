@@ -132,7 +132,7 @@ inline Shot shoot(Renderer& renderer, const scene::Snapshot& snapshot) {
 
 /// Without a grid, which is only in the way.
 inline Renderer renderer_for(RenderDesc desc, const scene::Assets& assets = {}, const scene::Scene& scene = {}) {
-    desc.has_grid = false;
+    desc.draw.has_grid = false;
     return must(Renderer::create(gpu::test::device(), scene, assets, desc));
 }
 

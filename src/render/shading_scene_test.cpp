@@ -136,7 +136,7 @@ dvec3 reflected_light(const scene::LightState& state, const reference::Reflectan
 TEST(RenderGpuShadingScene, SphereAndFloorInPerspectiveHaveTheirClosedForms) {
     scene::Scene scene;
     scene.environment.ambient_intensity = 0.5F;
-    Renderer renderer = renderer_for({.extent = extent, .has_shadows = false}, sphere_assets(), scene);
+    Renderer renderer = renderer_for({.extent = extent, .draw = {.has_shadows = false}}, sphere_assets(), scene);
     scene::SnapshotMaterial metal = material_of({0.9F, 0.7F, 0.3F}, 0.8F, 0.45F);
     metal.surface.emissive = {0.25F, 0, 0.125F};
     const scene::SnapshotMaterial stone = material_of({0.5F, 0.4F, 0.3F}, 0, 0.6F);
@@ -160,7 +160,7 @@ TEST(RenderGpuShadingScene, WhiteSurfacesInAWhiteSkyAreWhite) {
     scene::Assets assets = sphere_assets();
     assets.skybox.emplace(32, 16);
     std::ranges::fill(assets.skybox->pixels, 1.0F);
-    Renderer renderer = renderer_for({.extent = extent, .has_shadows = false}, assets);
+    Renderer renderer = renderer_for({.extent = extent, .draw = {.has_shadows = false}}, assets);
     for (const float metallic : {0.0F, 1.0F}) {
         for (const float roughness : {0.0F, 0.5F, 1.0F}) {
             const scene::SnapshotMaterial white = material_of(vec3(1), metallic, roughness);
@@ -179,9 +179,9 @@ TEST(RenderGpuShadingScene, DisplayIsWithinACodeOfTheFinishedHdrPicture) {
     const scene::SnapshotMaterial stone = material_of({0.5F, 0.4F, 0.3F}, 0, 0.9F);
     scene::Snapshot snapshot = sphere_and_floor(metal, stone);
     snapshot.lights = three_lights();
-    Renderer hdr_renderer = renderer_for({.extent = extent, .has_shadows = false}, assets);
+    Renderer hdr_renderer = renderer_for({.extent = extent, .draw = {.has_shadows = false}}, assets);
     Renderer display_renderer =
-        renderer_for({.extent = extent, .output = Output::Display, .has_shadows = false}, assets);
+        renderer_for({.extent = extent, .output = Output::Display, .draw = {.has_shadows = false}}, assets);
     const Pixels hdr = shoot(hdr_renderer, snapshot).color;
     const Pixels display = shoot(display_renderer, snapshot).color;
     for (std::size_t i = 0; i < hdr.rgba.size(); ++i) {

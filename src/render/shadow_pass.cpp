@@ -149,11 +149,12 @@ struct ShadowPass::State {
     gpu::Context* context = nullptr;
     VkDescriptorSetLayout frame_layout = VK_NULL_HANDLE, material_layout = VK_NULL_HANDLE;
     CascadeDesc desc;
-    std::vector<gpu::Image> maps;
+    std::uint32_t most_lights = 0;
+    std::vector<gpu::Image> maps;  ///< of the lights that have cast so far
     gpu::Image lit_map;
     VkSampler sampler = VK_NULL_HANDLE;
     std::map<Variant, gpu::Pipeline> pipelines;
-    std::optional<Error> error;  ///< of a pipeline
+    std::optional<Error> error;  ///< of a map or a pipeline
     std::vector<Cascades> cascades;
     std::vector<DrawList> lists;
 
@@ -192,6 +193,18 @@ struct ShadowPass::State {
         pipeline.specialization[10] = variant.is_skinned ? 1 : 0;
         pipeline.specialization[11] = variant.is_morphed ? 1 : 0;
         return gpu::Pipeline::create(*context, pipeline);
+    }
+
+    void require_map(std::size_t light) {
+        if (error || light < maps.size()) return;
+        Result<gpu::Image> map =
+            create_map(*context, fmt::format("shadow map {}", light), desc.resolution, desc.count,
+                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+        if (!map) {
+            error = std::move(map).error();
+            return;
+        }
+        maps.push_back(std::move(*map));
     }
 
     void require_pipeline(const Variant& variant) {
@@ -313,13 +326,7 @@ Result<ShadowPass> ShadowPass::create(gpu::Context& context, VkDescriptorSetLayo
     state.frame_layout = frame_layout;
     state.material_layout = scene.material_layout.handle;
     state.desc = desc;
-    for (std::uint32_t i = 0; i < lights; ++i) {
-        Result<gpu::Image> map =
-            create_map(context, fmt::format("shadow map {}", i), desc.resolution, desc.count,
-                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
-        if (!map) return failure(std::move(map));
-        state.maps.push_back(std::move(*map));
-    }
+    state.most_lights = lights;
     Result<gpu::Image> lit_map = create_lit_map(context);
     if (!lit_map) return failure(std::move(lit_map));
     state.lit_map = std::move(*lit_map);
@@ -329,12 +336,19 @@ Result<ShadowPass> ShadowPass::create(gpu::Context& context, VkDescriptorSetLayo
     return pass;
 }
 
+void ShadowPass::clear() {
+    state_->error.reset();
+    state_->cascades.clear();
+    state_->lists.clear();
+}
+
 void ShadowPass::prepare(const scene::Snapshot& snapshot) {
+    clear();
     State& state = *state_;
-    state.cascades.clear();
-    state.lists.clear();
     for (const std::uint32_t place : lights_with_shadows(snapshot)) {
-        if (state.cascades.size() == state.maps.size()) break;
+        if (state.cascades.size() == state.most_lights) break;
+        state.require_map(state.cascades.size());
+        if (state.error) return;
         const Cascades& cascades =
             state.cascades.emplace_back(fit_cascades(snapshot.camera, snapshot.lights[place].direction, state.desc));
         for (std::uint32_t i = 0; i < cascades.count; ++i) {

@@ -27,8 +27,10 @@ class ShadowPass {
 
     /// Fits the cascades of the snapshot's casting lights and lists their casters. Before the frame's buffers are
     /// filled: the instances of all lists go into the frame's instance buffer, one list after the other. Pipelines are
-    /// made when casters first need them; record() tells where that failed.
+    /// made when casters first need them, maps when lights do; record() tells where that failed.
     void prepare(const scene::Snapshot& snapshot);
+    /// Instead of prepare(): no light casts.
+    void clear();
     /// One a cascade, the cascades of the first light first.
     [[nodiscard]] std::span<const DrawList> caster_lists() const;
     /// `first_instance`: of the first list. Outside rendering; leaves every map of a casting light in
