@@ -70,6 +70,8 @@ struct LookEntry {
     bool is_of_ui = false;                       ///< of the table [ui]: in a stack, behind all that is listed
     std::string effect_file{};                   ///< of a custom effect: its file, as the look names it
     std::shared_ptr<const void> effect_owner{};  ///< keeps a custom effect for as long as the entry
+    /// Tells it from the others while a look is edited, however it is moved or renamed; 0: its name does.
+    std::uint64_t id = 0;
 };
 
 /// What a pulse or a layer has beside its name and what it moves.
@@ -195,5 +197,16 @@ struct ApplyOptions {
 /// Appends the look's entries, pulses and layers to the Composer. The flat table wires `source` to the scene, as its
 /// documented order has it, and of its effects that are off those with images or passes get no place.
 [[nodiscard]] Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options = {});
+
+/// What follow() did.
+struct Followed {
+    /// The next record() sees values, toggles and opacities; all of the rest only a compile (compile_later).
+    bool needs_compile = false;
+};
+/// Takes a Composer that holds one look to another: it then holds what apply() with the same options makes of `is`.
+/// Entries of both looks keep their handles, histories, overrides and what moves them. Base values are the look's, also
+/// where others have set them meanwhile. An error changes nothing.
+[[nodiscard]] Result<Followed> follow(const Look& was, const Look& is, Composer& composer,
+                                      const ApplyOptions& options = {});
 
 }  // namespace darkroom

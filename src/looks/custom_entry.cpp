@@ -14,7 +14,15 @@ namespace darkroom {
 
 namespace {
 
-/// The flat table as the stack that it stands for.
+std::string names_of(Domains domains) {
+    std::vector<std::string_view> names;
+    for (std::size_t i = 0; i < detail::Enumerators<Domain>::count; ++i)
+        if (domains.contains(static_cast<Domain>(i))) names.push_back(detail::Enumerators<Domain>::names[i]);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
 void make_stack(Look& look) {
     std::vector<LookEntry> entries;
     for (const LookEntry* const entry : ordered(look)) {
@@ -29,15 +37,6 @@ void make_stack(Look& look) {
     look.was_flat = true;
     look.is_enabled = true;
 }
-
-std::string names_of(Domains domains) {
-    std::vector<std::string_view> names;
-    for (std::size_t i = 0; i < detail::Enumerators<Domain>::count; ++i)
-        if (domains.contains(static_cast<Domain>(i))) names.push_back(detail::Enumerators<Domain>::names[i]);
-    return fmt::format("{}", fmt::join(names, ", "));
-}
-
-}  // namespace
 
 Result<> share_effect(const Look& look, LookEntry& entry) {
     const std::string_view name = entry.effect->name;

@@ -54,8 +54,6 @@ struct LookTarget {
 void write_modulation(std::string& out, const Look& look);
 /// Does a pulse or a layer move the entry of this name?
 [[nodiscard]] bool is_moved(const Look& look, std::string_view entry);
-/// Adds them to a Composer that has the look's entries.
-[[nodiscard]] Result<> apply_modulation(const Look& look, Composer& composer);
 /// Letters, digits, '_' and '-', up to 64.
 [[nodiscard]] bool is_look_name(std::string_view text);
 
@@ -69,6 +67,8 @@ void write_modulation(std::string& out, const Look& look);
 [[nodiscard]] Result<> share_effect(const Look& look, LookEntry& entry);
 /// Does it take the picture from one domain to the next? What is left of a flat table that is switched off.
 [[nodiscard]] bool is_domain_change(const EffectInfo& effect);
+/// Makes a flat look the stack that it stands for, without what is off.
+void make_stack(Look& look);
 /// An entry with the effect's defaults.
 [[nodiscard]] LookEntry entry_of(const EffectInfo& effect);
 

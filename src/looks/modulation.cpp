@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/param_text.hpp"
+#include "looks/look_modulation.hpp"
 #include "looks/look_parts.hpp"
 #include "looks/look_resources.hpp"
 
@@ -79,32 +80,75 @@ void write_modulation(std::string& out, const Look& look) {
     }
 }
 
-Result<> apply_modulation(const Look& look, Composer& composer) {
-    const auto blame = [&](const Error& error) {
-        return failure(Error{error.fault, fmt::format("{}: {}", look.shown_name, error.text)});
+namespace {
+
+auto parts(const PulseDesc& of) {
+    return std::tie(of.event, of.entry.id, of.parameter, of.amount, of.envelope, of.duration);
+}
+
+bool is_same(const LayerDesc& a, const LayerDesc& b) {
+    const auto is_same_place = [](const LayerDistance& one, const LayerDistance& other) {
+        return words_of(one) == words_of(other);
     };
-    // What a look that is off leaves out, and what its order has no place for, is not there to be moved.
-    for (const LookPulse& pulse : look.pulses) {
-        const auto entry = composer.find(pulse.entry);
-        if (!entry) continue;
-        if (const auto ok = composer.add_pulse({.event = pulse.event,
-                                                .entry = *entry,
-                                                .parameter = pulse.parameter,
-                                                .amount = pulse.amount,
-                                                .envelope = pulse.state.envelope,
-                                                .duration = double{pulse.state.duration}});
-            !ok)
-            return blame(ok.error());
-    }
+    const auto is_same_value = [](const LayerValue& one, const LayerValue& other) {
+        return one.entry == other.entry && one.parameter == other.parameter && one.words == other.words;
+    };
+    return a.name == b.name && a.weight == b.weight && a.distance.has_value() == b.distance.has_value() &&
+           (!a.distance || is_same_place(*a.distance, *b.distance)) &&
+           std::ranges::equal(a.values, b.values, is_same_value);
+}
+
+}  // namespace
+
+ModulationFollower::ModulationFollower(const Look& was, Composer& composer)
+    : composer_(composer), was_(descs_of(was)) {}
+
+// What a look that is off leaves out, and what its order has no place for, is not there to be moved.
+ModulationFollower::Descs ModulationFollower::descs_of(const Look& look) const {
+    Descs out;
+    const auto find = [&](std::string_view name) {
+        const auto entry = composer_.find(name);
+        if (entry) out.effects.push_back(composer_.info(*entry));
+        return entry;
+    };
+    for (const LookPulse& pulse : look.pulses)
+        if (const auto entry = find(pulse.entry))
+            out.pulses.push_back({.event = pulse.event,
+                                  .entry = *entry,
+                                  .parameter = pulse.parameter,
+                                  .amount = pulse.amount,
+                                  .envelope = pulse.state.envelope,
+                                  .duration = double{pulse.state.duration}});
     for (const LookLayer& layer : look.layers) {
         LayerDesc desc{.name = layer.name, .weight = layer.state.weight, .distance = layer.distance, .values = {}};
         for (const LookLayer::Value& value : layer.values)
-            if (const auto entry = composer.find(value.entry))
-                desc.values.push_back({*entry, value.parameter, value.words});
-        if (desc.values.empty()) continue;
-        if (const auto ok = composer.add_layer(desc); !ok) return blame(ok.error());
+            if (const auto entry = find(value.entry)) desc.values.push_back({*entry, value.parameter, value.words});
+        if (!desc.values.empty()) out.layers.push_back(std::move(desc));
     }
-    return {};
+    return out;
+}
+
+Result<bool> ModulationFollower::follow(const Look& is) {
+    const Descs now = descs_of(is);
+    const bool are_rows_same = was_.effects == now.effects;
+    const auto blame = [&](const Error& error) {
+        return failure(Error{error.fault, fmt::format("{}: {}", is.shown_name, error.text)});
+    };
+    const bool has_pulses = are_rows_same && std::ranges::equal(was_.pulses, now.pulses, {}, parts, parts);
+    if (!has_pulses) {
+        composer_.remove_pulses();
+        for (const PulseDesc& pulse : now.pulses)
+            if (const auto ok = composer_.add_pulse(pulse); !ok) return blame(ok.error());
+    }
+    // Layers are blended in their order: those from the first change on are added anew.
+    std::size_t kept = 0;
+    while (are_rows_same && kept < std::min(was_.layers.size(), now.layers.size()) &&
+           is_same(was_.layers[kept], now.layers[kept]))
+        ++kept;
+    for (std::size_t i = kept; i < was_.layers.size(); ++i) composer_.remove_layer(was_.layers[i].name);
+    for (std::size_t i = kept; i < now.layers.size(); ++i)
+        if (const auto ok = composer_.add_layer(now.layers[i]); !ok) return blame(ok.error());
+    return !has_pulses || kept < std::max(was_.layers.size(), now.layers.size());
 }
 
 }  // namespace darkroom
