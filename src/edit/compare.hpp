@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// When two looks are the same one.
+
+#include <darkroom/look.hpp>
+
+namespace darkroom::edit {
+
+/// Would files of them say the same? LookEntry::id, and what lies in the files that they name, do not count.
+[[nodiscard]] bool says_same(const Look& a, const Look& b);
+/// The same, and what they have loaded is one.
+[[nodiscard]] bool is_same(const Look& a, const Look& b);
+/// Do all numbers agree, bit for bit?
+[[nodiscard]] bool is_same(const ResourceData& a, const ResourceData& b);
+/// Is one made of the same text as the other?
+[[nodiscard]] bool is_same(const EffectInfo& a, const EffectInfo& b);
+/// Bytes that a look takes, but for tables and pictures.
+[[nodiscard]] std::size_t bytes_of(const Look& look);
+/// And those of one of them.
+[[nodiscard]] std::size_t bytes_of(const ResourceData& data);
+
+}  // namespace darkroom::edit

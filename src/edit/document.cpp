@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "edit/document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "core/files.hpp"
+#include "core/param_text.hpp"
+#include "edit/compare.hpp"
+#include "looks/look_stack.hpp"
+
+namespace darkroom::edit {
+
+namespace {
+
+/// Of those tables and pictures of a look that another look has not.
+std::size_t bytes_of_rest(const Look& look, const Look& but) {
+    std::set<const ResourceData*> seen;
+    for (const LookEntry& entry : but.entries)
+        for (const LookResource& resource : entry.resources) seen.insert(resource.data.get());
+    std::size_t bytes = 0;
+    for (const LookEntry& entry : look.entries)
+        for (const LookResource& resource : entry.resources)
+            if (resource.data != nullptr && seen.insert(resource.data.get()).second) bytes += bytes_of(*resource.data);
+    return bytes;
+}
+
+}  // namespace
+
+LookDocument::LookDocument(Look look, LookOptions options) : options_(std::move(options)) {
+    options_.warnings = nullptr;
+    give_ids(look);
+    saved_ = look;
+    take(std::move(look));
+}
+
+Result<> LookDocument::edit(std::string what, const std::function<Result<>(Look&)>& change, std::string_view merge) {
+    Look next = look_;
+    if (Result<> done = change(next); !done) return done;
+    if (is_same(next, look_)) return {};
+    if (Result<> done = check(next); !done) return done;
+    give_ids(next);
+    if (merge.empty() || merge != merge_ || undo_.empty()) remember(std::move(what));
+    redo_.clear();
+    merge_ = merge;
+    take(std::move(next));
+    return {};
+}
+
+Result<> LookDocument::check(const Look& next) const {
+    const auto stack = stack_of(next, {.keeps_what_is_off = true});
+    return stack ? Result<>{} : failure(stack.error());
+}
+
+void LookDocument::take(Look look) {
+    look_ = std::move(look);
+    is_changed_ = !says_same(look_, saved_);
+    ++version_;
+}
+
+void LookDocument::remember(std::string what) {
+    undo_.push_back({std::move(what), look_, bytes_of(look_)});
+    if (undo_.size() > 1) {
+        Step& before = undo_[undo_.size() - 2];
+        before.bytes += bytes_of_rest(before.look, look_);
+    }
+    std::size_t bytes = 0;
+    for (const Step& step : undo_) bytes += step.bytes;
+    for (; undo_.size() > 1 && (undo_.size() > most_steps || bytes > most_history_bytes); undo_.pop_front())
+        bytes -= undo_.front().bytes;
+}
+
+void LookDocument::give_ids(Look& look) {
+    std::set<std::uint64_t> seen;
+    for (LookEntry& entry : look.entries) {
+        if (entry.id == 0 || entry.id > last_id_ || seen.contains(entry.id)) entry.id = ++last_id_;
+        seen.insert(entry.id);
+    }
+}
+
+std::string_view LookDocument::undo_name() const { return undo_.empty() ? std::string_view() : undo_.back().what; }
+std::string_view LookDocument::redo_name() const { return redo_.empty() ? std::string_view() : redo_.back().what; }
+
+void LookDocument::undo() {
+    if (undo_.empty()) return;
+    Step step = std::move(undo_.back());
+    undo_.pop_back();
+    redo_.push_back({std::move(step.what), look_});
+    merge_.clear();
+    take(std::move(step.look));
+}
+
+void LookDocument::redo() {
+    if (redo_.empty()) return;
+    Step step = std::move(redo_.back());
+    redo_.pop_back();
+    remember(std::move(step.what));
+    merge_.clear();
+    take(std::move(step.look));
+}
+
+}  // namespace darkroom::edit

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A look that is being edited: what it is now, what it was, and the file that it goes back into. It holds no device and
+// draws nothing: a Composer is taken along with darkroom::follow, panels and consoles change it with the functions of
+// edit/edits.hpp.
+
+#include <cstdint>
+#include <darkroom/look.hpp>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "edit/watch.hpp"
+
+namespace darkroom::edit {
+
+class LookDocument {
+  public:
+    static constexpr std::size_t most_steps = 1000;
+    static constexpr std::size_t most_history_bytes = std::size_t{256} << 20;  ///< tables that only it holds included
+
+    /// Of a look or a scene. Errors are read_look's.
+    [[nodiscard]] static Result<LookDocument> open(const std::filesystem::path& file, LookOptions options);
+    /// Of no file yet.
+    explicit LookDocument(Look look = default_look(), LookOptions options = {});
+
+    [[nodiscard]] const Look& look() const { return look_; }
+    /// Another number after every change of the look.
+    [[nodiscard]] std::uint64_t version() const { return version_; }
+    /// What the file says; without a file, what the document began with.
+    [[nodiscard]] const Look& saved_look() const { return saved_; }
+    /// How files are read that the look names. Its folder is the document's.
+    [[nodiscard]] const LookOptions& options() const { return options_; }
+
+    /// One step of undo. `change` works on a copy: where it fails, or makes a look that cannot be, nothing happened.
+    /// Steps with the same `merge`, unless it is empty, are one until end_merge(): a slider that is dragged.
+    Result<> edit(std::string what, const std::function<Result<>(Look&)>& change, std::string_view merge = {});
+    void end_merge() { merge_.clear(); }
+
+    [[nodiscard]] bool can_undo() const { return !undo_.empty(); }
+    [[nodiscard]] bool can_redo() const { return !redo_.empty(); }
+    /// What undo() takes back, and redo() does again; empty: nothing.
+    [[nodiscard]] std::string_view undo_name() const;
+    [[nodiscard]] std::string_view redo_name() const;
+    /// Without a step they do nothing.
+    void undo();
+    void redo();
+
+    /// Does the look differ from what its file says?
+    [[nodiscard]] bool is_changed() const { return is_changed_; }
+    /// Empty: there is none.
+    [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+    /// Writes what changed into the text that was read, all else as it stands there. Errors: there is no file; it has
+    /// been changed by others since; something cannot be written there. The file is then as it was.
+    Result<> save();
+    /// The same into another file, which becomes the document's. One that lies in another folder, or a document without
+    /// a text, is a new file. Errors: the look names files, which are relative to the folder that it was in.
+    Result<> save_as(const std::filesystem::path& file);
+    /// Reads what has changed on disk: the file, or one that the look names. True: the look is another, as a step of
+    /// undo. An error, "file:line:column: ...", leaves it, and comes once for each state of the files.
+    Result<bool> reload_if_changed();
+
+  private:
+    struct Step {
+        std::string what;
+        Look look;  ///< on the other side of the step
+        std::size_t bytes = 0;
+    };
+
+    void take(Look look);
+    void remember(std::string what);
+    void give_ids(Look& look);
+    Result<> check(const Look& next) const;
+    Result<> write(const std::filesystem::path& file, const LookOptions& options);
+    Result<bool> reload();
+
+    std::filesystem::path file_;
+    LookOptions options_;
+    std::string text_;  ///< of the file, as it was read or written last
+    Look saved_, look_;
+    std::uint64_t version_ = 1;
+    std::uint64_t last_id_ = 0;
+    std::deque<Step> undo_, redo_;
+    std::string merge_;
+    bool is_changed_ = false;
+    Watch watch_;
+};
+
+}  // namespace darkroom::edit

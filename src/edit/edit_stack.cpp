@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// Edits that change which entries a look has, and in which order; and what comes back from a Composer.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/param_text.hpp"
+#include "edit/edits.hpp"
+#include "edit/restructure.hpp"
+
+namespace darkroom::edit {
+
+namespace {
+
+/// Of an entry that was just made, until its document gives it a number.
+constexpr std::uint64_t made_id = ~std::uint64_t{0};
+
+std::string name_of_made(Look& look) {
+    const auto made = std::ranges::find(look.entries, made_id, &LookEntry::id);
+    made->id = 0;
+    return entry_names(look)[static_cast<std::size_t>(made - look.entries.begin())];
+}
+
+/// Where an entry of the picture's chain goes: in front of another, or behind the last.
+Result<std::ptrdiff_t> place_before(Look& look, std::string_view before) {
+    if (before.empty()) {
+        const auto last = std::find_if(look.entries.rbegin(), look.entries.rend(),
+                                       [](const LookEntry& entry) { return !entry.is_of_ui; });
+        return last.base() - look.entries.begin();
+    }
+    const Result<LookEntry*> other = restructured(look, before);
+    if (!other) return failure(other.error());
+    return *other - look.entries.data();
+}
+
+/// A name that no entry has, like this one.
+std::string fresh_name(const Look& look, const std::string& like) {
+    const std::vector<std::string> names = entry_names(look);
+    std::string base = like.substr(0, 56);
+    base.erase(base.find_last_not_of("0123456789") + 1);
+    for (std::size_t number = 2;; ++number) {
+        std::string name = fmt::format("{}{}{}", base, base.ends_with('_') ? "" : "_", number);
+        if (std::ranges::count(names, name) == 0) return name;
+    }
+}
+
+/// The entry of a look that adding this effect switches on; null: none.
+LookEntry* sleeping(Look& look, const EffectInfo& effect) {
+    const auto found = std::ranges::find_if(look.entries, [&](const LookEntry& entry) {
+        return entry.effect == &effect && entry.state.enabled.on == 0 &&
+               (entry.is_of_ui || (look.is_flat && look.is_enabled && flat_rank(effect, look.order) >= 0));
+    });
+    return found == look.entries.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Result<> move_entry(Look& look, std::string_view entry, std::string_view before) {
+    Result<LookEntry*> found = restructured(look, entry);
+    if (!found) return failure(found.error());
+    const std::ptrdiff_t from = *found - look.entries.data();
+    const Result<std::ptrdiff_t> to = place_before(look, before);
+    if (!to) return failure(to.error());
+    const auto first = look.entries.begin();
+    if (from < *to)
+        std::rotate(first + from, first + from + 1, first + *to);
+    else
+        std::rotate(first + *to, first + from, first + from + 1);
+    return {};
+}
+
+Result<> remove_entry(Look& look, std::string_view entry) {
+    const Result<LookEntry*> found = entry_at(look, entry);
+    if (!found) return failure(found.error());
+    if (look.is_flat || (*found)->is_of_ui)
+        (*found)->state.enabled = false;
+    else
+        look.entries.erase(look.entries.begin() + (*found - look.entries.data()));
+    return {};
+}
+
+Result<std::string> duplicate_entry(Look& look, std::string_view entry) {
+    const Result<LookEntry*> found = restructured(look, entry);
+    if (!found) return failure(found.error());
+    LookEntry copy = **found;
+    copy.id = made_id;
+    copy.output.clear();
+    if (!copy.name.empty()) copy.name = fresh_name(look, copy.name);
+    look.entries.insert(look.entries.begin() + (*found - look.entries.data()) + 1, std::move(copy));
+    return name_of_made(look);
+}
+
+Result<std::string> add_effect(Look& look, const EffectInfo& effect, std::string_view before) {
+    return add_entry(look, entry_of(effect), before);
+}
+
+Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view before) {
+    if (entry.effect->flat.is_of_ui) {
+        if (!look.ui) add_ui(look);
+        before = {};
+    }
+    if (LookEntry* const there = before.empty() ? sleeping(look, *entry.effect) : nullptr) {
+        there->state.enabled = true;
+        return entry_names(look)[static_cast<std::size_t>(there - look.entries.data())];
+    }
+    if (entry.effect->flat.is_of_ui)
+        return user_error(fmt::format("{}: the interface has it already", entry.effect->name));
+    entry.id = made_id;
+    if (before.empty()) {
+        if (Result<> done = place_entry(look, std::move(entry)); !done) return failure(std::move(done));
+        return name_of_made(look);
+    }
+    if (Result<> shared = share_effect(look, entry); !shared) return failure(std::move(shared));
+    const Result<std::ptrdiff_t> place = place_before(look, before);
+    if (!place) return failure(place.error());
+    look.entries.insert(look.entries.begin() + *place, std::move(entry));
+    return name_of_made(look);
+}
+
+Result<> take_values(Look& look, const Composer& composer) {
+    if (!look.is_enabled) return {};
+    const std::vector<std::string> names = entry_names(look);
+    for (const std::string& name : names) {
+        const auto handle = composer.find(name);
+        LookEntry* const entry = handle ? find_entry(look, name) : nullptr;
+        if (entry == nullptr || composer.info(*handle) != entry->effect) continue;
+        const EntryDesc& desc = *composer.desc(*handle);
+        for (const ParamInfo& row : entry->effect->parameters.rows)
+            if (row.kind != Kind::Resource)
+                std::ranges::copy(composer.words(*handle).subspan(row.word, row.words),
+                                  entry->words.begin() + row.word);
+        entry->state.enabled = desc.enabled;
+        const auto opacity = std::bit_cast<std::uint32_t>(desc.opacity);
+        if (desc.opacity == entry->state.opacity) continue;
+        if (Result<> done = set_state(look, name, "opacity", {&opacity, 1}); !done) return done;
+    }
+    return {};
+}
+
+}  // namespace darkroom::edit

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What the edits of values and those of the stack share.
+
+#include "looks/look_parts.hpp"
+
+namespace darkroom::edit {
+
+[[nodiscard]] Result<LookEntry*> entry_at(Look& look, std::string_view name);
+/// The entry of this name in a look that is no flat one any more; it has a place although it may be off.
+[[nodiscard]] Result<LookEntry*> restructured(Look& look, std::string_view name);
+
+}  // namespace darkroom::edit
