@@ -1,86 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "window/gui_pass.hpp"
 
-#include <gtest/gtest.h>
-#include <imgui.h>
-
-#include "gpu/test_run.hpp"
 #include "panels/test_rasteriser.hpp"
-#include "window/false_color.hpp"
+#include "window/test_gui_pass.hpp"
 
 namespace darkroom::window {
 namespace {
 
-using gpu::test::must;
-using gpu::test::Picture;
-using gpu::test::Pixels;
-using Color = std::array<double, 4>;
-
-/// Dear ImGui without a window.
-class Interface {
-  public:
-    explicit Interface(VkExtent2D extent) {
-        ImGui::CreateContext();
-        ImGuiIO& io = ImGui::GetIO();
-        io.IniFilename = nullptr;
-        io.DisplaySize = {static_cast<float>(extent.width), static_cast<float>(extent.height)};
-        io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-        ImGui::GetStyle().AntiAliasedLines = ImGui::GetStyle().AntiAliasedFill = false;
-    }
-    Interface(const Interface&) = delete;
-    Interface& operator=(const Interface&) = delete;
-    ~Interface() { ImGui::DestroyContext(); }
-
-    /// What `draw` adds to the list behind all windows.
-    template <class Draw>
-    const ImDrawData& frame(Draw draw) {
-        ImGui::GetIO().Fonts->Build();
-        ImGui::NewFrame();
-        draw(*ImGui::GetBackgroundDrawList());
-        ImGui::Render();
-        return *ImGui::GetDrawData();
-    }
-};
-
-constexpr Color background{0.25, 0.5, 0.125, 1};
-
-class WindowGpuGuiPass : public ::testing::Test {
-  protected:
-    static constexpr VkExtent2D extent{96, 64};
-
-    explicit WindowGpuGuiPass(VkFormat format = VK_FORMAT_R8G8B8A8_UNORM)
-        : target(gpu::test::blank(context, extent, format)),
-          pass(must(GuiPass::create(context, {.format = format}, *ImGui::GetIO().Fonts))) {}
-
-    void record(VkCommandBuffer commands, const Picture& onto, const ImDrawData& data, std::uint32_t slot) {
-        const VkRenderingAttachmentInfo color{
-            .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-            .imageView = onto.image.view,
-            .imageLayout = VK_IMAGE_LAYOUT_GENERAL,
-            .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-            .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-            .clearValue = {.color = {.float32 = {background[0], background[1], background[2], background[3]}}}};
-        const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                                   .renderArea = {{0, 0}, extent},
-                                   .layerCount = 1,
-                                   .colorAttachmentCount = 1,
-                                   .pColorAttachments = &color};
-        context.vk.CmdBeginRendering(commands, &info);
-        result = pass.record(commands, data, slot);
-        context.vk.CmdEndRendering(commands);
-    }
-    Pixels draw(const ImDrawData& data, std::uint32_t slot = 0) {
-        must(gpu::submit_and_wait(context, "drawing the interface",
-                                  [&](VkCommandBuffer commands) { record(commands, target, data, slot); }));
-        return gpu::test::download(context, target);
-    }
-
-    Interface interface { extent };
-    gpu::Context& context = gpu::test::context();
-    Picture target;
-    GuiPass pass;
-    Result<> result;
-};
+using test::background;
+using test::must;
+using test::Picture;
+using test::Pixels;
 
 /// Within `codes` of 255 of what the CPU draws.
 void expect_as_drawn_by_the_cpu(const Pixels& pixels, const ImDrawData& data, int codes) {
@@ -97,6 +27,8 @@ void expect_as_drawn_by_the_cpu(const Pixels& pixels, const ImDrawData& data, in
             }
     EXPECT_EQ(wrong, 0);
 }
+
+class WindowGpuGuiPass : public test::GuiPassTest {};
 
 TEST_F(WindowGpuGuiPass, DrawsTextAndShapesAsTheCpuDoes) {
     const ImDrawData& data = interface.frame([](ImDrawList& list) {
@@ -186,16 +118,18 @@ TEST_F(WindowGpuGuiPass, AtlasesMayBeExchanged) {
     expect_as_drawn_by_the_cpu(draw(data), data, 1);
 }
 
-class WindowGpuSrgbTarget : public WindowGpuGuiPass {
+class WindowGpuSrgbTarget : public test::GuiPassTest {
   protected:
-    WindowGpuSrgbTarget() : WindowGpuGuiPass(VK_FORMAT_R8G8B8A8_SRGB) {}
+    WindowGpuSrgbTarget() : GuiPassTest(VK_FORMAT_R8G8B8A8_SRGB) {}
 };
 
 TEST_F(WindowGpuSrgbTarget, GetsTheSameColors) {
     const ImDrawData& data = interface.frame([](ImDrawList& list) {
         list.AddRectFilled({0, 0}, {96, 64}, IM_COL32(200, 40, 20, 255));
-        for (int i = 0; i < 32; ++i)
-            list.AddRectFilled({i * 3.0F, 8}, {i * 3.0F + 3, 40}, IM_COL32(i * 8, 255 - i * 8, i, 255));
+        for (int i = 0; i < 32; ++i) {
+            const auto left = static_cast<float>(i * 3);
+            list.AddRectFilled({left, 8}, {left + 3, 40}, IM_COL32(i * 8, 255 - i * 8, i, 255));
+        }
     });
     expect_as_drawn_by_the_cpu(draw(data), data, 1);
 }
