@@ -37,7 +37,8 @@ TEST_F(WindowGpuGuiPass, DrawsTextAndShapesAsTheCpuDoes) {
         list.AddRectFilledMultiColor({60, 2}, {92, 30}, IM_COL32(255, 0, 0, 255), IM_COL32(0, 255, 0, 255),
                                      IM_COL32(0, 0, 255, 255), IM_COL32(255, 255, 255, 0));
         list.AddText({4, 26}, IM_COL32(255, 255, 255, 255), "Exposure 1.5");
-        list.AddText({4.5F, 44.25F}, IM_COL32(255, 200, 0, 180), "gpu: 3.25 ms");
+        // A list of its own, drawn last.
+        ImGui::GetForegroundDrawList()->AddText({4.5F, 44.25F}, IM_COL32(255, 200, 0, 180), "gpu: 3.25 ms");
     });
     const Pixels pixels = draw(data);
     ASSERT_TRUE(result);

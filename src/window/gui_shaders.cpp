@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "core/assert.hpp"
-#include "window/false_color.hpp"
+#include "panels/false_color.hpp"
 
 namespace darkroom::window {
 
@@ -34,10 +34,10 @@ std::string whole(std::string_view generated, std::string_view name) {
 }
 
 /// vec3 NAME(float value, float grey)
-std::string band_function(std::string_view name, std::span<const FalseColorBand> bands) {
+std::string band_function(std::string_view name, std::span<const panels::FalseColorBand> bands) {
     std::string out = fmt::format("vec3 {}(float value, float grey) {{\n", name);
     for (std::size_t i = bands.size(); i-- > 0;) {
-        const FalseColorBand& band = bands[i];
+        const panels::FalseColorBand& band = bands[i];
         const auto& [r, g, b] = band.color;
         if (i > 0) out += fmt::format("if (value >= {:.9f}) ", band.from);
         out += band.is_grey ? "return vec3(clamp(grey, 0.0, 1.0));\n"
@@ -53,7 +53,7 @@ std::string gui_vertex_shader() { return whole({}, "gui_vertex.glsl"); }
 std::string gui_fragment_shader() { return whole({}, "gui_fragment.glsl"); }
 
 std::string pane_fragment_shader() {
-    return whole(band_function("stop_color", stop_bands) + band_function("code_color", code_bands),
+    return whole(band_function("stop_color", panels::stop_bands) + band_function("code_color", panels::code_bands),
                  "pane_fragment.glsl");
 }
 

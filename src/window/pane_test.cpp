@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "window/false_color.hpp"
+#include "panels/false_color.hpp"
 #include "window/test_gui_pass.hpp"
 
 namespace darkroom::window {
@@ -205,7 +205,7 @@ TEST_F(WindowGpuPane, ComparesTwoViewsAtADivider) {
 }
 
 /// A texel for each band, in its middle, and the picture's grey there.
-Pixels band_samples(std::span<const FalseColorBand> bands, double below, double above, bool is_linear) {
+Pixels band_samples(std::span<const panels::FalseColorBand> bands, double below, double above, bool is_linear) {
     return make_pixels(16, 8, [&](std::uint32_t x, std::uint32_t) {
         const std::size_t band = std::min<std::size_t>(x, bands.size() - 1);
         const double from = band == 0 ? below : bands[band].from;
@@ -218,8 +218,9 @@ Pixels band_samples(std::span<const FalseColorBand> bands, double below, double 
 
 TEST_F(WindowGpuPane, ColorsEachBand) {
     for (const bool is_linear : {true, false}) {
-        const std::span<const FalseColorBand> bands =
-            is_linear ? std::span<const FalseColorBand>(stop_bands) : std::span<const FalseColorBand>(code_bands);
+        const std::span<const panels::FalseColorBand> bands =
+            is_linear ? std::span<const panels::FalseColorBand>(panels::stop_bands)
+                      : std::span<const panels::FalseColorBand>(panels::code_bands);
         const Pixels source = band_samples(bands, is_linear ? -8 : 0, is_linear ? 8 : 1, is_linear);
         const Picture picture = upload(context, source, VK_FORMAT_R32G32B32A32_SFLOAT);
         const Pixels shown =
@@ -240,8 +241,8 @@ TEST_F(WindowGpuPane, FalseColorIsOfTheExposedLuminance) {
     });
     const Picture picture = upload(context, source, VK_FORMAT_R32G32B32A32_SFLOAT);
     Pane pane{.view = {reference(picture), PaneTransfer::SceneLinear}, .is_false_color = true};
-    for (const FalseColorBand& band : stop_bands) {
-        if (band.from == lowest_band) continue;
+    for (const panels::FalseColorBand& band : panels::stop_bands) {
+        if (band.from == panels::lowest_band) continue;
         pane.exposure = static_cast<float>(band.from) + 0.1F;
         const auto& [r, g, b] = band.color;
         expect_color(show(pane).at(5, 5), {r, g, b}, std::string(band.name));

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The bands of the false-colour views, which the shader of panes and the legend share. Between bands that have a colour
-// the picture stays grey, as on a film camera's monitor (ARRI, "ALEXA false color", 2010: purple and blue at the black
-// end, green about middle grey, pink a stop above it, yellow and red at the white end).
+// The bands of the false-colour views, which the shader of panes (window/pane.hpp) and the legend share. Between bands
+// that have a colour the picture stays grey, as on a film camera's monitor (ARRI, "ALEXA false color", 2010: purple and
+// blue at the black end, green about middle grey, pink a stop above it, yellow and red at the white end).
 
 #include <array>
 #include <limits>
 #include <span>
 #include <string_view>
 
-namespace darkroom::window {
+namespace darkroom::panels {
 
 struct FalseColorBand {
     double from = 0;               ///< the first value in it; it ends where the next one begins
@@ -52,4 +52,4 @@ inline constexpr std::array code_bands{
     FalseColorBand{0.99, {0.86f, 0.12f, 0.10f}, false, "white, 99 % and over"},
 };
 
-}  // namespace darkroom::window
+}  // namespace darkroom::panels
