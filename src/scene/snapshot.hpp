@@ -82,8 +82,10 @@ struct CameraState {
     /// Camera to clip space: y down, depth reversed (1 near, 0 far).
     mat4 projection{1}, previous_projection{1};
     vec3 position{0};
+    vec3 target{0};  ///< what an orbit goes around
     Projection kind = Projection::Perspective;
     float field_of_view = 45;  ///< vertical, degrees
+    float ortho_height = 10;   ///< of the view, metres; orthographic only
     float near_distance = 0.1F, far_distance = 1000;
 };
 
@@ -106,6 +108,8 @@ struct OrbitOverride {
     std::optional<float> distance, yaw, pitch;  ///< degrees
     std::optional<vec3> target;
     std::optional<float> field_of_view;  ///< degrees
+    std::optional<float> ortho_height;   ///< metres; of an orthographic camera
+    float least_far_distance = 0;        ///< metres; for the far plane of a camera that leaves its place
 };
 
 struct SnapshotOptions {
@@ -114,6 +118,8 @@ struct SnapshotOptions {
     float aspect = 16.0F / 9;
     std::uint64_t seed = 0;  ///< of all particles
     OrbitOverride orbit;
+    /// The overrides of the frame before, for the motion of a camera that hands move; unset: those of `orbit`.
+    std::optional<OrbitOverride> previous_orbit;
 };
 
 /// Whether what a snapshot holds, and what the renderer makes of it, stays in proportion to the files of the scene:

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <cmath>
 
+#include "scene/free_camera.hpp"
 #include "scene/snapshot_parts.hpp"
 
 namespace darkroom::scene {
@@ -125,11 +126,6 @@ View view_of_node(const Scene& scene, const Assets& assets, const CameraNode& pl
     return view;
 }
 
-float radius_of(const Box& bounds) {
-    const float radius = glm::length(bounds.size()) * 0.5F;
-    return radius > 0 ? radius : 1.0F;
-}
-
 /// All of the bounding sphere is in view with a margin of 10 %. Without anything to see: the reference's view.
 View fitted_view(const Scene& scene, const Box& bounds, float field_of_view, float aspect) {
     View view{.field_of_view = field_of_view,
@@ -141,9 +137,7 @@ View fitted_view(const Scene& scene, const Box& bounds, float field_of_view, flo
         place_on_orbit(view, vec3(0), 15, yaw, pitch);
         return view;
     }
-    const float half_height = glm::radians(field_of_view) * 0.5F;
-    const float half_width = std::atan(std::tan(half_height) * aspect);
-    const float distance = 1.1F * radius_of(bounds) / std::sin(std::min(half_height, half_width));
+    const float distance = fitting_distance(radius_of(bounds), field_of_view, aspect);
     place_on_orbit(view, bounds.center(), distance, yaw, pitch);
     return view;
 }
@@ -233,7 +227,7 @@ void add_camera(const Scene& scene, const Assets& assets, const SnapshotOptions&
                 PoseCache& poses, Snapshot& out) {
     const float aspect = options.aspect > 0 && std::isfinite(options.aspect) ? options.aspect : 1.0F;
     const CameraNode node = model_camera(scene, assets);
-    const auto view_at = [&](double time, std::vector<std::string>& warnings) {
+    const auto view_at = [&](double time, const OrbitOverride& orbit, std::vector<std::string>& warnings) {
         View view;
         if (scene.camera.is_given)
             view = scene_view(scene.camera, time);
@@ -241,23 +235,29 @@ void add_camera(const Scene& scene, const Assets& assets, const SnapshotOptions&
             view = view_of_node(scene, assets, node, time, fitted, poses);
         const bool is_fitted = !scene.camera.is_given && node.entity == no_index;
         if (is_fitted) view.field_of_view = scene.camera.field_of_view;
-        view.field_of_view = options.orbit.field_of_view.value_or(view.field_of_view);
+        view.field_of_view = orbit.field_of_view.value_or(view.field_of_view);
+        view.ortho_height = orbit.ortho_height.value_or(view.ortho_height);
+        view.far_distance = std::max(view.far_distance, orbit.least_far_distance);
         mend(scene, view, warnings);
         if (is_fitted) view = fitted_view(scene, fitted, view.field_of_view, aspect);
-        apply_orbit(view, options.orbit);
+        apply_orbit(view, orbit);
         if (is_fitted) fit_planes(scene, fitted, view);
         return view;
     };
-    const View now = view_at(options.time, out.warnings);
+    const View now = view_at(options.time, options.orbit, out.warnings);
     std::vector<std::string> unheard;
-    const View before = options.previous_time == options.time ? now : view_at(options.previous_time, unheard);
+    const bool is_still = options.previous_time == options.time && !options.previous_orbit;
+    const View before =
+        is_still ? now : view_at(options.previous_time, options.previous_orbit.value_or(options.orbit), unheard);
     out.camera = {.view = view_matrix(now),
                   .previous_view = view_matrix(before),
                   .projection = projection_matrix(now, aspect),
                   .previous_projection = projection_matrix(before, aspect),
                   .position = now.position,
+                  .target = now.target,
                   .kind = now.kind,
                   .field_of_view = now.field_of_view,
+                  .ortho_height = now.ortho_height,
                   .near_distance = now.near_distance,
                   .far_distance = now.far_distance};
 }
