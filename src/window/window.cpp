@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "window/window.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace darkroom::window {
+
+namespace {
+
+std::string last_error() {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return text != nullptr ? text : "no reason was given";
+}
+
+/// The library is up as long as this exists.
+struct Library {
+    Library() = default;
+    Library(const Library&) = delete;
+    Library& operator=(const Library&) = delete;
+    ~Library() {
+        if (is_up) glfwTerminate();
+    }
+    bool is_up = false;
+};
+
+struct DestroyWindow {
+    void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+};
+
+}  // namespace
+
+struct Window::State {
+    Library library;
+    std::unique_ptr<GLFWwindow, DestroyWindow> window;
+    std::span<const char* const> extensions;
+    std::vector<KeyPress> pressed;
+    std::array<double, 2> cursor{}, moved{};
+    double wheel = 0;
+    bool is_captured = false;
+    std::array<int, 4> windowed{};  ///< place and size before it became fullscreen
+
+    void begin() {
+        pressed.clear();
+        wheel = 0;
+    }
+    void end() {
+        std::array<double, 2> now{};
+        glfwGetCursorPos(window.get(), &now[0], &now[1]);
+        moved = {now[0] - cursor[0], now[1] - cursor[1]};
+        cursor = now;
+    }
+    static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
+};
+
+Window::Window(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Window::Window(Window&&) noexcept = default;
+Window& Window::operator=(Window&&) noexcept = default;
+Window::~Window() = default;
+
+Result<Window> Window::create(const WindowDesc& desc) {
+    auto state = std::make_unique<State>();
+    if (glfwInit() != GLFW_TRUE) return machine_error(fmt::format("no window can be opened: {}", last_error()));
+    state->library.is_up = true;
+    std::uint32_t count = 0;
+    const char** const names = glfwGetRequiredInstanceExtensions(&count);
+    if (names == nullptr) return machine_error(fmt::format("no window can show Vulkan: {}", last_error()));
+    state->extensions = {names, count};
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_TRUE);
+    state->window.reset(glfwCreateWindow(static_cast<int>(desc.size.width), static_cast<int>(desc.size.height),
+                                         desc.title.c_str(), nullptr, nullptr));
+    if (!state->window) return machine_error(fmt::format("no window can be opened: {}", last_error()));
+    GLFWwindow* const window = state->window.get();
+    glfwSetWindowUserPointer(window, state.get());
+    glfwSetWindowSizeLimits(window, 64, 64, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int modifiers) {
+        if (action == GLFW_PRESS) State::of(of).pressed.push_back({key, modifiers});
+    });
+    glfwSetScrollCallback(window, [](GLFWwindow* of, double, double y) { State::of(of).wheel += y; });
+    glfwGetCursorPos(window, &state->cursor[0], &state->cursor[1]);
+    Window out(std::move(state));
+    if (desc.is_fullscreen) out.set_fullscreen(true);
+    return out;
+}
+
+std::span<const char* const> Window::instance_extensions() const { return state_->extensions; }
+
+Result<VkSurfaceKHR> Window::make_surface(VkInstance instance) const {
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    if (glfwCreateWindowSurface(instance, handle(), nullptr, &surface) != VK_SUCCESS)
+        return machine_error(fmt::format("making a surface for the window failed: {}", last_error()));
+    return surface;
+}
+
+void Window::poll() {
+    state_->begin();
+    glfwPollEvents();
+    state_->end();
+}
+
+void Window::wait(double seconds) {
+    state_->begin();
+    glfwWaitEventsTimeout(seconds);
+    state_->end();
+}
+
+bool Window::is_closing() const { return glfwWindowShouldClose(handle()) != 0; }
+void Window::close() { glfwSetWindowShouldClose(handle(), GLFW_TRUE); }
+
+VkExtent2D Window::extent() const {
+    if (glfwGetWindowAttrib(handle(), GLFW_ICONIFIED) != 0) return {0, 0};
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(handle(), &width, &height);
+    return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
+}
+
+float Window::scale() const {
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(handle(), &x, &y);
+    return std::max(x, y);
+}
+
+bool Window::is_fullscreen() const { return glfwGetWindowMonitor(handle()) != nullptr; }
+
+void Window::set_fullscreen(bool fullscreen) {
+    auto& [x, y, width, height] = state_->windowed;
+    if (fullscreen == is_fullscreen()) return;
+    if (!fullscreen) {
+        glfwSetWindowMonitor(handle(), nullptr, x, y, width, height, GLFW_DONT_CARE);
+        return;
+    }
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* const mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+    if (mode == nullptr) return;
+    glfwGetWindowPos(handle(), &x, &y);
+    glfwGetWindowSize(handle(), &width, &height);
+    glfwSetWindowMonitor(handle(), monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(handle(), title.c_str()); }
+
+void Window::capture_cursor(bool is_captured) {
+    if (is_captured == state_->is_captured) return;
+    state_->is_captured = is_captured;
+    glfwSetInputMode(handle(), GLFW_CURSOR, is_captured ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    // Where it is from now on is no movement.
+    glfwGetCursorPos(handle(), &state_->cursor[0], &state_->cursor[1]);
+}
+
+bool Window::is_cursor_captured() const { return state_->is_captured; }
+const std::vector<KeyPress>& Window::pressed() const { return state_->pressed; }
+bool Window::is_down(int key) const { return glfwGetKey(handle(), key) == GLFW_PRESS; }
+bool Window::is_button_down(int button) const { return glfwGetMouseButton(handle(), button) == GLFW_PRESS; }
+std::array<double, 2> Window::mouse_moved() const { return state_->moved; }
+double Window::wheel() const { return state_->wheel; }
+GLFWwindow* Window::handle() const { return state_->window.get(); }
+
+}  // namespace darkroom::window
