@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+#include "edit/splice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/param_text.hpp"
+#include "edit/stack_blocks.hpp"
+#include "edit/toml_editor.hpp"
+#include "looks/look_resources.hpp"
+#include "looks/look_stack.hpp"
+#include "toml/toml_text.hpp"
+
+namespace darkroom::edit {
+
+namespace {
+
+const TomlPath flat_path{"post_process"}, ui_path{"ui"};
+
+std::string bool_text(Toggle toggle) { return toggle.on != 0 ? "true" : "false"; }
+
+class Splicer {
+  public:
+    Splicer(TomlEditor editor, const Look& was, const Look& is) : editor_(std::move(editor)), was_(was), is_(is) {}
+
+    Result<std::string> run() {
+        if (Result<> done = check(); !done) return failure(std::move(done));
+        for (const auto step : {&Splicer::write_picture, &Splicer::write_ui})
+            if (Result<> done = (this->*step)(); !done) return failure(std::move(done));
+        return editor_.text();
+    }
+
+  private:
+    /// Is the rest the same?
+    Result<> check() const {
+        std::string moved_before, moved_now;
+        write_modulation(moved_before, was_);
+        write_modulation(moved_now, is_);
+        if (moved_before != moved_now) return user_error("pulses and layers have changed, which is not written back");
+        if (was_.ui && is_.ui &&
+            (was_.ui->document != is_.ui->document || was_.ui->controllers != is_.ui->controllers ||
+             was_.ui->game != is_.ui->game))
+            return user_error("the interface's document, controllers or game have changed, which is not written back");
+        return {};
+    }
+
+    Result<> write_picture() {
+        if (is_.is_flat) {
+            if (!was_.is_flat)
+                if (const auto removed = editor_.remove_table({"stack"}); !removed) return failure(removed.error());
+            return write_flat();
+        }
+        return was_.is_flat ? make_stack() : write_stack();
+    }
+
+    Result<> write_ui() {
+        if (!is_.ui) {
+            if (!was_.ui) return {};
+            const auto removed = editor_.remove_table(ui_path);
+            return removed ? Result<>{} : failure(removed.error());
+        }
+        if (!editor_.contains(ui_path))
+            if (Result<> done = editor_.add_table(ui_path[0]); !done) return done;
+        return write_table(ui_path, was_.ui ? was_ : default_look(), true);
+    }
+
+    // The flat tables.
+
+    Result<> write_flat() {
+        const Look& from = was_.is_flat ? was_ : default_look();
+        if (is_.is_enabled != from.is_enabled)
+            if (Result<> done = editor_.set(flat_path, "enabled", bool_text(is_.is_enabled)); !done) return done;
+        if (is_.order != from.order) {
+            const std::string order = toml_string(order_names[static_cast<std::size_t>(is_.order)]);
+            if (Result<> done = editor_.set(flat_path, "order", order); !done) return done;
+        }
+        return write_table(flat_path, from, false);
+    }
+
+    Result<> write_table(const TomlPath& table, const Look& from, bool is_of_ui) {
+        for (const LookEntry& entry : is_.entries) {
+            if (entry.is_of_ui != is_of_ui) continue;
+            const auto before = std::ranges::find_if(from.entries, [&](const LookEntry& other) {
+                return other.effect->name == entry.effect->name && other.is_of_ui == is_of_ui;
+            });
+            if (before == from.entries.end())
+                return user_error(fmt::format("{}: the table [{}] has no place for it", entry.effect->name, table[0]));
+            if (Result<> done = write_flat_entry(table, *before, entry); !done) return done;
+        }
+        return {};
+    }
+
+    Result<> write_flat_entry(const TomlPath& table, const LookEntry& before, const LookEntry& entry) {
+        const std::string_view effect = entry.effect->name;
+        const std::string switch_key = flat_key(effect, "enabled");
+        std::vector<std::string> own{switch_key};
+        for (const ParamInfo& row : entry.effect->parameters.rows) own.push_back(flat_key(effect, row.name));
+        bool is_amount_new = false;
+        for (const ParamInfo& row : entry.effect->parameters.rows) {
+            const std::string text = value_text(entry, row);
+            if (text == value_text(before, row)) continue;
+            is_amount_new |= row.is_amount;
+            const std::string former = row.formerly.empty() ? std::string() : flat_key(effect, row.formerly);
+            if (Result<> done = set_row(table, flat_key(effect, row.name), former, text, own); !done) return done;
+        }
+        const bool is_on = entry.state.enabled.on != 0, was_on = before.state.enabled.on != 0;
+        const bool is_said = editor_.contains(joined(table, switch_key));
+        const bool is_other = is_said ? is_on != was_on : is_on != is_on_unsaid(table, entry);
+        if ((is_on == was_on && !is_amount_new && was_has(table)) || !is_other) return {};
+        return editor_.set(table, switch_key, bool_text(entry.state.enabled), own);
+    }
+
+    /// Was the table there before? In a new one every switch counts that is not as the table has it by itself.
+    bool was_has(const TomlPath& table) const { return table == ui_path ? was_.ui.has_value() : was_.is_flat; }
+
+    /// Is an entry on where the table says nothing of its switch? Of its amounts the last one of the table's counts,
+    /// in the order of the keys.
+    bool is_on_unsaid(const TomlPath& table, const LookEntry& entry) const {
+        if (entry.is_of_ui) return true;
+        bool out = entry.effect->flat.starts_on;
+        std::string last;
+        for (const ParamInfo& row : entry.effect->parameters.rows)
+            for (const std::string_view name : {row.name, row.formerly}) {
+                const std::string key = name.empty() ? std::string() : flat_key(entry.effect->name, name);
+                if (!row.is_amount || key <= last || !editor_.contains(joined(table, key))) continue;
+                last = key;
+                out = std::bit_cast<float>(entry.words[row.word]) != 0;
+            }
+        return out;
+    }
+
+    /// A key's former name stays where it stands.
+    Result<> set_row(const TomlPath& table, const std::string& key, const std::string& former, const std::string& text,
+                     std::span<const std::string> neighbours) {
+        const bool has_former = !former.empty() && editor_.contains(joined(table, former));
+        if (has_former)
+            if (Result<> done = editor_.set(table, former, text); !done) return done;
+        if (has_former && !editor_.contains(joined(table, key))) return {};
+        return editor_.set(table, key, text, neighbours);
+    }
+
+    static TomlPath joined(const TomlPath& table, std::string_view key) {
+        TomlPath out = table;
+        out.emplace_back(key);
+        return out;
+    }
+
+    // The stack.
+
+    static std::vector<const LookEntry*> stacked(const Look& look) {
+        std::vector<const LookEntry*> out;
+        for (const LookEntry& entry : look.entries)
+            if (!entry.is_of_ui) out.push_back(&entry);
+        return out;
+    }
+
+    Result<> make_stack() {
+        const auto place = editor_.remove_table(flat_path);
+        if (!place) return failure(place.error());
+        std::vector<StackElement> elements;
+        for (const LookEntry* const entry : stacked(is_)) elements.push_back({std::nullopt, pairs_of(*entry)});
+        if (elements.empty()) return editor_.set({}, "stack", "[]");
+        const std::string eol(editor_.line_end()), &text = editor_.text();
+        std::string blocks = blocks_of(elements, eol);
+        if (*place < text.size())
+            blocks += text[*place] == '\n' || text[*place] == '\r' ? std::string() : eol;
+        else if (!text.empty())
+            blocks = (text.ends_with('\n') ? eol : eol + eol) + blocks;
+        return editor_.replace(*place, *place, blocks);
+    }
+
+    Result<> write_stack() {
+        const std::vector<const LookEntry*> before = stacked(was_), now = stacked(is_);
+        if (stack_size(editor_) != before.size())
+            return user_error(fmt::format("the text has {} entries in its stack, where {} were read",
+                                          stack_size(editor_), before.size()));
+        const std::vector<const LookEntry*> others = counterparts(is_, was_);
+        std::vector<StackElement> elements;
+        bool is_arranged = now.size() == before.size();
+        for (const LookEntry* const entry : now) {
+            const LookEntry* const other = others[static_cast<std::size_t>(entry - is_.entries.data())];
+            if (other == nullptr) {
+                elements.push_back({std::nullopt, pairs_of(*entry)});
+                is_arranged = false;
+                continue;
+            }
+            const auto number = static_cast<std::size_t>(std::ranges::find(before, other) - before.begin());
+            is_arranged &= number == elements.size();
+            elements.push_back({number, {}});
+            if (Result<> done = write_entry({"stack", std::to_string(number)}, *other, *entry); !done) return done;
+        }
+        return is_arranged ? Result<>{} : arrange_stack(editor_, elements);
+    }
+
+    Result<> write_entry(const TomlPath& table, const LookEntry& before, const LookEntry& entry) {
+        if (entry.effect_file != before.effect_file)
+            if (Result<> done = editor_.set(table, "effect", toml_string(entry.effect_file)); !done) return done;
+        for (const WireInfo& wire : wires) {
+            const std::string& name = entry.*wire.member;
+            if (name == before.*wire.member) continue;
+            const Result<> done =
+                name.empty() ? editor_.remove(table, wire.key) : editor_.set(table, wire.key, toml_string(name));
+            if (!done) return done;
+        }
+        const StateWords state = state_words(entry.state), state_before = state_words(before.state);
+        for (const ParamInfo& row : entry_rows.rows) {
+            const std::string text = format(row, state);
+            if (text == format(row, state_before)) continue;
+            if (Result<> done = editor_.set(table, row.name, text); !done) return done;
+        }
+        for (const ParamInfo& row : entry.effect->parameters.rows) {
+            const std::string text = value_text(entry, row);
+            if (text == value_text(before, row)) continue;
+            if (Result<> done = set_row(table, std::string(row.name), std::string(row.formerly), text, {}); !done)
+                return done;
+        }
+        return {};
+    }
+
+    /// What a new entry has to say.
+    static std::vector<std::string> pairs_of(const LookEntry& entry) {
+        std::vector<std::string> out;
+        const auto say = [&](std::string_view key, std::string_view value) {
+            out.push_back(fmt::format("{} = {}", key, value));
+        };
+        say("effect", toml_string(entry.effect_file.empty() ? entry.effect->name : entry.effect_file));
+        for (const WireInfo& wire : wires)
+            if (!(entry.*wire.member).empty()) say(wire.key, toml_string(entry.*wire.member));
+        const LookEntry plain = entry_of(*entry.effect);
+        const StateWords state = state_words(entry.state), state_plain = state_words(plain.state);
+        for (const ParamInfo& row : entry_rows.rows)
+            if (const std::string text = format(row, state); text != format(row, state_plain)) say(row.name, text);
+        for (const ParamInfo& row : entry.effect->parameters.rows)
+            if (const std::string text = value_text(entry, row); text != value_text(plain, row)) say(row.name, text);
+        return out;
+    }
+
+    TomlEditor editor_;
+    const Look& was_;
+    const Look& is_;
+};
+
+}  // namespace
+
+Result<std::string> splice_look(std::string_view text, const Look& was, const Look& is) {
+    if (const auto parsed = parse_toml(text, was.shown_name); !parsed) return failure(parsed.error());
+    Result<TomlEditor> editor = TomlEditor::of(std::string(text));
+    if (!editor) return failure(std::move(editor));
+    Result<std::string> out = Splicer(std::move(*editor), was, is).run();
+    if (!out) return failure(Error{out.error().fault, fmt::format("{}: {}", is.shown_name, out.error().text)});
+    return out;
+}
+
+}  // namespace darkroom::edit
