@@ -27,6 +27,26 @@ bool says_same(const LookEntry& a, const LookEntry& b) {
     });
 }
 
+std::vector<const LookEntry*> entries_of(const Look& look, bool is_of_ui) {
+    std::vector<const LookEntry*> out;
+    for (const LookEntry& entry : look.entries)
+        if (entry.is_of_ui == is_of_ui) out.push_back(&entry);
+    return out;
+}
+
+/// The interface's entries have an order of their own. One that is not there is off.
+bool has_same_ui(const Look& a, const Look& b) {
+    const std::vector<const LookEntry*> of_a = entries_of(a, true), of_b = entries_of(b, true);
+    const auto are_in = [](const auto& these, const auto& others) {
+        return std::ranges::all_of(these, [&](const LookEntry* entry) {
+            const auto found = std::ranges::find_if(
+                others, [&](const LookEntry* other) { return other->effect->name == entry->effect->name; });
+            return found == others.end() ? entry->state.enabled.on == 0 : says_same(*entry, **found);
+        });
+    };
+    return are_in(of_a, of_b) && are_in(of_b, of_a);
+}
+
 bool says_same(const std::optional<LookUi>& a, const std::optional<LookUi>& b) {
     if (!a || !b) return !a && !b;
     return a->document == b->document && a->controllers == b->controllers && a->game == b->game;
@@ -40,8 +60,10 @@ bool has_same_files(const LookEntry& a, const LookEntry& b) {
 }  // namespace
 
 bool says_same(const Look& a, const Look& b) {
-    if (a.is_flat != b.is_flat || a.is_enabled != b.is_enabled || a.order != b.order || !says_same(a.ui, b.ui) ||
-        !std::ranges::equal(a.entries, b.entries, [](const auto& x, const auto& y) { return says_same(x, y); }))
+    const auto is_same_entry = [](const LookEntry* x, const LookEntry* y) { return says_same(*x, *y); };
+    if (a.is_flat != b.is_flat || a.is_enabled != b.is_enabled || (a.is_flat && a.order != b.order) ||
+        !says_same(a.ui, b.ui) || !has_same_ui(a, b) ||
+        !std::ranges::equal(entries_of(a, false), entries_of(b, false), is_same_entry))
         return false;
     std::string of_a, of_b;
     write_modulation(of_a, a);

@@ -59,6 +59,7 @@ void LookDocument::take(Look look) {
     look_ = std::move(look);
     is_changed_ = !says_same(look_, saved_);
     ++version_;
+    watch_files();
 }
 
 void LookDocument::remember(std::string what) {

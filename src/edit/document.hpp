@@ -55,8 +55,8 @@ class LookDocument {
     /// Writes what changed into the text that was read, all else as it stands there. Errors: there is no file; it has
     /// been changed by others since; something cannot be written there. The file is then as it was.
     Result<> save();
-    /// The same into another file, which becomes the document's. One that lies in another folder, or a document without
-    /// a text, is a new file. Errors: the look names files, which are relative to the folder that it was in.
+    /// The same into another file, which becomes the document's, and is overwritten. In another folder it is that of a
+    /// look, whatever the document's was. Errors: the look names files, which are relative to the folder that it is in.
     Result<> save_as(const std::filesystem::path& file);
     /// Reads what has changed on disk: the file, or one that the look names. True: the look is another, as a step of
     /// undo. An error, "file:line:column: ...", leaves it, and comes once for each state of the files.
@@ -73,8 +73,9 @@ class LookDocument {
     void remember(std::string what);
     void give_ids(Look& look);
     Result<> check(const Look& next) const;
-    Result<> write(const std::filesystem::path& file, const LookOptions& options);
-    Result<bool> reload();
+    void watch_files();
+    /// Splices what changed into a text; into none, all is written.
+    Result<> write(const std::filesystem::path& file, std::string_view into);
 
     std::filesystem::path file_;
     LookOptions options_;

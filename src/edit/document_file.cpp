@@ -8,21 +8,206 @@
 #include "core/param_text.hpp"
 #include "edit/compare.hpp"
 #include "edit/document.hpp"
+#include "edit/splice.hpp"
+#include "looks/look_resources.hpp"
 #include "looks/look_stack.hpp"
 
 namespace darkroom::edit {
 
+namespace {
+
+/// Of tables and pictures the look of a text needs no more than that they are there.
+Result<ResourceData> stand_in(const std::filesystem::path&, FileUse use) {
+    if (use == FileUse::Table) return ResourceData(ColorTable{});
+    return ResourceData(ResourceImage{1, 1, {0, 0, 0, 0}});
+}
+
+/// Does a text say this look? What pulses and layers move is woken as it is read.
+bool says(const Look& read, Look look) {
+    const std::vector<std::string> names = entry_names(look);
+    const std::vector<const LookEntry*> others = counterparts(look, read);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (others[i] != nullptr && others[i]->state.enabled.on != 0 && is_moved(look, names[i])) wake(look.entries[i]);
+    return says_same(read, look);
+}
+
+bool names_files(const Look& look) {
+    const auto has_file = [](const LookEntry& entry) { return !entry.effect_file.empty() || !entry.resources.empty(); };
+    const auto is_file = [](const LookLayer& layer) { return !layer.file.empty(); };
+    return std::ranges::any_of(look.entries, has_file) || std::ranges::any_of(look.layers, is_file) ||
+           (look.ui && (!look.ui->document.empty() || !look.ui->controllers.empty()));
+}
+
+/// What was read again and is as it was stays the one that it was, so that nothing is uploaded or compiled for it.
+void keep_loaded(Look& look, const Look& before) {
+    for (LookEntry& entry : look.entries)
+        for (const LookEntry& other : before.entries) {
+            if (entry.effect_owner && entry.effect_file == other.effect_file && is_same(*entry.effect, *other.effect)) {
+                entry.effect = other.effect;
+                entry.effect_owner = other.effect_owner;
+            }
+            for (LookResource& resource : entry.resources)
+                for (const LookResource& old : other.resources)
+                    if (resource.file == old.file && resource.data && old.data && is_same(*resource.data, *old.data))
+                        resource.data = old.data;
+        }
+}
+
+/// The values that both effects have, of a custom effect whose text changed.
+std::vector<std::uint32_t> carried_over(const LookEntry& from, const EffectInfo& to) {
+    std::vector<std::uint32_t> words(to.parameters.defaults.begin(), to.parameters.defaults.end());
+    for (const ParamInfo& row : to.parameters.rows) {
+        const ParamInfo* const old = from.effect->parameters.find(row.name);
+        if (old == nullptr || old->kind != row.kind) continue;
+        const auto value = std::span(from.words).subspan(old->word, old->words);
+        if (check_words(row, value)) std::ranges::copy(value, words.begin() + row.word);
+    }
+    return words;
+}
+
+/// Loads anew what the entries of a look name.
+Result<> load_again(Look& look, const LookOptions& options) {
+    ResourceFiles files(options.folder, options);
+    std::map<std::string, LookEntry> effects;
+    for (LookEntry& entry : look.entries) {
+        if (!entry.effect_file.empty()) {
+            auto found = effects.find(entry.effect_file);
+            if (found == effects.end()) {
+                Result<LookEntry> made = custom_entry(options.folder / entry.effect_file);
+                if (!made) return failure(std::move(made));
+                found = effects.emplace(entry.effect_file, std::move(*made)).first;
+            }
+            entry.words = carried_over(entry, *found->second.effect);
+            entry.effect = found->second.effect;
+            entry.effect_owner = found->second.effect_owner;
+        }
+        for (const LookResource& resource : std::vector<LookResource>(entry.resources)) {
+            const ParamInfo* const row = entry.effect->parameters.find(resource.parameter);
+            const auto* const wire = std::ranges::find(wires, resource.parameter, &WireInfo::key);
+            Result<> done;
+            if (row != nullptr)
+                done = files.put(entry, *row, resource.file);
+            else if (wire != wires.end())
+                done = files.put(entry, *wire, resource.file);
+            if (!done) return done;
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
 Result<LookDocument> LookDocument::open(const std::filesystem::path& file, LookOptions options) {
     if (options.folder.empty()) options.folder = file.parent_path();
-    Result<Look> look = read_look(file, options);
+    Result<std::string> text = read_look_text(file);
+    if (!text) return failure(std::move(text));
+    Result<Look> look = parse_look(*text, file.string(), options);
     if (!look) return failure(std::move(look));
     LookDocument out(std::move(*look), std::move(options));
     out.file_ = file;
+    out.text_ = std::move(*text);
+    out.watch_files();
     return out;
 }
 
-Result<> LookDocument::save() { return user_error("not yet"); }
-Result<> LookDocument::save_as(const std::filesystem::path&) { return user_error("not yet"); }
-Result<bool> LookDocument::reload_if_changed() { return false; }
+void LookDocument::watch_files() {
+    if (!file_.empty()) watch_.add(file_);
+    const auto add = [&](const std::string& name) {
+        if (!name.empty()) watch_.add(options_.folder / name);
+    };
+    for (const LookEntry& entry : look_.entries) {
+        add(entry.effect_file);
+        for (const LookResource& resource : entry.resources) add(resource.file);
+    }
+    for (const LookLayer& layer : look_.layers) add(layer.file);
+}
+
+Result<> LookDocument::save() {
+    if (file_.empty()) return user_error("the look has no file yet: it needs a name to be saved");
+    const Result<std::string> now = read_look_text(file_);
+    if (!now) return failure(now.error());
+    if (*now != text_)
+        return user_error(fmt::format("{}: it has been changed by others since it was read; it is not overwritten",
+                                      printable(file_.string())));
+    return write(file_, text_);
+}
+
+Result<> LookDocument::save_as(const std::filesystem::path& file) {
+    const bool is_near =
+        !file_.empty() && file.parent_path().lexically_normal() == file_.parent_path().lexically_normal();
+    if (is_near) return write(file, text_);
+    if (names_files(look_) && file.parent_path().lexically_normal() != options_.folder.lexically_normal())
+        return user_error(fmt::format("{}: the look names files in relation to {}, so it is to lie there",
+                                      printable(file.string()), printable(options_.folder.string())));
+    return write(file, {});
+}
+
+Result<> LookDocument::write(const std::filesystem::path& file, std::string_view into) {
+    LookOptions options = options_;
+    options.folder = file.parent_path();
+    options.is_scene &= !into.empty();
+    const Result<std::string> text =
+        into.empty() ? Result<std::string>(write_look(look_)) : splice_look(into, saved_, look_);
+    if (!text) return failure(text.error());
+    const std::string shown = file.string();
+    LookOptions checking = options;
+    checking.load_resource = stand_in;
+    const Result<Look> read = parse_look(*text, shown, checking);
+    // A custom effect that is wrong just now is no reason to keep the look from its file.
+    const bool is_readable = read || (!into.empty() && parse_look(into, shown, checking));
+    if (is_readable && !read) return failure(read.error());
+    if (is_readable && !says(*read, look_))
+        return user_error(fmt::format("{}: the look cannot be written so that it reads as the same", printable(shown)));
+    if (Result<> done = write_file(file, std::as_bytes(std::span(*text))); !done) return done;
+    file_ = file;
+    text_ = *text;
+    options_ = std::move(options);
+    saved_ = look_;
+    is_changed_ = false;
+    watch_.take(file);
+    end_merge();
+    return {};
+}
+
+Result<bool> LookDocument::reload_if_changed() {
+    if (!watch_.take_change()) return false;
+    std::string text;
+    if (!file_.empty()) {
+        Result<std::string> now = read_look_text(file_);
+        if (!now) return failure(std::move(now));
+        // An editor that is about to write it: the watch will tell.
+        if (now->empty() && !text_.empty()) return false;
+        text = std::move(*now);
+    }
+    Look saved = saved_, next = look_;
+    if (!file_.empty()) {
+        Result<Look> read = parse_look(text, file_.string(), options_);
+        if (!read) return failure(std::move(read));
+        saved = std::move(*read);
+        const std::vector<const LookEntry*> others = counterparts(saved, look_);
+        for (std::size_t i = 0; i < others.size(); ++i) saved.entries[i].id = others[i] == nullptr ? 0 : others[i]->id;
+        give_ids(saved);
+        keep_loaded(saved, look_);
+    }
+    if (!file_.empty() && (text != text_ || !is_changed_)) {
+        next = saved;
+    } else {
+        if (Result<> done = load_again(next, options_); !done) return failure(std::move(done));
+        next.layers = saved.layers;
+        keep_loaded(next, look_);
+    }
+    saved_ = std::move(saved);
+    text_ = std::move(text);
+    watch_files();
+    if (is_same(next, look_)) {
+        is_changed_ = !says_same(look_, saved_);
+        return false;
+    }
+    remember("Reload");
+    redo_.clear();
+    end_merge();
+    take(std::move(next));
+    return true;
+}
 
 }  // namespace darkroom::edit

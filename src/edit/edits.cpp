@@ -15,7 +15,10 @@ namespace {
 
 using Words = std::span<const std::uint32_t>;
 
+/// The entry of this name, whose value will be set: one of the interface is there with the whole of it.
 Result<LookTarget> target_of(Look& look, std::string_view entry, std::string_view member) {
+    if (const LookEntry* const found = find_entry(look, entry); found != nullptr && found->is_of_ui && !look.ui)
+        add_ui(look);
     const std::string key = fmt::format("{}.{}", entry, member);
     return find_target(look, key, printable(key));
 }

@@ -15,7 +15,8 @@ class Watch {
     void add(const std::filesystem::path& file) {
         if (!files_.contains(file)) files_.emplace(file, stamp_of(file));
     }
-    void clear() { files_.clear(); }
+    /// Takes a file as it is now.
+    void take(const std::filesystem::path& file) { files_[file] = stamp_of(file); }
     /// Is any of them another than it was? They are then taken as they are now. One that is gone counts as unchanged
     /// until it is there again: editors replace files.
     [[nodiscard]] bool take_change();

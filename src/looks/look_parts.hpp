@@ -54,6 +54,11 @@ struct LookTarget {
 void write_modulation(std::string& out, const Look& look);
 /// Does a pulse or a layer move the entry of this name?
 [[nodiscard]] bool is_moved(const Look& look, std::string_view entry);
+/// What is off is on with an amount of 0, so that it comes and goes without a step: what reading a look does with an
+/// entry whose amount a pulse or a layer moves.
+void wake(LookEntry& entry);
+/// The text of a look's file, if it is one that may be read.
+[[nodiscard]] Result<std::string> read_look_text(const std::filesystem::path& path);
 /// Letters, digits, '_' and '-', up to 64.
 [[nodiscard]] bool is_look_name(std::string_view text);
 

@@ -119,7 +119,7 @@ Result<Look> parse_look(std::string_view text, std::string shown_name, const Loo
     return LookReader(std::move(shown), options).read(*file);
 }
 
-Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) {
+Result<std::string> read_look_text(const std::filesystem::path& path) {
     const std::string shown = printable(path.string());
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(path, error);
@@ -130,9 +130,15 @@ Result<Look> read_look(const std::filesystem::path& path, const LookOptions& opt
         return user_error(fmt::format("{}: {} bytes, a look file has at most {}", shown, size, most_toml_bytes));
     const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_toml_bytes});
     if (!bytes) return failure(bytes.error());
+    return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) {
+    const Result<std::string> text = read_look_text(path);
+    if (!text) return failure(text.error());
     LookOptions here = options;
     if (here.folder.empty()) here.folder = path.parent_path();
-    return parse_look({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string(), here);
+    return parse_look(*text, path.string(), here);
 }
 
 }  // namespace darkroom

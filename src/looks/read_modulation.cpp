@@ -28,13 +28,16 @@ const ParamInfo* amount_of(const LookEntry& entry) {
     return nullptr;
 }
 
-/// What is off is on with an amount of 0, so that it comes and goes without a step.
+}  // namespace
+
 void wake(LookEntry& entry) {
     const ParamInfo* const amount = amount_of(entry);
     if (entry.state.enabled.on != 0 || amount == nullptr) return;
     entry.state.enabled = true;
     entry.words[amount->word] = 0;
 }
+
+namespace {
 
 class ModulationReader {
   public:
