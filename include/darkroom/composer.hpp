@@ -166,8 +166,8 @@ class Composer {
         return replace(handle, effect_info(parameters), &parameters);
     }
     Result<> replace(Handle handle, const EffectInfo& info, const void* parameters);
-    /// Wires an entry anew: its inputs, mask and blend mode are those of `desc`, and its output's name; an empty name
-    /// keeps the entry's. Needs a compile.
+    /// Wires an entry anew: its inputs, mask, opacity (also one that set_opacity() refuses) and blend mode are those of
+    /// `desc`, and its output's name; an empty name keeps the entry's. Needs a compile.
     Result<> rewire(Handle handle, const EntryDesc& desc);
     void clear();
 

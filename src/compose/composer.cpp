@@ -216,6 +216,7 @@ Result<> Composer::rewire(Handle handle, const EntryDesc& desc) {
     own.source = desc.source;
     own.second = desc.second;
     own.mask = desc.mask;
+    own.opacity = desc.opacity;
     own.blend = desc.blend;
     own.output = desc.output;
     own.scale = desc.scale;

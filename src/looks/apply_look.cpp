@@ -170,17 +170,19 @@ class Follower {
     }
 
     Result<> set(const PlacedEntry& placed, Handle handle, std::span<const std::uint32_t> words) {
-        for (const ParamInfo& row : placed.entry->effect->parameters.rows) {
+        const EffectInfo& effect = *placed.entry->effect;
+        for (const ParamInfo& row : effect.parameters.rows) {
             const auto own = words.subspan(row.word, row.words);
             if (std::ranges::equal(own, composer_.words(handle).subspan(row.word, row.words))) continue;
             needs_compile_ |= row.is_at_compile;
             if (Result<> done = composer_.set(handle, row.name, own); !done) return done;
         }
-        const float opacity = composer_.desc(handle)->opacity;
-        // What has passes is merged with its input only if it was not to replace it when the stack was compiled.
-        needs_compile_ |= opacity == 1 && placed.desc.opacity != 1 && placed.entry->effect->build;
         if (Result<> done = composer_.set_enabled(handle, placed.desc.enabled); !done) return done;
-        return opacity == placed.desc.opacity ? Result<>{} : composer_.set_opacity(handle, placed.desc.opacity);
+        // What has passes is merged with its input only if it was not to replace it when the stack was compiled: what
+        // is refused here, is wired anew.
+        needs_compile_ |= composer_.desc(handle)->opacity == 1 && placed.desc.opacity != 1 && effect.build;
+        (void)composer_.set_opacity(handle, placed.desc.opacity);
+        return {};
     }
 
     Handle handle_of(std::string_view output) const {
@@ -202,8 +204,8 @@ class Follower {
         }
         const EntryDesc& now = *composer_.desc(handles_[i]);
         const auto parts = [](const EntryDesc& of) {
-            return std::tie(of.input, of.source, of.second, of.mask, of.name, of.output, of.blend, of.scale.numerator,
-                            of.scale.denominator, of.format);
+            return std::tie(of.input, of.source, of.second, of.mask, of.name, of.output, of.opacity, of.blend,
+                            of.scale.numerator, of.scale.denominator, of.format);
         };
         if (parts(now) == parts(desc)) return {};
         needs_compile_ = true;
