@@ -10,10 +10,9 @@ namespace {
 
 constexpr vec3 down(0, -1, 0), up(0, 1, 0);
 constexpr float longest_step = 1.0F / 60, longest_pause = 0.25F;
-constexpr float agility = 12;           ///< 1/s, toward the speed that is wished for
-constexpr float eye_agility = 15;       ///< 1/s, toward the feet after a step
-constexpr float depth_of_world = 20;    ///< metres below the scene
-constexpr float walkable_slope = 0.7F;  ///< least y of a normal: 45 degrees
+constexpr float agility = 12;         ///< 1/s, toward the speed that is wished for
+constexpr float eye_agility = 15;     ///< 1/s, toward the feet after a step
+constexpr float depth_of_world = 20;  ///< metres below the scene
 constexpr float waist = 0.9F;
 
 vec3 level(vec3 v) { return {v.x, 0, v.z}; }
@@ -38,7 +37,7 @@ std::optional<Wall> wall_ahead(const Ground& ground, vec3 feet, vec3 direction, 
         for (const Probe& probe : probes) {
             const std::optional<RayHit> hit =
                 ground.cast(feet + height * up + probe.offset, probe.direction, length + 3 * Walk::body_radius);
-            if (!hit || hit->normal.y > walkable_slope) continue;
+            if (!hit) continue;
             const float steepness = glm::length(level(hit->normal));
             const vec3 normal = steepness > 0.1F ? level(hit->normal) / steepness : -direction;
             const float facing = -glm::dot(normal, direction);
