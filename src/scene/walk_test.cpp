@@ -120,6 +120,8 @@ TEST(SceneWalk, ClimbsStairsAndGoesDownThem) {
     EXPECT_NEAR(walk.feet.y, 3, 1e-6F);
     go(walk, ground, {.move = {0, -1}}, 2.7F, 60, look);
     EXPECT_NEAR(walk.feet.y, 0, 1e-6F);
+    go(walk, ground, running, 1.25F, 4);
+    EXPECT_NEAR(walk.feet.y, 3, 1e-6F) << "three steps a frame";
 }
 
 TEST(SceneWalk, AHighStepIsAWallThatAJumpClears) {
