@@ -9,6 +9,31 @@
 
 namespace darkroom {
 
+/// An image that passes of a frame read or write. Constant ones are not named.
+struct PlanImage {
+    enum class Kind : std::uint8_t {
+        Host,       ///< lent by the host
+        Transient,  ///< of this frame alone; shares memory with others
+        History,    ///< outlives the frame: there are two, which change places
+    };
+    static constexpr std::uint32_t never = ~0u;
+    std::string name;  ///< no two have the same: what a Watch names
+    Kind kind = Kind::Transient;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent2D extent{};  ///< of mip level 0
+    std::uint32_t mip_levels = 1;
+    std::uint64_t bytes = 0;                              ///< of one of the two, where it is a history
+    std::uint64_t offset = 0;                             ///< in the transient memory; of other kinds 0
+    std::uint32_t first_pass = never, last_pass = never;  ///< of Plan::passes, those that use it
+};
+
+/// One mip level of an image, as a pass uses it.
+struct PlanUse {
+    std::uint32_t image = 0;  ///< of Plan::images
+    std::uint32_t mip_level = 0;
+    bool is_previous = false;  ///< of a history: what the last frame wrote
+};
+
 /// One dispatch or draw of a frame.
 struct PlanPass {
     std::string name;
@@ -18,11 +43,14 @@ struct PlanPass {
     VkExtent2D extent{};
     std::uint64_t bytes_read = 0;  ///< each input texel counted once
     std::uint64_t bytes_written = 0;
+    std::vector<PlanUse> reads;
+    PlanUse writes;
 };
 
 struct Plan {
     VkExtent2D extent{};
     std::vector<PlanPass> passes;
+    std::vector<PlanImage> images;      ///< those of passes that do not run with the present values, too
     std::vector<std::string> left_out;  ///< "ssao: needs depth, which is not given"
     std::vector<std::string> remarks;   ///< colour domains and other oddities, one sentence each
     /// Of the frame, what any pass may read: color, depth, normals, velocity, ui, shadows.

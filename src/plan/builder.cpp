@@ -43,7 +43,7 @@ PassImage Builder::at_own_size(Result<graph::Version> version) {
 graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
     const graph::Size size = planner_.values_[input_].size;
     const bool is_absolute = desc.extent.width != 0;
-    return {.name = fmt::format("{}.{}", planner_.stack_[entry_].desc.name, desc.name),
+    return {.name = planner_.own_name(fmt::format("{}.{}", planner_.stack_[entry_].desc.name, desc.name)),
             .format = desc.format,
             .size = is_absolute ? graph::Size{.width = desc.extent.width, .height = desc.extent.height}
                                 : scaled(size, {desc.numerator, desc.denominator}),

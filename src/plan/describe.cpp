@@ -83,11 +83,56 @@ std::vector<std::string> frame_images(const Program& program) {
     return out;
 }
 
+/// Which of Plan::images each slot is; PlanImage::never: a constant one.
+std::vector<std::uint32_t> add_images(const Program& program, const graph::Compiled& compiled, VkExtent2D frame,
+                                      std::vector<PlanImage>& images) {
+    using Kind = graph::Slot::Kind;
+    std::vector<std::uint32_t> out;
+    for (const graph::Slot& slot : compiled.slots()) {
+        // Of a history, the slot of odd frames follows that of even ones.
+        if (slot.kind != Kind::Constant && slot.history_parity == 0) {
+            PlanImage image{.name = slot.desc.name,
+                            .kind = slot.kind == Kind::Import      ? PlanImage::Kind::Host
+                                    : slot.kind == Kind::Transient ? PlanImage::Kind::Transient
+                                                                   : PlanImage::Kind::History,
+                            .format = slot.desc.format,
+                            .extent = slot.desc.size.of(frame),
+                            .mip_levels = slot.desc.mip_levels,
+                            .bytes = slot.size,
+                            .offset = slot.offset};
+            // How large a light's cascades are, each frame says.
+            if (slot.kind == Kind::Import && shadow_number(*program.imports[slot.import_index]) >= 0) image.extent = {};
+            if (slot.kind != Kind::Transient && image.extent.width != 0)
+                for (std::uint32_t level = 0; level < slot.desc.mip_levels; ++level)
+                    image.bytes += bytes_of(slot, frame, level);
+            images.push_back(std::move(image));
+        }
+        const auto last = static_cast<std::uint32_t>(images.size() - 1);
+        out.push_back(slot.kind == Kind::Constant ? PlanImage::never : last);
+    }
+    return out;
+}
+
+/// Lifetimes, from what passes read and write.
+void add_lifetimes(Plan& plan) {
+    const auto note = [&](const PlanUse& use, std::uint32_t pass) {
+        PlanImage& image = plan.images[use.image];
+        if (image.first_pass == PlanImage::never) image.first_pass = pass;
+        image.last_pass = pass;
+    };
+    for (std::uint32_t i = 0; i < plan.passes.size(); ++i) {
+        for (const PlanUse& read : plan.passes[i].reads) note(read, i);
+        note(plan.passes[i].writes, i);
+    }
+}
+
 }  // namespace
 
 Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
                       std::span<const Entry* const> entries) {
     Plan plan{.extent = desc.max_extent,
+              .passes = {},
+              .images = {},
               .left_out = program.left_out,
               .remarks = program.remarks,
               .frame_images = frame_images(program),
@@ -103,29 +148,40 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
     graph::Schedule schedule(compiled);
     schedule.derive(values.gates(), std::vector<graph::ImportState>(program.imports.size()), 0);
 
+    const std::vector<std::uint32_t> image_of = add_images(program, compiled, desc.max_extent, plan.images);
+    const auto use_of = [&](std::uint32_t slot, std::uint32_t mip_level) {
+        return PlanUse{.image = image_of[slot],
+                       .mip_level = std::min(mip_level, compiled.slots()[slot].desc.mip_levels - 1),
+                       .is_previous = compiled.slots()[slot].history_parity == 1};
+    };
     for (std::uint32_t i = 0; i < program.passes.size(); ++i) {
         const std::uint32_t kept = compiled.kept_pass_of({i});
         if (kept == ~0u || !schedule.runs(kept)) continue;
         const ProgramPass& pass = program.passes[i];
-        const graph::Slot& output = compiled.slots()[schedule.slot_of(pass.output)];
+        const std::uint32_t output_slot = schedule.slot_of(pass.output);
+        const graph::Slot& output = compiled.slots()[output_slot];
         PlanPass out{.name = pass.name,
                      .stage = pass.stage == gpu::Stage::Compute ? "compute" : "raster",
                      .entries = {},
                      .boundary = pass.boundary,
                      .extent = graph::mip_extent(output.desc.size.of(desc.max_extent), pass.output_mip_level),
-                     .bytes_written = bytes_of(output, desc.max_extent, pass.output_mip_level)};
+                     .bytes_written = bytes_of(output, desc.max_extent, pass.output_mip_level),
+                     .reads = {},
+                     .writes = use_of(output_slot, pass.output_mip_level)};
         for (std::size_t k = 0; k < pass.inputs.size(); ++k) {
             const PassInput& input = pass.inputs[k];
             // An image that is both loaded and sampled stands there twice.
             if (input.table != no_table || !pass.spec.images[k].loads_by.empty()) continue;
-            out.bytes_read += bytes_of(compiled.slots()[schedule.slot_of(input.version, input.instead)],
-                                       desc.max_extent, input.mip_level);
+            const std::uint32_t slot = schedule.slot_of(input.version, input.instead);
+            out.bytes_read += bytes_of(compiled.slots()[slot], desc.max_extent, input.mip_level);
+            if (image_of[slot] != PlanImage::never) out.reads.push_back(use_of(slot, input.mip_level));
         }
         if (pass.spec.is_additive) out.bytes_read += out.bytes_written;
         if (pass.is_fused)
             for (const FusedStep& step : pass.steps) out.entries.push_back(step.name);
         plan.passes.push_back(std::move(out));
     }
+    add_lifetimes(plan);
     return plan;
 }
 

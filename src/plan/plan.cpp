@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <darkroom/plan.hpp>
 
+#include "gpu/formats.hpp"
+
 namespace darkroom {
 
 namespace {
@@ -24,6 +26,64 @@ std::string list(const std::vector<std::string>& texts) {
     std::string out;
     for (const std::string& text : texts) out += (out.empty() ? "" : ", ") + quoted(text);
     return "[" + out + "]";
+}
+
+std::string_view name_of(PlanImage::Kind kind) {
+    switch (kind) {
+        case PlanImage::Kind::Host:
+            return "host";
+        case PlanImage::Kind::Transient:
+            return "transient";
+        case PlanImage::Kind::History:
+            return "history";
+    }
+    return "";
+}
+
+/// "bloom.pyramid  (transient, R16G16B16A16_SFLOAT, 960 x 540, 5 mip levels, 5.27 MiB at 0.00 MiB, passes 1 to 9)"
+std::string text_of(const PlanImage& image) {
+    std::string out = fmt::format("{}  ({}, {}", image.name, name_of(image.kind), gpu::format_name(image.format));
+    if (image.extent.width != 0) out += fmt::format(", {} x {}", image.extent.width, image.extent.height);
+    if (image.mip_levels > 1) out += fmt::format(", {} mip levels", image.mip_levels);
+    if (image.bytes != 0) out += fmt::format(", {:.2f} MiB", mebibytes(image.bytes));
+    if (image.kind == PlanImage::Kind::Transient) out += fmt::format(" at {:.2f} MiB", mebibytes(image.offset));
+    if (image.first_pass == PlanImage::never) return out + ", no pass)";
+    return out + fmt::format(", passes {} to {})", image.first_pass + 1, image.last_pass + 1);
+}
+
+std::string json_of(const PlanUse& use) {
+    return fmt::format("{{\"image\": {}, \"mip_level\": {}, \"is_previous\": {}}}", use.image, use.mip_level,
+                       use.is_previous);
+}
+
+std::string json_of(const PlanPass& pass) {
+    std::string reads;
+    for (const PlanUse& read : pass.reads) reads += (reads.empty() ? "" : ", ") + json_of(read);
+    return fmt::format(
+        "{{\"name\": {}, \"stage\": {}, \"entries\": {}, \"boundary\": {}, \"width\": {}, \"height\": {}, "
+        "\"bytes_read\": {}, \"bytes_written\": {}, \"reads\": [{}], \"writes\": {}}}",
+        quoted(pass.name), quoted(pass.stage), list(pass.entries), quoted(pass.boundary), pass.extent.width,
+        pass.extent.height, pass.bytes_read, pass.bytes_written, reads, json_of(pass.writes));
+}
+
+std::string json_of(const PlanImage& image) {
+    const auto pass = [](std::uint32_t number) {
+        return number == PlanImage::never ? std::string("null") : fmt::to_string(number);
+    };
+    return fmt::format(
+        "{{\"name\": {}, \"kind\": \"{}\", \"format\": \"{}\", \"width\": {}, \"height\": {}, \"mip_levels\": {}, "
+        "\"bytes\": {}, \"offset\": {}, \"first_pass\": {}, \"last_pass\": {}}}",
+        quoted(image.name), name_of(image.kind), gpu::format_name(image.format), image.extent.width,
+        image.extent.height, image.mip_levels, image.bytes, image.offset, pass(image.first_pass),
+        pass(image.last_pass));
+}
+
+/// The items of a list, a line each.
+template <class Item>
+std::string lines_of(const std::vector<Item>& items) {
+    std::string out;
+    for (const Item& item : items) out += (out.empty() ? "\n    " : ",\n    ") + json_of(item);
+    return out;
 }
 
 }  // namespace
@@ -54,6 +114,8 @@ std::string Plan::text() const {
         }
         out += fmt::format("     new pass because {}\n", pass.boundary);
     }
+    out += "images:\n";
+    for (const PlanImage& image : images) out += fmt::format("     {}\n", text_of(image));
     out += fmt::format("moved per frame: {:.2f} MiB read, {:.2f} MiB written\n", mebibytes(bytes_read()),
                        mebibytes(bytes_written()));
     out += fmt::format("transient memory: {:.2f} MiB ({:.2f} MiB before aliasing)\n", mebibytes(transient_bytes),
@@ -64,22 +126,12 @@ std::string Plan::text() const {
 }
 
 std::string Plan::json() const {
-    std::string items;
-    for (const PlanPass& pass : passes) {
-        if (!items.empty()) items += ",";
-        items += fmt::format(
-            "\n    {{\"name\": {}, \"stage\": {}, \"entries\": {}, \"boundary\": {}, \"width\": {}, \"height\": {}, "
-            "\"bytes_read\": {}, \"bytes_written\": {}}}",
-            quoted(pass.name), quoted(pass.stage), list(pass.entries), quoted(pass.boundary), pass.extent.width,
-            pass.extent.height, pass.bytes_read, pass.bytes_written);
-    }
     return fmt::format(
-        "{{\n  \"width\": {}, \"height\": {}, \"dispatches\": {},\n  \"passes\": [{}\n  ],\n  \"bytes_read\": {}, "
-        "\"bytes_written\": "
-        "{},\n  \"transient_bytes\": {}, \"transient_bytes_unaliased\": {},\n  \"left_out\": {},\n  \"remarks\": "
-        "{},\n  \"frame_images\": {}\n}}\n",
-        extent.width, extent.height, passes.size(), items, bytes_read(), bytes_written(), transient_bytes,
-        transient_bytes_unaliased, list(left_out), list(remarks), list(frame_images));
+        "{{\n  \"width\": {}, \"height\": {}, \"dispatches\": {},\n  \"passes\": [{}\n  ],\n  \"images\": [{}\n  ],\n  "
+        "\"bytes_read\": {}, \"bytes_written\": {},\n  \"transient_bytes\": {}, \"transient_bytes_unaliased\": {},\n  "
+        "\"left_out\": {},\n  \"remarks\": {},\n  \"frame_images\": {}\n}}\n",
+        extent.width, extent.height, passes.size(), lines_of(passes), lines_of(images), bytes_read(), bytes_written(),
+        transient_bytes, transient_bytes_unaliased, list(left_out), list(remarks), list(frame_images));
 }
 
 }  // namespace darkroom

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the planner makes of a stack: kernels in the user's order, a reason for each boundary, and what is left out.
 
+#include <set>
 #include <string>
 
 #include "compose/test_host.hpp"
@@ -349,6 +350,85 @@ TEST_F(ComposePlan, TheDefaultStackNeedsItsPyramidAndNothingElse) {
     const Plan unfused = plan(desc);
     EXPECT_LE(static_cast<double>(unfused.transient_bytes),
               0.45 * static_cast<double>(unfused.transient_bytes_unaliased));
+}
+
+/// What the lifetimes of a plan's images must be, whatever the stack.
+void expect_sound_images(const Plan& plan) {
+    std::set<std::string> names;
+    for (const PlanImage& image : plan.images) EXPECT_TRUE(names.insert(image.name).second) << image.name;
+    std::vector<bool> is_written(plan.images.size());
+    for (std::size_t i = 0; i < plan.images.size(); ++i)
+        is_written[i] = plan.images[i].kind == PlanImage::Kind::Host && plan.images[i].name != "target";
+    for (std::uint32_t i = 0; i < plan.passes.size(); ++i) {
+        const auto check = [&](const PlanUse& use) {
+            const PlanImage& image = plan.images.at(use.image);
+            EXPECT_LT(use.mip_level, image.mip_levels) << image.name;
+            EXPECT_TRUE(image.first_pass <= i && i <= image.last_pass) << image.name;
+        };
+        for (const PlanUse& read : plan.passes[i].reads) {
+            check(read);
+            EXPECT_TRUE(is_written[read.image] || read.is_previous) << plan.images[read.image].name;
+        }
+        check(plan.passes[i].writes);
+        is_written[plan.passes[i].writes.image] = true;
+    }
+    for (const PlanImage& a : plan.images) {
+        if (a.kind != PlanImage::Kind::Transient) continue;
+        EXPECT_LE(a.offset + a.bytes, plan.transient_bytes) << a.name;
+        for (const PlanImage& b : plan.images) {
+            if (&a == &b || b.kind != PlanImage::Kind::Transient) continue;
+            const bool is_apart = a.offset + a.bytes <= b.offset || b.offset + b.bytes <= a.offset;
+            EXPECT_TRUE(is_apart || a.last_pass < b.first_pass || b.last_pass < a.first_pass) << a.name << b.name;
+        }
+    }
+}
+
+TEST_F(ComposePlan, ImagesHaveNamesPlacesAndLifetimes) {
+    if (find_effect("frame_blend") == nullptr) GTEST_SKIP() << "this build has no effect frame_blend";
+    add(composer, "bloom");
+    add(composer, "gaussian_blur");
+    add(composer, "frame_blend");
+    add(composer, "encode");
+    const Plan made = plan();
+    expect_sound_images(made);
+    const auto image = [&](std::string_view name) {
+        const auto found = std::ranges::find(made.images, name, &PlanImage::name);
+        EXPECT_NE(found, made.images.end()) << name << " is not in " << made.text();
+        return found == made.images.end() ? PlanImage{} : *found;
+    };
+    EXPECT_EQ(image("color").kind, PlanImage::Kind::Host);
+    EXPECT_EQ(image("color").first_pass, 0u);
+    EXPECT_EQ(image("target").last_pass, made.passes.size() - 1);
+    EXPECT_EQ(image("target").bytes, 1920u * 1080 * 4);
+    const PlanImage pyramid = image("bloom.pyramid");
+    EXPECT_EQ(pyramid.kind, PlanImage::Kind::Transient);
+    EXPECT_EQ(pyramid.extent.width, 960u);
+    EXPECT_EQ(pyramid.mip_levels, 5u);
+    EXPECT_EQ(made.passes[pyramid.first_pass].name, "bloom.prefilter");
+    const auto is_previous = [](const PlanUse& use) { return use.is_previous; };
+    EXPECT_TRUE(std::ranges::any_of(
+        made.passes, [&](const PlanPass& pass) { return std::ranges::any_of(pass.reads, is_previous); }));
+    EXPECT_NE(made.text().find("bloom.pyramid  (transient, R16G16B16A16_SFLOAT, 960 x 540, 5 mip levels"),
+              std::string::npos)
+        << made.text();
+    EXPECT_NE(made.json().find("\"name\": \"bloom.pyramid\", \"kind\": \"transient\""), std::string::npos);
+}
+
+TEST_F(ComposePlan, ImagesOfWhatIsOffHaveNoPass) {
+    const Handle first = add(composer, "gaussian_blur");
+    add(composer, "gaussian_blur");
+    test::must(composer.set_enabled(first, false));
+    const Plan made = plan();
+    expect_sound_images(made);
+    const auto is_of_first = [](const PlanImage& image) { return image.name.starts_with("gaussian_blur."); };
+    EXPECT_EQ(std::ranges::count_if(made.images, is_of_first),
+              std::ranges::count_if(made.images,
+                                    [](const PlanImage& image) { return image.name.starts_with("gaussian_blur#2."); }));
+    for (const PlanImage& image : made.images) {
+        if (is_of_first(image)) {
+            EXPECT_EQ(image.first_pass, PlanImage::never) << image.name;
+        }
+    }
 }
 
 }  // namespace

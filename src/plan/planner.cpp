@@ -243,12 +243,6 @@ Result<graph::Version> Planner::materialise_into(std::size_t index, graph::Versi
     return *version;
 }
 
-graph::Version Planner::create_picture(std::string name, graph::Size size, VkFormat format) {
-    const graph::Version image = program_.graph.create({.name = std::move(name), .format = format, .size = size});
-    facts_[image.index] = {.root = image.index, .size = size, .format = format, .usage = own_usage};
-    return image;
-}
-
 bool Planner::has_size(graph::Version version, graph::Size size) const {
     const Facts& facts = facts_.at(version.index);
     return is_same(facts.size, size) &&

@@ -18,11 +18,23 @@ std::string fraction_text(graph::Size size) {
     return fmt::format("{}/{}", size.numerator / divisor, size.denominator / divisor);
 }
 
+std::string Planner::own_name(const std::string& name) {
+    std::string own = name;
+    for (std::uint32_t number = 2; !image_names_.insert(own).second; ++number) own = fmt::format("{}#{}", name, number);
+    return own;
+}
+
+graph::Version Planner::create_picture(const std::string& name, graph::Size size, VkFormat format) {
+    const graph::Version image = program_.graph.create({.name = own_name(name), .format = format, .size = size});
+    facts_[image.index] = {.root = image.index, .size = size, .format = format, .usage = own_usage};
+    return image;
+}
+
 graph::Version Planner::import_host(HostImage image, const char* name, const ImageUse& use, graph::Size size) {
     if (const auto found = host_images_.find(image); found != host_images_.end()) return found->second;
     program_.imports.emplace_back(image);
-    const graph::Version version =
-        program_.graph.import({.image = {.name = name, .format = use.format, .size = size}, .usage = use.usage});
+    const graph::Version version = program_.graph.import(
+        {.image = {.name = own_name(name), .format = use.format, .size = size}, .usage = use.usage});
     host_images_[image] = version;
     facts_[version.index] = {.root = version.index, .size = size, .format = use.format, .usage = use.usage};
     return version;

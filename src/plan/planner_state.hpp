@@ -4,6 +4,7 @@
 
 #include <darkroom/effect.hpp>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -130,7 +131,9 @@ class Planner {
     [[nodiscard]] bool is_shared_toggle(std::size_t index) const;
     [[nodiscard]] std::int32_t toggle_index(Gate toggle);
     [[nodiscard]] graph::Version import_host(HostImage image, const char* name, const ImageUse& use, graph::Size size);
-    [[nodiscard]] graph::Version create_picture(std::string name, graph::Size size, VkFormat format);
+    [[nodiscard]] graph::Version create_picture(const std::string& name, graph::Size size, VkFormat format);
+    /// The name, or name#2 and so on where another image has it.
+    [[nodiscard]] std::string own_name(const std::string& name);
     void fall_back(graph::Version version, graph::Version instead);
     [[nodiscard]] graph::Version import_neutral(VkFormat format, const PassVector& value);
     /// An image that never changes, as one of the graph's.
@@ -163,6 +166,7 @@ class Planner {
     std::vector<OpenKernel> kernels_;
     std::vector<Reading> readings_;
     std::map<std::uint32_t, Facts> facts_;  ///< by version
+    std::set<std::string> image_names_;
     std::map<HostImage, graph::Version> host_images_;
     std::map<std::tuple<const EffectInfo*, std::string, std::uint32_t, std::vector<std::string>>,
              std::shared_ptr<const EffectText>>

@@ -192,7 +192,7 @@ Result<> Planner::previous_of(Handle handle) {
     const graph::Size size = entry == no_entry ? graph::Size{} : output_size(entry);
     const VkFormat wanted = entry == no_entry ? VK_FORMAT_UNDEFINED : stack_[entry].desc.format;
     const VkFormat format = wanted == VK_FORMAT_UNDEFINED ? desc_.intermediate : wanted;
-    const graph::ImageDesc image{.name = fmt::format("{}.output", name), .format = format, .size = size};
+    const graph::ImageDesc image{.name = own_name(fmt::format("{}.output", name)), .format = format, .size = size};
     const graph::Graph::History made = program_.graph.history(
         image, {entry == no_entry ? std::uint64_t{scene_color.id} : stack_[entry].history_owner, output_history});
     program_.history_entries.push_back(no_entry);
