@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// GPU times as the present window shows them: the last frame as one bar of its passes, the last frames as a history, a
+// line for each pass, and what recording costs on the CPU.
+
+#include <cstdint>
+
+#include "panels/timing_history.hpp"
+
+namespace darkroom::panels {
+
+class TimingsPanel {
+  public:
+    /// Fills the rest of the window. A pass under the mouse stands out everywhere.
+    void draw(const TimingHistory& history);
+
+  private:
+    void draw_bar(const TimingHistory& history);
+    void draw_history(const TimingHistory& history, float height);
+    void draw_table(const TimingHistory& history);
+    [[nodiscard]] std::uint32_t color_of(std::uint32_t name) const;
+
+    static constexpr std::uint32_t none = ~0u;
+    std::uint32_t pointed_ = none, next_pointed_ = none;  ///< names: of the last frame, of the one being drawn
+};
+
+}  // namespace darkroom::panels
