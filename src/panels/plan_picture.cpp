@@ -108,7 +108,7 @@ class Picture {
                                           ImGui::GetColorU32(ImGuiCol_Text, 0.06f));
             plot_.list->AddLine(place({right - 0.5f, layout_.header_height}), place({right - 0.5f, layout_.size.y}),
                                 grid_color());
-            label(plan_.passes[i].name, {left, 0}, {right - 1, layout_.header_height});
+            label(plan_.passes[i].name, {left, 0}, {right - 1, layout_.header_height}, IM_COL32(16, 16, 16, 255));
         }
         plot_.list->AddLine(place({0, layout_.memory_top - 2}), place({layout_.size.x, layout_.memory_top - 2}),
                             ImGui::GetColorU32(ImGuiCol_Border));
@@ -125,8 +125,8 @@ class Picture {
             const float middle = (min.y + max.y) / 2;
             plot_.list->AddLine({plot_.min.x, middle}, {plot_.max.x, middle}, faded(base, is_bound ? 0.6f : 0.2f), 2);
         }
-        plot_.list->AddRectFilled(min, max, faded(base, is_bound ? 0.85f : 0.2f));
-        label(image.name, bar.min, bar.max);
+        plot_.list->AddRectFilled(min, max, faded(base, is_bound ? 0.5f : 0.15f));
+        label(image.name, bar.min, bar.max, ImGui::GetColorU32(ImGuiCol_Text, is_bound ? 1.0f : 0.4f));
     }
 
     /// In the columns of those who write the image, a full mark; of those who read it, an open one.
@@ -146,12 +146,12 @@ class Picture {
         }
     }
 
-    void label(const std::string& text, ImVec2 min, ImVec2 max) const {
+    void label(const std::string& text, ImVec2 min, ImVec2 max, ImU32 color) const {
         const float font = ImGui::GetFontSize();
         if (max.y - min.y < font * 0.9f || max.x - min.x < 2 * font) return;
         const ImVec2 corner = place(min), end = place({max.x - 3, max.y});
         plot_.list->PushClipRect(corner, end, true);
-        plot_.list->AddText({corner.x + 3, (corner.y + end.y - font) / 2}, IM_COL32(16, 16, 16, 255), text.c_str());
+        plot_.list->AddText({corner.x + 3, (corner.y + end.y - font) / 2}, color, text.c_str());
         plot_.list->PopClipRect();
     }
 
@@ -170,10 +170,10 @@ class Picture {
         return text;
     }
 
-    [[nodiscard]] std::string pass_text(const PlanPass& pass) const {
-        std::string text =
-            fmt::format("{}\n{}, {} x {}\nreads {}, writes {}\n{}", pass.name, pass.stage, pass.extent.width,
-                        pass.extent.height, byte_text(pass.bytes_read), byte_text(pass.bytes_written), pass.boundary);
+    [[nodiscard]] static std::string pass_text(const PlanPass& pass) {
+        std::string text = fmt::format("{}\n{}, {} x {}\nreads {}, writes {}", pass.name, pass.stage, pass.extent.width,
+                                       pass.extent.height, byte_text(pass.bytes_read), byte_text(pass.bytes_written));
+        if (!pass.boundary.empty()) text += "\n" + pass.boundary;
         for (const std::string& entry : pass.entries) text += "\n  " + entry;
         return text;
     }
