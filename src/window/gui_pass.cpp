@@ -41,6 +41,11 @@ enum Flags : std::uint32_t { HasSecond = 1, IsFalseColor = 2, IsClippingMarked =
 
 constexpr VkShaderStageFlags both_stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
+/// Where there is no second view, the first: descriptors are never empty.
+const PaneView& second_view(const Pane& pane) {
+    return pane.second && pane.second->image.is_given() ? *pane.second : pane.view;
+}
+
 View view_block(const PaneView& view) {
     const VkRect2D region = view.image.used_region();
     const float width = static_cast<float>(view.image.extent.width);
@@ -55,11 +60,11 @@ View view_block(const PaneView& view) {
 
 void set_pane(Block& block, const Pane& pane) {
     block.first = view_block(pane.view);
-    block.second = view_block(pane.second.value_or(pane.view));
+    block.second = view_block(second_view(pane));
     block.divider = pane.divider;
     block.exposure = std::exp2(pane.exposure);
     block.channels = pane.channels;
-    block.flags = (pane.second ? HasSecond : 0U) | (pane.is_false_color ? IsFalseColor : 0U) |
+    block.flags = (&second_view(pane) != &pane.view ? HasSecond : 0U) | (pane.is_false_color ? IsFalseColor : 0U) |
                   (pane.is_clipping_marked ? IsClippingMarked : 0U);
 }
 
@@ -253,7 +258,7 @@ Result<VkDescriptorSet> GuiPass::State::pane_set(const Pane& pane, Slot& slot) c
     slot.panes.push_back(&pane);
     write_set(*context, slot.sets.sets[index],
               {sampled(*context, pane.view.image, pane.is_nearest),
-               sampled(*context, pane.second.value_or(pane.view).image, pane.is_nearest)});
+               sampled(*context, second_view(pane).image, pane.is_nearest)});
     return slot.sets.sets[index];
 }
 
@@ -276,6 +281,7 @@ Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, 
     VkDescriptorSet set = font_set.sets[0];
     if (!is_font) {
         const Pane& pane = *static_cast<const Pane*>(texture);
+        if (!pane.view.image.is_given()) return {};
         const Result<VkDescriptorSet> own = pane_set(pane, slot);
         if (!own) return failure(own.error());
         set = *own;

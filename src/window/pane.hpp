@@ -21,7 +21,7 @@ enum class PaneChannels : std::uint32_t { Rgb, Red, Green, Blue, Alpha, Luminanc
 
 struct PaneView {
     /// As it is when the interface is drawn: in a layout that a fragment shader may sample in, of a format that is read
-    /// as floats. Only view, format, extent, region and layout are read.
+    /// as floats. Only view, format, extent, region and layout are read; of one that is not given nothing is drawn.
     ImageRef image;
     PaneTransfer transfer = PaneTransfer::Encoded;
     float low = 0, high = 1;  ///< PaneTransfer::Raw

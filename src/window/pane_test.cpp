@@ -204,6 +204,16 @@ TEST_F(WindowGpuPane, ComparesTwoViewsAtADivider) {
     }
 }
 
+TEST_F(WindowGpuPane, DrawsNothingOfImagesThatAreNotGiven) {
+    const Picture picture = upload(context, numbers(0, 1), VK_FORMAT_R32G32B32A32_SFLOAT);
+    const Pixels nothing = show({.second = PaneView{reference(picture)}});
+    expect_color(nothing.at(12, 4), {test::background[0], test::background[1], test::background[2]}, "background");
+    const Pane alone{.view = {reference(picture)}};
+    Pane without_second = alone;
+    without_second.second = PaneView{};
+    EXPECT_EQ(show(without_second).rgba, show(alone).rgba);
+}
+
 /// A texel for each band, in its middle, and the picture's grey there.
 Pixels band_samples(std::span<const panels::FalseColorBand> bands, double below, double above, bool is_linear) {
     return make_pixels(16, 8, [&](std::uint32_t x, std::uint32_t) {
