@@ -31,6 +31,7 @@
 #include <darkroom/plan.hpp>
 #include <darkroom/resource.hpp>
 #include <darkroom/result.hpp>
+#include <darkroom/watch.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -74,14 +75,6 @@ struct ComposerDesc {
     std::uint32_t max_threads = ~0u;
 };
 
-/// What every frame's image of one kind is, as the host made it: its view's format and the usage of the image.
-struct ImageUse {
-    VkFormat format = VK_FORMAT_UNDEFINED;  ///< UNDEFINED: not given
-    /// Inputs need SAMPLED; with STORAGE own pixels are read cheaper. A target needs COLOR_ATTACHMENT or STORAGE.
-    VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-    friend bool operator==(const ImageUse&, const ImageUse&) = default;
-};
-
 /// What the frames will be like. Compile again when one of these changes.
 struct CompileDesc {
     VkExtent2D max_extent{};
@@ -109,6 +102,7 @@ struct CompileDesc {
     KernelStage kernels = KernelStage::Auto;
     bool fuse = true;  ///< false: every effect a pass of its own (tests, benchmarks)
     VkFormat intermediate = VK_FORMAT_R16G16B16A16_SFLOAT;  ///< of pictures between kernels
+    std::vector<Watch> watches;                             ///< what frames may look at; see darkroom/watch.hpp
 };
 
 struct PassTime {
@@ -257,6 +251,8 @@ class Composer {
     /// back. An error: there is none, or it was taken back.
     Result<> abandon();
 
+    /// Of the last record.
+    [[nodiscard]] WatchState watch_state(std::uint32_t id) const;
     /// Waits for kernels that are being built for the present toggles. For headless work and tests, not for frame
     /// loops.
     void wait_for_kernels();

@@ -37,6 +37,14 @@ struct ImageRef {
     [[nodiscard]] VkRect2D used_region() const { return region.extent.width == 0 ? VkRect2D{{0, 0}, extent} : region; }
 };
 
+/// What every frame's image of one kind is, as the host made it: its view's format and the usage of the image.
+struct ImageUse {
+    VkFormat format = VK_FORMAT_UNDEFINED;  ///< UNDEFINED: not given
+    /// Inputs need SAMPLED; with STORAGE own pixels are read cheaper. A target needs COLOR_ATTACHMENT or STORAGE.
+    VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    friend bool operator==(const ImageUse&, const ImageUse&) = default;
+};
+
 /// What the numbers of a depth image mean.
 enum class DepthKind : std::uint32_t {
     Standard,  ///< device depth, 0 near .. 1 far
@@ -100,6 +108,15 @@ inline constexpr std::uint32_t max_shadow_lights = 4;
     return nullptr;
 }
 
+/// What a frame wants of a watch: see darkroom/watch.hpp.
+struct Watched {
+    std::uint32_t id = 0;  ///< Watch::id; one that the plan does not have is passed over
+    /// The part of the frame's picture that is shown, in pixels of Frame::color; an image of another size shows the
+    /// part that lies there. Extent (0,0): all of it.
+    VkRect2D region{};
+    ImageRef target;  ///< gets the nearest texels, their numbers as they are
+};
+
 /// One frame of one view.
 struct Frame {
     ImageRef color;  ///< scene-linear Rec. 709
@@ -114,6 +131,7 @@ struct Frame {
     std::uint64_t frame_index = 0;
     std::uint32_t view = 0;  ///< whose histories: 0 .. CompileDesc::views - 1
     ImageRef target;
+    std::span<const Watched> watched;
 };
 
 }  // namespace darkroom

@@ -30,6 +30,7 @@ bool is_whole(const gpu::Region& region) {
 
 Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
+    find_watched(frame);
     const VkExtent2D extent = frame.color.used_region().extent;
     const PassContext context{.frame_extent = extent,
                               .output_extent = extent,
@@ -42,7 +43,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     has_missing_kernel_ = false;
     tables_.upload(commands, recordings_);
     lit_.upload(commands, recordings_);
-    values_.evaluate(program_of(), desc_.compile, entries_, context);
+    values_.evaluate(program_of(), desc_.compile, entries_, context, watched_);
+    note_watch_states();
     write_frame_block(frame);
     lend_images(frame);
     prepare_histories(commands, frame);
@@ -87,6 +89,11 @@ bool Chain::abandon() {
 }
 
 const ImageRef& Chain::image_of(const Frame& frame, HostImage which) const {
+    static const ImageRef none;
+    if (const std::int32_t watch = plan::watch_number(which); watch >= 0) {
+        const Watched* const watched = watched_[static_cast<std::size_t>(watch)];
+        return watched != nullptr ? watched->target : none;
+    }
     if (plan::shadow_number(which) < 0) return host_image(frame, which);
     const Light* const light = shadow_light(frame.lights, static_cast<std::uint32_t>(plan::shadow_number(which)));
     return light != nullptr ? light->cascades : lit_.reference;
@@ -120,6 +127,48 @@ void Chain::lend_images(const Frame& frame) {
                                                         .base_array_layer = image.array_layer,
                                                         .array_layers = image.layer_count});
     }
+}
+
+void Chain::find_watched(const Frame& frame) {
+    std::ranges::fill(watched_, nullptr);
+    for (const Watched& watched : frame.watched)
+        if (const auto number = watch_with(desc_.compile, watched.id); number && watched.target.is_given())
+            watched_[*number] = &watched;
+}
+
+void Chain::note_watch_states() {
+    for (std::size_t i = 0; i < watched_.size(); ++i) {
+        const std::int32_t gate = program_of().watch_gates[i];
+        const auto entry = index_of(desc_.compile.watches[i].entry.id);
+        watch_states_[i] = gate < 0                                           ? WatchState::NotInPlan
+                           : watched_[i] == nullptr                           ? WatchState::NotGiven
+                           : !values_.gates()[static_cast<std::size_t>(gate)] ? WatchState::NotWritten
+                           : entry && !values_.is_on(*entry)                  ? WatchState::InputShown
+                                                                              : WatchState::Shown;
+    }
+}
+
+WatchState Chain::watch_state(std::uint32_t id) const {
+    const auto number = watch_with(desc_.compile, id);
+    return number ? watch_states_[*number] : WatchState::NotInPlan;
+}
+
+/// Of an image's region, the texels that lie where the part of the frame is that is wanted.
+gpu::Region Chain::watched_region(const gpu::Region& whole, const Watched& watched, VkExtent2D extent) const {
+    if (watched.region.extent.width == 0) return whole;
+    gpu::Region out = whole;
+    const auto cut = [](std::int32_t from, std::uint32_t length, std::uint32_t frame, std::uint32_t size,
+                        std::int32_t& offset, std::uint32_t& texels) {
+        const std::uint64_t first = std::uint64_t{static_cast<std::uint32_t>(from)} * size / frame;
+        const std::uint64_t last =
+            ((std::uint64_t{static_cast<std::uint32_t>(from)} + length) * size + frame - 1) / frame;
+        offset += static_cast<std::int32_t>(first);
+        texels = static_cast<std::uint32_t>(last - first);
+    };
+    const VkRect2D& region = watched.region;
+    cut(region.offset.x, region.extent.width, extent.width, whole.extent.width, out.offset.x, out.extent.width);
+    cut(region.offset.y, region.extent.height, extent.height, whole.extent.height, out.offset.y, out.extent.height);
+    return out;
 }
 
 /// Histories start from zero where nothing of the last frame of the view can be used, each by itself.
@@ -274,6 +323,7 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
         images[i] = bind(pass.inputs[i], frame, context.frame_extent);
         if (!pass.spec.images[i].loads_by.empty()) images[i].layout = VK_IMAGE_LAYOUT_GENERAL;
     }
+    if (pass.watch) images[0].region = watched_region(images[0].region, *watched_[*pass.watch], context.frame_extent);
     const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
     const gpu::Binding output =
         bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);

@@ -48,6 +48,8 @@ class Chain final : public Garbage {
     /// Where the plan has the entry of this id.
     [[nodiscard]] std::optional<std::uint32_t> index_of(std::uint32_t entry_id) const;
     [[nodiscard]] RecordingTimes times();
+    /// Of the last recording.
+    [[nodiscard]] WatchState watch_state(std::uint32_t id) const;
 
     // For the composer, of a chain that a newer one replaced: recordings that it has to outlive, and the next of them.
     std::uint32_t recordings_left = 0;
@@ -63,6 +65,9 @@ class Chain final : public Garbage {
     [[nodiscard]] const ImageRef& image_of(const Frame& frame, plan::HostImage which) const;
     void write_frame_block(const Frame& frame);
     void lend_images(const Frame& frame);
+    void find_watched(const Frame& frame);
+    void note_watch_states();
+    [[nodiscard]] gpu::Region watched_region(const gpu::Region& whole, const Watched& watched, VkExtent2D extent) const;
     void prepare_histories(VkCommandBuffer commands, const Frame& frame);
     void derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame);
     [[nodiscard]] plan::Shape shape_of(const plan::ProgramPass& pass, std::span<const plan::Entry* const> entries,
@@ -132,6 +137,9 @@ class Chain final : public Garbage {
     };
     Before before_;
     std::vector<std::uint8_t> has_history_;  ///< per entry, in the present recording
+    // Per watch: what the present frame wants of it, or null; and what came of that.
+    std::vector<const Watched*> watched_;
+    std::vector<WatchState> watch_states_;
 
     // Timers: what was recorded in each slot.
     struct Timed {

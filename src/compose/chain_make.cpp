@@ -148,6 +148,8 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     physical_.emplace(std::move(*physical));
     before_.states.resize(program_of().history_entries.size());
     has_history_.resize(entries_.size());
+    watched_.resize(desc_.compile.watches.size());
+    watch_states_.resize(watched_.size());
     // Depth is never filtered: what lies between two surfaces is no surface.
     for (const graph::Slot& slot : compiled_->slots())
         is_nearest_.push_back(!gpu::can_filter(context_, slot.desc.format) || gpu::is_depth(slot.desc.format) ? 1 : 0);

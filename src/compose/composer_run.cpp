@@ -267,6 +267,9 @@ void Composer::wait_for_kernels() {
 }
 
 RecordingTimes Composer::times() { return state_->chain ? state_->chain->times() : RecordingTimes{}; }
+WatchState Composer::watch_state(std::uint32_t id) const {
+    return state_->chain ? state_->chain->watch_state(id) : WatchState::NotInPlan;
+}
 double Composer::record_microseconds() const { return state_->record_microseconds; }
 
 Result<Plan> Composer::rebind(const Device& device) {

@@ -15,18 +15,22 @@ namespace {
 
 using plan::HostImage;
 using plan::shadow_number;
+using plan::watch_number;
 
 /// An image of the frame that the plan uses, and what an error calls it: "depth", "lights[2].cascades".
 struct Given {
     HostImage which = HostImage::Color;
-    std::size_t light = 0;  ///< of cascades: the place of their light in the frame
+    std::size_t place = 0;  ///< in the frame: of the light whose cascades they are, or of what is watched
     const ImageRef* image = nullptr;
 
     [[nodiscard]] bool is_cascades() const { return shadow_number(which) >= 0; }
+    [[nodiscard]] bool is_watched() const { return watch_number(which) >= 0; }
+    [[nodiscard]] bool is_written() const { return which == HostImage::Target || is_watched(); }
 };
 
 std::string name_of(const Given& given) {
-    if (given.is_cascades()) return fmt::format("frame.lights[{}].cascades", given.light);
+    if (given.is_cascades()) return fmt::format("frame.lights[{}].cascades", given.place);
+    if (given.is_watched()) return fmt::format("frame.watched[{}].target", given.place);
     constexpr std::array names{"color", "depth", "normals", "velocity", "ui", "target"};
     return fmt::format("frame.{}", names[static_cast<std::size_t>(given.which)]);
 }
@@ -60,8 +64,7 @@ bool is_empty(VkExtent2D extent) { return extent.width == 0 || extent.height == 
 Result<> check_handles(const Given& given) {
     const ImageRef& image = *given.image;
     if (image.image == VK_NULL_HANDLE && image.view == VK_NULL_HANDLE)
-        return refused(given, " is not given, and the plan {} it",
-                       given.which == HostImage::Target ? "writes" : "reads");
+        return refused(given, " is not given, and the plan {} it", given.is_written() ? "writes" : "reads");
     if (image.image == VK_NULL_HANDLE) return refused(given, ".image is null: barriers need it beside the view");
     if (image.view == VK_NULL_HANDLE) return refused(given, ".view is null: shaders need it beside the image");
     return {};
@@ -72,12 +75,16 @@ Result<> check_state(const Given& given, VkFormat format, std::string_view why) 
     if (image.format != format)
         return refused(given, ".format is {}: allowed is {}, {}", gpu::format_name(image.format),
                        gpu::format_name(format), why);
-    if (image.layout == VK_IMAGE_LAYOUT_UNDEFINED && given.which != HostImage::Target)
+    if (image.layout == VK_IMAGE_LAYOUT_UNDEFINED && !given.is_written())
         return refused(given,
                        ".layout is UNDEFINED: allowed is the layout that the image is in, or its texels are lost");
     if (image.final_layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
         return refused(given, ".final_layout is PREINITIALIZED: allowed is any layout that an image can be brought to");
     return {};
+}
+
+bool ends_inside(std::int32_t from, std::uint32_t length, std::uint32_t size) {
+    return from >= 0 && std::uint64_t{static_cast<std::uint32_t>(from)} + length <= size;
 }
 
 Result<> check_region(const Given& given) {
@@ -86,9 +93,6 @@ Result<> check_region(const Given& given) {
         return refused(given, ".extent is {}x{}: allowed is that of the mip level that the view shows",
                        image.extent.width, image.extent.height);
     const VkRect2D region = image.used_region();
-    const auto ends_inside = [](std::int32_t from, std::uint32_t length, std::uint32_t size) {
-        return from >= 0 && std::uint64_t{static_cast<std::uint32_t>(from)} + length <= size;
-    };
     if (!ends_inside(region.offset.x, region.extent.width, image.extent.width) ||
         !ends_inside(region.offset.y, region.extent.height, image.extent.height))
         return refused(given, ".region, {}x{} from ({}, {}), does not lie inside its {}x{} image", region.extent.width,
@@ -127,7 +131,7 @@ Result<> check_cascades(const Given& given, const Light& light) {
     const ImageRef& image = *given.image;
     if (auto ok = check_handles(given); !ok) return ok;
     if (light.cascade_count > Light::max_cascades)
-        return user_error(fmt::format("record: frame.lights[{}].cascade_count is {}: allowed is 0 to {}", given.light,
+        return user_error(fmt::format("record: frame.lights[{}].cascade_count is {}: allowed is 0 to {}", given.place,
                                       light.cascade_count, Light::max_cascades));
     if (auto ok = check_state(given, VK_FORMAT_D32_SFLOAT, "for every light"); !ok) return ok;
     if (auto ok = check_region(given); !ok) return ok;
@@ -180,13 +184,46 @@ bool stays_readable(const Given& given, const CompileDesc& desc) {
            (image.final_layout == image.layout || image.final_layout == VK_IMAGE_LAYOUT_UNDEFINED);
 }
 
+Result<> check_watched(const AllGiven& all, const CompileDesc& desc, const Frame& frame) {
+    const VkExtent2D color = frame.color.used_region().extent;
+    for (std::size_t i = 0; i < frame.watched.size(); ++i) {
+        const Watched& watched = frame.watched[i];
+        const auto number = watch_with(desc, watched.id);
+        if (!number || !watched.target.is_given()) continue;
+        const auto which = static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::FirstWatched) + *number);
+        const Given given{which, i, &watched.target};
+        if (auto ok = check_handles(given); !ok) return ok;
+        if (auto ok = check_state(given, desc.watches[*number].target.format, "as compiled"); !ok) return ok;
+        if (auto ok = check_region(given); !ok) return ok;
+        if (watched.target.layer_count != 1)
+            return refused(given, ".layer_count is {}: allowed is 1", watched.target.layer_count);
+        const VkRect2D part = watched.region.extent.width == 0 ? VkRect2D{{}, color} : watched.region;
+        if (is_empty(part.extent) || !ends_inside(part.offset.x, part.extent.width, color.width) ||
+            !ends_inside(part.offset.y, part.extent.height, color.height))
+            return user_error(fmt::format(
+                "record: frame.watched[{}].region, {}x{} from ({}, {}), does not lie inside the {}x{} picture", i,
+                part.extent.width, part.extent.height, part.offset.x, part.offset.y, color.width, color.height));
+        for (std::size_t j = 0; j < all.count; ++j)
+            if (overlap(*all.images[j].image, watched.target))
+                return refused(given, ".image is that of {}, too: an image cannot be used while it is written",
+                               name_of(all.images[j]));
+        for (std::size_t j = 0; j < i; ++j) {
+            const Watched& other = frame.watched[j];
+            const bool is_alike = other.id == watched.id || overlap(other.target, watched.target);
+            if (is_alike && other.target.is_given() && watch_with(desc, other.id))
+                return refused(given, " has the id or the image of frame.watched[{}]: allowed are some of its own", j);
+        }
+    }
+    return {};
+}
+
 Result<> check_overlaps(const AllGiven& all, const CompileDesc& desc) {
     for (std::size_t i = 0; i < all.count; ++i)
         for (std::size_t j = 0; j < i; ++j) {
             const Given &a = all.images[j], &b = all.images[i];
             if (!overlap(*a.image, *b.image)) continue;
-            if (a.which == HostImage::Target || b.which == HostImage::Target)
-                return refused(a.which == HostImage::Target ? b : a,
+            if (a.is_written() || b.is_written())
+                return refused(a.is_written() ? b : a,
                                ".image is that of frame.target, too: an image "
                                "cannot be read while it is written");
             if (!stays_readable(a, desc) || !stays_readable(b, desc))
@@ -213,25 +250,39 @@ Result<> check_input(const gpu::Context& context, const char* name, const ImageU
     return {};
 }
 
-Result<> check_target(const gpu::Context& context, const ImageUse& use) {
+Result<> check_target(const gpu::Context& context, const std::string& name, const ImageUse& use) {
     const auto supports = [&](VkFormatFeatureFlags features) { return context.supports(use.format, features); };
     const bool can_attach = supports(VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT);
     const bool can_store = supports(VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
     if (use.format == VK_FORMAT_UNDEFINED || (!can_attach && !can_store))
         return user_error(
-            fmt::format("compile: target.format = {}: allowed are colour formats that this device can render to or "
+            fmt::format("compile: {}.format = {}: allowed are colour formats that this device can render to or "
                         "store; depth and block-compressed ones are none",
-                        gpu::format_name(use.format)));
+                        name, gpu::format_name(use.format)));
     const bool is_attached = (use.usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) != 0;
     const bool is_stored = (use.usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0;
     if (!is_attached && !is_stored)
-        return user_error(
-            fmt::format("compile: target.usage = {:#x}: allowed is what contains COLOR_ATTACHMENT or "
-                        "STORAGE",
-                        use.usage));
+        return user_error(fmt::format("compile: {}.usage = {:#x}: allowed is what contains COLOR_ATTACHMENT or STORAGE",
+                                      name, use.usage));
     if (!(is_attached && can_attach) && !(is_stored && can_store))
-        return user_error(fmt::format("compile: target.usage = {:#x}: {} needs {} on this device", use.usage,
+        return user_error(fmt::format("compile: {}.usage = {:#x}: {} needs {} on this device", name, use.usage,
                                       gpu::format_name(use.format), can_attach ? "COLOR_ATTACHMENT" : "STORAGE"));
+    return {};
+}
+
+Result<> check_watches(const gpu::Context& context, const CompileDesc& desc) {
+    constexpr std::size_t most_watches = 1024;
+    if (desc.watches.size() > most_watches)
+        return user_error(
+            fmt::format("compile: {} watches: allowed are at most {}", desc.watches.size(), most_watches));
+    for (std::size_t i = 0; i < desc.watches.size(); ++i) {
+        const Watch& watch = desc.watches[i];
+        if (*watch_with(desc, watch.id) != i)
+            return user_error(
+                fmt::format("compile: watches[{}].id = {}: watches[{}] has it, too; allowed is one of its own", i,
+                            watch.id, *watch_with(desc, watch.id)));
+        if (auto ok = check_target(context, fmt::format("watches[{}].target", i), watch.target); !ok) return ok;
+    }
     return {};
 }
 
@@ -270,7 +321,14 @@ Result<> check_images(const gpu::Context& context, const CompileDesc& desc) {
     if (desc.ui.format == VK_FORMAT_A2B10G10R10_UNORM_PACK32 || desc.ui.format == VK_FORMAT_A2R10G10B10_UNORM_PACK32)
         return user_error(fmt::format("compile: ui.format = {}: allowed is what has 8 bits of alpha and more",
                                       gpu::format_name(desc.ui.format)));
-    return check_target(context, desc.target);
+    if (auto ok = check_target(context, "target", desc.target); !ok) return ok;
+    return check_watches(context, desc);
+}
+
+std::optional<std::size_t> watch_with(const CompileDesc& desc, std::uint32_t id) {
+    const auto found = std::ranges::find(desc.watches, id, &Watch::id);
+    if (found == desc.watches.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - desc.watches.begin());
 }
 
 Result<> check_frame(const plan::Program& program, const CompileDesc& desc, const Frame& frame) {
@@ -279,13 +337,14 @@ Result<> check_frame(const plan::Program& program, const CompileDesc& desc, cons
     if (auto ok = check_picture({.which = HostImage::Color, .image = &frame.color}, program, desc, frame); !ok)
         return ok;
     for (const auto& which : program.imports) {
-        if (!which || shadow_number(*which) >= 0) continue;
+        if (!which || shadow_number(*which) >= 0 || watch_number(*which) >= 0) continue;
         const Given given{.which = *which, .image = &host_image(frame, *which)};
         if (auto ok = check_picture(given, program, desc, frame); !ok) return ok;
         all.images[all.count++] = given;
     }
     if (auto ok = check_lights(program, frame, all); !ok) return ok;
     if (auto ok = check_overlaps(all, desc); !ok) return ok;
+    if (auto ok = check_watched(all, desc, frame); !ok) return ok;
     if (desc.is_depth_planar && frame.camera.depth != DepthKind::Planar)
         return user_error("record: frame.camera.depth is not Planar: compiled with is_depth_planar, it must be");
     if (desc.is_velocity_plain && frame.camera.velocity != VelocityKind{})

@@ -5,6 +5,7 @@
 // layers can see.
 
 #include <darkroom/composer.hpp>
+#include <optional>
 
 #include "plan/program.hpp"
 
@@ -19,6 +20,9 @@ namespace darkroom::compose {
 
 /// The image of a frame that is no cascades of a light.
 [[nodiscard]] const ImageRef& host_image(const Frame& frame, plan::HostImage which);
+
+/// Which of CompileDesc::watches has this number; none.
+[[nodiscard]] std::optional<std::size_t> watch_with(const CompileDesc& desc, std::uint32_t id);
 
 /// Is every image that the program reads or writes given as it was compiled for? Allocates nothing, but for an error.
 [[nodiscard]] Result<> check_frame(const plan::Program& program, const CompileDesc& desc, const Frame& frame);

@@ -51,8 +51,12 @@ graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
 }
 
 PassImage Builder::remember_new(graph::Version version, const graph::ImageDesc& desc) {
-    planner_.facts_[version.index] = {
-        .root = version.index, .size = desc.size, .format = desc.format, .usage = own_usage, .fall_backs = {}};
+    planner_.facts_[version.index] = {.root = version.index,
+                                      .size = desc.size,
+                                      .format = desc.format,
+                                      .usage = own_usage,
+                                      .fall_backs = {},
+                                      .name = desc.name};
     return remember({.version = version, .first_written = {}, .format = desc.format});
 }
 

@@ -75,7 +75,7 @@ std::vector<std::string> frame_images(const Program& program) {
     constexpr std::array<const char*, 5> names{"color", "depth", "normals", "velocity", "ui"};
     std::vector<std::string> out;
     for (const std::optional<HostImage>& image : program.imports) {
-        if (!image || *image == HostImage::Target) continue;
+        if (!image || *image == HostImage::Target || watch_number(*image) >= 0) continue;
         const auto number = static_cast<std::size_t>(*image);
         const char* const name = number < names.size() ? names[number] : "shadows";
         if (std::ranges::find(out, name) == out.end()) out.emplace_back(name);
@@ -89,8 +89,13 @@ std::vector<std::uint32_t> add_images(const Program& program, const graph::Compi
     using Kind = graph::Slot::Kind;
     std::vector<std::uint32_t> out;
     for (const graph::Slot& slot : compiled.slots()) {
+        const bool is_watch = slot.kind == Kind::Import && watch_number(*program.imports[slot.import_index]) >= 0;
+        if (slot.kind == Kind::Constant || is_watch) {
+            out.push_back(PlanImage::never);
+            continue;
+        }
         // Of a history, the slot of odd frames follows that of even ones.
-        if (slot.kind != Kind::Constant && slot.history_parity == 0) {
+        if (slot.history_parity == 0) {
             PlanImage image{.name = slot.desc.name,
                             .kind = slot.kind == Kind::Import      ? PlanImage::Kind::Host
                                     : slot.kind == Kind::Transient ? PlanImage::Kind::Transient
@@ -107,8 +112,7 @@ std::vector<std::uint32_t> add_images(const Program& program, const graph::Compi
                     image.bytes += bytes_of(slot, frame, level);
             images.push_back(std::move(image));
         }
-        const auto last = static_cast<std::uint32_t>(images.size() - 1);
-        out.push_back(slot.kind == Kind::Constant ? PlanImage::never : last);
+        out.push_back(static_cast<std::uint32_t>(images.size() - 1));
     }
     return out;
 }

@@ -36,7 +36,7 @@ FrameValues::FrameValues(const Program& program, std::span<const Entry* const> e
 }
 
 void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
-                           const PassContext& context) {
+                           const PassContext& context, std::span<const Watched* const> watched) {
     const Moment moment = moment_of(context.time, context.camera == nullptr ? Camera{} : *context.camera);
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         const Entry& entry = *entries[i];
@@ -47,10 +47,14 @@ void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std:
         domains_[i] = entry.domain_after(domain_before(program, i), words, is_on(i));
     }
     finish_ = finish_of(last_domain(program), desc);
-    for (std::size_t i = 0; i < gate_count_; ++i) gates_[i] = is_open(program, program.gates[i], context);
+    for (std::size_t i = 0; i < gate_count_; ++i) gates_[i] = is_open(program, program.gates[i], context, watched);
 }
 
-bool FrameValues::is_open(const Program& program, const Gate& gate, const PassContext& context) const {
+bool FrameValues::is_open(const Program& program, const Gate& gate, const PassContext& context,
+                          std::span<const Watched* const> watched) const {
+    if (gate.watch)
+        return *gate.watch < watched.size() && watched[*gate.watch] != nullptr &&
+               (gate.writer < 0 || gates_[static_cast<std::size_t>(gate.writer)]);
     const auto holds = [&](std::uint32_t entry, ConditionFunction condition) {
         if (condition == nullptr) return true;
         PassContext own = context;

@@ -14,9 +14,10 @@ class FrameValues {
     FrameValues() = default;
     FrameValues(const Program& program, std::span<const Entry* const> entries);
 
-    /// Allocates nothing. The entries are those that the program was planned from, in their order.
+    /// Allocates nothing. The entries are those that the program was planned from, in their order. `watched`: per
+    /// watch, what the frame wants of it, or null.
     void evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
-                  const PassContext& context);
+                  const PassContext& context, std::span<const Watched* const> watched = {});
 
     /// The parameters of an entry, modulation and overrides included.
     [[nodiscard]] const std::uint32_t* words(std::uint32_t entry) const { return words_.data() + first_word_[entry]; }
@@ -35,7 +36,8 @@ class FrameValues {
     [[nodiscard]] Domain domain_behind(std::uint32_t entry) const {
         return entry == no_entry ? Domain::SceneLinear : entry == ui_entry ? Domain::Encoded : domains_[entry];
     }
-    [[nodiscard]] bool is_open(const Program& program, const Gate& gate, const PassContext& context) const;
+    [[nodiscard]] bool is_open(const Program& program, const Gate& gate, const PassContext& context,
+                               std::span<const Watched* const> watched) const;
 
     std::vector<std::uint32_t> words_, first_word_;
     std::vector<std::uint8_t> is_on_;

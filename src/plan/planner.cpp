@@ -43,6 +43,7 @@ Result<Program> Planner::run() {
     if (auto ok = check_handles(); !ok) return failure(std::move(ok));
     program_.is_left_out.assign(stack_.size(), false);
     program_.is_mixable.assign(stack_.size(), true);
+    program_.watch_gates.assign(desc_.watches.size(), -1);
 
     const graph::Version color = import_host(HostImage::Color, "color", desc_.color, {});
     values_.push_back({.image = color, .why = "the scene colour starts here"});
@@ -67,8 +68,11 @@ Result<Program> Planner::run() {
             entry_values_[i] = *value;
         }
         if (auto ok = keep_output(i); !ok) return failure(std::move(ok));
+        if (auto ok = add_watches(i); !ok) return failure(std::move(ok));
     }
     if (auto ok = finish(); !ok) return failure(std::move(ok));
+    if (auto ok = add_watches(no_entry); !ok) return failure(std::move(ok));
+    remark_watches();
     return std::move(program_);
 }
 
@@ -381,7 +385,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     if ((usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0) pass.stage = gpu::Stage::Raster;
     if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) == 0) pass.stage = gpu::Stage::Compute;
     const bool is_raster = pass.stage == gpu::Stage::Raster;
-    graph::PassDesc desc{.name = pass.name, .gate = pass.toggle};
+    graph::PassDesc desc{.name = pass.name, .has_side_effect = pass.watch.has_value(), .gate = pass.toggle};
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         if (pass.inputs[i].table != no_table) continue;
         const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
@@ -403,22 +407,23 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     return program_.passes.back().output;
 }
 
-bool Planner::is_shared_toggle(std::size_t index) const {
-    return std::ranges::any_of(shared_,
-                               [&](const auto& row) { return row.second.toggle == static_cast<std::int32_t>(index); });
+bool Planner::is_special_gate(std::size_t index) const {
+    return program_.gates[index].watch || std::ranges::any_of(shared_, [&](const auto& row) {
+               return row.second.toggle == static_cast<std::int32_t>(index);
+           });
 }
 
 std::int32_t Planner::toggle_index(Gate toggle) {
     for (std::size_t i = 0; i < program_.gates.size(); ++i) {
         const Gate& other = program_.gates[i];
-        if (!is_shared_toggle(i) && other.entries == toggle.entries && other.condition == toggle.condition &&
+        if (!is_special_gate(i) && other.entries == toggle.entries && other.condition == toggle.condition &&
             other.argument == toggle.argument)
             return static_cast<std::int32_t>(i);
     }
     const auto index = static_cast<std::int32_t>(program_.gates.size());
     for (std::int32_t i = 0; i < index; ++i) {
         const Gate& other = program_.gates[static_cast<std::size_t>(i)];
-        if (is_shared_toggle(static_cast<std::size_t>(i)) || other.entries != toggle.entries ||
+        if (is_special_gate(static_cast<std::size_t>(i)) || other.entries != toggle.entries ||
             other.condition != toggle.condition)
             continue;
         // A condition that holds for an argument holds for all smaller ones.

@@ -25,18 +25,25 @@ std::string Planner::own_name(const std::string& name) {
 }
 
 graph::Version Planner::create_picture(const std::string& name, graph::Size size, VkFormat format) {
-    const graph::Version image = program_.graph.create({.name = own_name(name), .format = format, .size = size});
-    facts_[image.index] = {.root = image.index, .size = size, .format = format, .usage = own_usage};
+    const graph::ImageDesc desc{.name = own_name(name), .format = format, .size = size};
+    const graph::Version image = program_.graph.create(desc);
+    facts_[image.index] = {
+        .root = image.index, .size = size, .format = format, .usage = own_usage, .fall_backs = {}, .name = desc.name};
     return image;
 }
 
-graph::Version Planner::import_host(HostImage image, const char* name, const ImageUse& use, graph::Size size) {
+graph::Version Planner::import_host(HostImage image, const std::string& name, const ImageUse& use, graph::Size size) {
     if (const auto found = host_images_.find(image); found != host_images_.end()) return found->second;
     program_.imports.emplace_back(image);
-    const graph::Version version = program_.graph.import(
-        {.image = {.name = own_name(name), .format = use.format, .size = size}, .usage = use.usage});
+    const graph::ImageDesc desc{.name = own_name(name), .format = use.format, .size = size};
+    const graph::Version version = program_.graph.import({.image = desc, .usage = use.usage});
     host_images_[image] = version;
-    facts_[version.index] = {.root = version.index, .size = size, .format = use.format, .usage = use.usage};
+    facts_[version.index] = {.root = version.index,
+                             .size = size,
+                             .format = use.format,
+                             .usage = use.usage,
+                             .fall_backs = {},
+                             .name = desc.name};
     return version;
 }
 

@@ -68,6 +68,7 @@ class Planner {
         VkFormat format = VK_FORMAT_UNDEFINED;
         VkImageUsageFlags usage = 0;
         std::vector<graph::Version> fall_backs;
+        std::string name;
     };
 
     [[nodiscard]] Result<> check_handles() const;
@@ -128,9 +129,11 @@ class Planner {
     /// stay.
     void limit_storage_images(ProgramPass& pass) const;
     [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
-    [[nodiscard]] bool is_shared_toggle(std::size_t index) const;
+    /// One of a watch, or of what entries share: others do not join it because they look alike.
+    [[nodiscard]] bool is_special_gate(std::size_t index) const;
     [[nodiscard]] std::int32_t toggle_index(Gate toggle);
-    [[nodiscard]] graph::Version import_host(HostImage image, const char* name, const ImageUse& use, graph::Size size);
+    [[nodiscard]] graph::Version import_host(HostImage image, const std::string& name, const ImageUse& use,
+                                             graph::Size size);
     [[nodiscard]] graph::Version create_picture(const std::string& name, graph::Size size, VkFormat format);
     /// The name, or name#2 and so on where another image has it.
     [[nodiscard]] std::string own_name(const std::string& name);
@@ -148,6 +151,19 @@ class Planner {
     [[nodiscard]] bool may_share(graph::Version a, graph::Version b) const;
     [[nodiscard]] VkFormat storage_format(graph::Version version) const;
     [[nodiscard]] Result<> finish();
+    /// Adds the passes that copy what is watched, as far as it has been made: outputs of entries up to this one, and
+    /// images.
+    [[nodiscard]] Result<> add_watches(std::uint32_t entry);
+    /// What a watch reads, and the gate of the pass that makes it.
+    struct WatchedImage {
+        PassInput input;
+        std::int32_t writer = -1;
+    };
+    /// None: it has not been made.
+    [[nodiscard]] Result<std::optional<WatchedImage>> watched_output(std::uint32_t watch, std::uint32_t entry);
+    [[nodiscard]] std::optional<WatchedImage> watched_image(const Watch& watch);
+    [[nodiscard]] Result<> add_watch(std::uint32_t watch, const WatchedImage& image);
+    void remark_watches();
     /// Kept for the passes that share it.
     [[nodiscard]] Result<std::shared_ptr<const EffectText>> text_of(const EffectInfo& info, const std::string& file,
                                                                     std::uint32_t place,

@@ -139,6 +139,8 @@ void Planner::count_readers() {
         }
         read_picture(program_.entry_inputs[i], wiring.name);
     }
+    for (const Watch& watch : desc_.watches)
+        if (is_of_entry(watch.entry)) image_reader_[index_of(watch.entry)] = "a watch";
     read_picture(program_.last_entry, "the target");
 }
 
@@ -197,7 +199,12 @@ Result<> Planner::previous_of(Handle handle) {
         image, {entry == no_entry ? std::uint64_t{scene_color.id} : stack_[entry].history_owner, output_history});
     program_.history_entries.push_back(no_entry);
     for (const graph::Version version : {made.current, made.previous})
-        facts_[version.index] = {.root = version.index, .size = size, .format = format, .usage = own_usage};
+        facts_[version.index] = {.root = version.index,
+                                 .size = size,
+                                 .format = format,
+                                 .usage = own_usage,
+                                 .fall_backs = {},
+                                 .name = image.name};
     kept_outputs_[entry] = made.current;
     values_.push_back({.image = made.previous, .size = size, .why = fmt::format("{} of the frame before", name)});
     if (entry != no_entry) return {};

@@ -73,6 +73,9 @@ struct Gate {
     ConditionFunction condition = nullptr;
     std::uint32_t argument = 0;
     std::vector<ConditionFunction> conditions;  ///< of what is shared: one an entry, null: none
+    // Of a watch, which has no entries:
+    std::optional<std::uint32_t> watch;  ///< of CompileDesc::watches: the frame must have a target for it
+    std::int32_t writer = -1;            ///< the gate, before this one, of what writes the image; -1: always open
 };
 
 inline constexpr std::uint32_t no_table = ~0u;
@@ -100,6 +103,7 @@ struct ProgramPass {
     bool is_alpha = false;  ///< makes a grey picture of the alpha before its steps
     bool is_fused = true;   ///< made by the planner from entries; else by an effect's build
     bool asks_input_is_twice = false;
+    std::optional<std::uint32_t> watch;  ///< of CompileDesc::watches: copies part of its input for it
     // Of an effect's pass:
     ConstantsFunction constants = nullptr;
     // Of a fused kernel:
@@ -118,10 +122,27 @@ struct FixedImage {
 };
 
 /// Which import of the graph is which image of the host.
-enum class HostImage : std::uint8_t { Color, Depth, Normals, Velocity, Ui, Target, Shadow0, Shadow1, Shadow2, Shadow3 };
+enum class HostImage : std::uint32_t {
+    Color,
+    Depth,
+    Normals,
+    Velocity,
+    Ui,
+    Target,
+    Shadow0,
+    Shadow1,
+    Shadow2,
+    Shadow3,
+    FirstWatched,  ///< and as many more as there are watches
+};
 /// The number of a shadow map; negative for what is none.
 [[nodiscard]] constexpr std::int32_t shadow_number(HostImage image) {
+    if (image >= HostImage::FirstWatched) return -1;
     return static_cast<std::int32_t>(image) - static_cast<std::int32_t>(HostImage::Shadow0);
+}
+/// Of CompileDesc::watches, whose target this is; negative for what is none.
+[[nodiscard]] constexpr std::int32_t watch_number(HostImage image) {
+    return static_cast<std::int32_t>(image) - static_cast<std::int32_t>(HostImage::FirstWatched);
 }
 
 /// In place of an entry: the scene.
@@ -140,7 +161,9 @@ struct Program {
     std::vector<graph::Size> entry_sizes;           ///< per entry: of the picture that it gets
     graph::Size target_size;
     std::vector<std::uint32_t>
-        history_entries;            ///< per history of the graph: the entry whose switch resets it; no_entry: none
+        history_entries;  ///< per history of the graph: the entry whose switch resets it; no_entry: none
+    /// Per watch: the gate of the pass that copies; -1: the plan has nothing that it names.
+    std::vector<std::int32_t> watch_gates;
     std::vector<bool> is_left_out;  ///< per entry
     std::vector<bool> is_mixable;   ///< per entry: opacity and blending may change while recording
     std::vector<std::string> left_out, remarks;
