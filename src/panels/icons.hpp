@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Small pictures for buttons, drawn of lines, so that they are there whatever the font has.
+
+#include <cstdint>
+
+namespace darkroom::panels {
+
+enum class Icon : std::uint8_t { Shown, Hidden, Grip, Duplicate, Remove, Add, Undo, Redo, Save, Folder, Reset };
+
+/// A square button as high as a frame, without a background until the mouse is over it. `tooltip` may be null.
+bool icon_button(const char* id, Icon icon, const char* tooltip, bool is_dim = false);
+
+/// Shows `text` beside the mouse while it rests on the last item, wrapped at a readable width. Also over disabled
+/// items.
+void tooltip(const char* text);
+
+}  // namespace darkroom::panels

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to src/panels: what the panels of one document share.
+
+#include <darkroom/plan.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "edit/document.hpp"
+#include "panels/file_browser.hpp"
+#include "panels/messages.hpp"
+#include "panels/widget_places.hpp"
+
+namespace darkroom::panels {
+
+using LookChange = std::function<Result<>(Look&)>;
+
+struct PanelState {
+    edit::LookDocument* document = nullptr;
+    const Plan* plan = nullptr;
+    bool is_compiling = false;
+    Messages messages;
+    FileBrowser files;
+    std::uint64_t selected = 0;  ///< LookEntry::id
+    std::optional<WidgetPlaces> places{};
+
+    std::string renamed{}, new_name{};  ///< the entry whose name is being typed
+    bool is_renaming_new = false;
+    std::string filter{};  ///< of the list of effects to add
+    std::string wanted{};  ///< the entry that an edit has made, to be selected
+
+    struct Edit {
+        std::string what;
+        LookChange change;
+        std::string merge;
+    };
+    std::optional<Edit> pending{};
+
+    [[nodiscard]] const Look& look() const { return document->look(); }
+    /// Done when the panel is drawn: until then, what it draws from stays.
+    void edit(std::string what, LookChange change, std::string merge = {}) {
+        pending = {std::move(what), std::move(change), std::move(merge)};
+    }
+    /// Does what the panel that was drawn has asked for.
+    void settle();
+    void select(std::string_view entry);
+    /// Of the last item.
+    void note(std::string_view name);
+    /// Where the selected entry is; -1: none is selected.
+    [[nodiscard]] int selected_index() const;
+    /// Asks for a file, which `then` gets as the look would name it.
+    void browse(std::string title, bool is_picture, const std::string& present,
+                std::function<void(const std::string&)> then);
+};
+
+/// Why the plan does without the entry of this name; empty: it has it.
+[[nodiscard]] std::string_view left_out(const Plan* plan, std::string_view entry);
+
+// Each panel, into the present window.
+void draw_stack_panel(PanelState& state);
+void draw_entry_panel(PanelState& state);
+void draw_plan_panel(const Plan* plan, bool is_compiling);
+/// The popup that lists what can be added, while it is open.
+void draw_add_menu(PanelState& state);
+/// Opacity, blend mode, scale, format and wires of an entry of a stack.
+void draw_entry_state(PanelState& state, const LookEntry& entry, const std::string& name);
+
+}  // namespace darkroom::panels

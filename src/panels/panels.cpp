@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "panels/panels.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/param_text.hpp"
+#include "panels/icons.hpp"
+#include "panels/panel_state.hpp"
+#include "panels/theme.hpp"
+
+namespace darkroom::panels {
+
+namespace {
+
+const std::vector<std::string> look_files{".toml"};
+const std::vector<std::string> table_files{".cube", ".3dl", ".spi1d", ".spi3d", ".csp",
+                                           ".clf",  ".ctf", ".png",   ".tif",   ".exr"};
+const std::vector<std::string> picture_files{".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr"};
+
+/// A button that can be pressed, or not now.
+bool bar_button(PanelState& state, const char* name, Icon icon, const std::string& text, bool can_press) {
+    ImGui::BeginDisabled(!can_press);
+    const bool is_pressed = icon_button(name, icon, text.c_str(), !can_press);
+    ImGui::EndDisabled();
+    state.note(fmt::format("bar/{}", name));
+    ImGui::SameLine(0, 0);
+    return is_pressed;
+}
+
+std::string step_text(const char* verb, std::string_view step) {
+    return step.empty() ? fmt::format("Nothing to {}", verb) : fmt::format("{}: {}", verb, step);
+}
+
+/// The end of what is too long to show, which tells files apart.
+std::string fitting_end(const std::string& text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    for (std::size_t i = 1; i < text.size(); ++i) {
+        const bool is_start = (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80;
+        const std::string end = "..." + text.substr(i);
+        if (is_start && ImGui::CalcTextSize(end.c_str()).x <= width) return end;
+    }
+    return {};
+}
+
+}  // namespace
+
+void PanelState::settle() {
+    if (!pending) return;
+    const Edit now = *std::exchange(pending, std::nullopt);
+    wanted.clear();
+    if (messages.settle("edit", document->edit(now.what, now.change, now.merge)) && !wanted.empty()) select(wanted);
+}
+
+void PanelState::select(std::string_view entry) {
+    const std::vector<std::string> names = entry_names(look());
+    const auto found = std::ranges::find(names, entry);
+    selected = found == names.end() ? 0 : look().entries[static_cast<std::size_t>(found - names.begin())].id;
+}
+
+void PanelState::note(std::string_view name) {
+    if (places) (*places)[std::string(name)] = {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()};
+}
+
+int PanelState::selected_index() const {
+    const auto found = std::ranges::find(look().entries, selected, &LookEntry::id);
+    return selected == 0 || found == look().entries.end() ? -1 : static_cast<int>(found - look().entries.begin());
+}
+
+void PanelState::browse(std::string title, bool is_picture, const std::string& present,
+                        std::function<void(const std::string&)> then) {
+    const std::filesystem::path folder = document->options().folder;
+    files.open({.title = std::move(title),
+                .start = present.empty() ? folder : folder / present,
+                .extensions = is_picture ? picture_files : table_files,
+                .then = [folder, then = std::move(then)](const std::filesystem::path& file) {
+                    std::error_code error;
+                    const std::filesystem::path relative =
+                        std::filesystem::proximate(file, folder.empty() ? "." : folder, error);
+                    then((error ? file : relative).generic_string());
+                }});
+}
+
+std::string_view left_out(const Plan* plan, std::string_view entry) {
+    if (plan == nullptr) return {};
+    for (const std::string_view text : plan->left_out)
+        if (text.starts_with(entry) && text.substr(entry.size()).starts_with(": "))
+            return text.substr(entry.size() + 2);
+    return {};
+}
+
+LookPanels::LookPanels(edit::LookDocument& document) : state_(std::make_unique<PanelState>()) { show(document); }
+LookPanels::LookPanels(LookPanels&&) noexcept = default;
+LookPanels& LookPanels::operator=(LookPanels&&) noexcept = default;
+LookPanels::~LookPanels() = default;
+
+void LookPanels::show(edit::LookDocument& document) {
+    state_->document = &document;
+    state_->plan = nullptr;
+    state_->selected = 0;
+    state_->renamed.clear();
+}
+
+void LookPanels::set_plan(const Plan* plan, bool is_compiling) {
+    state_->plan = plan;
+    state_->is_compiling = is_compiling;
+}
+
+void LookPanels::draw_bar() {
+    PanelState& state = *state_;
+    const edit::LookDocument& document = *state.document;
+    ImGui::PushID("bar");
+    if (bar_button(state, "undo", Icon::Undo, step_text("Undo", document.undo_name()), document.can_undo())) undo();
+    if (bar_button(state, "redo", Icon::Redo, step_text("Redo", document.redo_name()), document.can_redo())) redo();
+    const bool can_save = document.is_changed() || document.file().empty();
+    if (bar_button(state, "save", Icon::Save, can_save ? "Save" : "Nothing to save", can_save)) save();
+    if (bar_button(state, "save_as", Icon::Folder, "Save as...", true)) save_as();
+    if (bar_button(state, "revert", Icon::Reset, "Back to what the file says", document.is_changed())) revert();
+    ImGui::SameLine();
+    const float radius = ImGui::GetFontSize() * 0.2f;
+    const std::string file = document.file().empty() ? "not saved yet" : printable(document.file().string());
+    const std::string name = document.file().empty() ? file : printable(document.file().filename().string());
+    if (document.is_changed()) {
+        const ImVec2 corner = ImGui::GetCursorScreenPos();
+        ImGui::GetWindowDrawList()->AddCircleFilled({corner.x + radius, corner.y + ImGui::GetFrameHeight() / 2}, radius,
+                                                    ImGui::GetColorU32(accent_color));
+        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 4 * radius);
+    }
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(fitting_end(name, ImGui::GetContentRegionAvail().x).c_str());
+    tooltip((document.is_changed() ? file + ": changed since it was saved" : file).c_str());
+    ImGui::PopID();
+}
+
+void LookPanels::draw_messages() { state_->messages.draw(); }
+void LookPanels::draw_stack() { draw_stack_panel(*state_); }
+void LookPanels::draw_entry() { draw_entry_panel(*state_); }
+void LookPanels::draw_plan() { draw_plan_panel(state_->plan, state_->is_compiling); }
+void LookPanels::draw_popups() {
+    state_->files.draw();
+    state_->settle();
+}
+
+void LookPanels::undo() { state_->document->undo(); }
+void LookPanels::redo() { state_->document->redo(); }
+
+void LookPanels::save() {
+    if (state_->document->file().empty())
+        save_as();
+    else
+        state_->messages.settle("save", state_->document->save());
+}
+
+void LookPanels::save_as() {
+    PanelState& state = *state_;
+    state.files.open({.title = "Save the look as",
+                      .start = state.document->file(),
+                      .extensions = look_files,
+                      .is_saving = true,
+                      .then = [&state](const std::filesystem::path& file) {
+                          state.messages.settle("save", state.document->save_as(file));
+                      }});
+}
+
+void LookPanels::revert() {
+    state_->edit("revert", [saved = state_->document->saved_look()](Look& look) {
+        look = saved;
+        return Result<>();
+    });
+    state_->settle();
+}
+
+Messages& LookPanels::messages() { return state_->messages; }
+FileBrowser& LookPanels::files() { return state_->files; }
+
+std::string LookPanels::selected() const {
+    const int index = state_->selected_index();
+    return index < 0 ? std::string() : entry_names(state_->look())[static_cast<std::size_t>(index)];
+}
+
+void LookPanels::select(std::string_view entry) { state_->select(entry); }
+
+const WidgetPlaces& LookPanels::places() {
+    if (!state_->places) state_->places.emplace();
+    return *state_->places;
+}
+
+}  // namespace darkroom::panels

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The panels over a look that is edited: its stack, the parameters of the effect that is selected, the plan that
+// follows from them, undo and saving. They are drawn from the effects' own descriptions, and change nothing but the
+// document; whoever has a Composer takes it along with darkroom::follow.
+//
+//     darkroom::panels::LookPanels panels(document);
+//     panels.set_plan(composer.current_plan(), composer.pending().is_pending);   // every frame
+//     ImGui::Begin("Stack");
+//     panels.draw_stack();
+//     ImGui::End();
+//     ...                          // draw_bar, draw_messages, draw_entry and draw_plan, each in a window of the host's
+//     panels.draw_popups();        // last, outside of windows
+//     if (document.version() != seen) ...                                        // follow, compile_later
+//
+// Each draws into the host's present window, at its cursor and as wide as the window, of 18 times the font's size at
+// least. A host that wants the same look applies panels/theme.hpp.
+
+#include <darkroom/plan.hpp>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "edit/document.hpp"
+#include "panels/file_browser.hpp"
+#include "panels/messages.hpp"
+#include "panels/widget_places.hpp"
+
+namespace darkroom::panels {
+
+struct PanelState;
+
+class LookPanels {
+  public:
+    /// The document must outlive the panels, or be replaced by show().
+    explicit LookPanels(edit::LookDocument& document);
+    LookPanels(LookPanels&&) noexcept;
+    LookPanels& operator=(LookPanels&&) noexcept;
+    ~LookPanels();
+
+    void show(edit::LookDocument& document);
+    /// What the stack became, null where it is not known yet; and whether another plan is on its way.
+    void set_plan(const Plan* plan, bool is_compiling = false);
+
+    /// One row: undo, redo, save, save as, revert, and the file's name, marked where it is to be saved.
+    void draw_bar();
+    /// Takes no room where there is nothing to say; messages().height() says how much it takes.
+    void draw_messages();
+    /// The entries in their order, the interface's chain apart.
+    void draw_stack();
+    /// Parameters, opacity, blend mode and wires of the selected entry.
+    void draw_entry();
+    /// Passes and what they hold, remarks, memory.
+    void draw_plan();
+    /// The file browser, while a file is being chosen.
+    void draw_popups();
+
+    // What the bar's buttons do, for a host's keys. What goes wrong becomes a message.
+    void undo();
+    void redo();
+    /// Asks for a name where there is none yet.
+    void save();
+    void save_as();
+    /// To what the file says: a step of undo.
+    void revert();
+
+    [[nodiscard]] Messages& messages();
+    [[nodiscard]] FileBrowser& files();
+    /// Name of the selected entry; empty: none.
+    [[nodiscard]] std::string selected() const;
+    void select(std::string_view entry);
+    /// Where widgets are, noted from now on while they are drawn.
+    [[nodiscard]] const WidgetPlaces& places();
+
+  private:
+    std::unique_ptr<PanelState> state_;
+};
+
+}  // namespace darkroom::panels

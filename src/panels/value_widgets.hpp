@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A value's widget, drawn from the row that describes it: sliders with interval and unit, choices, colours, curves. It
+// knows the words of one value, and neither looks nor files.
+
+#include <cstdint>
+#include <darkroom/param.hpp>
+#include <span>
+#include <string>
+
+namespace darkroom::panels {
+
+/// What happened to a widget in this frame.
+struct ValueEdit {
+    bool is_changed = false;  ///< the words hold another value, which the row allows
+    bool is_begun = false;    ///< a drag, a click or typing began: a step of its own to undo
+};
+
+/// Draws the widget of any row but a Resource, as wide as there is room, into the present ImGui window. `words` are
+/// those of this row only. Numbers are edited on a slider over the row's interval, in equal ratios where the row says
+/// so or most of an even slider would be of no use; ctrl and a click type a number, which is kept inside the interval.
+[[nodiscard]] ValueEdit draw_value(const ParamInfo& row, std::span<std::uint32_t> words);
+
+/// The same for a curve: click to add a point, drag it, double-click to remove it; ctrl and the wheel change how much
+/// is seen.
+[[nodiscard]] ValueEdit draw_curve(const ParamInfo& row, std::span<std::uint32_t> words);
+
+/// A value as flags take it: "0.08", "1.0,0.5,0.2", "on", "0.0:0.0,1.0:1.0". `words` as above.
+[[nodiscard]] std::string flag_text(const ParamInfo& row, std::span<const std::uint32_t> words);
+
+/// snake_case as people read it: "soft threshold".
+[[nodiscard]] std::string shown_name(std::string_view name);
+
+}  // namespace darkroom::panels
