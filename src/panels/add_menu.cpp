@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cfloat>
+#include <cmath>
 #include <darkroom/effects.hpp>
 
 #include "edit/edits.hpp"
@@ -31,27 +33,18 @@ bool accepts_several(const EffectInfo& effect) {
 
 /// Every effect is in one of them.
 constexpr std::array<Group, 5> groups{{
-    {"Scene light", [](const EffectInfo& effect) { return accepts_only(effect, Domain::SceneLinear); }},
-    {"Display light", [](const EffectInfo& effect) { return accepts_only(effect, Domain::DisplayLinear); }},
+    {"Scene-linear light", [](const EffectInfo& effect) { return accepts_only(effect, Domain::SceneLinear); }},
+    {"Display-linear light", [](const EffectInfo& effect) { return accepts_only(effect, Domain::DisplayLinear); }},
     {"Encoded picture", [](const EffectInfo& effect) { return accepts_only(effect, Domain::Encoded); }},
     {"Any picture", accepts_several},
     {"Interface", [](const EffectInfo& effect) { return effect.is_ui; }},
 }};
 
-const char* text_of(Touch touch) {
-    switch (touch) {
-        case Touch::Pointwise:
-            return "colour";
-        case Touch::Warp:
-        case Touch::Map:
-            return "moves pixels";
-        case Touch::Tap:
-        case Touch::Neighbourhood:
-            return "reads around";
-        case Touch::History:
-            break;
-    }
-    return "remembers";
+const char* text_of(const EffectInfo& effect) {
+    if (effect.touch == Touch::Warp || effect.touch == Touch::Map) return "moves pixels";
+    if (effect.touch == Touch::History) return "earlier frames";
+    if (effect.touch == Touch::Tap || effect.touch == Touch::Neighbourhood) return "neighbours";
+    return effect.build ? "own passes" : "colour";
 }
 
 bool is_wanted(const EffectInfo& effect, std::string_view filter) {
@@ -104,7 +97,7 @@ const EffectInfo* draw_effects(PanelState& state) {
             if (ImGui::Selectable(fmt::format("  {}", name).c_str())) add(state, *effect);
             state.note(fmt::format("add/{}", effect->name));
             tooltip(std::string(effect->doc).c_str());
-            const char* const touch = text_of(effect->touch);
+            const char* const touch = text_of(*effect);
             ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(touch).x);
             ImGui::TextDisabled("%s", touch);
         }
@@ -118,6 +111,7 @@ void draw_add_menu(PanelState& state) {
     const float em = ImGui::GetFontSize();
     ImGui::SetNextWindowSize({22 * em, std::min(30 * em, ImGui::GetIO().DisplaySize.y * 0.7f)});
     if (!ImGui::BeginPopup("add")) return;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, std::round(em / 3)});
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);
     const bool takes_first = text_field("##filter", "Search", state.filter, ImGuiInputTextFlags_EnterReturnsTrue);
@@ -127,6 +121,7 @@ void draw_add_menu(PanelState& state) {
     ImGui::EndChild();
     if (takes_first && first != nullptr) add(state, *first);
     if (ImGui::Button("From a GLSL file...", {-FLT_MIN, 0})) add_from_file(state);
+    ImGui::PopStyleVar();
     ImGui::EndPopup();
 }
 

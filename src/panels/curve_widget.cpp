@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "panels/slider.hpp"
 #include "panels/theme.hpp"
 #include "panels/value_widgets.hpp"
 
@@ -25,8 +26,12 @@ struct View {
         return {corner.x + (x - least_x) / (most_x - least_x) * size.x,
                 corner.y + (most_y - y) / (most_y - least_y) * size.y};
     }
-    [[nodiscard]] float x_of(float pixel) const { return least_x + (pixel - corner.x) / size.x * (most_x - least_x); }
-    [[nodiscard]] float y_of(float pixel) const { return most_y - (pixel - corner.y) / size.y * (most_y - least_y); }
+    [[nodiscard]] float x_of(float pixel) const {
+        return static_cast<float>(four_digits(least_x + (pixel - corner.x) / size.x * (most_x - least_x)));
+    }
+    [[nodiscard]] float y_of(float pixel) const {
+        return static_cast<float>(four_digits(most_y - (pixel - corner.y) / size.y * (most_y - least_y)));
+    }
 };
 
 Curve curve_of(std::span<const std::uint32_t> words) {
@@ -122,7 +127,8 @@ void paint(const Curve& curve, const View& view, int chosen) {
     if (curve.count > 0) return;
     constexpr const char* hint = "click to add a point";
     const ImVec2 size = ImGui::CalcTextSize(hint);
-    list.AddText({view.corner.x + (view.size.x - size.x) / 2, view.corner.y + (view.size.y - size.y) / 2}, dim, hint);
+    list.AddText({view.corner.x + (view.size.x - size.x) / 2, view.corner.y + (view.size.y * 0.75f - size.y) / 2}, dim,
+                 hint);
 }
 
 /// The chosen point's numbers, to be dragged or typed.

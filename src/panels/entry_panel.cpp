@@ -28,6 +28,11 @@ void name_value(RowLine& line, const Look& look, const LookEntry& entry, const s
     line.toml = fmt::format("{} = {}", is_flat ? key : std::string(row.name), toml_value);
 }
 
+/// What undo calls a change of the parameter.
+std::string step_name(const std::string& name, const ParamInfo& row) {
+    return name == row.name ? name : fmt::format("{} {}", name, shown_name(row.name));
+}
+
 /// The file's name, and buttons to choose another and to go without.
 ValueEdit draw_file(PanelState& state, const LookEntry& entry, const std::string& name, const ParamInfo& row) {
     const LookResource* const present = resource_of(entry, row);
@@ -39,7 +44,7 @@ ValueEdit draw_file(PanelState& state, const LookEntry& entry, const std::string
     ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5f});
     const bool is_chosen = ImGui::Button((shown + "##file").c_str(), {width, 0});
     ImGui::PopStyleVar();
-    const std::string parameter(row.name), what = fmt::format("{} {}", name, shown_name(row.name));
+    const std::string parameter(row.name), what = step_name(name, row);
     edit::LookDocument* const document = state.document;
     const auto put = [=, &state](const std::string& chosen) {
         state.edit(what,
@@ -67,7 +72,7 @@ void draw_parameter(PanelState& state, const LookEntry& entry, const std::string
     if (row.kind == Kind::Resource) body = [&](std::span<std::uint32_t>) { return draw_file(state, entry, name, row); };
     const RowOutcome outcome = draw_row(state, line, columns, body);
     if (outcome.act == RowAct::None) return;
-    const std::string parameter(row.name), what = fmt::format("{} {}", name, shown_name(row.name));
+    const std::string parameter(row.name), what = step_name(name, row);
     if (outcome.act == RowAct::Reset)
         state.edit(
             what, [=](Look& look) { return edit::reset_value(look, name, parameter); }, line.place);

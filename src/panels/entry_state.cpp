@@ -104,7 +104,9 @@ class WireChoices {
         const std::string_view suffix = is_previous ? previous_suffix : std::string_view();
         const std::string label = fmt::format("{}{}", other_name, suffix);
         const bool is_present = !other.output.empty() && present_ == fmt::format("{}{}", other.output, suffix);
-        if (!ImGui::Selectable(label.c_str(), is_present)) return;
+        const bool is_chosen = ImGui::Selectable(label.c_str(), is_present);
+        state_.note(fmt::format("wire/{}", label));
+        if (!is_chosen) return;
         state_.edit(what(), [=, name = name_, wire = std::string(wire_.key), document = state_.document](Look& look) {
             return wire_to(look, name, wire, other_name, is_previous, document->options());
         });

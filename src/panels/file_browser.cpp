@@ -133,7 +133,7 @@ void FileBrowser::press_keys(const std::vector<std::size_t>& seen) {
 }
 
 void FileBrowser::draw_head() {
-    if (icon_button("##up", Icon::Undo, "The folder above (Backspace)")) enter(folder_.parent_path());
+    if (icon_button("##up", Icon::Up, "The folder above (Backspace)")) enter(folder_.parent_path());
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(0);
@@ -168,7 +168,7 @@ void FileBrowser::draw_list(float height) {
             const std::size_t index = seen[static_cast<std::size_t>(i)];
             ImGui::PushID(static_cast<int>(index));
             const std::string label = entries_[index].shown + (entries_[index].is_folder ? "/" : "");
-            const bool is_present = static_cast<std::size_t>(i) == present_;
+            const bool is_present = static_cast<std::size_t>(i) == present_ && !request_.is_saving;
             if (ImGui::Selectable("##file", is_present, ImGuiSelectableFlags_AllowDoubleClick)) {
                 present_ = static_cast<std::size_t>(i);
                 const bool names_it = request_.is_saving && !entries_[index].is_folder;

@@ -65,10 +65,6 @@ void draw(Pen& pen, Icon icon) {
             pen.line({{8, 10.5f}, {8, 12.9f}});
             pen.line({{12, 9.6f}, {13.2f, 11.6f}});
             break;
-        case Icon::Grip:
-            for (const float y : {4.5f, 8.0f, 11.5f})
-                for (const float x : {6.0f, 10.0f}) pen.dot({x, y}, 0.9f);
-            break;
         case Icon::Duplicate:
             pen.box({5.5f, 5.5f}, {13, 13});
             pen.line({{10.5f, 3}, {3, 3}, {3, 10.5f}});
@@ -99,6 +95,10 @@ void draw(Pen& pen, Icon icon) {
             pen.arc({8, 8.5f}, 4.5f, -0.9f * pi + 0.6f, 0.75f * pi);
             pen.line({{3.4f, 3}, {4.4f, 6.6f}, {8, 6}});
             break;
+        case Icon::Up:
+            pen.line({{8, 13}, {8, 3.5f}});
+            pen.line({{4, 7.5f}, {8, 3.5f}, {12, 7.5f}});
+            break;
     }
 }
 
@@ -121,8 +121,17 @@ bool icon_button(const char* id, Icon icon, const char* text, bool is_dim) {
     return is_pressed;
 }
 
+bool is_rested_on() {
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsAnyMouseDown()) return false;
+    float& still = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("still since"));
+    const auto now = static_cast<float>(ImGui::GetTime());
+    const ImVec2 moved = ImGui::GetIO().MouseDelta;
+    if (moved.x != 0 || moved.y != 0 || ImGui::IsWindowAppearing()) still = now;
+    return now - still > 0.4f;
+}
+
 void tooltip(const char* text) {
-    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsAnyMouseDown()) return;
+    if (!is_rested_on()) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
     ImGui::TextUnformatted(text);

@@ -6,11 +6,13 @@
 
 namespace darkroom::panels {
 
-enum class Icon : std::uint8_t { Shown, Hidden, Grip, Duplicate, Remove, Add, Undo, Redo, Save, Folder, Reset };
+enum class Icon : std::uint8_t { Shown, Hidden, Duplicate, Remove, Add, Undo, Redo, Save, Folder, Reset, Up };
 
 /// A square button as high as a frame, without a background until the mouse is over it. `tooltip` may be null.
 bool icon_button(const char* id, Icon icon, const char* tooltip, bool is_dim = false);
 
+/// Has the mouse stayed over the last item for a moment? What it explains must not cover what one works at.
+bool is_rested_on();
 /// Shows `text` beside the mouse while it rests on the last item, wrapped at a readable width. Also over disabled
 /// items.
 void tooltip(const char* text);

@@ -25,6 +25,7 @@ struct PanelState {
     Messages messages;
     FileBrowser files;
     std::uint64_t selected = 0;  ///< LookEntry::id
+    bool scrolls_to_selected = false;
     std::optional<WidgetPlaces> places{};
 
     std::string renamed{}, new_name{};  ///< the entry whose name is being typed

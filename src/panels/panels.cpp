@@ -59,6 +59,7 @@ void PanelState::select(std::string_view entry) {
     const std::vector<std::string> names = entry_names(look());
     const auto found = std::ranges::find(names, entry);
     selected = found == names.end() ? 0 : look().entries[static_cast<std::size_t>(found - names.begin())].id;
+    scrolls_to_selected = true;
 }
 
 void PanelState::note(std::string_view name) {

@@ -43,7 +43,7 @@ void indent_widget(const std::string& name, const Columns& columns) {
 }
 
 void explain(const RowLine& line) {
-    if (!ImGui::IsItemHovered() || ImGui::IsAnyMouseDown()) return;
+    if (!is_rested_on()) return;
     const ParamInfo& row = *line.row;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
@@ -106,7 +106,7 @@ RowOutcome draw_row(PanelState& state, const RowLine& line, const Columns& colum
     indent_widget(name, columns);
 
     RowOutcome out{.words = {line.words.begin(), line.words.end()}};
-    const ValueEdit edit = body ? body(out.words) : draw_value(row, out.words);
+    const ValueEdit edit = body ? body(out.words) : draw_value(row, out.words, line.defaults);
     state.note(line.place);
     explain(line);
     opens_menu |= ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right);

@@ -15,19 +15,24 @@ std::string bytes_text(std::uint64_t bytes) {
     return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1024.0 * 1024.0));
 }
 
+/// Names of fused kernels get places for line breaks.
+std::string breakable(const std::string& name) {
+    std::string out;
+    for (const char letter : name) out += letter == '+' ? " + " : std::string(1, letter);
+    return out;
+}
+
 void draw_pass(const PlanPass& pass, std::size_t number) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TextDisabled("%zu", number);
     ImGui::TableNextColumn();
     ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(pass.name.c_str());
+    ImGui::TextUnformatted(breakable(pass.name).c_str());
     ImGui::PopTextWrapPos();
-    tooltip(fmt::format("{}\nHolds: {}\n{} read, {} written", pass.boundary, fmt::join(pass.entries, ", "),
-                        bytes_text(pass.bytes_read), bytes_text(pass.bytes_written))
+    tooltip(fmt::format("{}\nHolds: {} ({})\n{} read, {} written", pass.boundary, fmt::join(pass.entries, ", "),
+                        pass.stage, bytes_text(pass.bytes_read), bytes_text(pass.bytes_written))
                 .c_str());
-    ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", pass.stage.c_str());
     ImGui::TableNextColumn();
     ImGui::TextDisabled("%ux%u", pass.extent.width, pass.extent.height);
 }
@@ -57,10 +62,9 @@ void draw_plan_panel(const Plan* plan, bool is_compiling) {
                         bytes_text(plan->transient_bytes_unaliased), bytes_text(plan->bytes_read()),
                         bytes_text(plan->bytes_written()))
                 .c_str());
-    if (ImGui::BeginTable("passes", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) {
+    if (ImGui::BeginTable("passes", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) {
         ImGui::TableSetupColumn("number");
         ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
-        ImGui::TableSetupColumn("stage");
         ImGui::TableSetupColumn("extent");
         for (std::size_t i = 0; i < plan->passes.size(); ++i) draw_pass(plan->passes[i], i + 1);
         ImGui::EndTable();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <utility>
 
 #include "core/param_text.hpp"
 #include "edit/edits.hpp"
@@ -27,6 +28,13 @@ class StackList {
 
     void draw() {
         draw_head();
+        ImGui::BeginChild("entries");
+        draw_entries();
+        ImGui::EndChild();
+    }
+
+  private:
+    void draw_entries() {
         std::vector<std::size_t> picture, ui;
         for (const LookEntry* const entry : ordered(look_)) {
             const auto index = static_cast<std::size_t>(entry - look_.entries.data());
@@ -42,25 +50,56 @@ class StackList {
         for (const std::size_t index : ui) draw_entry(index, {});
     }
 
-  private:
     void draw_head() {
-        if (icon_button("##add", Icon::Add, "Add an effect")) {
+        if (look_.is_flat) {
+            draw_table();
+        } else {
+            ImGui::AlignTextToFramePadding();
+            ImGui::TextDisabled("Stack");
+            tooltip("Effects run from top to bottom. Drag one to move it, double-click to rename it.");
+        }
+        constexpr const char* text = "+  Add";
+        const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+        if (ImGui::Button(text)) {
             state_.filter.clear();
             ImGui::OpenPopup("add");
         }
         state_.note("stack/add");
+        tooltip("Add an effect, where the picture is one that it takes");
         draw_add_menu(state_);
-        ImGui::SameLine();
+        ImGui::Spacing();
+    }
+
+    /// What the flat table says of all of its effects.
+    void draw_table() {
+        const bool is_on = look_.is_enabled;
+        if (icon_button("##table", is_on ? Icon::Shown : Icon::Hidden,
+                        is_on ? "All off but tone mapping and encoding" : "All as they are switched", !is_on))
+            state_.edit(is_on ? "all off" : "all on", [is_on](Look& look) {
+                look.is_enabled = !is_on;
+                return Result<>();
+            });
+        state_.note("stack/all");
+        ImGui::SameLine(0, 0);
         ImGui::AlignTextToFramePadding();
-        if (!look_.is_flat) {
-            ImGui::TextDisabled("Stack");
-            tooltip("Effects run from top to bottom. Drag one to move it.");
-            return;
-        }
         ImGui::TextDisabled("Flat table");
         tooltip(
             "Every effect of the flat table, in its fixed order. Adding, moving, copying or removing one makes it a "
             "stack, without what is off.");
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(9 * ImGui::GetFontSize());
+        const auto present = static_cast<std::size_t>(look_.order);
+        if (ImGui::BeginCombo("##order", shown_name(order_names[present]).c_str())) {
+            for (std::size_t i = 0; i < order_names.size(); ++i)
+                if (ImGui::Selectable(shown_name(order_names[i]).c_str(), i == present) && i != present)
+                    state_.edit("order", [i](Look& look) {
+                        look.order = static_cast<LookOrder>(i);
+                        return Result<>();
+                    });
+            ImGui::EndCombo();
+        }
+        state_.note("stack/order");
     }
 
     void draw_entry(std::size_t index, const std::string& next) {
@@ -70,10 +109,13 @@ class StackList {
         ImGui::PushID(static_cast<int>(index));
         const ImVec2 corner = ImGui::GetCursorScreenPos();
         const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetFrameHeight();
-        if (is_selected)
-            ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + height},
-                                                      ImGui::GetColorU32(ImGuiCol_Header),
+        const ImVec2 end{corner.x + width, corner.y + height};
+        const bool is_under_mouse = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(corner, end);
+        if (is_selected || is_under_mouse)
+            ImGui::GetWindowDrawList()->AddRectFilled(corner, end,
+                                                      ImGui::GetColorU32(ImGuiCol_Header, is_selected ? 1.0f : 0.4f),
                                                       ImGui::GetStyle().FrameRounding);
+        if (is_selected && std::exchange(state_.scrolls_to_selected, false)) ImGui::SetScrollHereY();
         draw_switch(entry, name, is_on);
         ImGui::SameLine(0, 0);
         if (state_.renamed == name)
@@ -132,7 +174,7 @@ class StackList {
         const ImU32 color = ImGui::GetColorU32(is_on ? ImGuiCol_Text : ImGuiCol_TextDisabled);
         list.PushClipRect(corner, {corner.x + width, corner.y + height}, true);
         list.AddText({corner.x + ImGui::GetStyle().ItemInnerSpacing.x, corner.y + ImGui::GetStyle().FramePadding.y},
-                     is_hovered ? ImGui::GetColorU32(ImVec4(1, 1, 1, 1)) : color, shown_name(name).c_str());
+                     color, shown_name(name).c_str());
         list.PopClipRect();
     }
 

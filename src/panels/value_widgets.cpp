@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/param_text.hpp"
+#include "panels/slider.hpp"
 
 namespace darkroom::panels {
 
@@ -20,44 +21,30 @@ ValueEdit edit_of_last_item(bool is_changed) {
     return {.is_changed = is_changed, .is_begun = ImGui::IsItemActivated()};
 }
 
-/// Of an interval like [0, 65504] an even slider has all that matters in its first pixel.
-bool is_in_ratios(const ParamInfo& row) {
-    return row.range.scale == Scale::Log || std::max(std::abs(row.range.min), std::abs(row.range.max)) > 8;
-}
-
-ImGuiSliderFlags slider_flags(const ParamInfo& row) {
-    return ImGuiSliderFlags_AlwaysClamp | (is_in_ratios(row) ? ImGuiSliderFlags_Logarithmic : 0);
-}
-
-std::string number_format(const ParamInfo& row, const char* number) {
-    return row.unit.symbol.empty() ? number : fmt::format("{} {}", number, row.unit.symbol);
-}
-
-/// Sliders of floats, side by side.
-ValueEdit slide_floats(const ParamInfo& row, std::span<std::uint32_t> words) {
-    std::array<float, 4> numbers{};
-    for (std::size_t i = 0; i < words.size(); ++i) numbers[i] = std::bit_cast<float>(words[i]);
-    const auto least = static_cast<float>(row.range.min), most = static_cast<float>(row.range.max);
-    const std::string format = number_format(row, "%.4g");
-    const bool is_changed =
-        ImGui::SliderScalarN("##value", ImGuiDataType_Float, numbers.data(), static_cast<int>(words.size()), &least,
-                             &most, format.c_str(), slider_flags(row));
-    if (is_changed)
-        for (std::size_t i = 0; i < words.size(); ++i)
-            words[i] = std::bit_cast<std::uint32_t>(std::clamp(numbers[i], least, most));
-    return edit_of_last_item(is_changed);
-}
-
-ValueEdit slide_whole(const ParamInfo& row, std::span<std::uint32_t> words) {
-    std::int64_t number = static_cast<std::int32_t>(words[0]);
-    const auto least = static_cast<std::int64_t>(row.range.min), most = static_cast<std::int64_t>(row.range.max);
-    const std::string format = number_format(row, "%lld");
-    const ImGuiSliderFlags flags =
-        ImGuiSliderFlags_AlwaysClamp | (most - least > 1024 ? ImGuiSliderFlags_Logarithmic : 0);
-    const bool is_changed =
-        ImGui::SliderScalar("##value", ImGuiDataType_S64, &number, &least, &most, format.c_str(), flags);
-    if (is_changed) words[0] = static_cast<std::uint32_t>(static_cast<std::int32_t>(std::clamp(number, least, most)));
-    return edit_of_last_item(is_changed);
+/// Sliders of the words' numbers, side by side.
+ValueEdit slide(const ParamInfo& row, std::span<std::uint32_t> words, std::span<const std::uint32_t> defaults) {
+    const auto number_of = [&](std::uint32_t word) -> double {
+        if (row.kind == Kind::Int) return static_cast<std::int32_t>(word);
+        return std::bit_cast<float>(word);
+    };
+    const auto count = static_cast<float>(words.size());
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = std::floor((ImGui::CalcItemWidth() - gap * (count - 1)) / count);
+    ValueEdit out;
+    ImGui::BeginGroup();
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) ImGui::SameLine(0, gap);
+        ImGui::SetNextItemWidth(width);
+        double number = number_of(words[i]);
+        const SliderEdit edit = draw_slider(fmt::format("{}", i).c_str(), row, number_of(defaults[i]), number);
+        out.is_begun |= edit.is_begun;
+        out.is_changed |= edit.is_changed;
+        if (edit.is_changed)
+            words[i] = row.kind == Kind::Int ? static_cast<std::uint32_t>(static_cast<std::int32_t>(number))
+                                             : std::bit_cast<std::uint32_t>(static_cast<float>(number));
+    }
+    ImGui::EndGroup();
+    return out;
 }
 
 ValueEdit check_toggle(std::span<std::uint32_t> words) {
@@ -89,16 +76,9 @@ float encoded(float linear) {
 }
 float decoded(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
 
-// Four significant digits: what a slider gives, too.
-float rounded(float number) {
-    if (number == 0 || !std::isfinite(number)) return number;
-    const double step = std::pow(10.0, std::floor(std::log10(std::abs(number))) - 3);
-    return static_cast<float>(std::round(number / step) * step);
-}
-
 /// A swatch that opens a picker, and the linear numbers beside it. Light above 1 is picked as a colour times a factor
 /// that stays.
-ValueEdit pick_color(const ParamInfo& row, std::span<std::uint32_t> words) {
+ValueEdit pick_color(const ParamInfo& row, std::span<std::uint32_t> words, std::span<const std::uint32_t> defaults) {
     std::array<float, 3> linear{}, shown{};
     for (std::size_t i = 0; i < 3; ++i) linear[i] = std::bit_cast<float>(words[i]);
     const float factor = std::max({1.0f, linear[0], linear[1], linear[2]});
@@ -113,12 +93,13 @@ ValueEdit pick_color(const ParamInfo& row, std::span<std::uint32_t> words) {
         ImGui::OpenPopup("picker");
     ImGui::SameLine(0, gap);
     ImGui::SetNextItemWidth(width - height - gap);
-    edit = slide_floats(row, words);
+    edit = slide(row, words, defaults);
     if (ImGui::BeginPopup("picker")) {
         if (ImGui::ColorPicker3("##picker", shown.data(), flags | ImGuiColorEditFlags_NoSidePreview)) {
             const auto least = static_cast<float>(row.range.min), most = static_cast<float>(row.range.max);
             for (std::size_t i = 0; i < 3; ++i)
-                words[i] = std::bit_cast<std::uint32_t>(std::clamp(rounded(decoded(shown[i]) * factor), least, most));
+                words[i] = std::bit_cast<std::uint32_t>(
+                    std::clamp(static_cast<float>(four_digits(decoded(shown[i]) * factor)), least, most));
             edit.is_changed = true;
         }
         edit.is_begun |= ImGui::IsItemActivated();
@@ -130,21 +111,19 @@ ValueEdit pick_color(const ParamInfo& row, std::span<std::uint32_t> words) {
 
 }  // namespace
 
-ValueEdit draw_value(const ParamInfo& row, std::span<std::uint32_t> words) {
+ValueEdit draw_value(const ParamInfo& row, std::span<std::uint32_t> words, std::span<const std::uint32_t> defaults) {
     ImGui::SetNextItemWidth(-FLT_MIN);
     switch (row.kind) {
-        case Kind::Int:
-            return slide_whole(row, words);
         case Kind::Toggle:
             return check_toggle(words);
         case Kind::Choice:
             return choose(row, words);
         case Kind::Rgb:
-            return pick_color(row, words);
+            return pick_color(row, words, defaults);
         case Kind::Curve:
             return draw_curve(row, words);
         default:
-            return slide_floats(row, words);
+            return slide(row, words, defaults);
     }
 }
 

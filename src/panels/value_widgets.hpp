@@ -12,14 +12,15 @@ namespace darkroom::panels {
 
 /// What happened to a widget in this frame.
 struct ValueEdit {
-    bool is_changed = false;  ///< the words hold another value, which the row allows
+    bool is_changed = false;  ///< the words hold another value
     bool is_begun = false;    ///< a drag, a click or typing began: a step of its own to undo
 };
 
-/// Draws the widget of any row but a Resource, as wide as there is room, into the present ImGui window. `words` are
-/// those of this row only. Numbers are edited on a slider over the row's interval, in equal ratios where the row says
-/// so or most of an even slider would be of no use; ctrl and a click type a number, which is kept inside the interval.
-[[nodiscard]] ValueEdit draw_value(const ParamInfo& row, std::span<std::uint32_t> words);
+/// Draws the widget of any row but a Resource, as wide as there is room, into the present ImGui window. `words` and
+/// `defaults` are those of this row only. What is typed may lie outside of the interval: the document refuses it, and
+/// says what is allowed.
+[[nodiscard]] ValueEdit draw_value(const ParamInfo& row, std::span<std::uint32_t> words,
+                                   std::span<const std::uint32_t> defaults);
 
 /// The same for a curve: click to add a point, drag it, double-click to remove it; ctrl and the wheel change how much
 /// is seen.
