@@ -11,12 +11,6 @@ namespace darkroom::compose {
 
 namespace {
 
-/// All but the extent, which a program is independent of, as far as its answers are the same.
-auto facts_of(const CompileDesc& desc) {
-    return std::tie(desc.color, desc.depth, desc.is_depth_planar, desc.normals, desc.velocity, desc.is_velocity_plain,
-                    desc.ui, desc.has_shadows, desc.target, desc.target_extent.width, desc.target_extent.height,
-                    desc.target_domain, desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate, desc.watches);
-}
 /// Of an entry what the planner looks at; the rest are values of a frame.
 auto wiring_of(const plan::Entry& entry) {
     const EntryDesc& desc = entry.desc;

@@ -4,11 +4,19 @@
 // the one that is there and make neither text nor graph.
 
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "compose/pass_kernels.hpp"
 
 namespace darkroom::compose {
+
+/// All but the largest extent and the views, which a program is independent of, as far as its answers are the same.
+[[nodiscard]] inline auto facts_of(const CompileDesc& desc) {
+    return std::tie(desc.color, desc.depth, desc.is_depth_planar, desc.normals, desc.velocity, desc.is_velocity_plain,
+                    desc.ui, desc.has_shadows, desc.target, desc.target_extent.width, desc.target_extent.height,
+                    desc.target_domain, desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate, desc.watches);
+}
 
 struct StackProgram {
     plan::Program program;
