@@ -100,6 +100,9 @@ TEST(PanelScopes, WaveformsStandWhereTheirLevelsAre) {
             const int channel = kind == WaveformKind::Parade ? part : 1;
             EXPECT_GT(brightest(picture, left, 158, 164, channel), 150) << part;
             EXPECT_LT(brightest(picture, left, 54, 60, channel), 60) << part;
+            if (kind == WaveformKind::Parade) {
+                EXPECT_LT(brightest(picture, left, 158, 164, (part + 1) % 3), 100) << "a channel alone";
+            }
             EXPECT_GT(brightest(picture, right, 58, 64, channel), 150) << part;
             EXPECT_LT(brightest(picture, right, 164, 170, channel), 60) << part;
         }
