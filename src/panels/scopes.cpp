@@ -76,21 +76,45 @@ int shade(std::uint32_t count, std::uint32_t most) {
     return std::clamp(static_cast<int>(std::ceil(std::sqrt(part) * shades)), 2, shades);
 }
 
-/// `shade_of(level, channel)`: one column of cells, drawn in runs.
-void draw_column(const Plot& plot, float left, float right, const auto& shade_of) {
-    constexpr auto level_height = 1.0f / static_cast<float>(Waveform::levels);
-    std::array<int, 3> run{};
+/// More in one list are too much for indices of 16 bits, which hosts may have.
+constexpr std::size_t most_runs = 12'000;
+
+using Shades = std::array<int, 3>;
+
+/// Calls `use(shades, first, end)` for each run of equal cells in a column, cells of `step` levels; black is left out.
+void for_each_run(const auto& shade_of, std::size_t step, const auto& use) {
+    Shades run{};
     std::size_t first = 0;
-    for (std::size_t level = 0; level <= Waveform::levels; ++level) {
-        std::array<int, 3> shown{};
-        if (level < Waveform::levels) shown = {shade_of(level, 0), shade_of(level, 1), shade_of(level, 2)};
+    for (std::size_t level = 0; level < Waveform::levels + step; level += step) {
+        Shades shown{};
+        for (std::size_t part = level; part < std::min(level + step, Waveform::levels); ++part)
+            for (std::size_t channel = 0; channel < 3; ++channel)
+                shown[channel] = std::max(shown[channel], shade_of(part, channel));
         if (shown == run) continue;
-        if (run != std::array<int, 3>{})
-            plot.fill(left, static_cast<float>(first) * level_height, right, static_cast<float>(level) * level_height,
-                      light_of(static_cast<float>(run[0]) / shades, static_cast<float>(run[1]) / shades,
-                               static_cast<float>(run[2]) / shades));
+        if (run != Shades{}) use(run, first, std::min(level, Waveform::levels));
         run = shown;
         first = level;
+    }
+}
+
+/// Of one part of a waveform, in a column.
+auto shades_of(const Waveform& waveform, WaveformKind kind, std::size_t part, std::size_t column) {
+    return [&waveform, kind, part, column](std::size_t level, std::size_t channel) {
+        if (kind == WaveformKind::Parade && channel != part) return 0;
+        const std::size_t source = kind == WaveformKind::Luma ? std::size_t{ScopeLuma} : channel;
+        return shade(waveform.counts[source][level * Waveform::columns + column], waveform.most);
+    };
+}
+
+/// Levels to a cell: as few as most_runs allows. Noise has more runs than a picture.
+std::size_t cell_height(const Waveform& waveform, WaveformKind kind, std::size_t parts) {
+    for (std::size_t step = 1;; step *= 2) {
+        std::size_t runs = 0;
+        for (std::size_t part = 0; part < parts; ++part)
+            for (std::size_t column = 0; column < Waveform::columns; ++column)
+                for_each_run(shades_of(waveform, kind, part, column), step,
+                             [&](const Shades&, std::size_t, std::size_t) { ++runs; });
+        if (runs <= most_runs) return step;
     }
 }
 
@@ -119,18 +143,19 @@ void draw_histogram(const ScopeData& data, bool is_logarithmic, ImVec2 size) {
 void draw_waveform(const Waveform& waveform, WaveformKind kind, ImVec2 size) {
     const Plot plot = begin_plot("waveform", size);
     draw_levels(plot, {0.25f, 0.5f, 0.75f});
-    const bool is_empty = waveform.counts[0].empty();
     const std::size_t parts = kind == WaveformKind::Parade ? 3 : 1;
-    for (std::size_t part = 0; part < parts && !is_empty; ++part)
-        for (std::size_t column = 0; column < Waveform::columns; ++column) {
-            const auto shade_of = [&](std::size_t level, std::size_t channel) {
-                if (kind == WaveformKind::Parade && channel != part) return 0;
-                const std::size_t source = kind == WaveformKind::Luma ? std::size_t{ScopeLuma} : channel;
-                return shade(waveform.counts[source][level * Waveform::columns + column], waveform.most);
-            };
-            const auto left = static_cast<float>(part * Waveform::columns + column);
-            const auto all = static_cast<float>(parts * Waveform::columns);
-            draw_column(plot, left / all, (left + 1) / all, shade_of);
+    const std::size_t columns = waveform.counts[0].empty() ? 0 : Waveform::columns;
+    const std::size_t step = columns > 0 ? cell_height(waveform, kind, parts) : 1;
+    const auto level_height = 1.0f / static_cast<float>(Waveform::levels);
+    for (std::size_t part = 0; part < parts; ++part)
+        for (std::size_t column = 0; column < columns; ++column) {
+            const auto left = static_cast<float>(part * columns + column), all = static_cast<float>(parts * columns);
+            for_each_run(shades_of(waveform, kind, part, column), step,
+                         [&](const Shades& shown, std::size_t first, std::size_t end) {
+                             const auto light = [&](std::size_t i) { return static_cast<float>(shown[i]) / shades; };
+                             plot.fill(left / all, static_cast<float>(first) * level_height, (left + 1) / all,
+                                       static_cast<float>(end) * level_height, light_of(light(0), light(1), light(2)));
+                         });
         }
     for (std::size_t part = 1; part < parts; ++part)
         plot.vertical(static_cast<float>(part) / static_cast<float>(parts), ImGui::GetColorU32(ImGuiCol_Border));

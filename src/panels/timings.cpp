@@ -88,17 +88,20 @@ void TimingsPanel::draw_history(const TimingHistory& history, float height) {
     const Plot plot = begin_plot("history", {ImGui::GetContentRegionAvail().x, height});
     const float most = std::max(history.of_frames().worst * 1.05f, 1e-3f);
     const float pixel = 1 / (plot.max.y - plot.min.y);
+    // More rectangles in one list are too many for indices of 16 bits, which hosts may have.
+    constexpr std::size_t most_parts = 50;
     constexpr auto all = static_cast<float>(TimingHistory::most_frames);
     // The newest at the right.
     auto column = static_cast<float>(TimingHistory::most_frames - history.frames().size());
     const TimingHistory::Frame* under_mouse = nullptr;
     for (const TimingHistory::Frame& frame : history.frames()) {
         const float left = column / all, right = ++column / all;
+        const float least = frame.passes.size() > most_parts ? 1.0f / most_parts : pixel;
         float drawn = 0, sum = 0;
         for (const TimingHistory::Pass& pass : frame.passes) {
             sum += pass.milliseconds / most;
             // What is too thin to be seen goes to the next one.
-            if (sum - drawn < pixel && &pass != &frame.passes.back()) continue;
+            if (sum - drawn < least && &pass != &frame.passes.back()) continue;
             plot.fill(left, drawn, right, sum, color_of(pass.name));
             drawn = sum;
         }

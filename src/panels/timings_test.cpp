@@ -104,6 +104,13 @@ TEST_F(PanelTimings, ShowsAHistoryAndATable) {
     gui.show("timings_frame");
 }
 
+TEST_F(PanelTimings, ManyPassesAreNotTooMuchForSmallIndices) {
+    const std::vector<PassTime> passes(TimingHistory::most_passes, {"pass", 0.1});
+    for (std::uint64_t frame = 0; frame < TimingHistory::most_frames; ++frame) add(history, frame, passes, 1);
+    gui.frame(2);
+    EXPECT_LT(ImGui::GetDrawData()->CmdLists[0]->VtxBuffer.Size, 60'000);
+}
+
 TEST_F(PanelTimings, SaysSoWhereThereIsNothing) {
     gui.frame(2);
     history.clear();
