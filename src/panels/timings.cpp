@@ -128,38 +128,50 @@ void TimingsPanel::draw_history(const TimingHistory& history, float height) {
 
 void TimingsPanel::draw_table(const TimingHistory& history) {
     constexpr ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
-    if (!ImGui::BeginTable("passes", 5, flags, ImGui::GetContentRegionAvail())) return;
+    const bool is_wide = ImGui::GetContentRegionAvail().x > 26 * ImGui::GetFontSize();
+    if (!ImGui::BeginTable("passes", is_wide ? 5 : 3, flags, ImGui::GetContentRegionAvail())) return;
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableSetupColumn("pass", ImGuiTableColumnFlags_WidthStretch);
-    for (const char* const heading : {"ms", "median", "worst", "share"}) ImGui::TableSetupColumn(heading);
+    ImGui::TableSetupColumn("ms");
+    if (is_wide) ImGui::TableSetupColumn("median");
+    ImGui::TableSetupColumn("worst");
+    if (is_wide) ImGui::TableSetupColumn("share");
     ImGui::TableHeadersRow();
     const TimingHistory::Frame& frame = history.frames().back();
+    const auto cell = [](const char* format, double value) {
+        ImGui::TableNextColumn();
+        ImGui::Text(format, value);
+    };
     for (const TimingHistory::Pass& pass : frame.passes) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        const std::string& name = history.name(pass.name);
-        const ImVec2 corner = ImGui::GetCursorScreenPos();
-        const float side = ImGui::GetTextLineHeight();
-        ImGui::PushID(&pass);
-        ImGui::Selectable("##row", pointed_ == pass.name, ImGuiSelectableFlags_SpanAllColumns);
-        ImGui::PopID();
-        if (ImGui::IsItemHovered()) {
-            next_pointed_ = pass.name;
-            pass_tooltip(history, pass, frame.milliseconds);
-        }
-        ImDrawList& list = *ImGui::GetWindowDrawList();
-        list.AddRectFilled({corner.x, corner.y + side * 0.2f}, {corner.x + side * 0.6f, corner.y + side * 0.8f},
-                           series_color(pass.name));
-        list.AddText({corner.x + side * 0.9f, corner.y}, ImGui::GetColorU32(ImGuiCol_Text), name.c_str());
+        draw_name(history, pass, frame.milliseconds);
         const TimingHistory::Statistics statistics = history.of_pass(pass.name);
-        for (const float value : {pass.milliseconds, statistics.median, statistics.worst}) {
-            ImGui::TableNextColumn();
-            ImGui::Text("%.3f", shown(value));
-        }
-        ImGui::TableNextColumn();
-        ImGui::Text("%.1f %%", percent(pass.milliseconds, frame.milliseconds));
+        cell("%.3f", shown(pass.milliseconds));
+        if (is_wide) cell("%.3f", shown(statistics.median));
+        cell("%.3f", shown(statistics.worst));
+        if (is_wide) cell("%.1f %%", percent(pass.milliseconds, frame.milliseconds));
     }
     ImGui::EndTable();
+}
+
+void TimingsPanel::draw_name(const TimingHistory& history, const TimingHistory::Pass& pass, float whole) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float side = ImGui::GetTextLineHeight(), right = corner.x + ImGui::GetContentRegionAvail().x;
+    ImGui::PushID(&pass);
+    ImGui::Selectable("##row", pointed_ == pass.name, ImGuiSelectableFlags_SpanAllColumns);
+    ImGui::PopID();
+    if (ImGui::IsItemHovered()) {
+        next_pointed_ = pass.name;
+        pass_tooltip(history, pass, whole);
+    }
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled({corner.x, corner.y + side * 0.2f}, {corner.x + side * 0.6f, corner.y + side * 0.8f},
+                       series_color(pass.name));
+    list.PushClipRect(corner, {right, corner.y + side * 1.2f}, true);
+    list.AddText({corner.x + side * 0.9f, corner.y}, ImGui::GetColorU32(ImGuiCol_Text),
+                 history.name(pass.name).c_str());
+    list.PopClipRect();
 }
 
 void TimingsPanel::draw(const TimingHistory& history) {
@@ -172,7 +184,7 @@ void TimingsPanel::draw(const TimingHistory& history) {
     ImGui::Text("GPU %.2f ms", shown(gpu.median));
     ImGui::SameLine();
     ImGui::TextDisabled("worst %.2f", shown(gpu.worst));
-    ImGui::SameLine();
+    if (ImGui::GetContentRegionAvail().x > 22 * ImGui::GetFontSize()) ImGui::SameLine();
     ImGui::Text("record %.0f us", shown(cpu.median));
     ImGui::SameLine();
     ImGui::TextDisabled("worst %.0f", shown(cpu.worst));

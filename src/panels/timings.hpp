@@ -18,6 +18,7 @@ class TimingsPanel {
     void draw_bar(const TimingHistory& history);
     void draw_history(const TimingHistory& history, float height);
     void draw_table(const TimingHistory& history);
+    void draw_name(const TimingHistory& history, const TimingHistory::Pass& pass, float whole);
     [[nodiscard]] std::uint32_t color_of(std::uint32_t name) const;
 
     static constexpr std::uint32_t none = ~0u;
