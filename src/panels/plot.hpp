@@ -8,7 +8,7 @@
 
 namespace darkroom::panels {
 
-/// An area of the present window that something is drawn in; it takes no clicks away from what is in front of it.
+/// An area of the present window that something is drawn in.
 struct Plot {
     ImDrawList* list = nullptr;
     ImVec2 min, max;

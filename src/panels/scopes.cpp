@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 #include "panels/plot.hpp"
 #include "panels/theme.hpp"
@@ -63,17 +62,14 @@ void histogram_tooltip(const Histogram& histogram, float place) {
                       histogram.counts[ScopeLuma][bin]);
 }
 
-void draw_levels(const Plot& plot, std::initializer_list<float> levels) {
-    for (const float level : levels) plot.horizontal(level, grid_color());
-}
-
 /// Steps of brightness of a cell; few, so that neighbours in a column join.
 constexpr int shades = 8;
 
+/// What is rare is raised, so that a single pixel is seen.
 int shade(std::uint32_t count, std::uint32_t most) {
     if (count == 0) return 0;
-    const float part = std::sqrt(static_cast<float>(count) / static_cast<float>(most));
-    return std::clamp(static_cast<int>(std::ceil(std::sqrt(part) * shades)), 2, shades);
+    const float part = std::sqrt(std::sqrt(static_cast<float>(count) / static_cast<float>(most)));
+    return std::clamp(static_cast<int>(std::ceil(part * shades)), 2, shades);
 }
 
 /// More in one list are too much for indices of 16 bits, which hosts may have.
@@ -142,7 +138,7 @@ void draw_histogram(const ScopeData& data, bool is_logarithmic, ImVec2 size) {
 
 void draw_waveform(const Waveform& waveform, WaveformKind kind, ImVec2 size) {
     const Plot plot = begin_plot("waveform", size);
-    draw_levels(plot, {0.25f, 0.5f, 0.75f});
+    for (const float level : {0.25f, 0.5f, 0.75f}) plot.horizontal(level, grid_color());
     const std::size_t parts = kind == WaveformKind::Parade ? 3 : 1;
     const std::size_t columns = waveform.counts[0].empty() ? 0 : Waveform::columns;
     const std::size_t step = columns > 0 ? cell_height(waveform, kind, parts) : 1;

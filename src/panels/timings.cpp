@@ -142,10 +142,13 @@ void TimingsPanel::draw_table(const TimingHistory& history) {
         ImGui::TableNextColumn();
         ImGui::Text(format, value);
     };
+    int row = 0;
     for (const TimingHistory::Pass& pass : frame.passes) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
+        ImGui::PushID(row++);
         draw_name(history, pass, frame.milliseconds);
+        ImGui::PopID();
         const TimingHistory::Statistics statistics = history.of_pass(pass.name);
         cell("%.3f", shown(pass.milliseconds));
         if (is_wide) cell("%.3f", shown(statistics.median));
@@ -158,9 +161,7 @@ void TimingsPanel::draw_table(const TimingHistory& history) {
 void TimingsPanel::draw_name(const TimingHistory& history, const TimingHistory::Pass& pass, float whole) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float side = ImGui::GetTextLineHeight(), right = corner.x + ImGui::GetContentRegionAvail().x;
-    ImGui::PushID(&pass);
     ImGui::Selectable("##row", pointed_ == pass.name, ImGuiSelectableFlags_SpanAllColumns);
-    ImGui::PopID();
     if (ImGui::IsItemHovered()) {
         next_pointed_ = pass.name;
         pass_tooltip(history, pass, whole);
