@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "panels/timings.hpp"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+#include <string>
 
 #include "panels/plot.hpp"
 
@@ -49,11 +49,10 @@ void draw_grid(const Plot& plot, float most) {
         const float value = static_cast<float>(i) * step;
         plot.horizontal(value / most, grid_color());
         const ImVec2 place = plot.at(0, value / most);
-        std::array<char, 32> text{};
-        std::snprintf(text.data(), text.size(), "%g ms", shown(value));
+        const std::string text = fmt::format("{:g} ms", value);
         if (place.y - ImGui::GetFontSize() > plot.min.y)
             plot.list->AddText({place.x + 4, place.y - ImGui::GetFontSize()}, ImGui::GetColorU32(ImGuiCol_TextDisabled),
-                               text.data());
+                               text.c_str());
     }
 }
 
@@ -84,46 +83,52 @@ void TimingsPanel::draw_bar(const TimingHistory& history) {
     pass_tooltip(history, *under_mouse, frame.milliseconds);
 }
 
+void TimingsPanel::draw_column(const Plot& plot, const TimingHistory::Frame& frame, float number, float most) const {
+    // More rectangles in one list are too many for indices of 16 bits, which hosts may have.
+    constexpr std::size_t most_parts = 50;
+    const float least = frame.passes.size() > most_parts ? 1.0f / most_parts : 1 / (plot.max.y - plot.min.y);
+    float drawn = 0, sum = 0;
+    for (const TimingHistory::Pass& pass : frame.passes) {
+        sum += pass.milliseconds / most;
+        // What is too thin to be seen goes to the next one.
+        if (sum - drawn < least && &pass != &frame.passes.back()) continue;
+        plot.fill(number / TimingHistory::most_frames, drawn, (number + 1) / TimingHistory::most_frames, sum,
+                  color_of(pass.name));
+        drawn = sum;
+    }
+}
+
 void TimingsPanel::draw_history(const TimingHistory& history, float height) {
     const Plot plot = begin_plot("history", {ImGui::GetContentRegionAvail().x, height});
     const float most = std::max(history.of_frames().worst * 1.05f, 1e-3f);
-    const float pixel = 1 / (plot.max.y - plot.min.y);
-    // More rectangles in one list are too many for indices of 16 bits, which hosts may have.
-    constexpr std::size_t most_parts = 50;
-    constexpr auto all = static_cast<float>(TimingHistory::most_frames);
     // The newest at the right.
-    auto column = static_cast<float>(TimingHistory::most_frames - history.frames().size());
+    std::size_t column = TimingHistory::most_frames - history.frames().size();
+    const auto column_under_mouse = static_cast<std::size_t>(std::max(plot.mouse.x, 0.0f) * TimingHistory::most_frames);
     const TimingHistory::Frame* under_mouse = nullptr;
     for (const TimingHistory::Frame& frame : history.frames()) {
-        const float left = column / all, right = ++column / all;
-        const float least = frame.passes.size() > most_parts ? 1.0f / most_parts : pixel;
-        float drawn = 0, sum = 0;
-        for (const TimingHistory::Pass& pass : frame.passes) {
-            sum += pass.milliseconds / most;
-            // What is too thin to be seen goes to the next one.
-            if (sum - drawn < least && &pass != &frame.passes.back()) continue;
-            plot.fill(left, drawn, right, sum, color_of(pass.name));
-            drawn = sum;
-        }
-        if (plot.is_hovered && plot.mouse.x >= left && plot.mouse.x < right) under_mouse = &frame;
+        draw_column(plot, frame, static_cast<float>(column), most);
+        if (plot.is_hovered && column == column_under_mouse) under_mouse = &frame;
+        ++column;
     }
     draw_grid(plot, most);
     if (under_mouse != nullptr) plot.vertical(plot.mouse.x, ImGui::GetColorU32(ImGuiCol_Text, 0.5f));
     end_plot(plot);
-    if (under_mouse == nullptr) return;
+    if (under_mouse != nullptr) history_tooltip(history, *under_mouse, plot.mouse.y * most);
+}
+
+void TimingsPanel::history_tooltip(const TimingHistory& history, const TimingHistory::Frame& frame, float place) {
+    std::string text;
     float sum = 0;
-    for (const TimingHistory::Pass& pass : under_mouse->passes) {
-        sum += pass.milliseconds / most;
-        if (sum < plot.mouse.y) continue;
+    for (const TimingHistory::Pass& pass : frame.passes) {
+        sum += pass.milliseconds;
+        if (sum < place) continue;
         next_pointed_ = pass.name;
-        ImGui::SetTooltip("%s: %.3f ms\nframe %llu: %.3f ms, recorded in %.0f us", history.name(pass.name).c_str(),
-                          shown(pass.milliseconds), static_cast<unsigned long long>(under_mouse->frame_index),
-                          shown(under_mouse->milliseconds), shown(under_mouse->record_microseconds));
-        return;
+        text = fmt::format("{}: {:.3f} ms\n", history.name(pass.name), pass.milliseconds);
+        break;
     }
-    ImGui::SetTooltip("frame %llu: %.3f ms, recorded in %.0f us",
-                      static_cast<unsigned long long>(under_mouse->frame_index), shown(under_mouse->milliseconds),
-                      shown(under_mouse->record_microseconds));
+    text += fmt::format("frame {}: {:.3f} ms, recorded in {:.0f} us", frame.frame_index, frame.milliseconds,
+                        frame.record_microseconds);
+    ImGui::SetTooltip("%s", text.c_str());
 }
 
 void TimingsPanel::draw_table(const TimingHistory& history) {
@@ -142,11 +147,11 @@ void TimingsPanel::draw_table(const TimingHistory& history) {
         ImGui::TableNextColumn();
         ImGui::Text(format, value);
     };
-    int row = 0;
-    for (const TimingHistory::Pass& pass : frame.passes) {
+    const auto row = [&](int number) {
+        const TimingHistory::Pass& pass = frame.passes[static_cast<std::size_t>(number)];
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::PushID(row++);
+        ImGui::PushID(number);
         draw_name(history, pass, frame.milliseconds);
         ImGui::PopID();
         const TimingHistory::Statistics statistics = history.of_pass(pass.name);
@@ -154,7 +159,11 @@ void TimingsPanel::draw_table(const TimingHistory& history) {
         if (is_wide) cell("%.3f", shown(statistics.median));
         cell("%.3f", shown(statistics.worst));
         if (is_wide) cell("%.1f %%", percent(pass.milliseconds, frame.milliseconds));
-    }
+    };
+    ImGuiListClipper visible;
+    visible.Begin(static_cast<int>(frame.passes.size()));
+    while (visible.Step())
+        for (int number = visible.DisplayStart; number < visible.DisplayEnd; ++number) row(number);
     ImGui::EndTable();
 }
 

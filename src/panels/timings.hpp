@@ -9,6 +9,8 @@
 
 namespace darkroom::panels {
 
+struct Plot;
+
 class TimingsPanel {
   public:
     /// Fills the rest of the window. A pass under the mouse stands out everywhere.
@@ -17,6 +19,10 @@ class TimingsPanel {
   private:
     void draw_bar(const TimingHistory& history);
     void draw_history(const TimingHistory& history, float height);
+    /// Of the frame of this number, up to `most` milliseconds.
+    void draw_column(const Plot& plot, const TimingHistory::Frame& frame, float number, float most) const;
+    /// `place`: milliseconds from the bottom.
+    void history_tooltip(const TimingHistory& history, const TimingHistory::Frame& frame, float place);
     void draw_table(const TimingHistory& history);
     void draw_name(const TimingHistory& history, const TimingHistory::Pass& pass, float whole);
     [[nodiscard]] std::uint32_t color_of(std::uint32_t name) const;
