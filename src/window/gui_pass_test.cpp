@@ -64,6 +64,20 @@ TEST_F(WindowGpuGuiPass, KeepsToClipRectangles) {
     EXPECT_EQ(pixels.at(95, 63)[0], 0);
 }
 
+TEST_F(WindowGpuGuiPass, CallsWhatListsAskFor) {
+    int calls = 0;
+    const ImDrawData& data = interface.frame([&](ImDrawList& list) {
+        list.AddRectFilled({8, 8}, {40, 24}, IM_COL32(200, 40, 20, 255));
+        list.AddCallback(
+            [](const ImDrawList*, const ImDrawCmd* command) { ++*static_cast<int*>(command->UserCallbackData); },
+            &calls);
+        list.AddCallback(ImDrawCallback_ResetRenderState, nullptr);
+        list.AddRectFilled({30, 12}, {60, 40}, IM_COL32(20, 60, 220, 128));
+    });
+    expect_as_drawn_by_the_cpu(draw(data), data, 1);
+    EXPECT_EQ(calls, 1);
+}
+
 TEST_F(WindowGpuGuiPass, PointsMayBeSeveralPixels) {
     ImGui::GetIO().DisplaySize = {48, 32};
     ImGui::GetIO().DisplayFramebufferScale = {2, 2};
