@@ -48,12 +48,13 @@ void paint(const SliderScale& scale, const ParamInfo& row, double usual, double 
                        is_held ? ImGui::GetColorU32(accent_color) : ImGui::GetColorU32(ImGuiCol_SliderGrab));
     std::string text = text_of(row, number);
     if (!row.unit.symbol.empty()) text += fmt::format(" {}", row.unit.symbol);
-    ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    if (size.x > most.x - least.x) size = ImGui::CalcTextSize((text = text_of(row, number)).c_str());
+    // To the right, where few knobs are.
+    const float room = most.x - least.x, pad = std::min(ImGui::GetStyle().FramePadding.x, room / 10);
+    float width = ImGui::CalcTextSize(text.c_str()).x;
+    if (width > room - 2 * pad) width = ImGui::CalcTextSize((text = text_of(row, number)).c_str()).x;
     list.PushClipRect(least, most, true);
-    list.AddText(
-        {std::max(least.x, std::round((least.x + most.x - size.x) / 2)), least.y + ImGui::GetStyle().FramePadding.y},
-        ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+    list.AddText({std::max(least.x, std::floor(most.x - pad - width)), least.y + ImGui::GetStyle().FramePadding.y},
+                 ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
     list.PopClipRect();
 }
 

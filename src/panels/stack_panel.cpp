@@ -219,11 +219,13 @@ class StackList {
         state_.note("stack/rename");
         if (is_done && state_.new_name != name)
             state_.edit(fmt::format("rename {}", name),
-                        [name, wanted = state_.new_name, document = state_.document](Look& look) {
+                        [name, wanted = state_.new_name, document = state_.document](Look& look) -> Result<> {
+                            if (find_entry(look, wanted) != nullptr)
+                                return user_error(fmt::format("{}: another entry has this name", printable(wanted)));
                             return edit::set_wire(look, name, "name", wanted, document->options());
                         });
         if (is_done || (ImGui::IsItemDeactivated() && !is_renaming_new_)) state_.renamed.clear();
-        is_renaming_new_ = false;
+        is_renaming_new_ &= !ImGui::IsItemActive();
     }
 
     void draw_controls(const LookEntry& entry, const std::string& name) {
