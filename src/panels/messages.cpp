@@ -71,7 +71,8 @@ void Messages::draw() {
         ImGui::PopTextWrapPos();
         ImGui::SetCursorScreenPos({end.x - ImGui::GetFrameHeight(), corner.y});
         if (icon_button("##close", Icon::Remove, "Put this message away")) closed = message.source;
-        ImGui::SetCursorScreenPos({corner.x, end.y + ImGui::GetStyle().ItemSpacing.y});
+        ImGui::SetCursorScreenPos(corner);
+        ImGui::Dummy({width, height});
         ImGui::PopID();
     }
     if (!closed.empty()) clear(closed);

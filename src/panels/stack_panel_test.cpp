@@ -74,9 +74,9 @@ TEST(PanelStack, AltSwitchesAllOthersOff) {
         if (entry.state.enabled.on != 0 && entry.effect->build) name = entry.effect->name;
     if (name.empty()) GTEST_SKIP() << "no effect of this build is on and has passes";
     own.click("stack/" + name + ".enabled");
-    ImGui::GetIO().KeyAlt = true;
+    own.gui.alt(true);
     own.click("stack/" + name + ".enabled");
-    ImGui::GetIO().KeyAlt = false;
+    own.gui.alt(false);
     for (const LookEntry& entry : own.document.look().entries)
         EXPECT_TRUE(entry.state.enabled.on == (entry.effect->name == name) || entry.effect->makes != nullptr)
             << entry.effect->name;
@@ -91,7 +91,6 @@ TEST(PanelStack, DoubleClickRenames) {
     const auto rename = [&](const std::string& from, std::string_view to) {
         own.gui.double_click(own.place("stack/" + from).center());
         own.gui.frame(2);
-        own.gui.show("rename");
         own.gui.type(to);
         own.gui.key(ImGuiKey_Enter);
         own.gui.frame(2);

@@ -102,7 +102,13 @@ class TestGui {
             frame();
         }
     }
+#if IMGUI_VERSION_NUM < 18700
     void control(bool is_down) { ImGui::GetIO().KeyCtrl = is_down; }
+    void alt(bool is_down) { ImGui::GetIO().KeyAlt = is_down; }
+#else
+    void control(bool is_down) { ImGui::GetIO().AddKeyEvent(ImGuiMod_Ctrl, is_down); }
+    void alt(bool is_down) { ImGui::GetIO().AddKeyEvent(ImGuiMod_Alt, is_down); }
+#endif
     /// Long enough for tooltips, and for a click to be the first.
     void wait() { frame(40); }
 
