@@ -40,7 +40,7 @@ TEST(PanelMessages, TakeTheHeightTheySay) {
     };
     gui.frame(2);
     EXPECT_EQ(height, said);
-    EXPECT_GT(height, 5 * ImGui::GetFontSize());
+    EXPECT_GT(height, 7 * ImGui::GetFontSize());
 }
 
 }  // namespace

@@ -73,8 +73,7 @@ SliderEdit type_number(const ParamInfo& row, double& number, bool& is_typing, bo
     const auto parsed = parse_number(typed);
     const bool is_kind =
         parsed && (row.kind != Kind::Int || (*parsed == std::trunc(*parsed) && std::abs(*parsed) < 2e9));
-    if (!is_kind || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) || typed == text_of(row, number))
-        return {};
+    if (!is_kind || typed == text_of(row, number)) return {};
     number = *parsed;
     return {.is_changed = true, .is_begun = true};
 }
