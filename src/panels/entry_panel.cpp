@@ -8,6 +8,7 @@
 #include "core/param_text.hpp"
 #include "edit/edits.hpp"
 #include "looks/look_resources.hpp"
+#include "panels/fitting_text.hpp"
 #include "panels/icons.hpp"
 #include "panels/panel_state.hpp"
 #include "panels/parameter_row.hpp"
@@ -39,7 +40,9 @@ ValueEdit draw_file(PanelState& state, const LookEntry& entry, const std::string
     const std::string file = present == nullptr ? std::string() : present->file;
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     const float width = ImGui::GetContentRegionAvail().x - (file.empty() ? 0 : ImGui::GetFrameHeight() + gap);
-    const std::string shown = file.empty() ? "Choose..." : printable(std::filesystem::path(file).filename().string());
+    const std::string shown = file.empty() ? "Choose..."
+                                           : fitting(printable(std::filesystem::path(file).filename().string()),
+                                                     width - 2 * ImGui::GetStyle().FramePadding.x, KeptPart::End);
     ImGui::BeginGroup();
     ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5f});
     const bool is_chosen = ImGui::Button((shown + "##file").c_str(), {width, 0});
@@ -92,7 +95,8 @@ void draw_head(PanelState& state, const LookEntry& entry, const std::string& nam
     state.note(name + ".enabled");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(shown_name(name).c_str());
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() - ImGui::GetStyle().ItemSpacing.x;
+    ImGui::TextUnformatted(fitting(shown_name(name), room, KeptPart::Start).c_str());
     ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::GetFrameHeight());
     if (icon_button("##reset", Icon::Reset, "All of its parameters to their defaults"))
         state.edit(fmt::format("{} reset", name), [=](Look& look) { return edit::reset_entry(look, name); });

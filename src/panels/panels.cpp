@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/param_text.hpp"
+#include "panels/fitting_text.hpp"
 #include "panels/icons.hpp"
 #include "panels/panel_state.hpp"
 #include "panels/theme.hpp"
@@ -33,17 +34,6 @@ bool bar_button(PanelState& state, const char* name, Icon icon, const std::strin
 
 std::string step_text(const char* verb, std::string_view step) {
     return step.empty() ? fmt::format("Nothing to {}", verb) : fmt::format("{}: {}", verb, step);
-}
-
-/// The end of what is too long to show, which tells files apart.
-std::string fitting_end(const std::string& text, float width) {
-    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-    for (std::size_t i = 1; i < text.size(); ++i) {
-        const bool is_start = (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80;
-        const std::string end = "..." + text.substr(i);
-        if (is_start && ImGui::CalcTextSize(end.c_str()).x <= width) return end;
-    }
-    return {};
 }
 
 }  // namespace
@@ -131,7 +121,7 @@ void LookPanels::draw_bar() {
         ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 4 * radius);
     }
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(fitting_end(name, ImGui::GetContentRegionAvail().x).c_str());
+    ImGui::TextUnformatted(fitting(name, ImGui::GetContentRegionAvail().x, KeptPart::End).c_str());
     tooltip((document.is_changed() ? file + ": changed since it was saved" : file).c_str());
     ImGui::PopID();
 }

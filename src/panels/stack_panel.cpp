@@ -10,6 +10,7 @@
 #include "core/param_text.hpp"
 #include "edit/edits.hpp"
 #include "looks/look_parts.hpp"
+#include "panels/fitting_text.hpp"
 #include "panels/icons.hpp"
 #include "panels/panel_state.hpp"
 #include "panels/text_field.hpp"
@@ -168,14 +169,14 @@ class StackList {
             state_.renamed = state_.new_name = name;
             is_renaming_new_ = true;
         }
-        tooltip(std::string(entry.effect->doc).c_str());
+        const float pad = ImGui::GetStyle().ItemInnerSpacing.x;
+        const std::string shown = shown_name(name), fitted = fitting(shown, width - 2 * pad, KeptPart::Start);
+        tooltip(fmt::format("{}{}{}", fitted == shown ? "" : shown, fitted == shown ? "" : ": ", entry.effect->doc)
+                    .c_str());
         drag(entry, name, next);
-        ImDrawList& list = *ImGui::GetWindowDrawList();
-        const ImU32 color = ImGui::GetColorU32(is_on ? ImGuiCol_Text : ImGuiCol_TextDisabled);
-        list.PushClipRect(corner, {corner.x + width, corner.y + height}, true);
-        list.AddText({corner.x + ImGui::GetStyle().ItemInnerSpacing.x, corner.y + ImGui::GetStyle().FramePadding.y},
-                     color, shown_name(name).c_str());
-        list.PopClipRect();
+        ImGui::GetWindowDrawList()->AddText({corner.x + pad, corner.y + ImGui::GetStyle().FramePadding.y},
+                                            ImGui::GetColorU32(is_on ? ImGuiCol_Text : ImGuiCol_TextDisabled),
+                                            fitted.c_str());
     }
 
     /// A line shows where it would go: before the entry under the mouse, or behind it.

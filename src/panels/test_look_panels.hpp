@@ -49,7 +49,7 @@ class TestPanels {
     void draw(ImVec2 size, float scale) {
         constexpr ImGuiWindowFlags flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                            ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings;
-        const float width = 340 * scale, half = size.y * 0.45f;
+        const float width = 296 * scale, half = size.y * 0.45f;
         const auto window = [&](const char* name, ImVec2 corner, ImVec2 extent, void (LookPanels::*content)()) {
             ImGui::SetNextWindowPos(corner);
             ImGui::SetNextWindowSize(extent);
