@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "core/files.hpp"
 #include "core/param_text.hpp"
 #include "edit/compare.hpp"
 #include "looks/look_stack.hpp"
@@ -51,8 +50,22 @@ Result<> LookDocument::edit(std::string what, const std::function<Result<>(Look&
 }
 
 Result<> LookDocument::check(const Look& next) const {
-    const auto stack = stack_of(next, {.keeps_what_is_off = true});
-    return stack ? Result<>{} : failure(stack.error());
+    const std::vector<std::string> names = entry_names(next);
+    const auto shown = [&](std::size_t entry) { return names[entry]; };
+    if (const std::vector<LookProblem> problems = problems_of(next, shown); !problems.empty())
+        return user_error(problems.front().text);
+    // Pulses and layers know their entries by names.
+    const std::vector<std::string> names_before = entry_names(look_);
+    for (std::size_t i = 0; i < names_before.size(); ++i) {
+        if (!is_moved(look_, names_before[i])) continue;
+        const auto now = std::ranges::find(names, names_before[i]) - names.begin();
+        if (static_cast<std::size_t>(now) < names.size() &&
+            next.entries[static_cast<std::size_t>(now)].id == look_.entries[i].id)
+            continue;
+        return user_error(
+            fmt::format("{}: a pulse or a layer moves it, so it keeps its place and its name", names_before[i]));
+    }
+    return {};
 }
 
 void LookDocument::take(Look look) {

@@ -5,6 +5,8 @@
 #include <array>
 #include <bit>
 #include <darkroom/look.hpp>
+#include <functional>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -67,6 +69,15 @@ void wake(LookEntry& entry);
 [[nodiscard]] std::vector<const LookEntry*> ordered(const Look& look);
 /// What is wrong with the entry's values together, as "fog: ..."; empty: nothing.
 [[nodiscard]] std::string conflict_of(const LookEntry& entry);
+struct LookProblem {
+    std::size_t entry = 0;  ///< its number
+    std::string_view key;   ///< of the wire that is wrong; empty: the entry is
+    std::string text;
+};
+/// What the entries of a stack cannot be together: names and outputs that two have, wires to what nobody makes, values
+/// that contradict each other. `shown`: what an entry is called.
+[[nodiscard]] std::vector<LookProblem> problems_of(const Look& look,
+                                                   const std::function<std::string(std::size_t)>& shown);
 /// Files of one text are one effect: where the look has the entry's already, that one is taken. Errors: it has another
 /// effect of that name.
 [[nodiscard]] Result<> share_effect(const Look& look, LookEntry& entry);

@@ -28,9 +28,12 @@ class StackReader {
                 reader_.report(node, Weight::Wrong,
                                fmt::format("an entry of stack is {}: expected a table", show(node)));
         }
-        check_names();
-        check_wires();
-        check_values();
+        const auto shown_entry = [&](std::size_t index) { return shown(index); };
+        for (const LookProblem& problem : problems_of(look_, shown_entry)) {
+            const toml::table& table = *origins_[problem.entry].table;
+            const toml::node* const place = problem.key.empty() ? nullptr : table.get(problem.key);
+            reader_.report(place == nullptr ? table : *place, Weight::Wrong, problem.text);
+        }
         return std::move(look_);
     }
 
@@ -141,79 +144,6 @@ class StackReader {
 
     std::string shown(std::size_t index) const {
         return fmt::format("stack entry {} ({})", origins_[index].number, look_.entries[index].effect->name);
-    }
-    const toml::node& node_of(std::size_t index, std::string_view key) const {
-        return *origins_[index].table->get(key);
-    }
-
-    void check_names() {
-        const std::vector<std::string> names = entry_names(look_);
-        std::map<std::string, std::size_t> first;
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            const LookEntry& entry = look_.entries[i];
-            const auto [found, is_new] = first.try_emplace(names[i], i);
-            if (entry.name.empty() && is_new) continue;
-            const std::size_t said = entry.name.empty() ? found->second : i;
-            const toml::node& place = look_.entries[said].name.empty() ? *origins_[i].table : node_of(said, "name");
-            if (!is_new)
-                reader_.report(
-                    place, Weight::Wrong,
-                    fmt::format("name '{}' is that of {} and of {}", names[i], shown(found->second), shown(i)));
-            else if (const EffectInfo* const effect = find_effect(entry.name);
-                     effect != nullptr && effect != entry.effect)
-                reader_.report(place, Weight::Wrong,
-                               fmt::format("name '{}' of {} is that of another effect", entry.name, shown(i)));
-        }
-    }
-
-    void check_values() {
-        for (std::size_t i = 0; i < look_.entries.size(); ++i)
-            if (const std::string conflict = conflict_of(look_.entries[i]); !conflict.empty())
-                reader_.report(*origins_[i].table, Weight::Wrong, fmt::format("{}: {}", shown(i), conflict));
-    }
-
-    void check_wires() {
-        std::map<std::string, std::size_t> makers;
-        for (std::size_t i = 0; i < look_.entries.size(); ++i) {
-            const std::string& output = look_.entries[i].output;
-            if (output.empty()) continue;
-            if (std::ranges::find(given_wires, output, &GivenWire::first) != given_wires.end()) {
-                reader_.report(
-                    node_of(i, "output"), Weight::Wrong,
-                    fmt::format("output '{}' of {}: this name is that of what frames bring", output, shown(i)));
-                continue;
-            }
-            const auto [found, is_new] = makers.try_emplace(output, i);
-            if (!is_new)
-                reader_.report(
-                    node_of(i, "output"), Weight::Wrong,
-                    fmt::format("output '{}' is made by {} and by {}", output, shown(found->second), shown(i)));
-        }
-        std::vector<std::string> known;
-        for (const auto& [name, handle] : given_wires) known.emplace_back(name);
-        for (const auto& [name, maker] : makers) known.push_back(name);
-        for (std::size_t i = 0; i < look_.entries.size(); ++i)
-            for (const WireInfo& wire : wires)
-                if (wire.is_reference) check_wire(i, wire, makers, known);
-    }
-
-    void check_wire(std::size_t index, const WireInfo& wire, const std::map<std::string, std::size_t>& makers,
-                    std::span<const std::string> known) {
-        std::string name = look_.entries[index].*wire.member;
-        if (is_file_name(name)) return;
-        const bool is_previous = name.ends_with(previous_suffix);
-        if (is_previous) name.resize(name.size() - previous_suffix.size());
-        const bool is_given = std::ranges::find(given_wires, name, &GivenWire::first) != given_wires.end();
-        if (name.empty() || name == scene_name || (is_given && !is_previous)) return;
-        const auto found = makers.find(name);
-        if (found == makers.end())
-            return reader_.report(node_of(index, wire.key), Weight::Wrong,
-                                  fmt::format("{} = \"{}\" of {}: no entry has this output, known are {}{}", wire.key,
-                                              name, shown(index), fmt::join(known, ", "), suggestion(name, known)));
-        if (found->second < index || is_previous) return;
-        reader_.report(node_of(index, wire.key), Weight::Wrong,
-                       fmt::format("{} = \"{}\" of {}: made only later, by {}", wire.key, name, shown(index),
-                                   found->second == index ? "itself" : shown(found->second)));
     }
 
     LookReader& reader_;
