@@ -101,6 +101,167 @@ class Splice : public testing::Test {
     }
 };
 
+TEST_F(Splice, ValuesAreReplacedWhereTheyStand) {
+    const std::string head = "\xEF\xBB\xBF# \xC3\xA4\n\n",
+                      tail = "  # \xE2\x82\xAC, behind\r\n[other]\r\nexposure = 7\r\n";
+    EXPECT_EQ(exposed(head + "[post_process]\r\n\texposure=1" + tail),
+              head + "[post_process]\r\n\texposure=2.0" + tail);
+    EXPECT_EQ(exposed("post_process.exposure = 0x1_0\nformat = 1\n"), "post_process.exposure = 2.0\nformat = 1\n");
+    EXPECT_EQ(exposed("post_process = { exposure = 1_0.5_0 , bloom_intensity = 0.1 } # all\n"),
+              "post_process = { exposure = 2.0 , bloom_intensity = 0.1 } # all\n");
+    EXPECT_EQ(exposed("[ \"post_process\" ]\n\"expo\\u0073ure\" = +1e0"),
+              "[ \"post_process\" ]\n\"expo\\u0073ure\" = 2.0");
+    EXPECT_EQ(exposed("['post_process']#\n'exposure' = 1 #1"), "['post_process']#\n'exposure' = 2.0 #1");
+    EXPECT_EQ(exposed("[[stack]]\neffect = \"exposure\"\n[stack.\"exposure\"]\n[[stack]]\neffect='encode'", 1),
+              "[[stack]]\neffect = \"exposure\"\n[stack.\"exposure\"]\n[[stack]]\neffect='encode'");
+    // What reads as the value already stays as it is written.
+    EXPECT_EQ(exposed("[post_process]\nexposure = 200e-2\n"), "[post_process]\nexposure = 200e-2\n");
+}
+
+TEST_F(Splice, NumbersOfAValueAreReplacedOneByOne) {
+    const auto colored = [](const std::string& text) {
+        return edited(text, [](Look& look) { return set(look, "fog", "color", {0.5f, 0.25f, 1}); });
+    };
+    EXPECT_EQ(colored("[post_process]\nfog_color = [ 5e-1, # red\n  0.75,\n  1, ]\n"),
+              "[post_process]\nfog_color = [ 5e-1, # red\n  0.25,\n  1, ]\n");
+    EXPECT_EQ(colored("[post_process]\nfog_color = { b = 1, g = 0, r = 0.5 }\n"),
+              "[post_process]\nfog_color = { b = 1, g = 0.25, r = 0.5 }\n");
+    EXPECT_EQ(colored("[post_process]\nfog_color.r = 0\nfog_color.g = 0\nfog_color.b = 0\nexposure = 1\n"),
+              "[post_process]\nfog_color.r = 0.5\nfog_color.g = 0.25\nfog_color.b = 1.0\nexposure = 1\n");
+    EXPECT_EQ(colored("[post_process.fog_color]\nr = 0\ng = 0\nb = 0\n"),
+              "[post_process.fog_color]\nr = 0.5\ng = 0.25\nb = 1.0\n");
+    // One that was refused is written whole.
+    EXPECT_EQ(colored("[post_process]\nfog_color = [-1, 0.25, 9]\n"), "[post_process]\nfog_color = [0.5, 0.25, 1.0]\n");
+}
+
+TEST_F(Splice, NewKeysComeBehindThoseOfTheirEffect) {
+    EXPECT_EQ(exposed("[post_process]\n  bloom_intensity = 0.1\n\n[other]\na = 1\n"),
+              "[post_process]\n  bloom_intensity = 0.1\n  exposure = 2.0\n\n[other]\na = 1\n");
+    const auto blooming = [](const std::string& text) {
+        return edited(text, [](Look& look) { return set(look, "bloom", "threshold", {2}); });
+    };
+    EXPECT_EQ(blooming("[post_process]\nbloom_intensity = 0.1 # glow\nexposure = 2\n"),
+              "[post_process]\nbloom_intensity = 0.1 # glow\nbloom_threshold = 2.0\nexposure = 2\n");
+    EXPECT_EQ(blooming("[post_process]\nfog_color = [\n 1,\n 1,\n 1]\r\n"),
+              "[post_process]\nfog_color = [\n 1,\n 1,\n 1]\r\nbloom_threshold = 2.0\n");
+    EXPECT_EQ(blooming("[post_process]"), "[post_process]\nbloom_threshold = 2.0");
+    EXPECT_EQ(blooming(""), "[post_process]\nbloom_threshold = 2.0\n");
+    EXPECT_EQ(blooming("a = 1\r\n[b]"), "a = 1\r\n[b]\r\n\r\n[post_process]\r\nbloom_threshold = 2.0\r\n");
+    EXPECT_EQ(blooming("post_process = {}\n"), "post_process = { bloom_threshold = 2.0 }\n");
+    EXPECT_EQ(blooming("post_process = { exposure = 2 }\n"),
+              "post_process = { exposure = 2, bloom_threshold = 2.0 }\n");
+    EXPECT_EQ(blooming("post_process.exposure = 2\nformat = 1\n"),
+              "post_process.exposure = 2\npost_process.bloom_threshold = 2.0\nformat = 1\n");
+    EXPECT_EQ(blooming("[post_process.fog_color]\nr = 0\ng = 0\nb = 0\n"),
+              "[post_process.fog_color]\nr = 0\ng = 0\nb = 0\n\n[post_process]\nbloom_threshold = 2.0\n");
+    EXPECT_EQ(edited("[[stack]]\n  effect = \"fog\"\n  [stack.color]\n  r = 0\n  g = 0\n  b = 0\n",
+                     [](Look& look) { return set(look, "fog", "density", {0.5f}); }),
+              "[[stack]]\n  effect = \"fog\"\n  density = 0.5\n  [stack.color]\n  r = 0\n  g = 0\n  b = 0\n");
+}
+
+// In the flat table an amount switches its effect, unless the table says so itself.
+TEST_F(Splice, SwitchesAreWrittenWhereAmountsDoNotSayThem) {
+    const auto switched = [](const std::string& text, bool is_on) {
+        const std::array words{is_on ? 1u : 0u};
+        return edited(text, [&](Look& look) { return set_state(look, "vignette", "enabled", words); });
+    };
+    EXPECT_EQ(switched("[post_process]\nvignette_enabled = true\n", false),
+              "[post_process]\nvignette_enabled = false\n");
+    EXPECT_EQ(switched("[post_process]\nvignette_intensity = 0.5\n", false),
+              "[post_process]\nvignette_intensity = 0.5\nvignette_enabled = false\n");
+    EXPECT_EQ(switched("[post_process]\nvignette_smoothness = 3\n", true),
+              "[post_process]\nvignette_smoothness = 3\nvignette_enabled = true\n");
+    const auto turned = [](const std::string& text, float intensity) {
+        return edited(text, [&](Look& look) { return set(look, "vignette", "intensity", {intensity}); });
+    };
+    EXPECT_EQ(turned("[post_process]\nvignette_intensity = 0.5\n", 0), "[post_process]\nvignette_intensity = 0.0\n");
+    EXPECT_EQ(turned("[post_process]\n", 0.5f), "[post_process]\nvignette_intensity = 0.5\n");
+    EXPECT_EQ(turned("[post_process]\nvignette_enabled = true\n", 0),
+              "[post_process]\nvignette_enabled = false\nvignette_intensity = 0.0\n");
+}
+
+const std::string blocks =
+    "# a look\n\nformat = 1\n\n# expose\n[[stack]]\neffect = \"exposure\" # e\n# off: exposure = 2\n\n"
+    "[[stack]]\neffect = \"fog\"\n[stack.color]\nr = 0\ng = 0\nb = 0\n\n\n"
+    "# tone\n# map\n[[stack]]\neffect = \"tonemap\"\n\n[other]\na = 1\n";
+
+TEST_F(Splice, EntriesMoveAsBlocksWithTheirComments) {
+    EXPECT_EQ(edited(blocks, [](Look& look) { return move_entry(look, "tonemap", "exposure"); }),
+              "# a look\n\nformat = 1\n\n# tone\n# map\n[[stack]]\neffect = \"tonemap\"\n\n"
+              "# expose\n[[stack]]\neffect = \"exposure\" # e\n# off: exposure = 2\n\n"
+              "[[stack]]\neffect = \"fog\"\n[stack.color]\nr = 0\ng = 0\nb = 0\n\n[other]\na = 1\n");
+    EXPECT_EQ(edited(blocks, [](Look& look) { return remove_entry(look, "exposure"); }),
+              "# a look\n\nformat = 1\n\n[[stack]]\neffect = \"fog\"\n[stack.color]\nr = 0\ng = 0\nb = 0\n\n\n"
+              "# tone\n# map\n[[stack]]\neffect = \"tonemap\"\n\n[other]\na = 1\n");
+    EXPECT_EQ(edited("[[stack]]\neffect = \"exposure\"\n\n[[stack]]\neffect = \"tonemap\"",
+                     [](Look& look) { return move_entry(look, "tonemap", "exposure"); }),
+              "[[stack]]\neffect = \"tonemap\"\n\n[[stack]]\neffect = \"exposure\"");
+    EXPECT_EQ(edited("stack = [ { effect = \"exposure\" }, { effect = \"tonemap\", curve = 'hable' } ]\n",
+                     [](Look& look) { return move_entry(look, "tonemap", "exposure"); }),
+              "stack = [ { effect = \"tonemap\", curve = 'hable' }, { effect = \"exposure\" } ]\n");
+}
+
+TEST_F(Splice, NewEntriesSayWhatIsNotByDefault) {
+    const auto added = [](Look& look) -> Result<> {
+        if (const auto made = add_effect(look, *find_effect("vignette"), "tonemap"); !made)
+            return failure(made.error());
+        return set(look, "vignette", "intensity", {0.75f});
+    };
+    EXPECT_EQ(edited("[[stack]]\r\neffect = \"tonemap\"\r\n", added),
+              "[[stack]]\r\neffect = \"vignette\"\r\nintensity = 0.75\r\n\r\n[[stack]]\r\neffect = \"tonemap\"\r\n");
+    const std::string without =
+        edited("# mine\n[[stack]]\neffect = \"tonemap\"\n", [](Look& look) { return remove_entry(look, "tonemap"); });
+    EXPECT_EQ(without, "stack = []\n\n# mine\n");
+    EXPECT_EQ(
+        edited("stack = []\n", [](Look& look) { return add_effect(look, *find_effect("tonemap")).map([](auto&&) {}); }),
+        "stack = [{ effect = \"tonemap\" }]\n");
+}
+
+TEST_F(Splice, AFlatTableBecomesAStackAndBack) {
+    const std::string text =
+        "# mine\nformat = 1\n\n[post_process] # all\nexposure = 2 # bright\n# why\n\n[other]\na = 1\n";
+    const Look was = read(text);
+    Look is = was;
+    ASSERT_TRUE(move_entry(is, "exposure", "tonemap"));
+    const auto stack = splice_look(text, was, is);
+    ASSERT_TRUE(stack) << stack.error().text;
+    EXPECT_TRUE(says_same(read(*stack), is)) << *stack;
+    EXPECT_EQ(stack->rfind("# mine\nformat = 1\n\n[[stack]]", 0), 0u) << *stack;
+    EXPECT_NE(stack->find("[other]\na = 1\n"), std::string::npos) << *stack;
+    EXPECT_NE(stack->find("# why\n"), std::string::npos) << *stack;
+    const auto flat = splice_look(*stack, is, was);
+    ASSERT_TRUE(flat) << flat.error().text;
+    EXPECT_TRUE(says_same(read(*flat), was)) << *flat;
+}
+
+TEST_F(Splice, WhatCannotBeSplicedIsAnError) {
+    const auto error = [](const std::string& text, const std::function<Result<>(Look&)>& change) {
+        const Look was = read(text);
+        Look is = was;
+        const Result<> done = change(is);
+        EXPECT_TRUE(done) << done.error().text;
+        const auto out = splice_look(text, was, is);
+        return out ? "spliced:\n" + *out : out.error().text;
+    };
+    const auto swapped = [](Look& look) { return move_entry(look, "tonemap", "exposure"); };
+    const std::string commented = "stack = [ { effect = \"exposure\" }, # one\n { effect = \"tonemap\" } ]\n";
+    EXPECT_NE(error(commented, swapped).find("holds comments"), std::string::npos);
+    const std::string parted =
+        "[[stack]]\neffect = \"exposure\"\n[[stack]]\neffect = \"tonemap\"\n[other]\na = 1\n"
+        "[stack.exposure_bias]\na = 1\n";
+    EXPECT_NE(error(parted, swapped).find("whole blocks"), std::string::npos);
+    const auto without_pulses = [](Look& look) {
+        look.pulses.clear();
+        return Result<>();
+    };
+    const std::string pulse = "[[pulse]]\nevent = \"hit\"\nparameter = \"exposure\"\namount = 1\n";
+    EXPECT_NE(error(pulse, without_pulses).find("pulses"), std::string::npos);
+    const Look look = default_look();
+    EXPECT_FALSE(splice_look("[post_process\n", look, look));
+    Look stack = read("[[stack]]\neffect = \"exposure\"\n");
+    EXPECT_FALSE(splice_look("[[stack]]\n[[stack]]\n", stack, stack));
+}
+
 TEST_F(Splice, RandomValuesOfEveryShippedFileChangeTheirOwnBytesAlone) {
     std::mt19937 random(1);
     std::size_t files = 0;

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+// Steps of undo, and what comes from and goes to files.
+
+#include <gtest/gtest.h>
+
+#include <darkroom/effects.hpp>
+#include <fstream>
+
+#include "edit/compare.hpp"
+#include "edit/document.hpp"
+#include "edit/edits.hpp"
+#include "edit/test_random_edits.hpp"
+
+namespace darkroom::edit {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Document : public testing::Test {
+  protected:
+    void SetUp() override {
+        for (const char* const name : {"exposure", "bloom", "vignette", "lut", "encode"})
+            if (find_effect(name) == nullptr) GTEST_SKIP() << "this build has no effect " << name;
+        folder_ = fs::path(testing::TempDir()) /
+                  (std::string("darkroom_document_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    /// Each text gets another time, however fast the test is.
+    fs::path write(const std::string& name, const std::string& text) {
+        const fs::path path = folder_ / name;
+        std::ofstream(path, std::ios::binary) << text;
+        fs::last_write_time(path, fs::file_time_type::clock::now() + std::chrono::seconds(++writes_));
+        return path;
+    }
+    static std::string text_of(const fs::path& path) {
+        std::ifstream file(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    static LookDocument open(const fs::path& path, const LookOptions& options = {}) {
+        Result<LookDocument> out = LookDocument::open(path, options);
+        EXPECT_TRUE(out) << out.error().text;
+        return out ? std::move(*out) : LookDocument();
+    }
+    static Result<> expose(LookDocument& document, float value, std::string_view merge = {}) {
+        const std::array words{std::bit_cast<std::uint32_t>(value)};
+        return document.edit(
+            "Exposure", [&](Look& look) { return set_value(look, "exposure", "exposure", words); }, merge);
+    }
+    static float exposure(const Look& look) {
+        Look copy = look;
+        return std::bit_cast<float>(find_entry(copy, "exposure")->words[0]);
+    }
+    static void must(const Result<>& done) { ASSERT_TRUE(done) << done.error().text; }
+    static std::string error_of(const auto& result) { return result ? std::string("none") : result.error().text; }
+
+    fs::path folder_;
+    int writes_ = 0;
+};
+
+TEST_F(Document, UndoTakesStepsBackAndRedoDoesThemAgain) {
+    LookDocument document;
+    EXPECT_FALSE(document.can_undo());
+    EXPECT_FALSE(document.is_changed());
+    must(expose(document, 2));
+    must(expose(document, 3));
+    EXPECT_EQ(document.undo_name(), "Exposure");
+    EXPECT_TRUE(document.is_changed());
+    const std::uint64_t version = document.version();
+    document.undo();
+    EXPECT_NE(document.version(), version);
+    EXPECT_EQ(exposure(document.look()), 2);
+    document.undo();
+    EXPECT_EQ(exposure(document.look()), 1);
+    EXPECT_FALSE(document.is_changed());
+    EXPECT_FALSE(document.can_undo());
+    document.redo();
+    document.redo();
+    document.redo();
+    EXPECT_EQ(exposure(document.look()), 3);
+    EXPECT_FALSE(document.can_redo());
+    document.undo();
+    must(expose(document, 4));
+    EXPECT_FALSE(document.can_redo());
+    document.undo();
+    EXPECT_EQ(exposure(document.look()), 2);
+}
+
+TEST_F(Document, DraggingIsOneStep) {
+    LookDocument document;
+    for (int i = 2; i < 50; ++i) must(expose(document, static_cast<float>(i) / 10, "exposure"));
+    document.end_merge();
+    must(expose(document, 9, "exposure"));
+    document.undo();
+    EXPECT_FLOAT_EQ(exposure(document.look()), 4.9f);
+    document.undo();
+    EXPECT_EQ(exposure(document.look()), 1);
+    EXPECT_FALSE(document.can_undo());
+    must(expose(document, 1));  // nothing changes
+    EXPECT_FALSE(document.can_undo());
+}
+
+TEST_F(Document, WhatFailsOrCannotBeHasNotHappened) {
+    LookDocument document;
+    const std::uint64_t version = document.version();
+    EXPECT_FALSE(expose(document, -5));
+    const auto half = [](Look& look) -> Result<> {
+        look.entries.clear();
+        return user_error("no");
+    };
+    EXPECT_EQ(error_of(document.edit("Half", half)), "no");
+    const auto nameless = [&](Look& look) { return set_wire(look, "encode", "input", "nobody", {}); };
+    EXPECT_NE(error_of(document.edit("Wire", nameless)).find("no entry has this output"), std::string::npos);
+    EXPECT_EQ(document.version(), version);
+    EXPECT_FALSE(document.can_undo());
+}
+
+TEST_F(Document, HistoryIsBounded) {
+    LookDocument document;
+    for (std::size_t i = 0; i < LookDocument::most_steps + 50; ++i) must(expose(document, i % 2 == 0 ? 2 : 3));
+    std::size_t steps = 0;
+    for (; document.can_undo(); ++steps) document.undo();
+    EXPECT_EQ(steps, LookDocument::most_steps);
+}
+
+// 32 tables of 16 MiB, each seen once.
+TEST_F(Document, HistoryOfTablesIsBounded) {
+    const LookOptions options{.load_resource = [](const fs::path&, FileUse) -> Result<ResourceData> {
+        return ResourceData(ResourceImage{1024, 1024, std::vector<float>(std::size_t{4} << 20)});
+    }};
+    LookDocument document(default_look(), options);
+    const EffectInfo& lut = *find_effect("lut");
+    const auto row = std::ranges::find(lut.parameters.rows, Kind::Resource, &ParamInfo::kind);
+    for (int i = 0; i < 32; ++i)
+        must(document.edit("Table", [&](Look& look) {
+            return set_file(look, "lut", row->name, std::to_string(i) + ".cube", options);
+        }));
+    std::size_t steps = 0;
+    for (; document.can_undo(); ++steps) document.undo();
+    EXPECT_GE(steps, 10u);
+    EXPECT_LE(steps, 18u);
+}
+
+TEST_F(Document, SaveWritesTheEditedValuesAlone) {
+    const fs::path path = write("a.toml", "# mine\n[post_process]  # all\nexposure = 1.0 # bright\n");
+    LookDocument document = open(path);
+    must(expose(document, 2.5f));
+    must(document.save());
+    EXPECT_EQ(text_of(path), "# mine\n[post_process]  # all\nexposure = 2.5 # bright\n");
+    EXPECT_FALSE(document.is_changed());
+    const auto reloaded = document.reload_if_changed();
+    EXPECT_TRUE(reloaded && !*reloaded);
+    document.undo();
+    EXPECT_TRUE(document.is_changed());
+    must(document.save());
+    EXPECT_EQ(text_of(path), "# mine\n[post_process]  # all\nexposure = 1.0 # bright\n");
+}
+
+TEST_F(Document, WhatOthersWroteIsNotOverwritten) {
+    const fs::path path = write("a.toml", "[post_process]\nexposure = 1.0\n");
+    LookDocument document = open(path);
+    must(expose(document, 2));
+    write("a.toml", "[post_process]\nexposure = 1.5\n");
+    EXPECT_NE(error_of(document.save()).find("changed by others"), std::string::npos);
+    EXPECT_EQ(text_of(path), "[post_process]\nexposure = 1.5\n");
+    const auto reloaded = document.reload_if_changed();
+    ASSERT_TRUE(reloaded && *reloaded);
+    EXPECT_EQ(exposure(document.look()), 1.5f);
+    document.undo();  // nothing was lost
+    EXPECT_EQ(exposure(document.look()), 2);
+    EXPECT_TRUE(document.is_changed());
+    must(document.save());
+    EXPECT_EQ(text_of(path), "[post_process]\nexposure = 2.0\n");
+}
+
+TEST_F(Document, SaveAsKeepsTheTextOrWritesAnew) {
+    const fs::path path = write("a.toml", "# mine\n[post_process]\nexposure = 1.0\n");
+    LookDocument document = open(path);
+    must(expose(document, 2));
+    must(document.save_as(folder_ / "b.toml"));
+    EXPECT_EQ(text_of(folder_ / "b.toml"), "# mine\n[post_process]\nexposure = 2.0\n");
+    EXPECT_EQ(text_of(path), "# mine\n[post_process]\nexposure = 1.0\n");
+    EXPECT_EQ(document.file(), folder_ / "b.toml");
+
+    LookDocument fresh;
+    must(expose(fresh, 3));
+    EXPECT_NE(error_of(fresh.save()).find("no file"), std::string::npos);
+    must(fresh.save_as(folder_ / "c.toml"));
+    const auto read = read_look(folder_ / "c.toml");
+    ASSERT_TRUE(read) << read.error().text;
+    EXPECT_TRUE(says_same(*read, fresh.look()));
+    EXPECT_FALSE(fresh.save_as(folder_ / "nowhere" / "c.toml"));
+    EXPECT_EQ(fresh.file(), folder_ / "c.toml");
+}
+
+TEST_F(Document, AWrongFileIsToldOnceAndKeepsTheLook) {
+    const fs::path path = write("a.toml", "[post_process]\nexposure = 1.5\n");
+    LookDocument document = open(path);
+    write("a.toml", "[post_process]\nexposure = \n");
+    const std::string error = error_of(document.reload_if_changed());
+    EXPECT_NE(error.find("a.toml:2:"), std::string::npos) << error;
+    EXPECT_EQ(exposure(document.look()), 1.5f);
+    EXPECT_FALSE(*document.reload_if_changed());
+    EXPECT_NE(error_of(document.save()).find("changed by others"), std::string::npos);
+    write("a.toml", "");  // an editor that is about to write
+    EXPECT_FALSE(*document.reload_if_changed());
+    fs::remove(path);
+    EXPECT_FALSE(*document.reload_if_changed());
+    write("a.toml", "[post_process]\nexposure = 4.0\n");
+    EXPECT_TRUE(*document.reload_if_changed());
+    EXPECT_EQ(exposure(document.look()), 4);
+}
+
+TEST_F(Document, NamedFilesAreReadAgain) {
+    const std::string identity = "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
+    const std::string effect = "// @effect tint: Tints.\n// @param float amount = 1 in [0, 1]: How much.\n";
+    const std::string body = "vec4 tint(vec4 color, Pixel pixel, Tint parameters) { return color; }\n";
+    const fs::path table = write("a.cube", identity);
+    write("tint.glsl", effect + body);
+    const EffectInfo& lut = *find_effect("lut");
+    const auto row = std::ranges::find(lut.parameters.rows, Kind::Resource, &ParamInfo::kind);
+    const fs::path path = write("a.toml",
+                                "[[stack]]\neffect = \"exposure\"\n[[stack]]\neffect = \"tint.glsl\"\namount = 0.25\n"
+                                "[[stack]]\neffect = \"lut\"\n" +
+                                    std::string(row->name) + " = \"a.cube\"\n");
+    LookDocument document = open(path, {.allows_custom_effects = true});
+    must(expose(document, 2));  // not saved
+    const auto data = [&] { return document.look().entries[2].resources.at(0).data; };
+    const auto before = data();
+
+    write("a.cube", identity);  // the same again
+    EXPECT_FALSE(*document.reload_if_changed());
+    EXPECT_EQ(data(), before);
+
+    write("a.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n0.5 1 1\n");
+    EXPECT_TRUE(*document.reload_if_changed());
+    EXPECT_NE(data(), before);
+    EXPECT_EQ(exposure(document.look()), 2);
+    EXPECT_TRUE(document.is_changed());
+
+    write("tint.glsl", effect + "// @param float more = 0.5 in [0, 1]: More.\n" + body);
+    EXPECT_TRUE(*document.reload_if_changed());
+    ASSERT_EQ(document.look().entries[1].words.size(), 2u);
+    EXPECT_EQ(std::bit_cast<float>(document.look().entries[1].words[0]), 0.25f);
+    EXPECT_EQ(std::bit_cast<float>(document.look().entries[1].words[1]), 0.5f);
+
+    write("tint.glsl", "// @effect\n");
+    EXPECT_NE(error_of(document.reload_if_changed()).find("tint.glsl"), std::string::npos);
+    EXPECT_FALSE(*document.reload_if_changed());
+    EXPECT_EQ(document.look().entries[1].words.size(), 2u);
+    must(document.save());  // the effect is wrong just now, the look is not
+    EXPECT_NE(text_of(path).find("exposure = 2.0\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace darkroom::edit
