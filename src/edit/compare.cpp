@@ -20,11 +20,7 @@ bool says_same(const LookEntry& a, const LookEntry& b) {
         return false;
     for (const WireInfo& wire : wires)
         if (a.*wire.member != b.*wire.member) return false;
-    return std::ranges::all_of(a.effect->parameters.rows, [&](const ParamInfo& row) {
-        if (row.kind == Kind::Resource) return value_text(a, row) == value_text(b, row);
-        return std::equal(a.words.begin() + row.word, a.words.begin() + row.word + row.words,
-                          b.words.begin() + row.word);
-    });
+    return std::ranges::all_of(a.effect->parameters.rows, [&](const ParamInfo& row) { return has_same(a, b, row); });
 }
 
 std::vector<const LookEntry*> entries_of(const Look& look, bool is_of_ui) {
@@ -58,6 +54,11 @@ bool has_same_files(const LookEntry& a, const LookEntry& b) {
 }
 
 }  // namespace
+
+bool has_same(const LookEntry& a, const LookEntry& b, const ParamInfo& row) {
+    if (row.kind == Kind::Resource) return value_text(a, row) == value_text(b, row);
+    return std::equal(a.words.begin() + row.word, a.words.begin() + row.word + row.words, b.words.begin() + row.word);
+}
 
 bool says_same(const Look& a, const Look& b) {
     const auto is_same_entry = [](const LookEntry* x, const LookEntry* y) { return says_same(*x, *y); };

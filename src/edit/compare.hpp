@@ -6,6 +6,8 @@
 
 namespace darkroom::edit {
 
+/// Do both have the same value of a row of their effect? Of a table the file's name counts.
+[[nodiscard]] bool has_same(const LookEntry& a, const LookEntry& b, const ParamInfo& row);
 /// Would files of them say the same? LookEntry::id, and what lies in the files that they name, do not count.
 [[nodiscard]] bool says_same(const Look& a, const Look& b);
 /// The same, and what they have loaded is one.

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/param_text.hpp"
+#include "edit/compare.hpp"
 #include "edit/stack_blocks.hpp"
 #include "edit/toml_editor.hpp"
 #include "looks/look_resources.hpp"
@@ -93,18 +94,21 @@ class Splicer {
 
     Result<> write_flat_entry(const TomlPath& table, const LookEntry& before, const LookEntry& entry) {
         const std::string_view effect = entry.effect->name;
+        const bool is_on = entry.state.enabled.on != 0, was_on = before.state.enabled.on != 0;
+        const auto is_same_row = [&](const ParamInfo& row) { return has_same(before, entry, row); };
+        const bool is_same = std::ranges::all_of(entry.effect->parameters.rows, is_same_row) && is_on == was_on;
+        if (is_same && was_has(table)) return {};
         const std::string switch_key = flat_key(effect, "enabled");
         std::vector<std::string> own{switch_key};
         for (const ParamInfo& row : entry.effect->parameters.rows) own.push_back(flat_key(effect, row.name));
         bool is_amount_new = false;
         for (const ParamInfo& row : entry.effect->parameters.rows) {
-            const std::string text = value_text(entry, row);
-            if (text == value_text(before, row)) continue;
+            if (is_same_row(row)) continue;
             is_amount_new |= row.is_amount;
             const std::string former = row.formerly.empty() ? std::string() : flat_key(effect, row.formerly);
+            const std::string text = value_text(entry, row);
             if (Result<> done = set_row(table, flat_key(effect, row.name), former, text, own); !done) return done;
         }
-        const bool is_on = entry.state.enabled.on != 0, was_on = before.state.enabled.on != 0;
         const bool is_said = editor_.contains(joined(table, switch_key));
         const bool is_other = is_said ? is_on != was_on : is_on != is_on_unsaid(table, entry);
         if ((is_on == was_on && !is_amount_new && was_has(table)) || !is_other) return {};
@@ -210,8 +214,8 @@ class Splicer {
             if (Result<> done = editor_.set(table, row.name, text); !done) return done;
         }
         for (const ParamInfo& row : entry.effect->parameters.rows) {
+            if (has_same(before, entry, row)) continue;
             const std::string text = value_text(entry, row);
-            if (text == value_text(before, row)) continue;
             if (Result<> done = set_row(table, std::string(row.name), std::string(row.formerly), text, {}); !done)
                 return done;
         }
@@ -232,7 +236,7 @@ class Splicer {
         for (const ParamInfo& row : entry_rows.rows)
             if (const std::string text = format(row, state); text != format(row, state_plain)) say(row.name, text);
         for (const ParamInfo& row : entry.effect->parameters.rows)
-            if (const std::string text = value_text(entry, row); text != value_text(plain, row)) say(row.name, text);
+            if (!has_same(plain, entry, row)) say(row.name, value_text(entry, row));
         return out;
     }
 
