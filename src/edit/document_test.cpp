@@ -54,6 +54,13 @@ class Document : public testing::Test {
     static void must(const Result<>& done) { ASSERT_TRUE(done) << done.error().text; }
     static std::string error_of(const auto& result) { return result ? std::string("none") : result.error().text; }
 
+    /// "new", "same", or the error.
+    static std::string reloaded(LookDocument& document) {
+        const auto is_new = document.reload_if_changed();
+        if (!is_new) return is_new.error().text;
+        return *is_new ? "new" : "same";
+    }
+
     fs::path folder_;
     int writes_ = 0;
 };
@@ -148,8 +155,7 @@ TEST_F(Document, SaveWritesTheEditedValuesAlone) {
     must(document.save());
     EXPECT_EQ(text_of(path), "# mine\n[post_process]  # all\nexposure = 2.5 # bright\n");
     EXPECT_FALSE(document.is_changed());
-    const auto reloaded = document.reload_if_changed();
-    EXPECT_TRUE(reloaded && !*reloaded);
+    EXPECT_EQ(reloaded(document), "same");
     document.undo();
     EXPECT_TRUE(document.is_changed());
     must(document.save());
@@ -163,8 +169,7 @@ TEST_F(Document, WhatOthersWroteIsNotOverwritten) {
     write("a.toml", "[post_process]\nexposure = 1.5\n");
     EXPECT_NE(error_of(document.save()).find("changed by others"), std::string::npos);
     EXPECT_EQ(text_of(path), "[post_process]\nexposure = 1.5\n");
-    const auto reloaded = document.reload_if_changed();
-    ASSERT_TRUE(reloaded && *reloaded);
+    EXPECT_EQ(reloaded(document), "new");
     EXPECT_EQ(exposure(document.look()), 1.5f);
     document.undo();  // nothing was lost
     EXPECT_EQ(exposure(document.look()), 2);
@@ -197,17 +202,17 @@ TEST_F(Document, AWrongFileIsToldOnceAndKeepsTheLook) {
     const fs::path path = write("a.toml", "[post_process]\nexposure = 1.5\n");
     LookDocument document = open(path);
     write("a.toml", "[post_process]\nexposure = \n");
-    const std::string error = error_of(document.reload_if_changed());
+    const std::string error = reloaded(document);
     EXPECT_NE(error.find("a.toml:2:"), std::string::npos) << error;
     EXPECT_EQ(exposure(document.look()), 1.5f);
-    EXPECT_FALSE(*document.reload_if_changed());
+    EXPECT_EQ(reloaded(document), "same");
     EXPECT_NE(error_of(document.save()).find("changed by others"), std::string::npos);
     write("a.toml", "");  // an editor that is about to write
-    EXPECT_FALSE(*document.reload_if_changed());
+    EXPECT_EQ(reloaded(document), "same");
     fs::remove(path);
-    EXPECT_FALSE(*document.reload_if_changed());
+    EXPECT_EQ(reloaded(document), "same");
     write("a.toml", "[post_process]\nexposure = 4.0\n");
-    EXPECT_TRUE(*document.reload_if_changed());
+    EXPECT_EQ(reloaded(document), "new");
     EXPECT_EQ(exposure(document.look()), 4);
 }
 
@@ -229,24 +234,24 @@ TEST_F(Document, NamedFilesAreReadAgain) {
     const auto before = data();
 
     write("a.cube", identity);  // the same again
-    EXPECT_FALSE(*document.reload_if_changed());
+    EXPECT_EQ(reloaded(document), "same");
     EXPECT_EQ(data(), before);
 
     write("a.cube", "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n0.5 1 1\n");
-    EXPECT_TRUE(*document.reload_if_changed());
+    EXPECT_EQ(reloaded(document), "new");
     EXPECT_NE(data(), before);
     EXPECT_EQ(exposure(document.look()), 2);
     EXPECT_TRUE(document.is_changed());
 
     write("tint.glsl", effect + "// @param float more = 0.5 in [0, 1]: More.\n" + body);
-    EXPECT_TRUE(*document.reload_if_changed());
+    EXPECT_EQ(reloaded(document), "new");
     ASSERT_EQ(document.look().entries[1].words.size(), 2u);
     EXPECT_EQ(std::bit_cast<float>(document.look().entries[1].words[0]), 0.25f);
     EXPECT_EQ(std::bit_cast<float>(document.look().entries[1].words[1]), 0.5f);
 
     write("tint.glsl", "// @effect\n");
-    EXPECT_NE(error_of(document.reload_if_changed()).find("tint.glsl"), std::string::npos);
-    EXPECT_FALSE(*document.reload_if_changed());
+    EXPECT_NE(reloaded(document).find("tint.glsl"), std::string::npos);
+    EXPECT_EQ(reloaded(document), "same");
     EXPECT_EQ(document.look().entries[1].words.size(), 2u);
     must(document.save());  // the effect is wrong just now, the look is not
     EXPECT_NE(text_of(path).find("exposure = 2.0\n"), std::string::npos);
