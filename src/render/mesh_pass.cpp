@@ -15,7 +15,9 @@ MeshKind surface_kind(const MeshLook& look) {
 MeshVariant variant_of(const MeshDraw& draw, const Batch& batch, const GpuScene& scene, MeshKind kind) {
     const scene::SnapshotMaterial& material = draw.snapshot->materials[batch.material];
     const scene::ModelMaterial& surface = material.surface;
-    MeshVariant variant{.kind = kind, .debug = draw.look.debug, .is_skinned = batch.is_skinned};
+    const DebugView debug = draw.look.debug;
+    MeshVariant variant{.kind = kind, .is_skinned = batch.is_skinned};
+    variant.is_debug_view = debug != DebugView::None && kind != MeshKind::NormalArrows;
     variant.is_morphed = scene.mesh(batch.mesh).morph_targets > 0;
     if (kind != MeshKind::Surface) return variant;
     variant.is_mirrored = batch.is_mirrored;
@@ -25,6 +27,9 @@ MeshVariant variant_of(const MeshDraw& draw, const Batch& batch, const GpuScene&
                            surface.metallic_roughness_texture.is_given() || surface.normal_texture.is_given() ||
                            surface.occlusion_texture.is_given() || surface.emissive_texture.is_given();
     variant.blend = surface.blend;
+    // Views of one property show what is nearest; only the unlit one still is a picture.
+    if (variant.is_debug_view && debug != DebugView::Unlit && is_blend(surface.blend))
+        variant.blend = scene::SurfaceBlend::Opaque;
     return variant;
 }
 

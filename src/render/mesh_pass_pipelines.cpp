@@ -12,14 +12,14 @@ using scene::SurfaceBlend;
 
 constexpr VkColorComponentFlags rgb = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT;
 
-bool is_blend(SurfaceBlend blend) { return blend != SurfaceBlend::Opaque && blend != SurfaceBlend::Mask; }
-
 /// Numbers of the constants in mesh_place.glsl; those of the fragment stage come before.
 constexpr std::size_t skinned_constant = 10, morphed_constant = 11, constants = 12;
 
 std::uint32_t word(bool value) { return value ? 1 : 0; }
 
 }  // namespace
+
+bool is_blend(SurfaceBlend blend) { return blend != SurfaceBlend::Opaque && blend != SurfaceBlend::Mask; }
 
 gpu::ColorTarget blended_target(SurfaceBlend blend, bool has_alpha_layer) {
     gpu::ColorTarget target;
@@ -68,9 +68,7 @@ gpu::PipelineDesc MeshPipelines::describe(const MeshVariant& variant) const {
 }
 
 void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant& variant) const {
-    // Views of one property show what is nearest; only the unlit one still is a picture.
-    const bool shows_property = variant.debug != DebugView::None && variant.debug != DebugView::Unlit;
-    const bool is_transparent = is_blend(variant.blend) && !shows_property;
+    const bool is_transparent = is_blend(variant.blend);
     desc.name = "mesh";
     desc.vertex = shader_text("mesh_vertex.glsl");
     desc.fragment = shader_text("mesh_fragment.glsl");
@@ -80,14 +78,13 @@ void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant&
     desc.specialization[2] = word(setup_.has_environment);
     desc.specialization[3] = word(variant.blend == SurfaceBlend::Mask);
     desc.specialization[4] = static_cast<std::uint32_t>(setup_.output);
-    desc.specialization[5] = static_cast<std::uint32_t>(variant.debug);
+    desc.specialization[5] = word(variant.is_debug_view);
     desc.specialization[6] = word(setup_.is_tone_mapped);
     desc.specialization[7] = word(is_transparent || variant.writes_alpha_only);
     desc.specialization[8] = setup_.shadow_maps;
     desc.cull = variant.is_double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT;
     desc.front = variant.is_mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    gpu::ColorTarget color =
-        blended_target(is_transparent ? variant.blend : SurfaceBlend::Opaque, setup_.formats.has_alpha_layer);
+    gpu::ColorTarget color = blended_target(variant.blend, setup_.formats.has_alpha_layer);
     if (variant.writes_alpha_only) color = {.writes = VK_COLOR_COMPONENT_A_BIT};
     const bool is_laid_over = is_transparent || variant.writes_alpha_only;
     desc.writes_depth = !is_laid_over;
@@ -113,7 +110,7 @@ void MeshPipelines::describe_lines(gpu::PipelineDesc& desc, const MeshVariant& v
     if (are_arrows || variant.kind == MeshKind::RoomEdges) desc.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
     if (are_arrows) return;
     desc.specialization[0] = word(variant.kind == MeshKind::Overlay);
-    desc.specialization[1] = word(setup_.output == Output::Display && variant.debug == DebugView::None);
+    desc.specialization[1] = word(setup_.output == Output::Display && !variant.is_debug_view);
     if (variant.kind == MeshKind::RoomEdges) return;
     desc.polygon_mode = VK_POLYGON_MODE_LINE;
     if (variant.kind == MeshKind::Overlay) {

@@ -19,7 +19,7 @@ enum class MeshKind : std::uint8_t {
 
 struct MeshVariant {
     MeshKind kind = MeshKind::Surface;
-    DebugView debug = DebugView::None;
+    bool is_debug_view = false;
     bool is_skinned = false, is_morphed = false;
     // Of surfaces:
     bool is_mirrored = false, is_double_sided = false, writes_alpha_only = false, has_textures = false;
@@ -43,6 +43,8 @@ class MeshPipelines {
     std::map<MeshVariant, gpu::Pipeline> pipelines_;  ///< nodes stay where they are
 };
 
+/// Whether what is behind shows through, for some alphas.
+[[nodiscard]] bool is_blend(scene::SurfaceBlend blend);
 /// How a material's colour goes into the colour target. What is blended keeps the alpha that is there.
 [[nodiscard]] gpu::ColorTarget blended_target(scene::SurfaceBlend blend, bool has_alpha_layer);
 

@@ -95,6 +95,7 @@ struct Renderer::State {
     Result<> create_passes();
     Result<> create_targets(VkExtent2D extent);
     void apply(const DrawOptions& options);
+    Result<> warm_up();
     Result<> prepare(const scene::Snapshot& next);
     Result<> fill_buffers(FrameBuffers& buffers);
     void fill_frame();
@@ -137,6 +138,22 @@ void Renderer::State::apply(const DrawOptions& options) {
     desc.draw = options;
     settings.debug = options.debug;
     settings.is_tone_mapped = desc.is_tone_mapped && options.debug == DebugView::None;
+}
+
+Result<> Renderer::State::warm_up() {
+    scene::Snapshot all = scene->first;
+    all.camera.projection = scene::mat4(0);  // nothing lies outside its planes
+    const DrawList everything = draw_list(all);
+    const bool has_edges = context->traits.has_wireframe;
+    std::vector<DebugView> views{DebugView::None};
+    if (desc.output == Output::Display) views.insert(views.end(), {DebugView::Unlit, DebugView::Normals});
+    if (desc.output == Output::Display && has_edges) views.push_back(DebugView::Wireframe);
+    for (const DebugView view : views) {
+        MeshDraw draw = mesh_draw(all, everything);
+        draw.look = {.debug = view, .has_edges = has_edges, .has_normal_arrows = true};
+        if (Result<> made = meshes->prepare(draw, scene->meshes); !made) return made;
+    }
+    return shadows->make_pipelines(all);
 }
 
 TargetFormats Renderer::State::formats() const {
@@ -357,6 +374,7 @@ Result<> Renderer::set(const DrawOptions& options) {
     return {};
 }
 
+Result<> Renderer::warm_up() { return state_->warm_up(); }
 Result<> Renderer::prepare(const scene::Snapshot& snapshot) { return state_->prepare(snapshot); }
 Result<> Renderer::record(VkCommandBuffer commands) { return state_->record(commands); }
 Frame Renderer::frame() const { return state_->frame; }

@@ -26,7 +26,7 @@ namespace darkroom::render {
 struct SceneOnDevice;
 
 /// What may change from frame to frame. Nothing is uploaded for it; the pipelines of debug views, edges and arrows are
-/// made by the prepare() that first needs them, which takes milliseconds.
+/// made by the prepare() that first needs them, or by warm_up(). Shadows and the grid need none of their own.
 struct DrawOptions {
     bool has_shadows = true;  ///< a renderer that is made without them has no place for them and stays without
     bool has_grid = true;
@@ -71,6 +71,11 @@ class Renderer {
     /// From the next prepare() on. Errors: a debug view with Output::Hdr, edges on a device that cannot draw them; the
     /// old options stay.
     Result<> set(const DrawOptions& options);
+
+    /// Makes at once the pipelines of all options and of what the camera has not seen yet, for whoever cannot spare the
+    /// time later: on the software driver some 5 ms for each kind of surface, and half a second where no cache knows
+    /// the shaders.
+    Result<> warm_up();
 
     /// Culls, sorts and fills the buffers of the next frame; the recording made `frames_in_flight` frames ago must have
     /// finished. The snapshot must stay until record() has returned. Errors are those of the machine.

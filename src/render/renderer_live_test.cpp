@@ -14,7 +14,7 @@ using namespace test;
 
 constexpr VkExtent2D small{64, 48};
 
-/// A sun that casts, a lamp, boxes that are opaque and that are glass, a room, particles.
+/// A sun that casts, a lamp, boxes that are opaque and that are glass, a room, particles, and a mask behind the camera.
 scene::Scene hall() {
     return must(scene::parse_scene(R"(
 [camera]
@@ -36,6 +36,9 @@ material = { color = [0.2, 0.4, 0.8], opacity = 0.5 }
 [entities.room]
 archetype = "room"
 bounds = { min = [-4, 0, -4], max = [4, 4, 4] }
+[entities.behind]
+bounds = { min = [7, 0, 14], max = [9, 4, 15] }
+material = { blend_mode = "mask" }
 [entities.sparks]
 transform = { position = [-1, 0, 1] }
 particle_emitter = { emission_rate = 30 }
@@ -212,6 +215,22 @@ TEST_F(RenderGpuLive, ShadowsAndGridNeedNoPipeline) {
         EXPECT_EQ(renderer.frame().lights[0].cascades.is_given(), options.has_shadows);
     }
     EXPECT_EQ(gpu::test::context().pipelines_created, pipelines);
+}
+
+TEST_F(RenderGpuLive, NoPipelineIsMadeAfterTheWarmUp) {
+    const scene::OrbitOverride back{.distance = 0.0F, .yaw = 180.0F, .pitch = 0.0F, .target = scene.camera.position};
+    for (const Output output : {Output::Hdr, Output::Display}) {
+        Renderer renderer = create({.extent = small, .output = output});
+        must(renderer.warm_up());
+        const std::uint64_t pipelines = gpu::test::context().pipelines_created;
+        for (const DrawOptions& options : options_of(output)) {
+            must(renderer.set(options));
+            shoot(renderer);
+            draw(renderer, scene::snapshot(scene, assets, {.aspect = 4.0F / 3, .orbit = back}));
+            EXPECT_GT(renderer.counters().draw_calls, 0U);
+        }
+        EXPECT_EQ(gpu::test::context().pipelines_created, pipelines);
+    }
 }
 
 TEST_F(RenderGpuLive, OptionsThatCannotBeAreRefusedAndChangeNothing) {

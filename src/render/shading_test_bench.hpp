@@ -205,6 +205,7 @@ struct FragmentBench::Sets {
 
 inline FragmentBench::Targets FragmentBench::draw(const Switches& switches) {
     gpu::Context& context = gpu::test::context();
+    frame.modes.z = switches.debug;
     const Sets sets(*this);
     const bool has_layers = switches.output == static_cast<std::uint32_t>(Output::Hdr);
     constexpr VkFormat wide = VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -223,8 +224,8 @@ inline FragmentBench::Targets FragmentBench::draw(const Switches& switches) {
                       .sets = {sets.layouts.begin(), sets.layouts.end()},
                       .push_constant_size = sizeof push,
                       .specialization = {switches.has_textures, switches.has_shadows, switches.has_environment,
-                                         switches.is_masked, switches.output, switches.debug, switches.is_tone_mapped,
-                                         switches.is_transparent},
+                                         switches.is_masked, switches.output, switches.debug != 0 ? 1U : 0U,
+                                         switches.is_tone_mapped, switches.is_transparent},
                       .colors = formats.colors({}, TargetFormats::Layers::Written),
                       .depth = VK_FORMAT_D32_SFLOAT}));
     }

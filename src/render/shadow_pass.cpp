@@ -217,6 +217,11 @@ struct ShadowPass::State {
         pipelines.emplace(variant, std::move(*made));
     }
 
+    void require_pipelines(const scene::Snapshot& snapshot, const DrawList& list) {
+        for (const std::vector<Batch>* batches : {&list.opaque, &list.transparent})
+            for (const Batch& batch : *batches) require_pipeline(variant_of(snapshot, list, batch));
+    }
+
     Result<> record_batch(const Recording& recording, const DrawList& list, const Batch& batch,
                           std::uint32_t first_instance) const {
         const Variant variant = variant_of(*recording.snapshot, list, batch);
@@ -355,10 +360,17 @@ void ShadowPass::prepare(const scene::Snapshot& snapshot) {
             const scene::mat4& matrix = cascades.world_to_cascade[i];
             const DrawList& list = state.lists.emplace_back(
                 caster_list(snapshot, state.context->traits.has_depth_clamp ? reaching_matrix(matrix) : matrix));
-            for (const std::vector<Batch>* batches : {&list.opaque, &list.transparent})
-                for (const Batch& batch : *batches) state.require_pipeline(variant_of(snapshot, list, batch));
+            state.require_pipelines(snapshot, list);
         }
     }
+}
+
+Result<> ShadowPass::make_pipelines(const scene::Snapshot& snapshot) {
+    if (state_->most_lights == 0) return {};
+    state_->error.reset();
+    // Nothing lies outside the planes of a matrix of zeros.
+    state_->require_pipelines(snapshot, caster_list(snapshot, scene::mat4(0)));
+    return state_->error ? failure(*state_->error) : Result<>();
 }
 
 std::span<const DrawList> ShadowPass::caster_lists() const { return state_->lists; }

@@ -29,6 +29,8 @@ class ShadowPass {
     /// filled: the instances of all lists go into the frame's instance buffer, one list after the other. Pipelines are
     /// made when casters first need them, maps when lights do; record() tells where that failed.
     void prepare(const scene::Snapshot& snapshot);
+    /// Makes the pipelines of all that the snapshot holds, wherever it is.
+    Result<> make_pipelines(const scene::Snapshot& snapshot);
     /// Instead of prepare(): no light casts.
     void clear();
     /// One a cascade, the cascades of the first light first.

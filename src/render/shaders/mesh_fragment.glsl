@@ -5,7 +5,7 @@ layout(constant_id = 1) const bool has_shadows = true;
 layout(constant_id = 2) const bool has_environment = true;
 layout(constant_id = 3) const bool is_masked = false;
 layout(constant_id = 4) const uint output_mode = 0u;
-layout(constant_id = 5) const uint debug_view = 0u;
+layout(constant_id = 5) const bool is_debug_view = false;  // which one says the frame: all have the same pipelines
 layout(constant_id = 6) const bool is_tone_mapped = true;
 layout(constant_id = 7) const bool is_transparent = false;  // alpha is the material's, for blending or as all there is
 
@@ -52,7 +52,7 @@ vec3 leaving_light(Surface surface) {
 
 // Display values. Depth is logarithmic, so that it shows something at every scale: white at the near distance, black at
 // the far one.
-vec3 debug_color(Surface surface) {
+vec3 debug_color(Surface surface, uint debug_view) {
     if (debug_view == Debug_normals) return surface.normal * 0.5 + 0.5;
     if (debug_view == Debug_depth) {
         float near_distance = max(frame.planes.x, 1e-3);
@@ -70,10 +70,10 @@ void main() {
     Surface surface = surface_at_fragment();
     if (is_masked && surface.alpha < materials[material_index].emissive.w) discard;
     float alpha = is_transparent ? surface.alpha : 1.0;
-    if (debug_view == Debug_none) {
-        out_color = finish(leaving_light(surface), alpha, output_mode, is_tone_mapped);
+    if (is_debug_view) {
+        out_color = vec4(debug_color(surface, frame.modes.z), alpha);
     } else {
-        out_color = vec4(debug_color(surface), alpha);
+        out_color = finish(leaving_light(surface), alpha, output_mode, is_tone_mapped);
     }
     out_normal = vec4(surface.normal, 1.0);
     out_velocity = motion(clip_position, previous_clip_position);
