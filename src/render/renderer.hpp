@@ -54,11 +54,12 @@ struct RenderCounters {
 
 class Renderer {
   public:
-    /// Uploads the assets and compiles the pipelines. Errors: a size or a sample count that the device lacks (the text
-    /// names those it has), a debug view with Output::Hdr, VkResult.
+    /// Uploads the assets and compiles the pipelines; on any thread, while others draw. Errors: a size or a sample
+    /// count that the device lacks (the text names those it has), a debug view with Output::Hdr, VkResult.
     [[nodiscard]] static Result<Renderer> create(Device& device, const scene::Scene& scene, const scene::Assets& assets,
                                                  const RenderDesc& desc);
-    /// Another renderer of the same scene, which uploads nothing. Either may go first; errors are those of create().
+    /// Another renderer of the same scene, which uploads nothing. Either may go first; those that share are used by one
+    /// thread at a time. Errors are those of create().
     [[nodiscard]] Result<Renderer> sharing(const RenderDesc& desc) const;
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
@@ -73,8 +74,8 @@ class Renderer {
     Result<> set(const DrawOptions& options);
 
     /// Makes at once the pipelines of all options and of what the camera has not seen yet, for whoever cannot spare the
-    /// time later: on the software driver some 5 ms for each kind of surface, and half a second where no cache knows
-    /// the shaders.
+    /// time later: on the software driver a few ms for each kind of surface, and half a second where no cache knows the
+    /// shaders.
     Result<> warm_up();
 
     /// Culls, sorts and fills the buffers of the next frame; the recording made `frames_in_flight` frames ago must have

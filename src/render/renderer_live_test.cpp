@@ -2,6 +2,8 @@
 // What a viewer does to a renderer while it runs: other sizes, other options, a second renderer of the same scene.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <future>
 #include <map>
 #include <utility>
 
@@ -267,6 +269,25 @@ TEST_F(RenderGpuLive, RenderersOfOneSceneShareItsAssets) {
     expect_same(*hdr, again, "hdr");
     hdr.reset();
     expect_same(display, alone, "after the first is gone");
+}
+
+TEST_F(RenderGpuLive, ASceneIsReplacedWhileTheOldOneIsDrawn) {
+    Renderer before = create({.extent = small});
+    const Pixels expected = shoot(before).color;
+    auto next = std::async(std::launch::async, [this] {
+        scene::Scene brighter = scene;
+        brighter.environment.ambient_intensity = 3;
+        Renderer made = must(Renderer::create(gpu::test::device(), brighter, assets, {.extent = small}));
+        must(made.warm_up());
+        return made;
+    });
+    int frames = 0;
+    do {
+        EXPECT_EQ(shoot(before).color.rgba, expected.rgba);
+        ++frames;
+    } while (next.wait_for(std::chrono::seconds(0)) != std::future_status::ready && frames < 10'000);
+    Renderer after = next.get();
+    EXPECT_NE(shoot(after).color.rgba, expected.rgba);
 }
 
 TEST_F(RenderGpuLive, DebugViewsNeedNoShadowMaps) {
