@@ -85,7 +85,7 @@ Ground::Cells Ground::cells_of(const Box& box) const {
     const vec3 size = glm::max(bounds_.size(), vec3(1e-6F));
     const auto cell = [&](float at, float low, float extent) {
         const float place = (at - low) / extent * static_cast<float>(side_);
-        return static_cast<std::uint32_t>(std::clamp(place, 0.0F, static_cast<float>(side_ - 1)));
+        return place > 0 ? static_cast<std::uint32_t>(std::min(place, static_cast<float>(side_ - 1))) : 0;
     };
     return {cell(box.low.x, bounds_.low.x, size.x), cell(box.high.x, bounds_.low.x, size.x),
             cell(box.low.z, bounds_.low.z, size.z), cell(box.high.z, bounds_.low.z, size.z)};
