@@ -118,9 +118,9 @@ TEST(SceneWalk, ClimbsStairsAndGoesDownThem) {
     };
     go(walk, ground, ahead, 2.6F, 60, look);
     EXPECT_NEAR(walk.feet.y, 3, 1e-6F);
-    go(walk, ground, {.move = {0, -1}}, 2.7F, 60, look);
+    go(walk, ground, {.move = {0, -1}}, 2.9F, 60, look);
     EXPECT_NEAR(walk.feet.y, 0, 1e-6F);
-    go(walk, ground, running, 1.25F, 4);
+    go(walk, ground, running, 1.5F, 4);
     EXPECT_NEAR(walk.feet.y, 3, 1e-6F) << "three steps a frame";
 }
 
