@@ -5,11 +5,14 @@
 // and a frame that gives none runs none. What is watched must be an image: an entry that would share a kernel with the
 // next one ends it.
 
+#include <cstddef>
 #include <darkroom/frame.hpp>
 #include <darkroom/handle.hpp>
 #include <string>
 
 namespace darkroom {
+
+inline constexpr std::size_t most_watches = 1024;  ///< of a plan
 
 /// One picture of a plan: what an entry makes of its input, or an image by its name.
 struct Watch {

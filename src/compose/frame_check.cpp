@@ -271,7 +271,6 @@ Result<> check_target(const gpu::Context& context, const std::string& name, cons
 }
 
 Result<> check_watches(const gpu::Context& context, const CompileDesc& desc) {
-    constexpr std::size_t most_watches = 1024;
     if (desc.watches.size() > most_watches)
         return user_error(
             fmt::format("compile: {} watches: allowed are at most {}", desc.watches.size(), most_watches));

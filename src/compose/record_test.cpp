@@ -127,16 +127,16 @@ class ComposeRecord : public test::StackTest {
     static CompileDesc desc() { return {.max_extent = {160, 120}, .views = 2}; }
     /// Images that are never touched: commands go nowhere.
     static Frame frame(VkExtent2D extent = {160, 120}) {
-        const auto handle = [](std::uintptr_t value) { return value; };
-        const auto image = [&](std::uintptr_t at, VkFormat format) {
-            return ImageRef{.image = reinterpret_cast<VkImage>(handle(at)),
-                            .view = reinterpret_cast<VkImageView>(handle(at + 1)),
-                            .format = format,
-                            .extent = extent,
-                            .layout = VK_IMAGE_LAYOUT_GENERAL,
-                            .final_layout = VK_IMAGE_LAYOUT_GENERAL};
-        };
-        return {.color = image(16, VK_FORMAT_R16G16B16A16_SFLOAT), .target = image(32, VK_FORMAT_R8G8B8A8_UNORM)};
+        return {.color = image(16, VK_FORMAT_R16G16B16A16_SFLOAT, extent),
+                .target = image(32, VK_FORMAT_R8G8B8A8_UNORM, extent)};
+    }
+    static ImageRef image(std::uintptr_t at, VkFormat format, VkExtent2D extent) {
+        return {.image = reinterpret_cast<VkImage>(at),
+                .view = reinterpret_cast<VkImageView>(at + 1),
+                .format = format,
+                .extent = extent,
+                .layout = VK_IMAGE_LAYOUT_GENERAL,
+                .final_layout = VK_IMAGE_LAYOUT_GENERAL};
     }
     template <class Work>
     static Counted counted(const Work& work) {
@@ -170,7 +170,10 @@ TEST_F(ComposeRecord, FramesAllocateCreateAndWaitForNothing) {
             fill(composer);
             CompileDesc with = desc();
             with.kernels = stage;
+            with.watches = {{.id = 4, .entry = exposure}, {.id = 5, .image = "bloom.pyramid"}};
             test::must(composer.compile(with));
+            std::array<Watched, 2> watched{{{.id = 5, .target = image(48, VK_FORMAT_R32G32B32A32_SFLOAT, {8, 8})},
+                                            {.id = 4, .target = image(64, VK_FORMAT_R32G32B32A32_SFLOAT, {8, 8})}}};
             bool is_good = true;
             const Counted seen = counted([&] {
                 for (std::uint32_t i = 0; i < 20; ++i) {
@@ -178,6 +181,7 @@ TEST_F(ComposeRecord, FramesAllocateCreateAndWaitForNothing) {
                     next.frame_index = i;
                     next.time = i / 60.0;
                     next.view = i % 2;
+                    next.watched = std::span(watched).first(i % 3);
                     is_good = is_good && is_recorded(composer, next);
                 }
             });
