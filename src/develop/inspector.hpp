@@ -9,8 +9,9 @@
 //     inspector.record(commands, composer, frame, pixels);  // behind composer.record()
 //     inspector.result(number);                             // once that submission has finished
 //
-// Histories of the second Composer begin when it does: a trail is as long as it was watched. It records and compiles as
-// any Composer does: record() waits for nothing, and until a compile has ended there is no result.
+// Histories of the second Composer begin when it does, and anew when the stack is edited: a trail is as long as it was
+// watched. It records and compiles as any Composer does: record() waits for nothing, and until a compile has ended
+// there is no result.
 
 #include <darkroom/composer.hpp>
 #include <memory>

@@ -76,6 +76,12 @@ Prober::Prober(Prober&&) noexcept = default;
 Prober& Prober::operator=(Prober&&) noexcept = default;
 Prober::~Prober() = default;
 
+/// Each is a watch for every value, and all of them together another one.
+std::size_t Prober::most_pixels(const Composer& composer) {
+    const std::size_t most = most_watches / (composer.size() + 1);
+    return most > 1 ? most - 1 : 0;
+}
+
 Result<Inspection> Prober::probe(const Composer& composer, const DevelopInput& input,
                                  std::span<const VkOffset2D> pixels) {
     return state_->run(composer, input, pixels, {}, nullptr);

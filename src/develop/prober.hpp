@@ -22,6 +22,8 @@ class Prober {
     Prober& operator=(Prober&&) noexcept;
     ~Prober();
 
+    /// How many can be asked about at once in such a stack.
+    [[nodiscard]] static std::size_t most_pixels(const Composer& composer);
     /// Runs one frame of the stack, and waits.
     [[nodiscard]] Result<Inspection> probe(const Composer& composer, const DevelopInput& input,
                                            std::span<const VkOffset2D> pixels);

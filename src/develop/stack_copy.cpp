@@ -66,7 +66,8 @@ std::vector<std::uint32_t> StackCopy::copied_words(const EffectInfo& info, std::
 Result<bool> StackCopy::follow(const Composer& source, Composer& copy, double time, const Camera& camera) {
     std::vector<Shape> shapes;
     for (std::size_t i = 0; i < source.size(); ++i) shapes.push_back(shape_of(source, source.entry(i), time, camera));
-    if (!shapes.empty() && std::ranges::equal(shapes, shapes_, is_same)) return false;
+    if (is_made_ && std::ranges::equal(shapes, shapes_, is_same)) return false;
+    is_made_ = false;
     shapes_.clear();
     entries_.clear();
     copy.clear();
@@ -85,7 +86,7 @@ Result<bool> StackCopy::follow(const Composer& source, Composer& copy, double ti
         if (auto ok = copy.rewire(entries_[i].copy, desc); !ok) return failure(std::move(ok));
     }
     shapes_ = std::move(shapes);
-    return true;
+    return is_made_ = true;
 }
 
 Result<> StackCopy::follow_values(const Composer& source, Composer& copy, double time, const Camera& camera) const {

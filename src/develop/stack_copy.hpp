@@ -43,6 +43,7 @@ class StackCopy {
     [[nodiscard]] std::vector<std::uint32_t> copied_words(const EffectInfo& info,
                                                           std::span<const std::uint32_t> words) const;
 
+    bool is_made_ = false;
     std::vector<Shape> shapes_;
     std::vector<Pair> entries_;
     std::map<std::uint32_t, Resource> resources_;  ///< by the source's number
