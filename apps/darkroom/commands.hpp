@@ -21,6 +21,7 @@ struct Command {
 // `named`: effects of files, whose parameters are flags, too.
 [[nodiscard]] Command add_render(CLI::App& program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> named);
+[[nodiscard]] Command add_probe(CLI::App& program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_plan(CLI::App& program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_effects(CLI::App& program);
 [[nodiscard]] Command add_devices(CLI::App& program);

@@ -10,6 +10,7 @@
 #include "core/param_text.hpp"
 #include "develop/developer.hpp"
 #include "device_flags.hpp"
+#include "frame_flags.hpp"
 #include "frames.hpp"
 #include "image/resize.hpp"
 #include "image/sequence.hpp"
@@ -36,10 +37,10 @@ struct Options {
     DeviceFlags device;
     WriteFlags write;
     RunFlags run;
-    std::vector<std::string> inputs, maps;
-    std::string out, size, camera;
+    FrameFlags frame;
+    std::vector<std::string> inputs;
+    std::string out, size;
     std::optional<std::string> frames;
-    NumberFlag fov{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
     bool is_reference = false;
@@ -110,7 +111,9 @@ Result<Job> job_of(const Options& options) {
     if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
     if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
         return failure(std::move(done));
-    if (Result<> done = options.fov.read_to(job.frame.vertical_field_of_view); !done) return failure(std::move(done));
+    Result<darkroom::FrameOptions> frame = options.frame.options();
+    if (!frame) return failure(std::move(frame));
+    job.frame = std::move(*frame);
     Result<darkroom::WriteOptions> write = options.write.options();
     if (!write) return failure(std::move(write));
     job.write = std::move(*write);
@@ -122,9 +125,6 @@ Result<Job> job_of(const Options& options) {
         if (!size) return failure(size.error());
         job.size = *size;
     }
-    for (const std::string& map : options.maps)
-        if (Result<> added = darkroom::add_mapping(job.frame.names, map); !added) return failure(std::move(added));
-    job.frame.camera_file = options.camera;
     const Result<darkroom::KernelStage> stage = options.device.stage();
     if (!stage) return failure(stage.error());
     job.develop.kernels = *stage;
@@ -339,18 +339,7 @@ Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> name
     options->frames_per_second
         .add_to(*command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")
         ->type_name("N");
-    const std::string frame_group = "The frame";
-    command
-        ->add_option("--map", options->maps,
-                     "What a layer is called in the file: depth=NAME, normals=, velocity=, color=")
-        ->type_name("LAYER=NAME")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->group(frame_group);
-    options->fov.add_to(*command, "Vertical field of view, where the file has no projection")
-        ->type_name("DEGREES")
-        ->group(frame_group);
-    command->add_option("--camera", options->camera, "A camera file (TOML)")->type_name("FILE")->group(frame_group);
+    options->frame.add_to(*command);
     options->write.add_to(*command);
     options->run.add_to(*command);
     options->device.add_to(*command);

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 /// JSON has no infinity and no NaN: "inf", "-inf", "nan".
 [[nodiscard]] inline Json json_number(double value) {
     if (std::isfinite(value)) return value;
-    return fmt::format("{}", value);
+    return std::isnan(value) ? "nan" : fmt::format("{}", value);
 }
 
 }  // namespace app

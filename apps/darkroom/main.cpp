@@ -64,9 +64,9 @@ int run(int argc, char** argv) {
         "machine failed; `compare` has 3: they differ.");
     const std::vector<darkroom::LookEntry> named = app::effects_named_by({argv, static_cast<std::size_t>(argc)});
     std::vector commands{app::add_render(program, named), app::add_develop(program, named),
-                         app::add_plan(program, named),   app::add_effects(program),
-                         app::add_devices(program),       app::add_compare(program),
-                         app::add_info(program)};
+                         app::add_probe(program, named),  app::add_plan(program, named),
+                         app::add_effects(program),       app::add_devices(program),
+                         app::add_compare(program),       app::add_info(program)};
     std::ranges::move(app::add_lut(program, named), std::back_inserter(commands));
     // CLI11 would take the next argument for the value.
     for (int i = 1; i < argc; ++i) {
