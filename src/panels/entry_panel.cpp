@@ -127,9 +127,11 @@ void draw_entry_panel(PanelState& state) {
     draw_head(state, entry, name);
     std::vector<std::string> names;
     for (const ParamInfo& row : entry.effect->parameters.rows) names.push_back(shown_name(row.name));
+    const bool has_state = !state.look().is_flat && !entry.is_of_ui;
+    if (has_state) add_state_names(names);
     const Columns columns = Columns::of(names);
     for (const ParamInfo& row : entry.effect->parameters.rows) draw_parameter(state, entry, name, row, columns);
-    if (!state.look().is_flat && !entry.is_of_ui) draw_entry_state(state, entry, name);
+    if (has_state) draw_entry_state(state, entry, name, columns);
     ImGui::PopID();
     state.settle();
 }

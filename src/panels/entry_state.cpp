@@ -148,11 +148,12 @@ void draw_state_row(PanelState& state, const LookEntry& entry, const std::string
 
 }  // namespace
 
-void draw_entry_state(PanelState& state, const LookEntry& entry, const std::string& name) {
-    std::vector<std::string> names;
+void add_state_names(std::vector<std::string>& names) {
     for (const ParamInfo& row : entry_rows.rows) names.push_back(shown_name(row.name));
     for (const WireInfo& wire : wires) names.emplace_back(wire.key);
-    const Columns columns = Columns::of(names);
+}
+
+void draw_entry_state(PanelState& state, const LookEntry& entry, const std::string& name, const Columns& columns) {
     const auto heading = [](const char* text) {
         ImGui::Spacing();
         ImGui::Separator();

@@ -66,7 +66,5 @@ void draw_entry_panel(PanelState& state);
 void draw_plan_panel(const Plan* plan, bool is_compiling);
 /// The popup that lists what can be added, while it is open.
 void draw_add_menu(PanelState& state);
-/// Opacity, blend mode, scale, format and wires of an entry of a stack.
-void draw_entry_state(PanelState& state, const LookEntry& entry, const std::string& name);
 
 }  // namespace darkroom::panels

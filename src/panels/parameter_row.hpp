@@ -43,4 +43,9 @@ struct RowOutcome {
 [[nodiscard]] RowOutcome draw_row(PanelState& state, const RowLine& line, const Columns& columns,
                                   const std::function<ValueEdit(std::span<std::uint32_t>)>& body = {});
 
+/// Opacity, blend mode, scale, format and wires of an entry of a stack.
+void draw_entry_state(PanelState& state, const LookEntry& entry, const std::string& name, const Columns& columns);
+/// The names of its lines.
+void add_state_names(std::vector<std::string>& names);
+
 }  // namespace darkroom::panels

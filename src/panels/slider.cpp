@@ -25,41 +25,59 @@ std::string text_of(const ParamInfo& row, double number) {
     return row.kind == Kind::Int ? fmt::format("{}", std::llround(number)) : fmt::format("{:.4g}", number);
 }
 
+/// The number at the right end of the slider, where few knobs are; without its unit where there is no room for both.
+struct Label {
+    std::string text;
+    float x = 0, width = 0;
+};
+Label label_of(const ParamInfo& row, double number, float least, float most) {
+    const float pad = std::min(ImGui::GetStyle().FramePadding.x, (most - least) / 10);
+    Label label{.text = text_of(row, number)};
+    if (!row.unit.symbol.empty()) {
+        const std::string whole = fmt::format("{} {}", label.text, row.unit.symbol);
+        if (ImGui::CalcTextSize(whole.c_str()).x <= most - least - 2 * pad) label.text = whole;
+    }
+    label.width = ImGui::CalcTextSize(label.text.c_str()).x;
+    label.x = std::max(least, std::floor(most - pad - label.width));
+    return label;
+}
+
 void paint(const SliderScale& scale, const ParamInfo& row, double usual, double number, bool is_held) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
     const float rounding = ImGui::GetStyle().FrameRounding;
-    list.AddRectFilled(
-        least, most, ImGui::GetColorU32(ImGui::IsItemHovered() ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), rounding);
+    const float unit = std::max(1.0f, std::round(ImGui::GetFontSize() / 15));
     const auto x_of = [&](double value) {
         const double clamped = std::clamp(value, row.range.min, row.range.max);
         return std::round(least.x + (most.x - least.x) * static_cast<float>(scale.position(clamped)));
     };
-    const float from = x_of(0), to = x_of(number), unit = std::max(1.0f, std::round(ImGui::GetFontSize() / 15));
-    const ImVec2 left{std::min(from, to), least.y}, right{std::max(from, to), most.y};
-    if (right.x > left.x)
-        list.AddRectFilled(left, right, ImGui::GetColorU32(is_held ? ImGuiCol_HeaderActive : ImGuiCol_Header),
-                           left.x <= least.x ? rounding : 0, ImDrawFlags_RoundCornersLeft);
+    list.AddRectFilled(
+        least, most, ImGui::GetColorU32(ImGui::IsItemHovered() ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), rounding);
+    const float from = x_of(0), to = x_of(number), left = std::min(from, to), right = std::max(from, to);
+    if (right > left)
+        list.AddRectFilled({left, least.y}, {right, most.y},
+                           ImGui::GetColorU32(is_held ? ImGuiCol_HeaderActive : ImGuiCol_Header),
+                           left <= least.x ? rounding : 0, ImDrawFlags_RoundCornersLeft);
     const float tick = x_of(usual);
     list.AddRectFilled({tick - unit / 2, most.y - 3 * unit}, {tick + unit / 2, most.y},
                        ImGui::GetColorU32(ImGuiCol_TextDisabled));
+    const Label label = label_of(row, number, least.x, most.x);
+    // Under the number, where it would cross it.
     const float knob = std::clamp(to, least.x + unit, most.x - unit);
-    list.AddRectFilled({knob - unit, least.y}, {knob + unit, most.y},
+    const bool crosses = knob > label.x - 2 * unit && knob < label.x + label.width + unit;
+    list.AddRectFilled({knob - unit, crosses ? std::round(most.y - 5 * unit) : least.y}, {knob + unit, most.y},
                        is_held ? ImGui::GetColorU32(accent_color) : ImGui::GetColorU32(ImGuiCol_SliderGrab));
-    std::string text = text_of(row, number);
-    if (!row.unit.symbol.empty()) text += fmt::format(" {}", row.unit.symbol);
-    // To the right, where few knobs are.
-    const float room = most.x - least.x, pad = std::min(ImGui::GetStyle().FramePadding.x, room / 10);
-    float width = ImGui::CalcTextSize(text.c_str()).x;
-    if (width > room - 2 * pad) width = ImGui::CalcTextSize((text = text_of(row, number)).c_str()).x;
     list.PushClipRect(least, most, true);
-    list.AddText({std::max(least.x, std::floor(most.x - pad - width)), least.y + ImGui::GetStyle().FramePadding.y},
-                 ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+    list.AddText({label.x, least.y + ImGui::GetStyle().FramePadding.y}, ImGui::GetColorU32(ImGuiCol_Text),
+                 label.text.c_str());
     list.PopClipRect();
 }
 
 /// The field in the slider's place, until Enter, or a click elsewhere.
-SliderEdit type_number(const ParamInfo& row, double& number, bool& is_typing, bool is_new) {
+SliderEdit type_number(const ParamInfo& row, double& number, int& typing) {
+    // Frames in which the field may wait for the keyboard: it has gone, and come back with its panel, after more.
+    constexpr int most_waiting = 4;
+    const bool is_new = typing == 0;
     static std::string typed;  // only one item of ImGui's is typed into at a time
     if (is_new) {
         typed = text_of(row, number);
@@ -68,8 +86,12 @@ SliderEdit type_number(const ParamInfo& row, double& number, bool& is_typing, bo
     const bool is_entered = text_field(
         "##typed", "", typed,
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_CharsScientific);
-    if (!is_entered && (is_new || !ImGui::IsItemDeactivated())) return {};
-    is_typing = false;
+    typing = ImGui::IsItemActive() ? 1 : typing + 1;
+    if (!is_entered && !ImGui::IsItemDeactivated()) {
+        if (typing > most_waiting) typing = 0;
+        return {};
+    }
+    typing = 0;
     const auto parsed = parse_number(typed);
     const bool is_kind =
         parsed && (row.kind != Kind::Int || (*parsed == std::trunc(*parsed) && std::abs(*parsed) < 2e9));
@@ -116,10 +138,10 @@ double SliderScale::value(double position) const {
 
 SliderEdit draw_slider(const char* id, const ParamInfo& row, double usual, double& number) {
     ImGui::PushID(id);
-    bool& is_typing = *ImGui::GetStateStorage()->GetBoolRef(ImGui::GetID("typing"));
+    int& typing = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("typing"));
     SliderEdit edit;
-    if (is_typing) {
-        edit = type_number(row, number, is_typing, false);
+    if (typing > 0) {
+        edit = type_number(row, number, typing);
         ImGui::PopID();
         return edit;
     }
@@ -131,10 +153,9 @@ SliderEdit draw_slider(const char* id, const ParamInfo& row, double usual, doubl
     edit.is_begun = ImGui::IsItemActivated();
     const bool is_held = ImGui::IsItemActive();
     if (edit.is_begun && io.KeyCtrl) {
-        is_typing = true;
         ImGui::SetCursorScreenPos(corner);
         ImGui::SetNextItemWidth(width);
-        edit = type_number(row, number, is_typing, true);
+        edit = type_number(row, number, typing);
     } else if (is_held) {
         double position = (io.MousePos.x - corner.x) / width;
         if (io.KeyShift) position = scale.position(number) + io.MouseDelta.x / width / 10;
@@ -143,7 +164,7 @@ SliderEdit draw_slider(const char* id, const ParamInfo& row, double usual, doubl
         edit.is_changed = moves && wanted != number;
         if (edit.is_changed) number = wanted;
     }
-    if (!is_typing) paint(scale, row, usual, number, is_held);
+    if (typing == 0) paint(scale, row, usual, number, is_held);
     ImGui::PopID();
     return edit;
 }
