@@ -115,12 +115,13 @@ void draw_add_menu(PanelState& state) {
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);
     const bool takes_first = text_field("##filter", "Search", state.filter, ImGuiInputTextFlags_EnterReturnsTrue);
-    ImGui::BeginChild("effects", {0, -ImGui::GetFrameHeightWithSpacing()});
+    const bool takes_files = state.document->options().allows_custom_effects;
+    ImGui::BeginChild("effects", {0, takes_files ? -ImGui::GetFrameHeightWithSpacing() : 0});
     const EffectInfo* const first = draw_effects(state);
     if (first == nullptr) ImGui::TextDisabled("No effect has this in its name or sentence.");
     ImGui::EndChild();
     if (takes_first && first != nullptr) add(state, *first);
-    if (ImGui::Button("From a GLSL file...", {-FLT_MIN, 0})) add_from_file(state);
+    if (takes_files && ImGui::Button("From a GLSL file...", {-FLT_MIN, 0})) add_from_file(state);
     ImGui::PopStyleVar();
     ImGui::EndPopup();
 }

@@ -73,10 +73,6 @@ void draw(Pen& pen, Icon icon) {
             pen.line({{4.5f, 4.5f}, {11.5f, 11.5f}});
             pen.line({{11.5f, 4.5f}, {4.5f, 11.5f}});
             break;
-        case Icon::Add:
-            pen.line({{8, 3.5f}, {8, 12.5f}});
-            pen.line({{3.5f, 8}, {12.5f, 8}});
-            break;
         case Icon::Undo:
             turn_back(pen, 1);
             break;

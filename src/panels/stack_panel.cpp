@@ -120,7 +120,7 @@ class StackList {
         draw_switch(entry, name, is_on);
         ImGui::SameLine(0, 0);
         if (state_.renamed == name)
-            draw_renaming(name);
+            draw_renaming(entry, name);
         else
             draw_name(entry, name, next, is_on);
         if (has_controls(entry)) draw_controls(entry, name);
@@ -212,8 +212,8 @@ class StackList {
         }
     }
 
-    void draw_renaming(const std::string& name) {
-        ImGui::SetNextItemWidth(-controls_width(look_.entries[0]));
+    void draw_renaming(const LookEntry& entry, const std::string& name) {
+        ImGui::SetNextItemWidth(-controls_width(entry));
         if (is_renaming_new_) ImGui::SetKeyboardFocusHere();
         const bool is_done = text_field("##rename", "Name", state_.new_name,
                                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
