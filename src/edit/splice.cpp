@@ -63,59 +63,72 @@ class Splicer {
         }
         if (!editor_.contains(ui_path))
             if (Result<> done = editor_.add_table(ui_path[0]); !done) return done;
-        return write_table(ui_path, was_.ui ? was_ : default_look(), true);
+        return write_table(ui_path, true);
     }
 
     // The flat tables.
 
     Result<> write_flat() {
-        const Look& from = was_.is_flat ? was_ : default_look();
+        const Look& from = was_.is_flat ? was_ : Look();
         if (is_.is_enabled != from.is_enabled)
             if (Result<> done = editor_.set(flat_path, "enabled", bool_text(is_.is_enabled)); !done) return done;
         if (is_.order != from.order) {
             const std::string order = toml_string(order_names[static_cast<std::size_t>(is_.order)]);
             if (Result<> done = editor_.set(flat_path, "order", order); !done) return done;
         }
-        return write_table(flat_path, from, false);
+        return write_table(flat_path, false);
     }
 
-    Result<> write_table(const TomlPath& table, const Look& from, bool is_of_ui) {
-        for (const LookEntry& entry : is_.entries) {
-            if (entry.is_of_ui != is_of_ui) continue;
-            const auto before = std::ranges::find_if(from.entries, [&](const LookEntry& other) {
+    Result<> write_table(const TomlPath& table, bool is_of_ui) {
+        const auto counterpart = [&](const LookEntry& entry, const Look& in) -> const LookEntry* {
+            const auto found = std::ranges::find_if(in.entries, [&](const LookEntry& other) {
                 return other.effect->name == entry.effect->name && other.is_of_ui == is_of_ui;
             });
-            if (before == from.entries.end())
-                return user_error(fmt::format("{}: the table [{}] has no place for it", entry.effect->name, table[0]));
-            if (Result<> done = write_flat_entry(table, *before, entry); !done) return done;
+            return found == in.entries.end() || !was_has(table) ? nullptr : &*found;
+        };
+        for (const LookEntry& entry : is_.entries) {
+            if (entry.is_of_ui != is_of_ui) continue;
+            if (Result<> done = write_flat_entry(table, counterpart(entry, was_), entry); !done) return done;
+        }
+        // What was off when a flat table became a stack is not in it.
+        for (const LookEntry& before : was_.entries) {
+            if (before.is_of_ui != is_of_ui || !was_has(table) || counterpart(before, is_) != nullptr) continue;
+            LookEntry off = before;
+            off.state.enabled = false;
+            if (Result<> done = write_flat_entry(table, &before, off); !done) return done;
         }
         return {};
     }
 
-    Result<> write_flat_entry(const TomlPath& table, const LookEntry& before, const LookEntry& entry) {
+    /// `before` null: it was not there, so that nobody knows what the table says of it.
+    Result<> write_flat_entry(const TomlPath& table, const LookEntry* before, const LookEntry& entry) {
         const std::string_view effect = entry.effect->name;
-        const bool is_on = entry.state.enabled.on != 0, was_on = before.state.enabled.on != 0;
-        const auto is_same_row = [&](const ParamInfo& row) { return has_same(before, entry, row); };
-        const bool is_same = std::ranges::all_of(entry.effect->parameters.rows, is_same_row) && is_on == was_on;
-        if (is_same && was_has(table)) return {};
+        const LookEntry plain = entry_of(*entry.effect);
+        const bool is_on = entry.state.enabled.on != 0;
+        const bool is_switched = before == nullptr || is_on != (before->state.enabled.on != 0);
+        const auto is_same_row = [&](const ParamInfo& row) {
+            return has_same(before == nullptr ? plain : *before, entry, row);
+        };
+        if (!is_switched && std::ranges::all_of(entry.effect->parameters.rows, is_same_row)) return {};
         const std::string switch_key = flat_key(effect, "enabled");
         std::vector<std::string> own{switch_key};
         for (const ParamInfo& row : entry.effect->parameters.rows) own.push_back(flat_key(effect, row.name));
         bool is_amount_new = false;
         for (const ParamInfo& row : entry.effect->parameters.rows) {
-            if (is_same_row(row)) continue;
+            const std::string key = flat_key(effect, row.name);
+            const std::string former = row.formerly.empty() ? key : flat_key(effect, row.formerly);
+            const bool may_stand = before == nullptr && (has_key(table, key) || has_key(table, former));
+            if (is_same_row(row) && !may_stand) continue;
             is_amount_new |= row.is_amount;
-            const std::string former = row.formerly.empty() ? std::string() : flat_key(effect, row.formerly);
-            const std::string text = value_text(entry, row);
-            if (Result<> done = set_row(table, flat_key(effect, row.name), former, text, own); !done) return done;
+            if (Result<> done = set_row(table, key, former, value_text(entry, row), own); !done) return done;
         }
-        const bool is_said = editor_.contains(joined(table, switch_key));
-        const bool is_other = is_said ? is_on != was_on : is_on != is_on_unsaid(table, entry);
-        if ((is_on == was_on && !is_amount_new && was_has(table)) || !is_other) return {};
-        return editor_.set(table, switch_key, bool_text(entry.state.enabled), own);
+        const bool is_said = has_key(table, switch_key);
+        const bool is_other =
+            is_said ? is_switched : (is_switched || is_amount_new) && is_on != is_on_unsaid(table, entry);
+        return is_other ? editor_.set(table, switch_key, bool_text(entry.state.enabled), own) : Result<>{};
     }
 
-    /// Was the table there before? In a new one every switch counts that is not as the table has it by itself.
+    /// Was the table there before?
     bool was_has(const TomlPath& table) const { return table == ui_path ? was_.ui.has_value() : was_.is_flat; }
 
     /// Is an entry on where the table says nothing of its switch? Of its amounts the last one of the table's counts,
@@ -127,7 +140,7 @@ class Splicer {
         for (const ParamInfo& row : entry.effect->parameters.rows)
             for (const std::string_view name : {row.name, row.formerly}) {
                 const std::string key = name.empty() ? std::string() : flat_key(entry.effect->name, name);
-                if (!row.is_amount || key <= last || !editor_.contains(joined(table, key))) continue;
+                if (!row.is_amount || key <= last || !has_key(table, key)) continue;
                 last = key;
                 out = std::bit_cast<float>(entry.words[row.word]) != 0;
             }
@@ -137,17 +150,15 @@ class Splicer {
     /// A key's former name stays where it stands.
     Result<> set_row(const TomlPath& table, const std::string& key, const std::string& former, const std::string& text,
                      std::span<const std::string> neighbours) {
-        const bool has_former = !former.empty() && editor_.contains(joined(table, former));
+        const bool has_former = former != key && has_key(table, former);
         if (has_former)
             if (Result<> done = editor_.set(table, former, text); !done) return done;
-        if (has_former && !editor_.contains(joined(table, key))) return {};
-        return editor_.set(table, key, text, neighbours);
+        return has_former && !has_key(table, key) ? Result<>{} : editor_.set(table, key, text, neighbours);
     }
 
-    static TomlPath joined(const TomlPath& table, std::string_view key) {
-        TomlPath out = table;
-        out.emplace_back(key);
-        return out;
+    bool has_key(TomlPath table, std::string_view key) const {
+        table.emplace_back(key);
+        return editor_.contains(table);
     }
 
     // The stack.
@@ -215,9 +226,8 @@ class Splicer {
         }
         for (const ParamInfo& row : entry.effect->parameters.rows) {
             if (has_same(before, entry, row)) continue;
-            const std::string text = value_text(entry, row);
-            if (Result<> done = set_row(table, std::string(row.name), std::string(row.formerly), text, {}); !done)
-                return done;
+            const std::string key(row.name), former(row.formerly.empty() ? row.name : row.formerly);
+            if (Result<> done = set_row(table, key, former, value_text(entry, row), {}); !done) return done;
         }
         return {};
     }

@@ -119,6 +119,11 @@ TEST_F(Splice, ValuesAreReplacedWhereTheyStand) {
 }
 
 TEST_F(Splice, NumbersOfAValueAreReplacedOneByOne) {
+    EXPECT_EQ(edited("[post_process]\nui_layers = 1\nfog_color = [0, 0, 1]\n",
+                     [](Look& look) {
+                         return set(look, "fog", "color", {-0.0f, 0, 1});
+                     }),
+              "[post_process]\nui_layers = 1\nfog_color = [-0.0, 0, 1]\n");
     const auto colored = [](const std::string& text) {
         return edited(text, [](Look& look) { return set(look, "fog", "color", {0.5f, 0.25f, 1}); });
     };
@@ -232,6 +237,35 @@ TEST_F(Splice, AFlatTableBecomesAStackAndBack) {
     const auto flat = splice_look(*stack, is, was);
     ASSERT_TRUE(flat) << flat.error().text;
     EXPECT_TRUE(says_same(read(*flat), was)) << *flat;
+}
+
+TEST_F(Splice, TheInterfaceKeepsItsTable) {
+    if (find_effect("ui_chroma") == nullptr) GTEST_SKIP() << "this build has no effect ui_chroma";
+    const std::string text = "[post_process]\n\n[ui]\nui_chroma_strength = 0.5 # parted\n";
+    const Look was = read(text);
+    Look without = was;
+    ASSERT_TRUE(remove_entry(without, "ui_chroma"));
+    ASSERT_TRUE(move_entry(without, "exposure", "tonemap"));  // a stack has nothing that is off
+    const auto stack = splice_look(text, was, without);
+    ASSERT_TRUE(stack) << stack.error().text;
+    EXPECT_NE(stack->find("ui_chroma_strength = 0.5 # parted\nui_chroma_enabled = false\n"), std::string::npos)
+        << *stack;
+    Look again = without;
+    again.entries.push_back(entry_of(*find_effect("ui_chroma")));
+    again.entries.back().is_of_ui = true;
+    ASSERT_TRUE(set(again, "ui_chroma", "strength", {0}));
+    const auto back = splice_look(*stack, without, again);
+    ASSERT_TRUE(back) << back.error().text;
+    EXPECT_NE(back->find("ui_chroma_strength = 0.0 # parted\nui_chroma_enabled = true\n"), std::string::npos) << *back;
+    // Without the table, its first edit makes it.
+    const std::string made =
+        edited("[post_process]\n", [](Look& look) { return set(look, "ui_chroma", "strength", {0.25f}); });
+    EXPECT_EQ(made, "[post_process]\n\n[ui]\nui_chroma_strength = 0.25\n");
+    const Look with = read(made);
+    const Look plain = read("[post_process]\n");
+    const auto removed = splice_look(made, with, plain);
+    ASSERT_TRUE(removed) << removed.error().text;
+    EXPECT_EQ(*removed, "[post_process]\n\n");
 }
 
 TEST_F(Splice, WhatCannotBeSplicedIsAnError) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 
 #include "core/param_text.hpp"
@@ -49,9 +50,9 @@ bool reads_same(std::string_view a, std::string_view b) {
     const toml::parse_result parsed = toml::parse(fmt::format("a = {}\nb = {}", a, b));
     if (!parsed) return false;
     const toml::node_view x = parsed.table()["a"], y = parsed.table()["b"];
-    if (x.is_number() && y.is_number())
-        return static_cast<float>(*x.value<double>()) == static_cast<float>(*y.value<double>());
-    return a == b;
+    if (!x.is_number() || !y.is_number()) return a == b;
+    const auto bits = [](double value) { return std::bit_cast<std::uint32_t>(static_cast<float>(value)); };
+    return bits(*x.value<double>()) == bits(*y.value<double>());
 }
 
 bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r\n") == std::string_view::npos; }
