@@ -14,6 +14,7 @@
 #include "edit/document.hpp"
 #include "edit/splice.hpp"
 #include "edit/test_random_edits.hpp"
+#include "edit/toml_source.hpp"
 
 namespace darkroom::edit {
 namespace {
@@ -266,6 +267,13 @@ TEST_F(Splice, TheInterfaceKeepsItsTable) {
     const auto removed = splice_look(made, with, plain);
     ASSERT_TRUE(removed) << removed.error().text;
     EXPECT_EQ(*removed, "[post_process]\n\n");
+}
+
+// Callers read a text before; what is none has no places, but an end.
+TEST_F(Splice, WhatIsNoTomlHasNoPlaces) {
+    for (const std::string text : {"a = \n", "a = [ , ]", "a = { b = , }", "[a", "a", "= 1", "a = \"b", "a = '''b",
+                                   "a = [[", "\"", "a = {", "a = [1  , , ]"})
+        EXPECT_FALSE(items_of(text)) << text;
 }
 
 TEST_F(Splice, WhatCannotBeSplicedIsAnError) {

@@ -176,8 +176,9 @@ class Scanner {
 
     /// A number, a boolean, or a date, which may hold a blank.
     void skip_scalar() {
+        const std::size_t begin = at_;
         at_ = std::min(text_.find_first_of(",]}#\r\n", at_), text_.size());
-        while (at_ > 0 && (text_[at_ - 1] == ' ' || text_[at_ - 1] == '\t')) --at_;
+        while (at_ > begin && (text_[at_ - 1] == ' ' || text_[at_ - 1] == '\t')) --at_;
     }
 
     std::string_view text_;
