@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <darkroom/effects.hpp>
@@ -140,10 +141,13 @@ Result<> LookFlags::add_custom_effects(Look& look) const {
     return {};
 }
 
-Result<> LookFlags::set_ui(Look& look, const std::filesystem::path& folder) const {
-    if (look.ui && !look.ui->document.empty()) look.ui->document = (folder / look.ui->document).string();
-    if (look.ui)
-        for (std::string& script : look.ui->controllers) script = (folder / script).string();
+void resolve_ui(Look& look, const std::filesystem::path& folder) {
+    if (!look.ui) return;
+    if (!look.ui->document.empty()) look.ui->document = (folder / look.ui->document).string();
+    for (std::string& script : look.ui->controllers) script = (folder / script).string();
+}
+
+Result<> LookFlags::set_ui(Look& look) const {
     if (!ui_file_.empty()) {
         darkroom::add_ui(look);
         look.ui->document = ui_file_;
@@ -180,35 +184,49 @@ Result<> LookFlags::set_order(Look& look) const {
     return {};
 }
 
-Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
-    std::vector<std::string> warnings;
-    const darkroom::LookOptions options{.is_strict = is_strict_,
-                                        .warnings = &warnings,
-                                        .is_scene = file.empty() || is_scene_name(file),
-                                        .allows_custom_effects = !has_no_custom_effects_,
-                                        .load_resource = darkroom::load_resource_file};
-    const std::filesystem::path path = file.empty() ? scene : std::filesystem::path(file);
-    Result<Look> look = path.empty() ? Result<Look>(darkroom::default_look()) : darkroom::read_look(path, options);
-    for (const std::string& warning : warnings) warn(warning);
-    if (!look) return look;
-    if (Result<> done = set_ui(*look, path.parent_path()); !done) return failure(std::move(done));
-    if (Result<> done = set_order(*look); !done) return failure(std::move(done));
+darkroom::LookOptions LookFlags::options(std::vector<std::string>* warnings) const {
+    return {.is_strict = is_strict_,
+            .warnings = warnings,
+            .is_scene = file.empty() || is_scene_name(file),
+            .allows_custom_effects = !has_no_custom_effects_,
+            .load_resource = darkroom::load_resource_file};
+}
+
+bool LookFlags::change_anything() const {
+    return !ui_file_.empty() || !game_.empty() || !order_.empty() || !sets_.empty() || !effect_files_.empty() ||
+           std::ranges::any_of(values_, [](const auto& value) { return value->option->count() > 0; });
+}
+
+Result<> LookFlags::change(Look& look, bool keeps_what_is_off) const {
+    if (Result<> done = set_ui(look); !done) return done;
+    if (Result<> done = set_order(look); !done) return done;
     // They have no place before it is known what is on, but values already.
-    if (Result<> done = add_custom_effects(*look); !done) return failure(std::move(done));
+    if (Result<> done = add_custom_effects(look); !done) return done;
     const Result<std::vector<LookOverride>> values = overrides();
     if (!values) return failure(values.error());
-    if (Result<> done = darkroom::override_look(*look, *values, options); !done) return failure(std::move(done));
+    if (Result<> done = darkroom::override_look(look, *values, options(nullptr)); !done) return done;
+    const auto first = look.entries.end() - static_cast<std::ptrdiff_t>(effect_files_.size());
+    const std::vector<darkroom::LookEntry> customs(first, look.entries.end());
+    look.entries.erase(first, look.entries.end());
+    if (!keeps_what_is_off) drop_what_is_off(look);
+    for (const darkroom::LookEntry& entry : customs)
+        if (Result<> done = darkroom::place_entry(look, entry); !done) return done;
+    return {};
+}
+
+Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
+    std::vector<std::string> warnings;
+    const std::filesystem::path path = file.empty() ? scene : std::filesystem::path(file);
+    Result<Look> look =
+        path.empty() ? Result<Look>(darkroom::default_look()) : darkroom::read_look(path, options(&warnings));
+    for (const std::string& warning : warnings) warn(warning);
+    if (!look) return look;
+    resolve_ui(*look, path.parent_path());
+    if (Result<> done = change(*look, !events.empty()); !done) return failure(std::move(done));
     if (is_off_) {
         *look = darkroom::default_look();
         look->is_enabled = false;
-        return look;
     }
-    const auto first = look->entries.end() - static_cast<std::ptrdiff_t>(effect_files_.size());
-    const std::vector<darkroom::LookEntry> customs(first, look->entries.end());
-    look->entries.erase(first, look->entries.end());
-    if (events.empty()) drop_what_is_off(*look);
-    for (const darkroom::LookEntry& entry : customs)
-        if (Result<> done = darkroom::place_entry(*look, entry); !done) return failure(std::move(done));
     return look;
 }
 

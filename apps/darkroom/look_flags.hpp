@@ -13,6 +13,9 @@
 
 namespace app {
 
+/// Makes the files of a look's interface, which are relative to `folder`, such that they can be opened.
+void resolve_ui(darkroom::Look& look, const std::filesystem::path& folder);
+
 class LookFlags {
   public:
     /// `has_look_flag`: false where the look is a positional argument. `named`: effects of files.
@@ -20,6 +23,13 @@ class LookFlags {
     /// Reads the look and applies the flags. Prints warnings. Without a file of its own it is that of the scene. The
     /// document of its interface is as it can be opened.
     [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& scene = {}) const;
+    /// How it reads the files of looks. `warnings` outlives what is returned.
+    [[nodiscard]] darkroom::LookOptions options(std::vector<std::string>* warnings) const;
+    /// What the flags say of any look: what look() does to the one that it has read. Those that are off keep their
+    /// place where it is asked for. --ui becomes the interface's document as it was typed.
+    [[nodiscard]] darkroom::Result<> change(darkroom::Look& look, bool keeps_what_is_off) const;
+    [[nodiscard]] bool change_anything() const;
+    [[nodiscard]] const std::string& ui_file() const { return ui_file_; }
     /// --no-postprocess. look() is then the default one, switched off.
     [[nodiscard]] bool is_off() const { return is_off_; }
     [[nodiscard]] bool is_strict() const { return is_strict_; }
@@ -40,7 +50,7 @@ class LookFlags {
     /// Puts those of --effect behind the look's entries, at their defaults.
     [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_order(darkroom::Look& look) const;
-    [[nodiscard]] darkroom::Result<> set_ui(darkroom::Look& look, const std::filesystem::path& folder) const;
+    [[nodiscard]] darkroom::Result<> set_ui(darkroom::Look& look) const;
 
     std::string order_, ui_file_;
     std::vector<std::string> sets_, effect_files_, game_;

@@ -68,6 +68,9 @@ int run(int argc, char** argv) {
                          app::add_effects(program),       app::add_devices(program),
                          app::add_compare(program),       app::add_info(program)};
     std::ranges::move(app::add_lut(program, named), std::back_inserter(commands));
+#ifdef DARKROOM_VIEWER
+    std::ranges::move(app::add_viewer(program, named), std::back_inserter(commands));
+#endif
     // CLI11 would take the next argument for the value.
     for (int i = 1; i < argc; ++i) {
         const std::string_view argument = argv[i];

@@ -26,13 +26,24 @@ std::optional<darkroom::Handle> moved_entry(const Composer& composer) {
     return std::nullopt;
 }
 
-darkroom::HudValue shown(const darkroom::GameValue& value) {
+}  // namespace
+
+darkroom::HudValue hud_value(const darkroom::GameValue& value) {
     if (const bool* const toggle = std::get_if<bool>(&value)) return *toggle ? 1.0 : 0.0;
     if (const double* const number = std::get_if<double>(&value)) return *number;
     return std::get<std::string>(value);
 }
 
-}  // namespace
+Result<> move_interface(Composer& composer, darkroom::Vec2 offset) {
+    const std::optional<darkroom::Handle> entry = moved_entry(composer);
+    if (!entry) return {};
+    // On top of where the look has it.
+    const auto base = composer.words(*entry).subspan(composer.info(*entry)->parameters.find("offset")->word, 2);
+    const std::array words{
+        std::bit_cast<std::uint32_t>(std::clamp(std::bit_cast<float>(base[0]) + offset.x, -1.0f, 1.0f)),
+        std::bit_cast<std::uint32_t>(std::clamp(std::bit_cast<float>(base[1]) + offset.y, -1.0f, 1.0f))};
+    return composer.set_override(*entry, "offset", "inertia", words);
+}
 
 std::vector<std::filesystem::path> ui_files(const darkroom::Look& look) {
     if (!look.ui) return {};
@@ -89,15 +100,8 @@ Result<> UiSource::advance(Composer& composer, double time) {
     for (const GameEvent& event : events_)
         if (event.time <= time)
             for (const auto& [name, value] : event.values) game_.insert_or_assign(name, value);
-    if (const auto entry = events_.empty() ? std::nullopt : moved_entry(composer)) {
-        const darkroom::Vec2 offset = offset_at(time);
-        // On top of where the look has it.
-        const auto base = composer.words(*entry).subspan(composer.info(*entry)->parameters.find("offset")->word, 2);
-        const std::array words{
-            std::bit_cast<std::uint32_t>(std::clamp(std::bit_cast<float>(base[0]) + offset.x, -1.0f, 1.0f)),
-            std::bit_cast<std::uint32_t>(std::clamp(std::bit_cast<float>(base[1]) + offset.y, -1.0f, 1.0f))};
-        if (Result<> done = composer.set_override(*entry, "offset", "inertia", words); !done) return done;
-    }
+    if (!events_.empty())
+        if (Result<> done = move_interface(composer, offset_at(time)); !done) return done;
     if (controllers_) controllers_->frame({.time = time, .game = &game_});
     return {};
 }
@@ -110,7 +114,7 @@ Result<std::shared_ptr<const std::vector<std::uint8_t>>> UiSource::picture(VkExt
             if (!loaded) return failure(std::move(loaded));
             document_ = std::move(*loaded);
         }
-        for (const auto& [name, value] : game_) document_->set(name, shown(value));
+        for (const auto& [name, value] : game_) document_->set(name, hud_value(value));
         const auto drawn = document_->picture(extent.width, extent.height);
         if (drawn == nullptr || !document_->error().empty()) return darkroom::user_error(document_->error());
         picture_ = {drawn, &drawn->rgba};

@@ -21,6 +21,12 @@ namespace app {
 /// What the interface of a look, as LookFlags gives it, is read from.
 [[nodiscard]] std::vector<std::filesystem::path> ui_files(const darkroom::Look& look);
 
+/// As documents have it.
+[[nodiscard]] darkroom::HudValue hud_value(const darkroom::GameValue& value);
+/// Lets the interface lag behind by this, on top of where the look has it: an override. Nothing where no entry has a
+/// place.
+[[nodiscard]] darkroom::Result<> move_interface(darkroom::Composer& composer, darkroom::Vec2 offset);
+
 class UiSource {
   public:
     UiSource() = default;

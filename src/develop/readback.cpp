@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "core/assert.hpp"
 #include "gpu/formats.hpp"
@@ -25,6 +26,7 @@ constexpr std::array layouts{
     Layout{VK_FORMAT_R16G16_SFLOAT, 2, 2},       Layout{VK_FORMAT_R16G16B16A16_SFLOAT, 4, 2},
     Layout{VK_FORMAT_R32_SFLOAT, 1, 4},          Layout{VK_FORMAT_R32G32_SFLOAT, 2, 4},
     Layout{VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4}, Layout{VK_FORMAT_D32_SFLOAT, 1, 4},
+    Layout{VK_FORMAT_B8G8R8A8_UNORM, 4, 1},
 };
 
 const Layout* layout_of(VkFormat format) {
@@ -141,9 +143,12 @@ std::vector<float> Readback::floats(std::uint32_t channels) const {
 }
 
 std::vector<std::uint8_t> Readback::bytes() const {
-    DARKROOM_ASSERT(image_.format == VK_FORMAT_R8G8B8A8_UNORM);
+    const bool is_blue_first = image_.format == VK_FORMAT_B8G8R8A8_UNORM;
+    DARKROOM_ASSERT(is_blue_first || image_.format == VK_FORMAT_R8G8B8A8_UNORM);
     std::vector<std::uint8_t> out(texel_count(image_) * 4);
     std::memcpy(out.data(), buffer_.memory.mapped, out.size());
+    if (is_blue_first)
+        for (std::size_t i = 0; i < out.size(); i += 4) std::swap(out[i], out[i + 2]);
     return out;
 }
 

@@ -32,8 +32,8 @@ struct DevelopedPicture {
     std::vector<float> pixels;
 };
 
-/// One image and the buffer it is copied to: RGBA8, 16- and 32-bit floats, or 32-bit depth. Of an array all layers that
-/// the reference has, one after the other.
+/// One image and the buffer it is copied to: RGBA8, BGRA8, 16- and 32-bit floats, or 32-bit depth. Of an array all
+/// layers that the reference has, one after the other.
 class Readback {
   public:
     [[nodiscard]] static Result<Readback> create(gpu::Context& context, const ImageRef& image);
@@ -41,8 +41,9 @@ class Readback {
     void record(VkCommandBuffer commands) const;
     /// The rest when the recording has finished. `channels`: the first of the image's; floats as they are, bytes / 255.
     [[nodiscard]] std::vector<float> floats(std::uint32_t channels) const;
-    /// Only of RGBA8: four a pixel.
+    /// Only of RGBA8 and BGRA8: red, green, blue, alpha.
     [[nodiscard]] std::vector<std::uint8_t> bytes() const;
+    [[nodiscard]] VkExtent2D extent() const { return image_.used_region().extent; }
 
   private:
     gpu::Context* context_ = nullptr;

@@ -110,7 +110,7 @@ void Window::wait(double seconds) {
 }
 
 bool Window::is_closing() const { return glfwWindowShouldClose(handle()) != 0; }
-void Window::close() { glfwSetWindowShouldClose(handle(), GLFW_TRUE); }
+void Window::stay_open() { glfwSetWindowShouldClose(handle(), GLFW_FALSE); }
 
 VkExtent2D Window::extent() const {
     if (glfwGetWindowAttrib(handle(), GLFW_ICONIFIED) != 0) return {0, 0};

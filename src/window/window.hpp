@@ -43,7 +43,8 @@ class Window {
     /// The same, but sleeps until something happens, at most so many seconds: while there is nothing to draw.
     void wait(double seconds);
     [[nodiscard]] bool is_closing() const;
-    void close();
+    /// Takes back that its user closed it.
+    void stay_open();
 
     /// Of what is drawn, in pixels; (0, 0): it is minimised.
     [[nodiscard]] VkExtent2D extent() const;

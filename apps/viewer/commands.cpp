@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "commands.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "keys.hpp"
+#include "report.hpp"
+#include "view_flags.hpp"
+
+namespace app {
+
+namespace {
+
+Command add_view(CLI::App& program, const char* name, const char* doc, bool is_edit,
+                 std::span<const darkroom::LookEntry> named) {
+    CLI::App* const command = program.add_subcommand(name, doc);
+    const auto flags = std::make_shared<ViewFlags>();
+    flags->add_to(*command, is_edit, named);
+    return {command, [flags] {
+                if (flags->asks_for_keys()) {
+                    fmt::print("{}", keys_text());
+                    return exit_ok;
+                }
+                darkroom::Result<ViewerJob> job = flags->job();
+                return job ? run_viewer(std::move(*job)) : fail(job.error());
+            }};
+}
+
+}  // namespace
+
+std::vector<Command> add_viewer(CLI::App& program, std::span<const darkroom::LookEntry> named) {
+    return {add_view(program, "play", "Walks through a scene, live, in a window", false, named),
+            add_view(program, "edit", "Shows a scene or frames, live, with every parameter at hand", true, named)};
+}
+
+}  // namespace app

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+#include "edit_panels.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+
+#include "panels/plan_picture.hpp"
+#include "panels/theme.hpp"
+
+namespace app {
+
+namespace {
+
+using darkroom::window::PaneChannels;
+using darkroom::window::PaneTransfer;
+
+constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                                   ImGuiWindowFlags_NoBringToFrontOnFocus;
+constexpr std::array sides{"look", "saved", "off"};
+constexpr std::array channels{"RGB", "red", "green", "blue", "alpha", "luminance"};
+
+void begin(const char* name, const VkRect2D& area, ImGuiWindowFlags more = 0) {
+    ImGui::SetNextWindowPos({static_cast<float>(area.offset.x), static_cast<float>(area.offset.y)});
+    ImGui::SetNextWindowSize({static_cast<float>(area.extent.width), static_cast<float>(area.extent.height)});
+    ImGui::Begin(name, nullptr, fixed | more);
+}
+
+template <class Value, std::size_t Count>
+void combo(const char* name, Value& value, const std::array<const char*, Count>& names) {
+    int chosen = static_cast<int>(value);
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 5.5F);
+    if (ImGui::Combo(name, &chosen, names.data(), static_cast<int>(names.size()))) value = static_cast<Value>(chosen);
+}
+
+void tip(const char* text) {
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+}
+
+std::string number_text(float value) { return fmt::format("{:.5g}", value); }
+
+}  // namespace
+
+EditPanels::Layout EditPanels::layout(VkExtent2D window, float scale, bool has_timeline) const {
+    const auto pixels = [&](float at_one) { return static_cast<std::uint32_t>(at_one * scale); };
+    const std::uint32_t width = window.width, height = window.height;
+    const std::uint32_t row = std::min(pixels(38), height), side = std::min(pixels(296), width / 3);
+    const std::uint32_t below = std::min(std::max(height * 3 / 10, pixels(200)), (height - row) / 2);
+    const std::uint32_t middle = width - 2 * side;
+    const std::uint32_t timeline = has_timeline ? row : 0;
+    const std::uint32_t picture = height - std::min(height, 2 * row + timeline + below);
+    const auto rect = [](std::uint32_t x, std::uint32_t y, std::uint32_t w, std::uint32_t h) {
+        return VkRect2D{{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
+                        {std::max(w, 1U), std::max(h, 1U)}};
+    };
+    return {.bar = rect(0, 0, width, row),
+            .stack = rect(0, row, side, height - row),
+            .entry = rect(width - side, row, side, height - row),
+            .view_bar = rect(side, row, middle, row),
+            .picture = rect(side, 2 * row, middle, picture),
+            .timeline = rect(side, 2 * row + picture, middle, timeline),
+            .below = rect(side, height - below, middle, below)};
+}
+
+const darkroom::PlanImage* EditPanels::watched(const darkroom::Plan* plan) const {
+    if (tab_ != Tab::Images || plan == nullptr) return nullptr;
+    const auto found = std::ranges::find(plan->images, image_, &darkroom::PlanImage::name);
+    return found == plan->images.end() ? nullptr : &*found;
+}
+
+void EditPanels::draw(const Input& input, PictureView& picture) {
+    const bool has_timeline = input.source.frames() > 0;
+    const Layout area = layout(input.window, input.scale, has_timeline);
+    look_.set_plan(input.composer.current_plan(), input.composer.pending().is_pending);
+    times_.add(input.composer.times(), input.composer.record_microseconds());
+    begin("##bar", area.bar, ImGuiWindowFlags_NoScrollbar);
+    look_.draw_bar();
+    ImGui::End();
+    begin("##stack", area.stack);
+    look_.draw_stack();
+    ImGui::End();
+    begin("##entry", area.entry);
+    look_.draw_entry();
+    ImGui::End();
+    begin("##view", area.view_bar, ImGuiWindowFlags_NoScrollbar);
+    draw_view_bar(picture);
+    ImGui::End();
+    if (has_timeline) {
+        begin("##timeline", area.timeline, ImGuiWindowFlags_NoScrollbar);
+        draw_timeline(input);
+        ImGui::End();
+    }
+    begin("##below", area.below);
+    draw_below(input, picture);
+    ImGui::End();
+    const float room = static_cast<float>(area.picture.extent.width);
+    const float height = look_.messages().height(room);
+    if (height > 0) {
+        VkRect2D strip = area.picture;
+        strip.extent.height = std::min(strip.extent.height, static_cast<std::uint32_t>(height + 16 * input.scale));
+        begin("##messages", strip);
+        look_.draw_messages();
+        ImGui::End();
+    }
+    look_.draw_popups();
+}
+
+void EditPanels::draw_view_bar(PictureView& picture) {
+    darkroom::window::Pane& pane = picture.pane();
+    const float em = ImGui::GetFontSize();
+    ImGui::Checkbox("A/B", &is_comparing_);
+    tip("Compares two of: the look, the look as it was saved, all off. The divider can be dragged.");
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!is_comparing_);
+    combo("##left", left_, sides);
+    ImGui::SameLine(0, 2);
+    combo("##right", right_, sides);
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(5 * em);
+    ImGui::SliderFloat("##exposure", &pane.exposure, -10, 10, "%+.1f stops");
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) pane.exposure = 0;
+    tip("Brightens what is shown here, and nothing else. Double-click: 0.");
+    ImGui::SameLine();
+    combo("##channels", pane.channels, channels);
+    ImGui::SameLine();
+    ImGui::Checkbox("False", &pane.is_false_color);
+    tip("False colours by level; the legend is beside the scopes.");
+    ImGui::SameLine();
+    ImGui::Checkbox("Clip", &pane.is_clipping_marked);
+    tip("Stripes where it is black (blue) or white (red); magenta: not a number.");
+    ImGui::SameLine();
+    bool is_fitted = picture.zoom() == 0;
+    if (ImGui::Checkbox("Fit", &is_fitted)) is_fitted ? picture.fit() : picture.set_zoom(1);
+    tip("All of the picture, or a pixel on a pixel. The wheel zooms where no camera wants it.");
+}
+
+void EditPanels::draw_timeline(const Input& input) {
+    if (ImGui::Button(input.is_paused ? "Play" : "Pause", {4.5F * ImGui::GetFontSize(), 0})) is_pause_wanted_ = true;
+    ImGui::SameLine();
+    int number = static_cast<int>(input.number);
+    ImGui::SetNextItemWidth(-1);
+    const std::string shown = input.source.shown_frame(input.number);
+    if (ImGui::SliderInt("##frame", &number, 0, static_cast<int>(input.source.frames()) - 1, shown.c_str()))
+        number_ = static_cast<std::size_t>(std::clamp(number, 0, static_cast<int>(input.source.frames()) - 1));
+}
+
+void EditPanels::draw_below(const Input& input, PictureView& picture) {
+    if (!ImGui::BeginTabBar("##tabs")) return;
+    const auto tab = [&](const char* name, Tab which, const auto& draw) {
+        if (!ImGui::BeginTabItem(name)) return;
+        tab_ = which;
+        ImGui::BeginChild(name);
+        draw();
+        ImGui::EndChild();
+        ImGui::EndTabItem();
+    };
+    const darkroom::Plan* const plan = input.composer.current_plan();
+    tab("Plan", Tab::Plan, [&] {
+        if (plan != nullptr) darkroom::panels::draw_plan_picture(*plan);
+    });
+    tab("Times", Tab::Times, [&] { timings_.draw(times_); });
+    tab("Scopes", Tab::Scopes, [&] {
+        const bool has_legend = picture.pane().is_false_color;
+        const float legend = has_legend ? 12 * ImGui::GetFontSize() : 0;
+        ImGui::BeginChild("##scopes", {-legend, 0});
+        scopes_.draw();
+        ImGui::EndChild();
+        if (!has_legend) return;
+        ImGui::SameLine();
+        ImGui::BeginChild("##legend");
+        if (picture.pane().view.transfer == PaneTransfer::SceneLinear)
+            darkroom::panels::draw_legend(darkroom::panels::stop_bands);
+        else
+            darkroom::panels::draw_legend(darkroom::panels::code_bands);
+        ImGui::EndChild();
+    });
+    tab("Images", Tab::Images, [&] { draw_images(input); });
+    tab("Pixel", Tab::Pixel, [&] { draw_pixel(input); });
+    ImGui::EndTabBar();
+}
+
+void EditPanels::draw_images(const Input& input) {
+    const darkroom::Plan* const plan = input.composer.current_plan();
+    if (plan == nullptr) return;
+    ImGui::BeginChild("##list", {20 * ImGui::GetFontSize(), 0});
+    if (ImGui::Selectable("the finished picture", image_.empty())) image_.clear();
+    for (const darkroom::PlanImage& image : plan->images) {
+        for (std::uint32_t level = 0; level < image.mip_levels; ++level) {
+            const std::string name = image.mip_levels > 1 ? fmt::format("{}, level {}", image.name, level) : image.name;
+            const std::string row = fmt::format("{}  {}x{}", name, std::max(image.extent.width >> level, 1U),
+                                                std::max(image.extent.height >> level, 1U));
+            if (ImGui::Selectable(row.c_str(), image.name == image_ && level == level_)) {
+                image_ = image.name;
+                level_ = level;
+            }
+        }
+    }
+    ImGui::EndChild();
+    ImGui::SameLine();
+    ImGui::BeginChild("##how");
+    if (image_.empty()) {
+        ImGui::TextWrapped("Choose an image: it is shown in place of the picture.");
+    } else {
+        using darkroom::WatchState;
+        if (input.watch_state == WatchState::NotWritten)
+            ImGui::TextWrapped("No pass writes it in this frame.");
+        else if (input.watch_state == WatchState::NotInPlan)
+            ImGui::TextWrapped("Coming with the next plan ...");
+        darkroom::window::PaneView& view = image_view_;
+        int transfer = view.transfer == PaneTransfer::Raw ? 1 : 0;
+        ImGui::RadioButton("as light", &transfer, 0);
+        ImGui::SameLine();
+        ImGui::RadioButton("as numbers", &transfer, 1);
+        view.transfer = transfer == 1 ? PaneTransfer::Raw : PaneTransfer::SceneLinear;
+        if (view.transfer == PaneTransfer::Raw)
+            ImGui::DragFloatRange2("black, white", &view.low, &view.high, 0.01F, -1e6F, 1e6F, "%.3f", "%.3f");
+        ImGui::TextWrapped("Exposure and channels are above the picture.");
+    }
+    ImGui::EndChild();
+}
+
+void EditPanels::draw_pixel(const Input& input) const {
+    if (!pixel_)
+        return ImGui::TextWrapped("Click into the picture: what every effect makes of that pixel is shown here.");
+    if (input.inspection == nullptr || input.inspection->pixels.empty())
+        return ImGui::Text("%d, %d: wait for the plan ...", pixel_->x, pixel_->y);
+    const darkroom::InspectedPixel& pixel = input.inspection->pixels.front();
+    constexpr ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_SizingFixedFit;
+    if (!ImGui::BeginTable("##values", 7, flags)) return;
+    ImGui::TableSetupScrollFreeze(0, 1);
+    const std::string place = fmt::format("{}, {}", pixel.at.x, pixel.at.y);
+    for (const char* const name : {place.c_str(), "red", "green", "blue", "alpha", "change", ""})
+        ImGui::TableSetupColumn(name);
+    ImGui::TableHeadersRow();
+    const auto row = [](const std::string& name, const darkroom::PixelValue& value) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(name.c_str());
+        for (const float number : value) {
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(number_text(number).c_str());
+        }
+        ImGui::TableNextColumn();
+    };
+    row("the frame", pixel.scene);
+    for (std::size_t i = 0; i < pixel.entries.size(); ++i) {
+        const darkroom::InspectedEntry& entry = pixel.entries[i];
+        const bool is_on = entry.presence == darkroom::EntryPresence::On;
+        if (!is_on) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+        row(entry.name, entry.after);
+        if (is_on) ImGui::TextUnformatted(fmt::format("{:.4g}", entry.change).c_str());
+        ImGui::TableNextColumn();
+        if (!is_on) {
+            ImGui::TextUnformatted(entry.why.empty() ? "off" : entry.why.c_str());
+            ImGui::PopStyleColor();
+        } else if (pixel.born == i) {
+            ImGui::TextColored(darkroom::panels::accent_color, "not finite from here on");
+        }
+    }
+    ImGui::EndTable();
+}
+
+}  // namespace app

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The panels of `edit`: the stack to the left, the selected effect to the right, what can be seen of a frame below.
+
+#include <darkroom/composer.hpp>
+#include <optional>
+#include <string>
+
+#include "develop/inspector.hpp"
+#include "live_source.hpp"
+#include "panels/panels.hpp"
+#include "panels/scopes.hpp"
+#include "panels/timings.hpp"
+#include "picture_view.hpp"
+
+namespace app {
+
+/// What can be seen of a frame: through the look that is edited, as its file has it, without any.
+enum class Side : std::uint8_t { Look, Saved, Off };
+inline constexpr std::size_t side_count = 3;
+
+class EditPanels {
+  public:
+    /// The document outlives them.
+    explicit EditPanels(darkroom::edit::LookDocument& document) : look_(document) {}
+
+    /// Areas of a window, in pixels.
+    struct Layout {
+        VkRect2D bar, stack, entry, view_bar, picture, timeline, below;
+    };
+    [[nodiscard]] Layout layout(VkExtent2D window, float scale, bool has_timeline) const;
+
+    /// What there is to be shown.
+    struct Input {
+        LiveSource& source;
+        darkroom::Composer& composer;
+        VkExtent2D window{};
+        float scale = 1;
+        std::size_t number = 0;  ///< of a sequence
+        bool is_paused = false;
+        const darkroom::Inspection* inspection = nullptr;  ///< of the pixel that was chosen
+        darkroom::WatchState watch_state = darkroom::WatchState::NotInPlan;
+    };
+    void draw(const Input& input, PictureView& picture);
+    void measure(const darkroom::panels::ScopePicture& picture) { scopes_.set(darkroom::panels::measure(picture)); }
+
+    [[nodiscard]] darkroom::panels::LookPanels& look() { return look_; }
+
+    // What its user wants.
+    [[nodiscard]] bool is_comparing() const { return is_comparing_; }
+    void toggle_compare() { is_comparing_ = !is_comparing_; }
+    [[nodiscard]] Side left() const { return left_; }
+    [[nodiscard]] Side right() const { return right_; }
+    [[nodiscard]] bool wants_scopes() const { return tab_ == Tab::Scopes; }
+    /// The pixel whose way through the stack is shown; nothing: nobody asks.
+    [[nodiscard]] std::optional<VkOffset2D> pixel() const { return tab_ == Tab::Pixel ? pixel_ : std::nullopt; }
+    void choose(VkOffset2D pixel) { pixel_ = pixel; }
+    [[nodiscard]] bool is_choosing() const { return tab_ == Tab::Pixel; }
+    /// The image of the plan that is shown in place of the picture, and its mip level.
+    [[nodiscard]] const darkroom::PlanImage* watched(const darkroom::Plan* plan) const;
+    [[nodiscard]] std::uint32_t watched_level() const { return level_; }
+    /// How it is shown; the image is whoever's has it.
+    [[nodiscard]] const darkroom::window::PaneView& watched_view() const { return image_view_; }
+    [[nodiscard]] std::optional<std::size_t> take_number() { return std::exchange(number_, std::nullopt); }
+    [[nodiscard]] bool take_pause() { return std::exchange(is_pause_wanted_, false); }
+
+  private:
+    enum class Tab : std::uint8_t { Plan, Times, Scopes, Images, Pixel };
+    void draw_view_bar(PictureView& picture);
+    void draw_timeline(const Input& input);
+    void draw_below(const Input& input, PictureView& picture);
+    void draw_images(const Input& input);
+    void draw_pixel(const Input& input) const;
+
+    darkroom::panels::LookPanels look_;
+    darkroom::panels::TimingHistory times_;
+    darkroom::panels::TimingsPanel timings_;
+    darkroom::panels::ScopesPanel scopes_;
+    Tab tab_ = Tab::Plan;
+    bool is_comparing_ = false, is_pause_wanted_ = false;
+    Side left_ = Side::Look, right_ = Side::Off;
+    std::string image_;
+    std::uint32_t level_ = 0;
+    darkroom::window::PaneView image_view_{.transfer = darkroom::window::PaneTransfer::SceneLinear};
+    std::optional<VkOffset2D> pixel_;
+    std::optional<std::size_t> number_;
+};
+
+}  // namespace app

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "gui.hpp"
+
+#include <backends/imgui_impl_glfw.h>
+#include <imgui.h>
+
+#include "gpu/context.hpp"
+#include "panels/theme.hpp"
+
+namespace app {
+
+using darkroom::Result;
+
+Result<std::unique_ptr<Gui>> Gui::create(darkroom::gpu::Context& context, darkroom::window::Window& window,
+                                         VkFormat format, std::uint32_t slots) {
+    std::unique_ptr<Gui> out(new Gui(context));
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;  // where panels lie follows from the window's size
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+    out->is_attached_ = ImGui_ImplGlfw_InitForOther(window.handle(), true);
+    out->scale_ = window.scale();
+    darkroom::panels::apply_theme(out->scale_);
+    Result<darkroom::window::GuiPass> pass =
+        darkroom::window::GuiPass::create(context, {.format = format, .slots = slots}, *io.Fonts);
+    if (!pass) return failure(std::move(pass));
+    out->pass_.emplace(std::move(*pass));
+    return out;
+}
+
+Gui::~Gui() {
+    if (is_attached_) ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+Result<> Gui::begin(float scale) {
+    if (scale != scale_) {
+        scale_ = scale;
+        darkroom::panels::apply_theme(scale);
+        if (Result<> done = pass_->upload_fonts(*ImGui::GetIO().Fonts); !done) return done;
+    }
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    return {};
+}
+
+Result<> Gui::draw(const darkroom::window::PresentFrame& frame) {
+    ImGui::Render();
+    const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                               .imageView = frame.view,
+                                               .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                               .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                               .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+                                               .clearValue = {.color = {.float32 = {0.0F, 0.0F, 0.0F, 1.0F}}}};
+    const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                    .renderArea = {{0, 0}, frame.extent},
+                                    .layerCount = 1,
+                                    .colorAttachmentCount = 1,
+                                    .pColorAttachments = &attachment};
+    context_.vk.CmdBeginRendering(frame.commands, &rendering);
+    Result<> done;
+    // The window may have changed between its events and the swapchain.
+    ImDrawData* const lists = ImGui::GetDrawData();
+    const auto width = static_cast<std::uint32_t>(lists->DisplaySize.x * lists->FramebufferScale.x);
+    const auto height = static_cast<std::uint32_t>(lists->DisplaySize.y * lists->FramebufferScale.y);
+    if (width == frame.extent.width && height == frame.extent.height)
+        done = pass_->record(frame.commands, *lists, frame.slot);
+    context_.vk.CmdEndRendering(frame.commands);
+    return done;
+}
+
+bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
+bool Gui::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
+
+}  // namespace app

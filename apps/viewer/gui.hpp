@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Dear ImGui in a window of ours: its context, what the window's user does, and its lists on the picture.
+
+#include <memory>
+
+#include "window/gui_pass.hpp"
+#include "window/presenter.hpp"
+#include "window/window.hpp"
+
+namespace app {
+
+class Gui {
+  public:
+    /// The window's callbacks are taken over; those it had are still called.
+    [[nodiscard]] static darkroom::Result<std::unique_ptr<Gui>> create(darkroom::gpu::Context& context,
+                                                                       darkroom::window::Window& window,
+                                                                       VkFormat format, std::uint32_t slots);
+    Gui(const Gui&) = delete;
+    Gui& operator=(const Gui&) = delete;
+    ~Gui();
+
+    /// Windows of the interface may be made from now on, up to draw(). `scale`: of text and spaces.
+    [[nodiscard]] darkroom::Result<> begin(float scale);
+    /// Ends what begin() began, and draws it over the whole frame.
+    [[nodiscard]] darkroom::Result<> draw(const darkroom::window::PresentFrame& frame);
+    /// Is somebody typing, or pointing at a panel?
+    [[nodiscard]] bool wants_keys() const;
+    [[nodiscard]] bool wants_mouse() const;
+
+  private:
+    explicit Gui(darkroom::gpu::Context& context) : context_(context) {}
+    darkroom::gpu::Context& context_;
+    std::optional<darkroom::window::GuiPass> pass_;
+    float scale_ = 0;
+    bool is_attached_ = false;
+};
+
+}  // namespace app

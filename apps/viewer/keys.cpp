@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "keys.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <darkroom/effects.hpp>
+
+namespace app {
+
+namespace {
+
+constexpr int relevant = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
+
+constexpr std::array table{
+    Key{GLFW_KEY_F1, 0, KeyAction::DebugView, "F1", "the next debug view: wireframe, normals, depth ..."},
+    Key{GLFW_KEY_F2, 0, KeyAction::WireframeOverlay, "F2", "edges of all triangles over the picture"},
+    Key{GLFW_KEY_F3, 0, KeyAction::NormalArrows, "F3", "an arrow for the normal of every vertex"},
+    Key{GLFW_KEY_F4, 0, KeyAction::Shadows, "F4", "shadows"},
+    Key{GLFW_KEY_F6, 0, KeyAction::All, "F6", "all post-processing"},
+    Key{GLFW_KEY_F11, 0, KeyAction::Fullscreen, "F11", "the whole screen, and back"},
+    Key{GLFW_KEY_F12, 0, KeyAction::Screenshot, "F12", "stores the picture as a PNG"},
+    Key{GLFW_KEY_F12, GLFW_MOD_SHIFT, KeyAction::WindowScreenshot, "Shift+F12", "stores the window as a PNG"},
+    Key{GLFW_KEY_C, GLFW_MOD_CONTROL, KeyAction::Capture, "Ctrl+C",
+        "stores the raw frame, which `develop` turns into the same picture"},
+    Key{GLFW_KEY_GRAVE_ACCENT, 0, KeyAction::Console, "~", "the console"},
+    Key{GLFW_KEY_TAB, 0, KeyAction::Panels, "Tab", "panels", false, true},
+    Key{GLFW_KEY_S, GLFW_MOD_CONTROL, KeyAction::Save, "Ctrl+S", "saves into the file that was opened", false, true},
+    Key{GLFW_KEY_Z, GLFW_MOD_CONTROL, KeyAction::Undo, "Ctrl+Z", "takes the last edit back", false, true},
+    Key{GLFW_KEY_Z, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT, KeyAction::Redo, "Ctrl+Shift+Z", "makes it again", false, true},
+    Key{GLFW_KEY_Y, GLFW_MOD_CONTROL, KeyAction::Redo, "Ctrl+Y", "the same", false, true},
+    Key{GLFW_KEY_P, 0, KeyAction::Pause, "P", "stops the time, and lets it go on"},
+    Key{GLFW_KEY_SPACE, 0, KeyAction::ResetCamera, "Space", "the scene's own camera", false, true},
+    Key{GLFW_KEY_F, 0, KeyAction::FrameAll, "F", "looks at everything", false, true},
+    Key{GLFW_KEY_V, 0, KeyAction::CameraKind, "V", "the camera orbits, or flies", false, true},
+    Key{GLFW_KEY_B, 0, KeyAction::Compare, "B", "compares two looks at a divider", false, true},
+    Key{GLFW_KEY_ESCAPE, 0, KeyAction::Leave, "Esc", "frees the mouse, then leaves"},
+};
+
+}  // namespace
+
+std::span<const Key> keys() { return table; }
+
+std::uint32_t function_key(int key) {
+    return key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12 ? static_cast<std::uint32_t>(key - GLFW_KEY_F1) + 1 : 0;
+}
+
+std::optional<KeyAction> action_of(const darkroom::window::KeyPress& press, bool is_edit) {
+    for (const Key& key : table)
+        if (key.key == press.key && key.modifiers == (press.modifiers & relevant) &&
+            (is_edit ? key.is_for_edit : key.is_for_play))
+            return key.action;
+    if (function_key(press.key) != 0 && (press.modifiers & relevant) == 0) return KeyAction::Effect;
+    return std::nullopt;
+}
+
+std::string keys_text() {
+    std::string out;
+    const auto line = [&](std::string_view shown, std::string_view doc, std::string_view where) {
+        out += fmt::format("{:<14}{}{}\n", shown, doc, where);
+    };
+    line("W A S D", "walks (play), flies (edit); with Shift faster", "");
+    line("Space", "jumps", "  [play]");
+    line("mouse", "looks round (play); left orbits, middle pans, right looks, wheel nears (edit)", "");
+    // Those of effects stand among the others by their number.
+    for (std::uint32_t number = 1; number <= 12; ++number) {
+        for (const Key& key : table)
+            if (function_key(key.key) == number) line(key.shown, key.doc, "");
+        for (const darkroom::EffectInfo* const effect : darkroom::all_effects())
+            if (effect->toggle_key == number) line(fmt::format("F{}", number), effect->name, "");
+    }
+    for (const Key& key : table)
+        if (function_key(key.key) == 0)
+            line(key.shown, key.doc, key.is_for_play ? (key.is_for_edit ? "" : "  [play]") : "  [edit]");
+    return out;
+}
+
+}  // namespace app

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A scene or a model, drawn for a viewer.
+
+#include <memory>
+
+#include "live_source.hpp"
+#include "scene/scene.hpp"
+
+namespace app {
+
+class SceneSource final : public LiveSource {
+  public:
+    struct Desc {
+        darkroom::render::RenderDesc render;
+        std::uint64_t seed = 0;
+        bool is_strict = false;
+    };
+    /// Reads the scene, uploads it. Errors are those of the file and the machine.
+    [[nodiscard]] static darkroom::Result<std::unique_ptr<SceneSource>> create(darkroom::Device& device,
+                                                                               const std::filesystem::path& file,
+                                                                               const Desc& desc);
+    [[nodiscard]] std::optional<VkExtent2D> extent() const override { return std::nullopt; }
+    [[nodiscard]] bool must_wait(const LiveMoment& moment, VkExtent2D extent) const override;
+    [[nodiscard]] darkroom::Result<> prepare(const LiveMoment& moment, VkExtent2D extent) override;
+    [[nodiscard]] darkroom::Result<> record(VkCommandBuffer commands) override;
+    [[nodiscard]] darkroom::Frame frame() const override;
+    [[nodiscard]] darkroom::CompileDesc compile_desc(VkExtent2D most) const override;
+    [[nodiscard]] std::optional<darkroom::ImageRef> display_picture() const override;
+    [[nodiscard]] std::vector<std::filesystem::path> files() const override;
+    [[nodiscard]] std::vector<std::string> take_warnings() override { return std::exchange(warnings_, {}); }
+
+    [[nodiscard]] const darkroom::scene::Scene& scene() const { return scene_; }
+    [[nodiscard]] const darkroom::scene::Assets& assets() const { return assets_; }
+    /// The last one that was prepared.
+    [[nodiscard]] const darkroom::scene::Snapshot& snapshot() const { return snapshot_; }
+
+  private:
+    SceneSource(darkroom::Device& device, std::filesystem::path file, const Desc& desc);
+    [[nodiscard]] darkroom::Result<> read();
+    [[nodiscard]] darkroom::Result<> use(bool is_display, const LiveMoment& moment, VkExtent2D extent);
+
+    darkroom::Device& device_;
+    std::filesystem::path file_;
+    Desc desc_;
+    darkroom::scene::Scene scene_;
+    darkroom::scene::Assets assets_;
+    darkroom::scene::Snapshot snapshot_;
+    std::optional<darkroom::render::Renderer> linear_, display_;
+    bool is_display_ = false, is_prepared_ = false;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace app

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "screen.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+
+#include "report.hpp"
+
+namespace app {
+
+namespace {
+
+constexpr double shown_for = 2;  ///< seconds
+constexpr std::size_t most_lines = 4, most_printed = 500, longest_command = 512;
+constexpr ImGuiWindowFlags plain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
+                                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
+
+ImVec2 corner_of(const VkRect2D& area) {
+    return {static_cast<float>(area.offset.x), static_cast<float>(area.offset.y)};
+}
+ImVec2 size_of(const VkRect2D& area) {
+    return {static_cast<float>(area.extent.width), static_cast<float>(area.extent.height)};
+}
+
+}  // namespace
+
+Screen::Screen(darkroom::edit::LookDocument* document) {
+    if (document != nullptr) panels_.emplace(*document);
+}
+
+VkRect2D Screen::picture_area(VkExtent2D window, float scale, bool has_timeline) const {
+    const EditPanels* const shown = panels();
+    return shown != nullptr ? shown->layout(window, scale, has_timeline).picture : VkRect2D{{0, 0}, window};
+}
+
+void Screen::tell(std::string line) {
+    if (!lines_.empty() && lines_.back().text == line) lines_.pop_back();
+    lines_.push_back({std::move(line), now_ + shown_for});
+    if (lines_.size() > most_lines) lines_.pop_front();
+}
+
+void Screen::tell_error(std::string_view source, std::string line) {
+    std::string& said = said_[std::string(source)];
+    if (said == line) return;
+    said = line;
+    print(line);
+    complain(line);
+    (panels_ ? panels_->look().messages() : messages_)
+        .report(source, darkroom::Error{darkroom::Fault::User, std::move(line)});
+}
+
+void Screen::clear_error(std::string_view source) { (panels_ ? panels_->look().messages() : messages_).clear(source); }
+
+void Screen::print(std::string line) {
+    printed_.push_back(std::move(line));
+    if (printed_.size() > most_printed) printed_.pop_front();
+}
+
+void Screen::draw(const Input& input) {
+    now_ += input.passed;
+    const VkRect2D area = picture_area(input.window, input.scale, input.source.frames() > 0);
+    if (EditPanels* const shown = panels())
+        shown->draw({.source = input.source,
+                     .composer = input.view.composer(),
+                     .window = input.window,
+                     .scale = input.scale,
+                     .number = input.number,
+                     .is_paused = input.is_paused,
+                     .inspection = input.inspection,
+                     .watch_state = input.view.watch_state()},
+                    picture_);
+    draw_picture(input, area);
+    draw_errors(input, area);
+    if (has_console_) draw_console(area);
+    draw_lines(input, area);
+}
+
+void Screen::draw_picture(const Input& input, const VkRect2D& area) {
+    PictureView::Shown shown{
+        .first = {.image = input.picture}, .extent = input.extent, .can_zoom = input.source.extent().has_value()};
+    if (input.compared.is_given()) shown.second = darkroom::window::PaneView{.image = input.compared};
+    EditPanels* const edit = panels();
+    if (input.watched.is_given() && edit != nullptr) {
+        shown.first = edit->watched_view();
+        shown.first.image = input.watched;
+        shown.second.reset();
+    }
+    picture_.draw(shown, area);
+    // A click, and not the end of a drag of the camera.
+    const ImVec2 dragged = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
+    if (edit != nullptr && edit->is_choosing() && picture_.pointed() && !picture_.is_busy() &&
+        ImGui::IsMouseReleased(ImGuiMouseButton_Left) && dragged.x * dragged.x + dragged.y * dragged.y < 9)
+        edit->choose(*picture_.pointed());
+}
+
+void Screen::draw_lines(const Input& input, const VkRect2D& area) {
+    std::erase_if(lines_, [&](const Line& line) { return line.until < now_; });
+    if (lines_.empty()) return;
+    const float margin = 12 * input.scale;
+    const ImVec2 corner = corner_of(area);
+    ImGui::SetNextWindowPos({corner.x + margin, corner.y + size_of(area).y - margin}, ImGuiCond_Always, {0, 1});
+    ImGui::Begin("##lines", nullptr, plain | ImGuiWindowFlags_NoInputs);
+    for (const Line& line : lines_) ImGui::TextUnformatted(line.text.c_str());
+    ImGui::End();
+}
+
+void Screen::draw_errors(const Input& input, const VkRect2D& area) {
+    if (panels() != nullptr) return;  // they show them
+    darkroom::panels::Messages& messages = panels_ ? panels_->look().messages() : messages_;
+    if (messages.is_empty()) return;
+    const float margin = 12 * input.scale;
+    const ImVec2 corner = corner_of(area);
+    const float width = size_of(area).x - 2 * margin;
+    ImGui::SetNextWindowPos({corner.x + margin, corner.y + margin});
+    ImGui::SetNextWindowSize({width, messages.height(width - 2 * margin) + 2 * margin});
+    ImGui::Begin("##errors", nullptr, plain & ~ImGuiWindowFlags_AlwaysAutoResize);
+    messages.draw();
+    ImGui::End();
+}
+
+void Screen::draw_console(const VkRect2D& area) {
+    ImGui::SetNextWindowPos(corner_of(area));
+    ImGui::SetNextWindowSize({size_of(area).x, size_of(area).y * 0.5F});
+    ImGui::Begin("##console", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+    ImGui::BeginChild("##printed", {0, -ImGui::GetFrameHeightWithSpacing()});
+    for (const std::string& text : printed_) ImGui::TextWrapped("%s", text.c_str());
+    ImGui::SetScrollHereY(1);
+    ImGui::EndChild();
+    std::array<char, longest_command> text{};
+    typed_.copy(text.data(), text.size() - 1);
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool is_entered =
+        ImGui::InputText("##command", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+    typed_ = text.data();
+    if (is_entered && !typed_.empty()) {
+        commands_.push_back(std::exchange(typed_, {}));
+        ImGui::SetKeyboardFocusHere(-1);
+    }
+    ImGui::End();
+}
+
+}  // namespace app

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+#include "viewer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/param_text.hpp"
+#include "device_flags.hpp"
+#include "gpu/context.hpp"
+#include "look_flags.hpp"
+#include "report.hpp"
+#include "viewer_state.hpp"
+
+namespace app {
+
+namespace render = darkroom::render;
+using darkroom::Result;
+using darkroom::window::PresentFrame;
+
+namespace {
+
+constexpr std::uint32_t frames_in_flight = 2;
+/// A longer frame was none: the machine slept, or a driver compiled.
+constexpr double longest_frame = 0.25;
+
+VkExtent2D least_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
+
+}  // namespace
+
+Viewer::~Viewer() {
+    if (presenter_) (void)presenter_->wait();
+}
+
+int Viewer::exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
+
+Result<> Viewer::run() {
+    if (Result<> done = open(); !done) return done;
+    while (!is_leaving_) {
+        if (Result<> done = turn(); !done) return done;
+        if (window_->is_closing()) leave();
+        if (is_fixed() && shown_frames_ >= *job_.frames_to_show) break;
+    }
+    if (Result<> done = presenter_->wait(); !done) return done;
+    finish_stores(true);
+    return failed_.empty() ? Result<>() : darkroom::user_error(failed_);
+}
+
+Result<> Viewer::open() {
+    Result<darkroom::window::Window> window = darkroom::window::Window::create(job_.window);
+    if (!window) return failure(std::move(window));
+    window_.emplace(std::move(*window));
+    constexpr std::array extensions{darkroom::window::Presenter::device_extension};
+    Result<darkroom::Device> device = darkroom::Device::create({.select = job_.device,
+                                                                .log = log_sink(),
+                                                                .instance_extensions = window_->instance_extensions(),
+                                                                .device_extensions = extensions});
+    if (!device) return failure(std::move(device));
+    device_ = std::make_unique<darkroom::Device>(std::move(*device));
+    Result<darkroom::window::Presenter> presenter = darkroom::window::Presenter::create(
+        *device_, {.presentation = job_.presentation,
+                   .frames_in_flight = frames_in_flight,
+                   .make_surface = [this](VkInstance instance) { return window_->make_surface(instance); }});
+    if (!presenter) return failure(std::move(presenter));
+    presenter_.emplace(std::move(*presenter));
+    if (Result<> done = make_source(); !done) return done;
+    document_.emplace(std::move(*job_.document));
+    screen_ = Screen(job_.is_edit ? &*document_ : nullptr);
+    is_post_on_ = !job_.is_off;
+    is_paused_ = job_.is_paused;
+    draw_ = job_.scene_desc.render.draw;
+    time_ = previous_time_ = job_.time.value_or(scene_ != nullptr ? scene_->scene().time : 0);
+    previous_time_ = std::max(0.0, time_ - job_.step);
+    camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
+    interface_ = std::make_unique<LiveInterface>(
+        *device_, is_fixed(), frames_in_flight,
+        [this](darkroom::Severity, std::string_view line) { screen_.print(std::string(line)); });
+    const Result<LookView*> look = view(Side::Look);
+    if (!look) return failure(look.error());
+    if (Result<> done = start_interface(); !done) return done;
+    Result<std::unique_ptr<Gui>> gui =
+        Gui::create(device_->context(), *window_, presenter_->format(), frames_in_flight);
+    if (!gui) return failure(std::move(gui));
+    gui_ = std::move(*gui);
+    if (!job_.is_edit && !is_fixed() && scene_ != nullptr) tell("a click takes the mouse to look round, Esc frees it");
+    return {};
+}
+
+Result<> Viewer::start_interface() {
+    darkroom::Look look = document_->look();
+    if (look.ui) interface_files_ = {look.ui->document, look.ui->controllers};
+    resolve_ui(look, document_->file().parent_path());
+    return interface_->start(look, job_.timeline, views_[static_cast<std::size_t>(Side::Look)]->composer());
+}
+
+Result<> Viewer::make_source() {
+    if (!job_.scene.empty()) {
+        SceneSource::Desc& desc = job_.scene_desc;
+        desc.render.frames_in_flight = frames_in_flight;
+        desc.render.extent = picture_extent();
+        Result<std::unique_ptr<SceneSource>> made = SceneSource::create(*device_, job_.scene, desc);
+        if (!made) return failure(std::move(made));
+        take_scene(std::move(*made));
+    } else {
+        Result<std::unique_ptr<FrameSource>> made = FrameSource::create(*device_, job_.frames, job_.frame_desc);
+        if (!made) return failure(std::move(made));
+        frames_ = made->get();
+        source_ = std::move(*made);
+    }
+    watch_source();
+    is_cut_ = true;
+    return {};
+}
+
+void Viewer::take_scene(std::unique_ptr<SceneSource> scene) {
+    scene_ = scene.get();
+    source_ = std::move(scene);
+    if (!job_.is_edit) ground_.emplace(scene_->scene(), scene_->assets());
+    is_cut_ = true;
+}
+
+const darkroom::Look& Viewer::look_of(Side side) const {
+    static const darkroom::Look off = [] {
+        darkroom::Look look = darkroom::default_look();
+        look.is_enabled = false;
+        return look;
+    }();
+    if (side == Side::Off) return off;
+    return side == Side::Look ? document_->look() : document_->saved_look();
+}
+
+Result<LookView*> Viewer::view(Side side) {
+    std::unique_ptr<LookView>& view = views_[static_cast<std::size_t>(side)];
+    if (view) return view.get();
+    auto made = std::make_unique<LookView>(*device_, LookView::Desc{.frames_in_flight = frames_in_flight,
+                                                                    .kernels = job_.kernels,
+                                                                    .fuse = job_.fuse,
+                                                                    .keeps = job_.timeline.entries()});
+    if (Result<> done = made->show(look_of(side)); !done) return failure(std::move(done));
+    view = std::move(made);
+    return view.get();
+}
+
+VkExtent2D Viewer::picture_extent() const {
+    if (source_ && source_->extent()) return *source_->extent();
+    const VkExtent2D window = window_->extent();
+    const VkRect2D area = screen_.picture_area(window, window_->scale(), source_ && source_->frames() > 0);
+    return {std::max(area.extent.width, 1U), std::max(area.extent.height, 1U)};
+}
+
+Result<> Viewer::turn() {
+    window_->poll();
+    obey_keys();
+    finish_stores(false);
+    finish_seeing();
+    reload();
+    follow_document();
+    const Result<std::optional<PresentFrame>> frame = presenter_->begin(window_->extent());
+    if (!frame) return failure(frame.error());
+    if (!*frame) {
+        window_->wait(0.02);
+        return {};
+    }
+    const Result<> shown = show(**frame);
+    // What was begun is ended: nothing else gives the window's image back.
+    if (Result<> done = presenter_->end(); !done) return done;
+    return shown;
+}
+
+void Viewer::move_time(double passed) {
+    previous_time_ = time_;
+    delta_time_ = is_fixed() ? job_.step : std::min(passed, longest_frame);
+    if (is_paused_) return;
+    ++frame_index_;
+    // Of the frames that are counted the first is at the time that was asked for.
+    if (is_fixed() && shown_frames_ == 0) {
+        previous_time_ = std::max(0.0, time_ - job_.step);
+        return;
+    }
+    time_ += delta_time_;
+    if (source_->frames() > 0) played_ += delta_time_;
+}
+
+LiveMoment Viewer::moment() const {
+    LiveMoment out{.time = time_, .previous_time = previous_time_, .draw = draw_};
+    if (scene_ != nullptr) out.orbit = camera_->orbit(scene_->snapshot());
+    out.previous_orbit = last_orbit_;
+    out.is_post_off = !is_post_on_ && scene_ != nullptr && !screen_.is_comparing();
+    if (source_->frames() > 0) {
+        const double rate = job_.frame_desc.frames_per_second.value_or(1 / job_.step);
+        out.number = static_cast<std::size_t>(std::llround(std::floor(played_ * rate + 1e-6))) % source_->frames();
+    }
+    return out;
+}
+
+Result<> Viewer::show(const PresentFrame& frame) {
+    frame_number_ = frame.number;
+    const Clock::time_point now = Clock::now();
+    move_time(std::chrono::duration<double>(now - std::exchange(last_turn_, now)).count());
+    const VkExtent2D wanted = picture_extent();
+    if (scene_ != nullptr && shown_frames_ > 0) {
+        if (job_.turns && !is_paused_) camera_->turn(static_cast<float>(20 * delta_time_), scene_->snapshot());
+        camera_->move(*window_,
+                      {.delta_time = delta_time_,
+                       .picture = wanted,
+                       .has_keys = !gui_->wants_keys(),
+                       .has_mouse = !gui_->wants_mouse() && !screen_.picture().is_busy(),
+                       .ground = ground_ ? &*ground_ : nullptr},
+                      scene_->snapshot());
+    }
+    if (Result<> done = prepare(frame, wanted); !done) return done;
+    settle("interface", interface_->advance(time_, camera_->head()));
+    for (const std::string& warning : source_->take_warnings()) screen_.tell_error("frame", warning);
+    store_picture(frame);
+    if (Result<> done = gui_->begin(window_->scale()); !done) return done;
+    draw_screen(frame);
+    if (Result<> done = gui_->draw(frame); !done) return done;
+    store_window(frame);
+    // Who waits for the window may press keys now.
+    if (++shown_frames_ == 1) tell("ready");
+    return read_scopes(frame);
+}
+
+void Viewer::draw_screen(const PresentFrame& frame) {
+    LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
+    const auto picture_of = [&](Side side) {
+        const auto& of = views_[static_cast<std::size_t>(side)];
+        return of ? of->picture() : darkroom::ImageRef{};
+    };
+    const std::size_t number = moment().number;
+    screen_.draw({.source = *source_,
+                  .view = look,
+                  .picture = picture_of(is_off() && !screen_.is_comparing() ? Side::Off : screen_.left()),
+                  .compared = screen_.is_comparing() ? picture_of(screen_.right()) : darkroom::ImageRef{},
+                  .watched = look.watched(),
+                  .extent = look.extent(),
+                  .window = frame.extent,
+                  .scale = window_->scale(),
+                  .passed = delta_time_,
+                  .number = number,
+                  .is_paused = is_paused_,
+                  .inspection = inspection_ ? &*inspection_ : nullptr});
+    for (const std::string& command : screen_.take_commands()) run_command(command);
+    EditPanels* const panels = screen_.panels();
+    if (panels == nullptr) return;
+    if (panels->take_pause()) is_paused_ = !is_paused_;
+    if (const std::optional<std::size_t> chosen = panels->take_number(); chosen && *chosen != number)
+        played_ = static_cast<double>(*chosen) / job_.frame_desc.frames_per_second.value_or(1 / job_.step);
+}
+
+// What the frame shows is made in the same commands, before it.
+Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
+    const Result<LookView*> look = view(Side::Look);
+    if (!look) return failure(look.error());
+    const bool is_first = (*look)->most().width == 0;
+    if (!is_first) {
+        settle("look", (*look)->fit(*source_, extent, interface_->format()));
+        extent = least_of(extent, (*look)->most());
+    }
+    const LiveMoment now = moment();
+    bool must_wait = source_->must_wait(now, extent) || interface_->must_wait(extent);
+    for (const auto& any : views_) must_wait = must_wait || (any && any->must_wait(extent));
+    if (EditPanels* const panels = screen_.panels(); panels != nullptr && !is_first)
+        must_wait = must_wait || (*look)->must_wait_to_watch(panels->watched((*look)->composer().current_plan()),
+                                                             panels->watched_level());
+    if (must_wait)
+        if (Result<> done = presenter_->wait(); !done) return done;
+    if (!is_first)
+        if (Result<> done = watch(); !done) return done;
+    if (Result<> done = source_->prepare(now, extent); !done) return done;
+    last_orbit_ = scene_ != nullptr ? std::optional(now.orbit) : std::nullopt;
+    if (is_first)
+        if (Result<> done = (*look)->fit(*source_, extent, interface_->format()); !done) return done;
+    return record(frame, extent);
+}
+
+Result<> Viewer::record(const PresentFrame& frame, VkExtent2D extent) {
+    if (Result<> done = source_->record(frame.commands); !done) return done;
+    const Result<LookView*> look = view(Side::Look);
+    if (!look) return failure(look.error());
+    for (const auto& any : views_)
+        if (any)
+            if (Result<> done = any->resize(extent); !done) return done;
+    if (const std::optional<darkroom::ImageRef> display = source_->display_picture()) {
+        (*look)->copy(frame.commands, *display);
+        return {};
+    }
+    darkroom::Frame input = source_->frame();
+    if (scene_ != nullptr) {
+        input.time = time_;
+        input.delta_time = delta_time_;
+        input.frame_index = frame_index_;
+        input.camera.is_cut = is_cut_;
+    }
+    if (interface_->is_given()) {
+        const Result<darkroom::ImageRef> ui = interface_->record(frame.commands, frame.slot, extent);
+        if (!ui) return failure(ui.error());
+        input.ui = *ui;
+    }
+    if (Result<> done = job_.timeline.advance((*look)->composer(), input.time); !done) return done;
+    std::array<bool, side_count> is_wanted{};
+    is_wanted[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)] = true;
+    if (screen_.is_comparing())
+        for (const Side side : {screen_.left(), screen_.right()}) is_wanted[static_cast<std::size_t>(side)] = true;
+    for (std::size_t side = 0; side < side_count; ++side)
+        if (is_wanted[side])
+            if (Result<> done = record_look(frame.commands, static_cast<Side>(side), input); !done) return done;
+    is_cut_ = false;
+    return inspect(frame.commands, input);
+}
+
+Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom::Frame& frame) {
+    const Result<LookView*> found = view(side);
+    if (!found) return failure(found.error());
+    LookView& of = **found;
+    const VkExtent2D extent = frame.color.used_region().extent;
+    if (Result<> done = of.fit(*source_, extent, interface_->format()); !done) return done;
+    if (Result<> done = of.resize(extent); !done) return done;
+    if (is_fixed()) of.composer().wait_for_kernels();
+    // A plan that does not fit yet is on its way: the picture stays what it was.
+    settle("frame", of.record(commands, frame));
+    return {};
+}
+
+int run_viewer(ViewerJob job) {
+    Viewer viewer(std::move(job));
+    const Result<> done = viewer.run();
+    return viewer.exit_code(done ? exit_ok : fail(done.error()));
+}
+
+}  // namespace app

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "gpu/context.hpp"
+#include "viewer_state.hpp"
+
+namespace app {
+
+using darkroom::Result;
+
+namespace {
+
+/// Of what scopes measure.
+constexpr VkExtent2D scope_extent{480, 270};
+constexpr VkFormat scope_format = VK_FORMAT_R8G8B8A8_UNORM;
+
+}  // namespace
+
+/// No frame is unfinished where the image is another.
+Result<> Viewer::watch() {
+    LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
+    const EditPanels* const panels = screen_.panels();
+    if (panels == nullptr) return look.watch(nullptr, 0);
+    return look.watch(panels->watched(look.composer().current_plan()), panels->watched_level());
+}
+
+Result<> Viewer::inspect(VkCommandBuffer commands, const darkroom::Frame& frame) {
+    const EditPanels* const panels = screen_.panels();
+    const std::optional<VkOffset2D> pixel = panels != nullptr ? panels->pixel() : std::nullopt;
+    if (!pixel) {
+        // It goes when nothing of it is under way.
+        if (inspected_.empty()) inspector_.reset();
+        inspection_.reset();
+        return {};
+    }
+    LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
+    if (!inspector_) inspector_ = std::make_unique<darkroom::Inspector>(*device_);
+    darkroom::CompileDesc compiled = look.compile_desc();
+    compiled.watches.clear();
+    if (Result<> done = inspector_->update(look.composer(), compiled, frame); !done) {
+        settle("pixel", done);
+        return {};
+    }
+    const Result<std::uint64_t> recording = inspector_->record(commands, look.composer(), frame, {&*pixel, 1});
+    if (recording) inspected_.push_back({.frame = frame_number_, .recording = *recording});
+    return {};
+}
+
+Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
+    const EditPanels* const panels = screen_.panels();
+    if (panels == nullptr || !panels->wants_scopes() || scope_frame_) return {};
+    darkroom::gpu::Context& context = device_->context();
+    const LookView& look = *views_[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)];
+    const darkroom::ImageRef picture = look.picture();
+    if (!picture.is_given()) return {};
+    const VkExtent2D extent{std::min(scope_extent.width, picture.extent.width),
+                            std::min(scope_extent.height, picture.extent.height)};
+    if (scope_image_.info.extent.width != extent.width || scope_image_.info.extent.height != extent.height) {
+        Result<darkroom::gpu::Image> made = darkroom::gpu::Image::create(
+            context, {.name = "scopes",
+                      .format = scope_format,
+                      .extent = {extent.width, extent.height, 1},
+                      .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+        if (!made) return failure(std::move(made));
+        scope_image_ = std::move(*made);
+    }
+    darkroom::ImageRef small{.image = scope_image_.handle,
+                             .view = scope_image_.view,
+                             .format = scope_format,
+                             .extent = extent,
+                             .layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
+    look.copy_to(frame.commands, scope_image_);
+    Result<darkroom::Readback> read = darkroom::Readback::create(context, small);
+    if (!read) return failure(std::move(read));
+    scope_read_ = std::move(*read);
+    scope_read_->record(frame.commands);
+    scope_frame_ = frame.number;
+    return {};
+}
+
+void Viewer::finish_seeing() {
+    while (!inspected_.empty() && presenter_->is_finished(inspected_.front().frame)) {
+        if (inspector_)
+            if (auto result = inspector_->result(inspected_.front().recording)) inspection_ = std::move(result);
+        inspected_.pop_front();
+    }
+    if (!scope_frame_ || !presenter_->is_finished(*scope_frame_)) return;
+    const std::vector<std::uint8_t> bytes = scope_read_->bytes();
+    const VkExtent2D extent = scope_read_->extent();
+    if (EditPanels* const panels = screen_.panels())
+        panels->measure({.width = extent.width, .height = extent.height, .bytes = bytes});
+    scope_read_.reset();
+    scope_frame_.reset();
+}
+
+}  // namespace app

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Internal to apps/viewer: what a viewer is made of, for viewer.cpp (the frames), viewer_keys.cpp (what keys do) and
+// viewer_files.cpp (what is stored and read again).
+
+#include <chrono>
+#include <deque>
+#include <future>
+
+#include "camera_rig.hpp"
+#include "develop/inspector.hpp"
+#include "develop/readback.hpp"
+#include "edit/document.hpp"
+#include "gui.hpp"
+#include "keys.hpp"
+#include "live_interface.hpp"
+#include "look_view.hpp"
+#include "screen.hpp"
+#include "viewer.hpp"
+
+namespace app {
+
+class Viewer {
+  public:
+    explicit Viewer(ViewerJob job) : job_(std::move(job)) {}
+    ~Viewer();
+
+    [[nodiscard]] darkroom::Result<> run();
+    [[nodiscard]] int exit_code(int code) const;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    // viewer.cpp
+    [[nodiscard]] darkroom::Result<> open();
+    [[nodiscard]] darkroom::Result<> make_source();
+    void take_scene(std::unique_ptr<SceneSource> scene);
+    [[nodiscard]] darkroom::Result<> start_interface();
+    [[nodiscard]] darkroom::Result<> turn();
+    [[nodiscard]] darkroom::Result<> show(const darkroom::window::PresentFrame& frame);
+    [[nodiscard]] darkroom::Result<> prepare(const darkroom::window::PresentFrame& frame, VkExtent2D extent);
+    [[nodiscard]] darkroom::Result<> record(const darkroom::window::PresentFrame& frame, VkExtent2D extent);
+    [[nodiscard]] darkroom::Result<> record_look(VkCommandBuffer commands, Side side, const darkroom::Frame& frame);
+    void draw_screen(const darkroom::window::PresentFrame& frame);
+    void move_time(double passed);
+    [[nodiscard]] LiveMoment moment() const;
+    [[nodiscard]] darkroom::Result<LookView*> view(Side side);
+    [[nodiscard]] VkExtent2D picture_extent() const;
+    /// Is the picture of a stored frame shown without the look? A scene draws its own then.
+    [[nodiscard]] bool is_off() const { return !is_post_on_ && scene_ == nullptr; }
+    [[nodiscard]] bool is_fixed() const { return job_.frames_to_show.has_value(); }
+    [[nodiscard]] const darkroom::Look& look_of(Side side) const;
+
+    // viewer_keys.cpp
+    void obey_keys();
+    void obey(KeyAction action, std::uint32_t function_key);
+    void toggle_effects(std::uint32_t function_key);
+    /// At the second time, where something would be lost.
+    void leave();
+    void run_command(const std::string& command);
+    /// In the window, and on standard output.
+    void tell(std::string line);
+    void list_places(const std::string& name);
+    /// Reports what went wrong with `source`, or clears what it said before.
+    void settle(std::string_view source, const darkroom::Result<>& done) {
+        done ? screen_.clear_error(source) : screen_.tell_error(source, done.error().text);
+    }
+
+    // viewer_seeing.cpp
+    [[nodiscard]] darkroom::Result<> watch();
+    [[nodiscard]] darkroom::Result<> inspect(VkCommandBuffer commands, const darkroom::Frame& frame);
+    [[nodiscard]] darkroom::Result<> read_scopes(const darkroom::window::PresentFrame& frame);
+    void finish_seeing();
+
+    // viewer_files.cpp
+    void reload();
+    void watch_source();
+    void reload_source();
+    void follow_document();
+    void store_picture(const darkroom::window::PresentFrame& frame);
+    void store_window(const darkroom::window::PresentFrame& frame);
+    void finish_stores(bool waits);
+    [[nodiscard]] static std::filesystem::path free_name(const std::string& stem, const std::string& extension);
+
+    ViewerJob job_;
+    std::optional<darkroom::window::Window> window_;
+    std::unique_ptr<darkroom::Device> device_;
+    std::optional<darkroom::window::Presenter> presenter_;
+    std::unique_ptr<LiveSource> source_;
+    SceneSource* scene_ = nullptr;   ///< the source, if it is one
+    FrameSource* frames_ = nullptr;  ///< the same
+    std::optional<darkroom::edit::LookDocument> document_;
+    std::uint64_t followed_ = 0;  ///< version of the document that is on the screen
+    std::array<std::unique_ptr<LookView>, side_count> views_;
+    std::unique_ptr<LiveInterface> interface_;
+    std::unique_ptr<Gui> gui_;
+    Screen screen_;
+    std::optional<CameraRig> camera_;
+    std::optional<darkroom::scene::Ground> ground_;  ///< that is walked on
+
+    darkroom::render::DrawOptions draw_;
+    bool is_post_on_ = true, is_paused_ = false, is_leaving_ = false;
+    double time_ = 0, previous_time_ = 0, delta_time_ = 0;
+    double played_ = 0;  ///< seconds of a sequence
+    Clock::time_point last_turn_ = Clock::now(), last_look_at_files_ = Clock::now();
+    std::optional<darkroom::scene::OrbitOverride> last_orbit_;
+    darkroom::edit::Watch source_files_;
+    std::future<darkroom::Result<std::unique_ptr<SceneSource>>> coming_;  ///< the scene, read again
+    std::pair<std::string, std::vector<std::string>> interface_files_;    ///< document and controllers, as it started
+    Clock::time_point sure_until_{};                                      ///< who leaves again before then means it
+    std::uint64_t shown_frames_ = 0, frame_number_ = 0;  ///< so far; of the one that is recorded, in the presenter
+    std::uint64_t frame_index_ = ~std::uint64_t{0};      ///< as Frame has it: stands still with the time
+    bool is_cut_ = true;
+
+    /// What is on its way to a file.
+    struct Store {
+        std::uint64_t frame = 0;
+        std::filesystem::path path;
+        std::optional<darkroom::Readback> picture;
+        std::optional<darkroom::FrameReadback> layers;
+        darkroom::Frame of{};
+    };
+    struct Wanted {
+        std::filesystem::path picture, window, frame;
+    } wanted_;  ///< of the next frame
+    std::deque<Store> stores_;
+
+    std::unique_ptr<darkroom::Inspector> inspector_;
+    struct Inspected {
+        std::uint64_t frame = 0, recording = 0;
+    };
+    std::deque<Inspected> inspected_;
+    std::optional<darkroom::Inspection> inspection_;
+    darkroom::gpu::Image scope_image_;
+    std::optional<darkroom::Readback> scope_read_;
+    std::optional<std::uint64_t> scope_frame_;                       ///< whose copy is on its way
+    std::deque<std::future<std::pair<std::string, bool>>> writing_;  ///< what to tell, is it an error?
+    std::string failed_;                                             ///< the last store that failed
+};
+
+}  // namespace app

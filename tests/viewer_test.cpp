@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <random>
+
+#include "viewer_support.hpp"
+
+namespace darkroom::test {
+
+namespace {
+
+const std::string scenes = std::string(DARKROOM_SOURCE_FOLDER) + "/scenes/";
+
+double difference(const Picture& a, const Picture& b) {
+    const Result<Comparison> result = compare(a, b);
+    EXPECT_TRUE(result) << result.error().text;
+    return result ? result->max_error : 1;
+}
+
+class CliViewer : public ViewerFixture {};
+
+TEST_F(CliViewer, APictureIsThatOfRender) {
+    for (const auto& [scene, size] : {std::pair("dungeon", "320x180"), std::pair("showcase", "333x217")}) {
+        const std::string file = scenes + scene + ".scene.toml";
+        const Outcome rendered = run({"render", file, "--size", size, "--fps", "60", "-o", path("render.png")});
+        ASSERT_EQ(rendered.code, 0) << rendered.err;
+        for (const char* const mode : {"play", "edit"}) {
+            // The panels take their part of the window, and the picture the rest.
+            if (mode == std::string("edit")) continue;
+            const Outcome shown = run({mode, file, "--size", size, "--screenshot", path("shown.png")});
+            ASSERT_EQ(shown.code, 0) << shown.err;
+            EXPECT_EQ(shown.err, "") << "the validation layer is silent";
+            EXPECT_LE(difference(picture("render.png"), picture("shown.png")), 1.001 / 255) << mode << ' ' << scene;
+        }
+    }
+}
+
+TEST_F(CliViewer, AStoredFrameIsDevelopedAsByDevelop) {
+    ASSERT_EQ(run({"render", scenes + "dungeon.scene.toml", "--size", "161x97", "-o", path("r.png"), "--frame",
+                   path("frame.exr")})
+                  .code,
+              0);
+    const std::string look = scenes + "dungeon.scene.toml";
+    ASSERT_EQ(run({"develop", path("frame.exr"), "--look", look, "-o", path("developed.png")}).code, 0);
+    const Outcome shown = run({"edit", path("frame.exr"), "--look", look, "--screenshot", path("shown.png"),
+                               "--window-screenshot", path("window.png")});
+    ASSERT_EQ(shown.code, 0) << shown.err;
+    EXPECT_EQ(shown.err, "");
+    EXPECT_LE(difference(picture("developed.png"), picture("shown.png")), 1.001 / 255);
+    EXPECT_EQ(picture("window.png").width, 1600U);
+}
+
+TEST_F(CliViewer, KeysOfPlayDoWhatTheySay) {
+    start({"play", scenes + "showcase.scene.toml", "--size", "320x180", "--bloom-intensity", "0.3", "--fog-density",
+           "0.05", "--dither-intensity", "0.1", "--ssao-intensity", "1", "--volumetric-density", "0.05"});
+    press("p", "P pause: on");
+    const Picture before = shot();
+    for (const auto& [key, line] :
+         {std::pair("F1", "F1 debug view: wireframe"), std::pair("F2", "F2 edges: "), std::pair("F3", "F3 normals: "),
+          std::pair("F4", "F4 shadows: "), std::pair("F5", "F5 bloom: "), std::pair("F6", "F6 post-processing: "),
+          std::pair("F7", "F7 ssao: "), std::pair("F8", "F8 fog: "), std::pair("F9", "F9 dither: "),
+          std::pair("F10", "F10 volumetric: ")}) {
+        press(key, line);
+        EXPECT_GT(difference(before, shot()), 0) << key << " changes the picture";
+        if (key == std::string("F1"))
+            for (const char* const view : {"normals", "depth", "uv", "unlit", "metal-rough", "none"})
+                press(key, std::string("F1 debug view: ") + view);
+        else
+            press(key, line);
+        EXPECT_EQ(difference(before, shot()), 0) << key << " pressed again brings it back";
+    }
+    press("F11");
+    EXPECT_TRUE(wait_until([&] { return shot().width == 1920; }, 60)) << "the whole screen";
+    press("F11");
+    EXPECT_TRUE(wait_until([&] { return shot().width == 320; }, 60)) << "and back";
+    press("ctrl+c", "stored frame-");
+    press("shift+F12", "stored darkroom-window-");
+    leave();
+}
+
+TEST_F(CliViewer, ACapturedFrameDevelopsToThePicture) {
+    const std::string scene = scenes + "showcase.scene.toml";
+    start({"play", scene, "--size", "320x180"});
+    press("p", "P pause: on");
+    const Picture shown = shot();
+    press("ctrl+c", "stored frame-0001.exr");
+    leave();
+    const Outcome developed = run({"develop", path("frame-0001.exr"), "--look", scene, "-o", path("developed.png")});
+    ASSERT_EQ(developed.code, 0) << developed.err;
+    EXPECT_LE(difference(picture("developed.png"), shown), 1.001 / 255);
+}
+
+TEST_F(CliViewer, WalkingChangesTheView) {
+    start({"play", scenes + "dungeon.scene.toml", "--size", "320x180"});
+    const Picture before = shot();
+    ASSERT_EQ(shell("xdotool keydown w sleep 1 keyup w"), 0);
+    EXPECT_GT(difference(before, shot()), 0.1);
+    leave();
+}
+
+TEST_F(CliViewer, EditsAreUndoneSavedAndReadAgain) {
+    const std::string look = write("my.toml",
+                                   "# mine\n[post_process]\nbloom_enabled = true  # it glows\nbloom_intensity = 0.2\n"
+                                   "fog_density = 0.05\n");
+    start({"edit", scenes + "showcase.scene.toml", "--look", look, "--size", "1280x720"});
+    press("p", "P pause: on");
+    const Picture before = shot();
+    press("F5", "F5 bloom: off");
+    EXPECT_GT(difference(before, shot()), 0);
+    press("ctrl+z", "undo: F5 bloom: off");
+    EXPECT_EQ(difference(before, shot()), 0);
+    press("ctrl+shift+z", "redo: F5 bloom: off");
+    press("ctrl+s", "saved my.toml");
+    EXPECT_EQ(content(look),
+              "# mine\n[post_process]\nbloom_enabled = false  # it glows\nbloom_intensity = 0.2\nfog_density = 0.05\n");
+    const Picture saved = shot();
+
+    write("my.toml", "[post_process]\nbloom_enabled = true\nbloom_intensity = 0.2\nfog_density = 0.05\n");
+    ASSERT_TRUE(wait_for("read my.toml again")) << said() << complained();
+    EXPECT_EQ(difference(before, shot()), 0) << "a change on disk is on the screen";
+    write("my.toml", "[post_process]\nbloom_intensity = = 3\n");
+    EXPECT_TRUE(wait_until([&] { return complained().find("my.toml:2:") != std::string::npos; }, 60)) << complained();
+    EXPECT_EQ(difference(before, shot()), 0) << "a broken one leaves the last good state";
+}
+
+TEST_F(CliViewer, SlidersAndTheStackAnswerTheMouse) {
+    const std::string look = write("my.toml",
+                                   "[[stack]]\neffect = \"exposure\"\n\n[[stack]]\neffect = \"tonemap\"\n\n"
+                                   "[[stack]]\neffect = \"vignette\"\n\n[[stack]]\neffect = \"encode\"\n");
+    start({"edit", scenes + "dungeon.scene.toml", "--look", look, "--size", "1280x720"});
+    press("p", "P pause: on");
+    const auto place = [&](const std::string& name) {
+        const std::size_t lines = count("place ");
+        press("grave", "console: on");
+        EXPECT_EQ(shell("xdotool sleep 0.5 type --delay 30 'places " + name + "'"), 0);
+        press("Return");
+        EXPECT_TRUE(wait_until([&] { return count("place ") > lines; }, 60)) << name << said();
+        press("grave", "console: off");
+        std::istringstream text(said().substr(said().rfind("place ")));
+        std::string word, shown;
+        std::array<double, 4> corners{};
+        text >> word >> shown >> corners[0] >> corners[1] >> corners[2] >> corners[3];
+        EXPECT_EQ(shown, name);
+        return corners;
+    };
+    const auto drag = [&](double x, double y, double to_x, double to_y) {
+        EXPECT_EQ(shell(fmt::format("xdotool mousemove --window {0} {1:.0f} {2:.0f} sleep 0.3 mousedown 1 sleep 0.3 "
+                                    "mousemove --window {0} {3:.0f} {4:.0f} sleep 0.3 mouseup 1 sleep 0.3",
+                                    window(), x, y, to_x, to_y)),
+                  0);
+    };
+    const auto click = [&](const std::string& name) {
+        const auto [left, top, right, bottom] = place(name);
+        drag((left + right) / 2, (top + bottom) / 2, (left + right) / 2, (top + bottom) / 2);
+    };
+    click("stack/exposure");
+    const Picture before = shot();
+    const auto slider = place("exposure.exposure");
+    drag((slider[0] + slider[2]) / 2, (slider[1] + slider[3]) / 2, slider[2] - 4, (slider[1] + slider[3]) / 2);
+    EXPECT_GT(difference(before, shot()), 0.01) << "the slider changes the picture";
+    press("ctrl+z", "undo: ");
+    EXPECT_EQ(difference(before, shot()), 0) << "and a drag is one step of undo";
+    const auto vignette = place("stack/vignette"), exposure = place("stack/exposure");
+    drag((vignette[0] + vignette[2]) / 2, (vignette[1] + vignette[3]) / 2, (exposure[0] + exposure[2]) / 2,
+         exposure[1] + 2);
+    press("ctrl+s", "saved my.toml");
+    const std::string text = content(look);
+    EXPECT_LT(text.find("vignette"), text.find("exposure")) << text;
+    leave();
+}
+
+TEST_F(CliViewer, SurvivesAStormOfSizes) {
+    start({"play", scenes + "showcase.scene.toml", "--size", "320x180", "--paused"});
+    const int sizes = std::getenv("DARKROOM_TEST_SMALL") != nullptr ? 30 : 200;
+    std::mt19937 random(7);
+    std::string command = "xdotool";
+    for (int i = 0; i < sizes; ++i)
+        command += fmt::format(" windowsize {} {} {} sleep 0.02", window(), 64 + random() % 900, 64 + random() % 700);
+    ASSERT_EQ(shell(command), 0);
+    ASSERT_EQ(shell(fmt::format("xdotool windowsize --sync {} 301 203", window())), 0);
+    EXPECT_TRUE(wait_until([&] { return shot().width == 301; }, 60));
+    // The plan for this very size comes when the size has settled.
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    const Picture last = shot();
+    ASSERT_EQ(last.height, 203U);
+    leave();
+    const Outcome rendered =
+        run({"render", scenes + "showcase.scene.toml", "--size", "301x203", "--fps", "60", "-o", path("render.png")});
+    ASSERT_EQ(rendered.code, 0);
+    EXPECT_LE(difference(picture("render.png"), last), 1.001 / 255);
+}
+
+TEST_F(CliViewer, GoesOnAfterItWasMinimised) {
+    start({"play", scenes + "showcase.scene.toml", "--size", "320x180"});
+    ASSERT_EQ(shell("xdotool windowminimize --sync " + window()), 0);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    ASSERT_TRUE(viewer().is_running());
+    ASSERT_EQ(shell(fmt::format("xdotool windowmap --sync {0} windowactivate --sync {0}", window())), 0);
+    EXPECT_EQ(shot().width, 320U);
+    leave();
+}
+
+TEST_F(CliViewer, TakesTheFlagsOfRender) {
+    const std::string render = run({"render", "--help"}).out;
+    for (const char* const mode : {"play", "edit"}) {
+        const std::string help = run({mode, "--help"}).out;
+        std::istringstream lines(render.substr(render.find("The look:")));
+        std::size_t flags = 0;
+        for (std::string line; std::getline(lines, line);) {
+            const std::size_t at = line.find("--");
+            if (at != 2) continue;
+            const std::string flag = line.substr(at, line.find_first_of(" ,=", at) - at);
+            EXPECT_NE(help.find(flag), std::string::npos) << mode << " lacks " << flag;
+            ++flags;
+        }
+        EXPECT_GT(flags, 100U);
+    }
+}
+
+TEST_F(CliViewer, NeedsADisplay) {
+    unsetenv("DISPLAY");
+    for (const char* const mode : {"play", "edit"})
+        expect_refused({mode, scenes + "dungeon.scene.toml"}, 2, "no window can be opened");
+}
+
+TEST_F(CliViewer, RefusesWhatItCannotShow) {
+    expect_refused({"play"}, 1, "a scene, a model or a frame is needed");
+    expect_refused({"play", scenes + "dungeon.scene.toml", "b.exr"}, 1, "one scene or model at a time");
+    expect_refused({"edit", scenes + "dungeon.scene.toml", "--present", "often"}, 1, "vsync, mailbox or immediate");
+    expect_refused({"edit", path("missing.exr")}, 1, "missing.exr");
+    expect_refused({"edit", scenes + "dungeon.scene.toml", "--screenshot", path("none/a.png")}, 1, "none");
+}
+
+}  // namespace
+
+}  // namespace darkroom::test
