@@ -69,10 +69,9 @@ class Splicer {
     // The flat tables.
 
     Result<> write_flat() {
-        const Look& from = was_.is_flat ? was_ : Look();
-        if (is_.is_enabled != from.is_enabled)
+        if (is_.is_enabled != (!was_.is_flat || was_.is_enabled))
             if (Result<> done = editor_.set(flat_path, "enabled", bool_text(is_.is_enabled)); !done) return done;
-        if (is_.order != from.order) {
+        if (is_.order != (was_.is_flat ? was_.order : LookOrder::Documented)) {
             const std::string order = toml_string(order_names[static_cast<std::size_t>(is_.order)]);
             if (Result<> done = editor_.set(flat_path, "order", order); !done) return done;
         }
