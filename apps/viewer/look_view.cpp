@@ -52,6 +52,8 @@ Result<> LookView::show(const darkroom::Look& look) {
 
 Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui) {
     CompileDesc wanted = source.compile_desc({});
+    // A source that was read again knows its formats when it is prepared.
+    if (wanted.color.format == VK_FORMAT_UNDEFINED) return {};
     wanted.kernels = desc_.kernels;
     wanted.fuse = desc_.fuse;
     wanted.target.usage |=

@@ -28,7 +28,7 @@ class LookView {
     /// Makes room for frames of this source and extent: the first time at once, later beside the frames. To be called
     /// in every frame. `ui`: of the interface's image; UNDEFINED: there is none.
     [[nodiscard]] darkroom::Result<> fit(const LiveSource& source, VkExtent2D extent, VkFormat ui);
-    /// The largest that frames may be now.
+    /// The largest that frames may be now, whichever of the plans under way the next record takes.
     [[nodiscard]] VkExtent2D most() const;
     /// A picture of this extent. Where it has another, no frame is unfinished.
     [[nodiscard]] darkroom::Result<> resize(VkExtent2D extent);
@@ -64,7 +64,8 @@ class LookView {
     darkroom::Look shown_;
     darkroom::CompileDesc compiled_;  ///< asked for last
     bool is_compiled_ = false;
-    VkExtent2D last_extent_{}, least_pending_{};
+    VkExtent2D last_extent_{};
+    VkExtent2D least_pending_{};  ///< of what was asked for since no plan was under way
     std::uint32_t frames_alike_ = 0;
     darkroom::gpu::Image picture_, watched_;
     bool is_drawn_ = false;
