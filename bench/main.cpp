@@ -11,6 +11,7 @@
 
 #include "core/files.hpp"
 #include "core/param_text.hpp"
+#include "edits.hpp"
 #include "report.hpp"
 #include "sequence.hpp"
 #include "start.hpp"
@@ -23,7 +24,7 @@ constexpr int exit_user = 1, exit_machine = 2;
 
 struct Options {
     std::string size = "1920x1080";
-    std::uint32_t rounds = 7, frames = 30;
+    std::uint32_t rounds = 7, frames = 30, edits = 1000;
     std::vector<std::string> filters;
     std::string device;
     std::filesystem::path json, csv;
@@ -53,15 +54,18 @@ Result<> append(std::vector<Figure>& figures, Result<std::vector<Figure>> more) 
     return {};
 }
 
+/// Does a filter ask for one of these names? Without filters all are.
+bool is_asked_for(const Options& options, const std::vector<std::string>& names) {
+    return options.filters.empty() || std::ranges::any_of(options.filters, [&](const std::string& filter) {
+               return std::ranges::any_of(names,
+                                          [&](const auto& name) { return name.find(filter) != std::string::npos; });
+           });
+}
+
 /// Whole or not at all: its rows are made together.
 Result<> add_sequence(const Options& options, Device& device, VkExtent2D extent, Report& report) {
     constexpr std::uint32_t most_rounds = 3;
-    const std::vector<std::string> names = sequence_row_names();
-    const auto is_asked_for = [&](const std::string& filter) {
-        return std::ranges::any_of(names, [&](const auto& name) { return name.find(filter) != std::string::npos; });
-    };
-    if (options.frames == 0 || (!options.filters.empty() && std::ranges::none_of(options.filters, is_asked_for)))
-        return {};
+    if (options.frames == 0 || !is_asked_for(options, sequence_row_names())) return {};
     auto sequence = measure_sequence(device, {.extent = extent,
                                               .frames = options.frames,
                                               .rounds = std::min(options.rounds, most_rounds),
@@ -86,6 +90,8 @@ Result<> measure_all(const Options& options, Bed& bed, Report& report) {
         report.passes = std::move(*passes);
     }
     if (auto ok = add_sequence(options, bed.device, bed.extent, report); !ok) return ok;
+    if (options.edits > 0 && is_asked_for(options, {std::string(edits_name)}))
+        if (auto ok = append(report.figures, edit_figures(bed.device, options.edits)); !ok) return ok;
     if (!options.filters.empty()) return {};
     if (auto ok = append(report.figures, counted_figures(bed)); !ok) return ok;
     return append(report.figures, start_figures(options.device, bed.extent, options.rounds));
@@ -133,6 +139,9 @@ int parse_and_run(int argc, char** argv) {
         ->capture_default_str();
     program.add_option("--frames", options.frames, "Frames of the sequence; 0: none.")
         ->check(CLI::Range(0, 10000))
+        ->capture_default_str();
+    program.add_option("--edits", options.edits, "Edits of a look while frames go on; 0: none.")
+        ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     program.add_option("--filter", options.filters, "Only rows whose name holds this text, or one of these.");
     program.add_option("--device", options.device, "Name, part of a name, or index of the device.");

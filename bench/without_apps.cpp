@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// In place of scene.cpp and sequence.cpp where what they measure is not built.
+// In place of edits.cpp, scene.cpp and sequence.cpp where what they measure is not built.
+#include "edits.hpp"
 #include "scene.hpp"
 #include "sequence.hpp"
 
 namespace darkroom::bench {
 
+Result<std::vector<Figure>> edit_figures(Device&, std::uint32_t) { return std::vector<Figure>(); }
 std::vector<Recipe> scene_recipes() { return {}; }
 std::vector<std::string> sequence_row_names() { return {}; }
 Result<SequenceReport> measure_sequence(Device&, const SequenceDesc&) { return SequenceReport{}; }
