@@ -179,4 +179,6 @@ const WidgetPlaces& LookPanels::places() {
     return *state_->places;
 }
 
+void LookPanels::note_place(std::string_view name) { state_->note(name); }
+
 }  // namespace darkroom::panels

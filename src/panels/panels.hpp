@@ -71,6 +71,8 @@ class LookPanels {
     void select(std::string_view entry);
     /// Where widgets are, noted from now on while they are drawn.
     [[nodiscard]] const WidgetPlaces& places();
+    /// The item that was drawn last, a host's own, is among them from now on.
+    void note_place(std::string_view name);
 
   private:
     std::unique_ptr<PanelState> state_;
