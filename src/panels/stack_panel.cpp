@@ -59,10 +59,8 @@ class StackList {
             ImGui::TextDisabled("Stack");
             tooltip("Effects run from top to bottom. Drag one to move it, double-click to rename it.");
         }
-        constexpr const char* text = "+  Add";
-        const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
-        ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
-        if (ImGui::Button(text)) {
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - add_width());
+        if (ImGui::Button(add_text)) {
             state_.filter.clear();
             ImGui::OpenPopup("add");
         }
@@ -71,6 +69,9 @@ class StackList {
         draw_add_menu(state_);
         ImGui::Spacing();
     }
+
+    static constexpr const char* add_text = "+  Add";
+    static float add_width() { return ImGui::CalcTextSize(add_text).x + 2 * ImGui::GetStyle().FramePadding.x; }
 
     /// What the flat table says of all of its effects.
     void draw_table() {
@@ -89,7 +90,8 @@ class StackList {
             "Every effect of the flat table, in its fixed order. Adding, moving, copying or removing one makes it a "
             "stack, without what is off.");
         ImGui::SameLine();
-        ImGui::SetNextItemWidth(9 * ImGui::GetFontSize());
+        const float room = ImGui::GetContentRegionAvail().x - add_width() - ImGui::GetStyle().ItemSpacing.x;
+        ImGui::SetNextItemWidth(std::min(9 * ImGui::GetFontSize(), room));
         const auto present = static_cast<std::size_t>(look_.order);
         if (ImGui::BeginCombo("##order", shown_name(order_names[present]).c_str())) {
             for (std::size_t i = 0; i < order_names.size(); ++i)
