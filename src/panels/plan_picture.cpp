@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -19,13 +20,20 @@ using Kind = PlanImage::Kind;
 constexpr std::uint32_t none = ~0u;
 /// Lower bars could not be pointed at.
 constexpr float least_bar_height = 3;
-constexpr float memory_rows = 8;
+constexpr float memory_rows = 5;
 
 bool is_used(const PlanImage& image) { return image.first_pass != PlanImage::never; }
 
 bool writes(const PlanPass& pass, std::uint32_t image) { return pass.writes.image == image; }
 bool reads(const PlanPass& pass, std::uint32_t image) {
     return std::ranges::find(pass.reads, image, &PlanUse::image) != pass.reads.end();
+}
+
+/// "bloom" and "upsample 1" of "bloom.upsample 1"; a pass that is all of its effects has no part.
+std::string title_of(const PlanPass& pass) { return pass.name.substr(0, pass.name.find('.')); }
+std::string part_of(const PlanPass& pass) {
+    const std::size_t end = pass.name.find('.');
+    return end == std::string::npos ? std::string() : pass.name.substr(end + 1);
 }
 
 /// Images have the colour of the pass that makes them first.
@@ -52,6 +60,7 @@ class Picture {
         : plan_(plan), layout_(layout), plot_(plot), pointed_(find()) {}
 
     void draw() const {
+        draw_titles();
         draw_columns();
         for (const PlanLayout::Bar& bar : layout_.bars) draw_bar(bar);
         if (pointed_.image != none) draw_users(pointed_.image);
@@ -95,20 +104,33 @@ class Picture {
         return writes(pass, image) || reads(pass, image);
     }
 
+    /// One over all neighbours that share it: a column of its own would be too narrow for most.
+    void draw_titles() const {
+        for (std::size_t first = 0, end = 0; first < plan_.passes.size(); first = end) {
+            const std::string title = title_of(plan_.passes[first]);
+            while (end < plan_.passes.size() && title_of(plan_.passes[end]) == title) ++end;
+            const ImVec2 min{static_cast<float>(first) * layout_.column_width, 0};
+            const ImVec2 max{static_cast<float>(end) * layout_.column_width - 1, layout_.header_height / 2};
+            plot_.list->AddRectFilled(place(min), place({max.x, max.y - 1}), ImGui::GetColorU32(ImGuiCol_Header));
+            label(title, min, max, ImGui::GetColorU32(ImGuiCol_Text));
+        }
+    }
+
     void draw_columns() const {
+        const float top = layout_.header_height / 2;
         for (std::uint32_t i = 0; i < plan_.passes.size(); ++i) {
             const float left = static_cast<float>(i) * layout_.column_width, right = left + layout_.column_width;
             const bool is_bound = pointed_.image == none ? pointed_.pass == none || pointed_.pass == i
                                                          : writes(plan_.passes[i], pointed_.image) ||
                                                                reads(plan_.passes[i], pointed_.image);
-            plot_.list->AddRectFilled(place({left, 0}), place({right - 1, layout_.header_height - 1}),
+            plot_.list->AddRectFilled(place({left, top}), place({right - 1, layout_.header_height - 1}),
                                       faded(series_color(i), is_bound ? 1.0f : 0.3f));
             if (pointed_.pass == i)
                 plot_.list->AddRectFilled(place({left, layout_.header_height}), place({right - 1, layout_.size.y}),
                                           ImGui::GetColorU32(ImGuiCol_Text, 0.06f));
             plot_.list->AddLine(place({right - 0.5f, layout_.header_height}), place({right - 0.5f, layout_.size.y}),
                                 grid_color());
-            label(plan_.passes[i].name, {left, 0}, {right - 1, layout_.header_height}, IM_COL32(16, 16, 16, 255));
+            label(part_of(plan_.passes[i]), {left, top}, {right - 1, layout_.header_height}, IM_COL32(16, 16, 16, 255));
         }
         plot_.list->AddLine(place({0, layout_.memory_top - 2}), place({layout_.size.x, layout_.memory_top - 2}),
                             ImGui::GetColorU32(ImGuiCol_Border));
@@ -134,7 +156,7 @@ class Picture {
         const auto bar = std::ranges::find(layout_.bars, image, &PlanLayout::Bar::image);
         const ImU32 color = ImGui::ColorConvertFloat4ToU32(accent_color);
         plot_.list->AddRect(place(bar->min), place({bar->max.x - 1, bar->max.y - 1}), color);
-        const float radius = std::min(layout_.column_width, layout_.header_height) * 0.22f;
+        const float radius = std::min(layout_.column_width, layout_.header_height / 2) * 0.27f;
         for (std::uint32_t i = 0; i < plan_.passes.size(); ++i) {
             const ImVec2 middle =
                 place({(static_cast<float>(i) + 0.5f) * layout_.column_width, layout_.header_height + radius * 1.5f});
@@ -187,9 +209,9 @@ class Picture {
 }  // namespace
 
 PlanLayout lay_out(const Plan& plan, ImVec2 size, float row) {
-    PlanLayout layout{.header_height = row};
+    PlanLayout layout{.header_height = 2 * row};
     layout.column_width = size.x / static_cast<float>(std::max<std::size_t>(plan.passes.size(), 1));
-    float top = row + 2;
+    float top = layout.header_height + 2;
     const auto add = [&](std::uint32_t index, float from, float height) {
         const PlanImage& image = plan.images[index];
         layout.bars.push_back({index,
@@ -217,24 +239,24 @@ PlanLayout lay_out(const Plan& plan, ImVec2 size, float row) {
 }
 
 void draw_plan_picture(const Plan& plan) {
-    const float line = ImGui::GetTextLineHeightWithSpacing();
-    ImGui::Text("%s", fmt::format("{} passes, {} of images in {}", plan.passes.size(),
-                                  byte_text(plan.transient_bytes_unaliased), byte_text(plan.transient_bytes))
-                          .c_str());
-    const float below = std::min(static_cast<float>(plan.left_out.size()), 4.0f) * line;
-    if (ImGui::BeginChild("picture", {0, std::max(ImGui::GetContentRegionAvail().y - below, 8 * line)})) {
+    std::string text = fmt::format("{} passes, {} of images in {}", plan.passes.size(),
+                                   byte_text(plan.transient_bytes_unaliased), byte_text(plan.transient_bytes));
+    if (!plan.left_out.empty()) text += fmt::format(", left out: {}", plan.left_out.size());
+    ImGui::TextUnformatted(text.c_str());
+    if (ImGui::BeginChild("picture")) {
         const ImVec2 room = ImGui::GetContentRegionAvail();
-        const PlanLayout layout = lay_out(plan, {std::max(room.x, 1.0f), room.y}, ImGui::GetFrameHeight());
+        const float row = std::round(1.25f * ImGui::GetFontSize());
+        const PlanLayout layout = lay_out(plan, {std::max(room.x, 1.0f), room.y}, row);
         const Plot plot = begin_plot("plan", layout.size);
         const Picture picture(plan, layout, plot);
         picture.draw();
         end_plot(plot);
         picture.tooltip();
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_TextDisabled));
+        for (const std::string& each : plan.left_out) ImGui::TextWrapped("left out: %s", each.c_str());
+        ImGui::PopStyleColor();
     }
     ImGui::EndChild();
-    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_TextDisabled));
-    for (const std::string& each : plan.left_out) ImGui::TextWrapped("left out: %s", each.c_str());
-    ImGui::PopStyleColor();
 }
 
 }  // namespace darkroom::panels

@@ -19,7 +19,7 @@ struct PlanLayout {
         ImVec2 min, max;
     };
     float column_width = 0;
-    float header_height = 0;  ///< the row of the passes
+    float header_height = 0;  ///< of the passes' two rows: what they belong to, and each
     float memory_top = 0;     ///< of the transient memory
     ImVec2 size;              ///< of all; no smaller than what was asked for
     std::vector<Bar> bars;    ///< of the images that passes use
@@ -27,7 +27,7 @@ struct PlanLayout {
 /// As wide as `size`, and at least as high; a row is `row` high.
 [[nodiscard]] PlanLayout lay_out(const Plan& plan, ImVec2 size, float row);
 
-/// Fills the present window, or scrolls in it; what is left out of the plan, and why, is listed below.
+/// Fills the rest of the present window, and scrolls in it; what is left out of the plan, and why, is listed below.
 void draw_plan_picture(const Plan& plan);
 
 }  // namespace darkroom::panels

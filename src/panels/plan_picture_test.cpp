@@ -114,12 +114,12 @@ class PanelPlanPictureGui : public ::testing::Test {
         };
         gui.frame(3);
     }
-    /// Pixels in the accent's colour, in this column of the picture and near the passes' row.
+    /// Pixels in the accent's colour, in this column of the picture and below the passes' rows.
     [[nodiscard]] int marked(int column) const {
         const GuiPicture picture = gui.picture();
         const int left = 10 + column * 124 + 30, right = left + 64;
         int found = 0;
-        for (int y = 56; y < 72; ++y)
+        for (int y = 70; y < 86; ++y)
             for (int x = left; x < right; ++x)
                 found += std::abs(picture.at(x, y)[0] - accent_color.x * 255) < 2 &&
                                  std::abs(picture.at(x, y)[2] - accent_color.z * 255) < 2
@@ -151,6 +151,22 @@ TEST_F(PanelPlanPictureGui, APassUnderTheMouseSaysWhatItIs) {
     gui.frame(2);
     gui.show("plan_pass");
     EXPECT_NE(gui.picture().rgba, before.rgba);
+}
+
+TEST_F(PanelPlanPictureGui, NeighboursOfOneEffectShareATitle) {
+    const auto title_row = [&] {
+        std::vector<int> row;
+        const GuiPicture picture = gui.picture();
+        for (int x = 130; x < 140; ++x) row.push_back(picture.at(x, 36)[0]);
+        return row;
+    };
+    plan.passes[0].name = "bloom.bright";
+    plan.passes[1].name = "bloom.down";
+    gui.frame(2);
+    const auto shared = title_row();
+    plan.passes[1].name = "blur.down";
+    gui.frame(2);
+    EXPECT_NE(title_row(), shared) << "one title ends, and another begins";
 }
 
 TEST_F(PanelPlanPictureGui, AnEmptyPlanIsDrawn) {
