@@ -70,6 +70,14 @@ void PictureView::draw(const Shown& shown, const VkRect2D& area) {
     list->PushClipRect(corner, end);
     list->AddRectFilled(corner, end, ImGui::ColorConvertFloat4ToU32(darkroom::panels::surround_color));
     if (shown.first.image.is_given()) list->AddImage(pane_.texture(), from, to);
+    if (shown.marked) {
+        const ImVec2 middle{from.x + (static_cast<float>(shown.marked->x) + 0.5F) * zoom,
+                            from.y + (static_cast<float>(shown.marked->y) + 0.5F) * zoom};
+        const float radius = std::max(ImGui::GetFontSize() / 2, zoom);
+        // Two rings: one of them is seen on any picture.
+        list->AddCircle(middle, radius + 1, IM_COL32(0, 0, 0, 255), 0, 3);
+        list->AddCircle(middle, radius + 1, IM_COL32(255, 255, 255, 255), 0, 1);
+    }
     list->PopClipRect();
 
     pointed_.reset();

@@ -16,6 +16,7 @@ class PictureView {
         darkroom::window::PaneView first;
         std::optional<darkroom::window::PaneView> second;  ///< right of the divider
         VkExtent2D extent{};                               ///< of the picture, in pixels
+        std::optional<VkOffset2D> marked;                  ///< a pixel that stands out
         bool can_zoom = false;                             ///< else the mouse is the camera's
     };
     /// Under everything else of the interface.

@@ -83,6 +83,7 @@ void Screen::draw_picture(const Input& input, const VkRect2D& area) {
         .first = {.image = input.picture}, .extent = input.extent, .can_zoom = input.source.extent().has_value()};
     if (input.compared.is_given()) shown.second = darkroom::window::PaneView{.image = input.compared};
     EditPanels* const edit = panels();
+    if (edit != nullptr) shown.marked = edit->pixel();
     if (input.watched.is_given() && edit != nullptr) {
         shown.first = edit->watched_view();
         shown.first.image = input.watched;
