@@ -8,6 +8,7 @@
 #include <array>
 
 #include "panels/plan_picture.hpp"
+#include "panels/slider.hpp"
 #include "panels/theme.hpp"
 
 namespace app {
@@ -20,6 +21,7 @@ using darkroom::window::PaneTransfer;
 constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                                    ImGuiWindowFlags_NoBringToFrontOnFocus;
+constexpr darkroom::ParamInfo exposure_row{.name = "exposure", .unit = {"stops"}, .range = {-8, 8}};
 constexpr std::array sides{"look", "saved", "off"};
 constexpr std::array channels{"RGB", "red", "green", "blue", "alpha", "luminance"};
 
@@ -29,10 +31,11 @@ void begin(const char* name, const VkRect2D& area, ImGuiWindowFlags more = 0) {
     ImGui::Begin(name, nullptr, fixed | more);
 }
 
+/// `width`: in heights of the font.
 template <class Value, std::size_t Count>
-void combo(const char* name, Value& value, const std::array<const char*, Count>& names) {
+void combo(const char* name, Value& value, const std::array<const char*, Count>& names, float width) {
     int chosen = static_cast<int>(value);
-    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 5.5F);
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * width);
     if (ImGui::Combo(name, &chosen, names.data(), static_cast<int>(names.size()))) value = static_cast<Value>(chosen);
 }
 
@@ -112,25 +115,30 @@ void EditPanels::draw_view_bar(PictureView& picture) {
     darkroom::window::Pane& pane = picture.pane();
     const float em = ImGui::GetFontSize();
     ImGui::Checkbox("A/B", &is_comparing_);
+    look_.note_place("view/compare");
     tip("Compares two of: the look, the look as it was saved, all off. The divider can be dragged.");
     ImGui::SameLine();
     ImGui::BeginDisabled(!is_comparing_);
-    combo("##left", left_, sides);
+    combo("##left", left_, sides, 4.8F);
     ImGui::SameLine(0, 2);
-    combo("##right", right_, sides);
+    combo("##right", right_, sides, 4.8F);
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(5 * em);
-    ImGui::SliderFloat("##exposure", &pane.exposure, -10, 10, "%+.1f stops");
+    ImGui::SetNextItemWidth(6 * em);
+    double stops = pane.exposure;
+    if (darkroom::panels::draw_slider("##exposure", exposure_row, 0, stops).is_changed)
+        pane.exposure = static_cast<float>(std::clamp(stops, exposure_row.range.min, exposure_row.range.max));
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) pane.exposure = 0;
     tip("Brightens what is shown here, and nothing else. Double-click: 0.");
     ImGui::SameLine();
-    combo("##channels", pane.channels, channels);
+    combo("##channels", pane.channels, channels, 5.5F);
     ImGui::SameLine();
-    ImGui::Checkbox("False", &pane.is_false_color);
+    ImGui::Checkbox("False colours", &pane.is_false_color);
+    look_.note_place("view/false_colors");
     tip("False colours by level; the legend is beside the scopes.");
     ImGui::SameLine();
-    ImGui::Checkbox("Clip", &pane.is_clipping_marked);
+    ImGui::Checkbox("Clipping", &pane.is_clipping_marked);
+    look_.note_place("view/clipping");
     tip("Stripes where it is black (blue) or white (red); magenta: not a number.");
     ImGui::SameLine();
     bool is_fitted = picture.zoom() == 0;
@@ -151,7 +159,9 @@ void EditPanels::draw_timeline(const Input& input) {
 void EditPanels::draw_below(const Input& input, PictureView& picture) {
     if (!ImGui::BeginTabBar("##tabs")) return;
     const auto tab = [&](const char* name, Tab which, const auto& draw) {
-        if (!ImGui::BeginTabItem(name)) return;
+        const bool is_open = ImGui::BeginTabItem(name);
+        look_.note_place(fmt::format("tab/{}", name));
+        if (!is_open) return;
         tab_ = which;
         ImGui::BeginChild(name);
         draw();
@@ -165,7 +175,7 @@ void EditPanels::draw_below(const Input& input, PictureView& picture) {
     tab("Times", Tab::Times, [&] { timings_.draw(times_); });
     tab("Scopes", Tab::Scopes, [&] {
         const bool has_legend = picture.pane().is_false_color;
-        const float legend = has_legend ? 12 * ImGui::GetFontSize() : 0;
+        const float legend = has_legend ? 16 * ImGui::GetFontSize() : 0;
         ImGui::BeginChild("##scopes", {-legend, 0});
         scopes_.draw();
         ImGui::EndChild();
@@ -197,6 +207,7 @@ void EditPanels::draw_images(const Input& input) {
                 image_ = image.name;
                 level_ = level;
             }
+            look_.note_place(fmt::format("image/{}/{}", image.name, level));
         }
     }
     ImGui::EndChild();
