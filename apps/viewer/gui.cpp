@@ -13,7 +13,7 @@ using darkroom::Result;
 
 Result<std::unique_ptr<Gui>> Gui::create(darkroom::gpu::Context& context, darkroom::window::Window& window,
                                          VkFormat format, std::uint32_t slots) {
-    std::unique_ptr<Gui> out(new Gui(context));
+    std::unique_ptr<Gui> out(new Gui(context, window));
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;  // where panels lie follows from the window's size
@@ -33,6 +33,21 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
+// Before 1.87 there is no queue: a key that went down and up since the last frame would never have been pressed.
+void Gui::hold_short_presses() {
+#if IMGUI_VERSION_NUM < 18700
+    ImGuiIO& io = ImGui::GetIO();
+    for (const int key : held_)
+        if (!window_.is_down(key)) io.KeysDown[key] = false;
+    held_.clear();
+    for (const darkroom::window::KeyPress& press : window_.pressed()) {
+        if (press.key < 0 || press.key >= IM_ARRAYSIZE(io.KeysDown)) continue;
+        io.KeysDown[press.key] = true;
+        held_.push_back(press.key);
+    }
+#endif
+}
+
 Result<> Gui::begin(float scale) {
     if (scale != scale_) {
         scale_ = scale;
@@ -40,11 +55,13 @@ Result<> Gui::begin(float scale) {
         if (Result<> done = pass_->upload_fonts(*ImGui::GetIO().Fonts); !done) return done;
     }
     ImGui_ImplGlfw_NewFrame();
+    hold_short_presses();
     ImGui::NewFrame();
     return {};
 }
 
 Result<> Gui::draw(const darkroom::window::PresentFrame& frame) {
+    has_popup_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     ImGui::Render();
     const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                                .imageView = frame.view,

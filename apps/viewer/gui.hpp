@@ -3,6 +3,8 @@
 // Dear ImGui in a window of ours: its context, what the window's user does, and its lists on the picture.
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "window/gui_pass.hpp"
 #include "window/presenter.hpp"
@@ -27,13 +29,19 @@ class Gui {
     /// Is somebody typing, or pointing at a panel?
     [[nodiscard]] bool wants_keys() const;
     [[nodiscard]] bool wants_mouse() const;
+    /// Is there something that Esc closes?
+    [[nodiscard]] bool has_popup() const { return has_popup_; }
 
   private:
-    explicit Gui(darkroom::gpu::Context& context) : context_(context) {}
+    Gui(darkroom::gpu::Context& context, darkroom::window::Window& window) : context_(context), window_(window) {}
+    void hold_short_presses();
+
     darkroom::gpu::Context& context_;
+    darkroom::window::Window& window_;
+    std::vector<int> held_;  ///< keys that went down and up within a frame
     std::optional<darkroom::window::GuiPass> pass_;
     float scale_ = 0;
-    bool is_attached_ = false;
+    bool is_attached_ = false, has_popup_ = false;
 };
 
 }  // namespace app

@@ -241,6 +241,7 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .number = number,
                   .is_paused = is_paused_,
                   .inspection = inspection_ ? &*inspection_ : nullptr});
+    list_places();
     for (const std::string& command : screen_.take_commands()) run_command(command);
     EditPanels* const panels = screen_.panels();
     if (panels == nullptr) return;

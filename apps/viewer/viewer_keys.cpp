@@ -72,7 +72,8 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             wanted_.frame = free_name("frame", ".exr");
             return;
         case KeyAction::Console:
-            return screen_.toggle_console();
+            screen_.toggle_console();
+            return tell(fmt::format("console: {}", on_off(screen_.has_console())));
         case KeyAction::Panels:
             return screen_.toggle_panels();
         case KeyAction::Save: {
@@ -109,6 +110,8 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             return;
         case KeyAction::Leave:
             if (window_->is_cursor_captured()) return window_->capture_cursor(false);
+            if (screen_.has_console()) return screen_.toggle_console();
+            if (gui_->has_popup() || gui_->wants_keys()) return;
             return leave();
     }
 }
@@ -155,9 +158,11 @@ void Viewer::tell(std::string line) {
     screen_.tell(std::move(line));
 }
 
-// For programs that move the mouse: a widget and its corners in the window.
-void Viewer::list_places(const std::string& name) {
-    if (screen_.panels() == nullptr) return;
+// For programs that move the mouse: widgets and their corners in the window. They are noted from the first question on,
+// so the answer is of the frame after it.
+void Viewer::list_places() {
+    if (!places_ || screen_.panels() == nullptr || screen_.panels()->look().places().empty()) return;
+    const std::string name = *std::exchange(places_, std::nullopt);
     for (const auto& [shown, place] : screen_.panels()->look().places()) {
         if (!shown.starts_with(name)) continue;
         const std::string line = fmt::format("place {} {:.0f} {:.0f} {:.0f} {:.0f}", shown, place.least.x,
@@ -174,7 +179,10 @@ void Viewer::run_command(const std::string& command) {
     if (console == nullptr) return;
     screen_.print("> " + command);
     constexpr std::string_view places = "places";
-    if (command.starts_with(places)) return list_places(command.substr(std::min(places.size() + 1, command.size())));
+    if (command.starts_with(places)) {
+        places_ = command.substr(std::min(places.size() + 1, command.size()));
+        return;
+    }
     console->execute(command);
     const darkroom::Composer& composer = console->composer();
     settle("console",

@@ -60,7 +60,7 @@ class Viewer {
     void run_command(const std::string& command);
     /// In the window, and on standard output.
     void tell(std::string line);
-    void list_places(const std::string& name);
+    void list_places();
     /// Reports what went wrong with `source`, or clears what it said before.
     void settle(std::string_view source, const darkroom::Result<>& done) {
         done ? screen_.clear_error(source) : screen_.tell_error(source, done.error().text);
@@ -107,7 +107,8 @@ class Viewer {
     darkroom::edit::Watch source_files_;
     std::future<darkroom::Result<std::unique_ptr<SceneSource>>> coming_;  ///< the scene, read again
     std::pair<std::string, std::vector<std::string>> interface_files_;    ///< document and controllers, as it started
-    Clock::time_point sure_until_{};                                      ///< who leaves again before then means it
+    std::optional<std::string> places_;                  ///< widgets that were asked for, by how their names begin
+    Clock::time_point sure_until_{};                     ///< who leaves again before then means it
     std::uint64_t shown_frames_ = 0, frame_number_ = 0;  ///< so far; of the one that is recorded, in the presenter
     std::uint64_t frame_index_ = ~std::uint64_t{0};      ///< as Frame has it: stands still with the time
     bool is_cut_ = true;
