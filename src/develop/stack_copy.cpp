@@ -72,10 +72,11 @@ Result<bool> StackCopy::follow(const Composer& source, Composer& copy, double ti
     entries_.clear();
     copy.clear();
     if (auto ok = define_resources(source, copy); !ok) return failure(std::move(ok));
-    for (const Shape& shape : shapes) {
+    for (Shape& shape : shapes) {
+        // What may be mixed is planned so.
+        shape.desc.opacity = shape.is_mixable ? 0.5F : 1.0F;
         EntryDesc desc = shape.desc;
         desc.input = desc.source = desc.second = desc.mask = {};
-        desc.opacity = shape.is_mixable ? 0.5F : 1.0F;
         const auto words = copied_words(*shape.info, source.words({shape.id}));
         entries_.push_back({{shape.id}, copy.add(*shape.info, words.data(), desc)});
     }

@@ -58,7 +58,7 @@ struct FullHost : test::Host {
     std::vector<Light> lights;
 };
 
-class WatchLooks : public test::StackTest {
+class ChainWatch : public test::StackTest {
   protected:
     /// Watches all that the plan names. Gives how many are shown.
     std::size_t watch_all(Composer& composer, const FullHost& host) {
@@ -97,7 +97,7 @@ class WatchLooks : public test::StackTest {
     std::deque<gpu::test::Picture> targets;
 };
 
-TEST_F(WatchLooks, EveryImageOfEveryShippedLookIsSeen) {
+TEST_F(ChainWatch, EveryImageOfEveryShippedLookIsSeen) {
     const std::uint64_t messages = gpu::test::device().validation_messages();
     for (const auto& [width, height] : {std::pair{1u, 1u}, {7u, 5u}, {65u, 37u}}) {
         const FullHost host(width, height);
