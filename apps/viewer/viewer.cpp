@@ -250,14 +250,26 @@ void Viewer::draw_screen(const PresentFrame& frame) {
         played_ = static_cast<double>(*chosen) / job_.frame_desc.frames_per_second.value_or(1 / job_.step);
 }
 
+std::array<bool, side_count> Viewer::shown_sides() const {
+    std::array<bool, side_count> out{};
+    out[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)] = true;
+    if (screen_.is_comparing())
+        for (const Side side : {screen_.left(), screen_.right()}) out[static_cast<std::size_t>(side)] = true;
+    return out;
+}
+
 // What the frame shows is made in the same commands, before it.
 Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
     const Result<LookView*> look = view(Side::Look);
     if (!look) return failure(look.error());
     const bool is_first = (*look)->most().width == 0;
-    if (!is_first) {
-        settle("look", (*look)->fit(*source_, extent, interface_->format()));
-        extent = least_of(extent, (*look)->most());
+    // Every side asks for the room that is wanted, and frames are as large as all that are shown can take by now.
+    const VkExtent2D wanted = extent;
+    const std::array<bool, side_count> is_shown = shown_sides();
+    for (std::size_t side = 0; side < side_count; ++side) {
+        if (!is_shown[side] || !views_[side] || views_[side]->most().width == 0) continue;
+        settle("look", views_[side]->fit(*source_, wanted, interface_->format()));
+        extent = least_of(extent, views_[side]->most());
     }
     const LiveMoment now = moment();
     bool must_wait = source_->must_wait(now, extent) || interface_->must_wait(extent);
@@ -300,12 +312,9 @@ Result<> Viewer::record(const PresentFrame& frame, VkExtent2D extent) {
         input.ui = *ui;
     }
     if (Result<> done = job_.timeline.advance((*look)->composer(), input.time); !done) return done;
-    std::array<bool, side_count> is_wanted{};
-    is_wanted[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)] = true;
-    if (screen_.is_comparing())
-        for (const Side side : {screen_.left(), screen_.right()}) is_wanted[static_cast<std::size_t>(side)] = true;
+    const std::array<bool, side_count> is_shown = shown_sides();
     for (std::size_t side = 0; side < side_count; ++side)
-        if (is_wanted[side])
+        if (is_shown[side])
             if (Result<> done = record_look(frame.commands, static_cast<Side>(side), input); !done) return done;
     is_cut_ = false;
     return inspect(frame.commands, input);
@@ -316,7 +325,8 @@ Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom
     if (!found) return failure(found.error());
     LookView& of = **found;
     const VkExtent2D extent = frame.color.used_region().extent;
-    if (Result<> done = of.fit(*source_, extent, interface_->format()); !done) return done;
+    if (of.most().width == 0)
+        if (Result<> done = of.fit(*source_, extent, interface_->format()); !done) return done;
     if (Result<> done = of.resize(extent); !done) return done;
     if (is_fixed()) of.composer().wait_for_kernels();
     // A plan that does not fit yet is on its way: the picture stays what it was.

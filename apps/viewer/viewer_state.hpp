@@ -40,6 +40,7 @@ class Viewer {
     [[nodiscard]] darkroom::Result<> show(const darkroom::window::PresentFrame& frame);
     [[nodiscard]] darkroom::Result<> prepare(const darkroom::window::PresentFrame& frame, VkExtent2D extent);
     [[nodiscard]] darkroom::Result<> record(const darkroom::window::PresentFrame& frame, VkExtent2D extent);
+    [[nodiscard]] std::array<bool, side_count> shown_sides() const;
     [[nodiscard]] darkroom::Result<> record_look(VkCommandBuffer commands, Side side, const darkroom::Frame& frame);
     void draw_screen(const darkroom::window::PresentFrame& frame);
     void move_time(double passed);
