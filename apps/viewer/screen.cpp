@@ -134,14 +134,12 @@ void Screen::draw_console(const VkRect2D& area) {
     std::array<char, longest_command> text{};
     typed_.copy(text.data(), text.size() - 1);
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    // An open console has the keyboard, also after a click elsewhere, unless somebody types into another widget.
+    if (ImGui::IsWindowAppearing() || !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
     const bool is_entered =
         ImGui::InputText("##command", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
     typed_ = text.data();
-    if (is_entered && !typed_.empty()) {
-        commands_.push_back(std::exchange(typed_, {}));
-        ImGui::SetKeyboardFocusHere(-1);
-    }
+    if (is_entered && !typed_.empty()) commands_.push_back(std::exchange(typed_, {}));
     ImGui::End();
 }
 
