@@ -32,6 +32,7 @@ struct DeviceInfo {
     std::string driver;
     std::uint32_t api_version = 0;
     bool is_software = false;  ///< a CPU driver
+    bool is_null = false;      ///< its driver compiles for hardware that is not there, and runs nothing
     bool is_usable = false;
     std::string reason;  ///< why not, if it is not
 };
@@ -40,6 +41,9 @@ struct DeviceDesc {
     /// Index, or name (or a part of it, any case); a number that is nobody's index is part of a name. Empty: a real GPU
     /// if there is one.
     std::string select;
+    /// For who asks what kernels cost (Composer::statistics) and runs none: null devices are taken too, and the driver
+    /// must have VK_KHR_pipeline_executable_properties. Compiling a stack to record it is then an error.
+    bool compiles_only = false;
     bool validate = false;  ///< Khronos validation layer with synchronization validation; DARKROOM_VALIDATE=1 also
     LogSink log;            ///< log.hpp says from which threads it is called
     /// SPIR-V (at most 128 MiB, least recently used entries go first) and pipeline caches (at most 64 MiB each), which

@@ -63,7 +63,8 @@ std::uint32_t threads_of(const ComposerDesc& desc) {
 Composer::State::State(std::shared_ptr<gpu::Context> device_context, const ComposerDesc& composer_desc)
     : context(std::move(device_context)), desc(composer_desc) {
     desc.frames_in_flight = std::max(1u, desc.frames_in_flight);
-    worker = std::make_unique<compose::Worker>(*context, desc.max_threads > 0 && !context->is_assumed);
+    worker = std::make_unique<compose::Worker>(*context,
+                                               desc.max_threads > 0 && !context->is_assumed && !context->compiles_only);
 }
 
 Composer::State::~State() {
@@ -73,6 +74,10 @@ Composer::State::~State() {
 }
 
 Result<> Composer::State::check_device() const {
+    if (context->compiles_only)
+        return user_error(
+            "compile: the composer is on a device that compiles kernels only, for statistics; allowed is a device that "
+            "was created without compiles_only, or adopted");
     if (!context->is_assumed) return {};
     return user_error(
         "compile: the composer is on an assumed device, for which stacks are planned; allowed is a device that was "

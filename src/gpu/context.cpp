@@ -72,7 +72,8 @@ Context::Context() = default;
 
 Context::~Context() {
     if (device != VK_NULL_HANDLE) {
-        if (is_owner) vk.DeviceWaitIdle(device);
+        // RADV's null device cannot even do this.
+        if (is_owner && !compiles_only) vk.DeviceWaitIdle(device);
         kernels.reset();
         save_pipeline_cache_if_grown();
         if (owns_pipeline_cache_) vk.DestroyPipelineCache(device, pipeline_cache, allocator);
@@ -159,7 +160,8 @@ Result<> Context::finish() {
     shaders = std::make_unique<ShaderCompiler>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");
     kernels = std::make_unique<KernelStore>(*this);
     if (Result<> samplers = create_samplers(); !samplers) return samplers;
-    return pipeline_cache == VK_NULL_HANDLE ? create_pipeline_cache() : Result<>{};
+    // A pipeline out of a cache may have no statistics.
+    return pipeline_cache == VK_NULL_HANDLE && !compiles_only ? create_pipeline_cache() : Result<>{};
 }
 
 Result<> Context::create_samplers() {

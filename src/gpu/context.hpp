@@ -64,6 +64,7 @@ class Context {
     std::mutex queue_mutex;          ///< held while something is submitted to it
     bool is_owner = false;           ///< of instance, device and messenger
     bool is_assumed = false;         ///< there is no device: gpu/assumed_device.hpp
+    bool compiles_only = false;      ///< as in DeviceDesc: no image may be made, nothing submitted
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     const VkAllocationCallbacks* allocator = nullptr;  ///< of every object that is created or destroyed
     DeviceMemoryHooks memory_hooks{};                  ///< empty: vkAllocateMemory

@@ -152,7 +152,7 @@ std::ptrdiff_t rank_of(const Context& context, VkPhysicalDevice device, const De
 }
 
 /// Best first.
-Result<std::vector<Candidate>> find_devices(const Context& context) {
+Result<std::vector<Candidate>> find_devices(const Context& context, bool compiles_only = false) {
     std::uint32_t count = 0;
     VkResult result = context.vk.EnumeratePhysicalDevices(context.instance, &count, nullptr);
     std::vector<VkPhysicalDevice> handles(count);
@@ -162,10 +162,8 @@ Result<std::vector<Candidate>> find_devices(const Context& context) {
     std::vector<Candidate> candidates;
     for (std::uint32_t index = 0; index < count; ++index) {
         Candidate candidate{.device = handles[index], .info = gpu::identify(context.vk, handles[index], index)};
-        const std::vector<std::string> missing =
-            gpu::missing_for_creation(context.vk, candidate.device, candidate.info);
-        candidate.info.is_usable = missing.empty();
-        if (!missing.empty()) candidate.info.reason = fmt::format("lacks {}", fmt::join(missing, ", "));
+        candidate.info.reason = gpu::why_unusable(context.vk, candidate.device, candidate.info, compiles_only);
+        candidate.info.is_usable = candidate.info.reason.empty();
         candidate.rank = rank_of(context, candidate.device, candidate.info);
         candidates.push_back(std::move(candidate));
     }
@@ -218,9 +216,14 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
         .pNext = &synchronization,
         .dynamicRendering = VK_TRUE,
     };
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
+        .pNext = &rendering,
+        .pipelineExecutableInfo = VK_TRUE,
+    };
     const VkPhysicalDeviceFeatures2 features{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-        .pNext = &rendering,
+        .pNext = context.compiles_only ? static_cast<void*>(&statistics) : &rendering,
         .features = {.fullDrawIndexUint32 = available.fullDrawIndexUint32,
                      .imageCubeArray = available.imageCubeArray,
                      .independentBlend = available.independentBlend,
@@ -235,6 +238,7 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
     const gpu::PromotedNames names = gpu::promoted_names(context.info.api_version);
     std::vector<const char*> extensions(wanted.begin(), wanted.end());
     if (names == gpu::PromotedNames::Khr) std::ranges::copy(gpu::promoted_extensions, std::back_inserter(extensions));
+    if (context.compiles_only) extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     constexpr float priority = 1.0F;
     const VkDeviceQueueCreateInfo queue_info{
         .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -256,7 +260,9 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
         !checked) {
         return checked;
     }
-    if (Result<> loaded = context.vk.load_device(device, context.traits.has_debug_labels, names); !loaded) {
+    Result<> loaded = context.vk.load_device(device, context.traits.has_debug_labels, names);
+    if (loaded && context.compiles_only) loaded = context.vk.load_statistics(device);
+    if (!loaded) {
         if (vk.DestroyDevice != nullptr) vk.DestroyDevice(device, context.allocator);
         return loaded;
     }
@@ -288,10 +294,11 @@ Device Device::assumed() { return Device(gpu::assumed_context()); }
 Result<Device> Device::create(const DeviceDesc& desc) {
     auto context = std::make_shared<Context>();
     context->log = desc.log;
+    context->compiles_only = desc.compiles_only;
     context->cache_folder = gpu::cache_folder_of(desc.cache_folder, desc.caches_on_disk);
     if (Result<> created = create_instance(*context, wants_validation(desc), desc.instance_extensions); !created)
         return failure(std::move(created));
-    const Result<std::vector<Candidate>> candidates = find_devices(*context);
+    const Result<std::vector<Candidate>> candidates = find_devices(*context, desc.compiles_only);
     if (!candidates) return failure(candidates.error());
     Result<Candidate> chosen = choose(*candidates, desc.select);
     if (!chosen) return failure(std::move(chosen));

@@ -2,6 +2,7 @@
 #include "gpu/device_facts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -39,6 +40,8 @@ DeviceInfo identify(const Dispatch& vk, VkPhysicalDevice device, std::uint32_t i
         .name = core.deviceName,
         .api_version = core.apiVersion,
         .is_software = core.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU,
+        // So says RADV, the only driver that has them: "Null hardware (RADV NAVI21)".
+        .is_null = std::string_view(core.deviceName).starts_with("Null hardware"),
     };
     // Older devices do not know the structure.
     if (core.apiVersion < VK_API_VERSION_1_2) return info;
@@ -91,6 +94,16 @@ std::vector<std::string> missing_for_creation(const Dispatch& vk, VkPhysicalDevi
     }
     if (!find_queue_family(vk, device)) missing.emplace_back("a queue family with graphics and compute");
     return missing;
+}
+
+std::string why_unusable(const Dispatch& vk, VkPhysicalDevice device, const DeviceInfo& info, bool compiles_only) {
+    std::vector<std::string> missing = missing_for_creation(vk, device, info);
+    constexpr const char* statistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+    if (compiles_only && !has_extension(device_extensions(vk, device), statistics))
+        missing.push_back(fmt::format("{}, by which drivers say what their compilers made", statistics));
+    if (!missing.empty()) return fmt::format("lacks {}", fmt::join(missing, ", "));
+    if (!info.is_null || compiles_only) return {};
+    return "it is a null device, which compiles for hardware that is not there and runs nothing";
 }
 
 std::filesystem::path cache_folder_of(const std::filesystem::path& wanted, bool caches_on_disk) {

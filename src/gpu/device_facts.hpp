@@ -29,9 +29,12 @@ namespace darkroom::gpu {
 /// The first one with graphics and compute.
 [[nodiscard]] std::optional<std::uint32_t> find_queue_family(const Dispatch& vk, VkPhysicalDevice device);
 
-/// What a device that the library is to make would be without, each as a phrase. Empty: it is usable.
+/// What a device that the library is to make would be without, each as a phrase.
 [[nodiscard]] std::vector<std::string> missing_for_creation(const Dispatch& vk, VkPhysicalDevice device,
                                                             const DeviceInfo& info);
+/// Why the library can make no device of it (DeviceInfo::reason). Empty: it can.
+[[nodiscard]] std::string why_unusable(const Dispatch& vk, VkPhysicalDevice device, const DeviceInfo& info,
+                                       bool compiles_only);
 
 /// The folder of the caches: the user's own where none is wanted, none where they are switched off.
 [[nodiscard]] std::filesystem::path cache_folder_of(const std::filesystem::path& wanted, bool caches_on_disk);

@@ -167,4 +167,12 @@ Result<> Dispatch::load_device(VkDevice device, bool has_debug_utils, PromotedNa
     return load.result();
 }
 
+Result<> Dispatch::load_statistics(VkDevice device) {
+    Loader load(GetDeviceProcAddr, device);
+    load(GetPipelineExecutablePropertiesKHR, "vkGetPipelineExecutablePropertiesKHR");
+    load(GetPipelineExecutableStatisticsKHR, "vkGetPipelineExecutableStatisticsKHR");
+    load(GetPipelineExecutableInternalRepresentationsKHR, "vkGetPipelineExecutableInternalRepresentationsKHR");
+    return load.result();
+}
+
 }  // namespace darkroom::gpu

@@ -121,12 +121,19 @@ struct Dispatch {
     PFN_vkCmdBeginDebugUtilsLabelEXT CmdBeginDebugUtilsLabelEXT = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT CmdEndDebugUtilsLabelEXT = nullptr;
 
+    // Of a device, only with VK_KHR_pipeline_executable_properties.
+    PFN_vkGetPipelineExecutablePropertiesKHR GetPipelineExecutablePropertiesKHR = nullptr;
+    PFN_vkGetPipelineExecutableStatisticsKHR GetPipelineExecutableStatisticsKHR = nullptr;
+    PFN_vkGetPipelineExecutableInternalRepresentationsKHR GetPipelineExecutableInternalRepresentationsKHR = nullptr;
+
     [[nodiscard]] Result<> load_loader(PFN_vkGetInstanceProcAddr get_proc);
     /// Needs GetInstanceProcAddr.
     [[nodiscard]] Result<> load_instance(VkInstance instance, bool has_debug_utils);
     /// Needs load_instance().
     [[nodiscard]] Result<> load_device(VkDevice device, bool has_debug_utils,
                                        PromotedNames names = PromotedNames::Core);
+    /// Needs load_device().
+    [[nodiscard]] Result<> load_statistics(VkDevice device);
 };
 
 }  // namespace darkroom::gpu

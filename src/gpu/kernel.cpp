@@ -8,6 +8,7 @@
 #include "core/assert.hpp"
 #include "gpu/context.hpp"
 #include "gpu/kernel_pipeline.hpp"
+#include "gpu/pipeline_statistics.hpp"
 
 namespace darkroom::gpu {
 
@@ -202,6 +203,14 @@ Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpe
 const KernelSpec& Kernel::spec() const { return state_->spec; }
 Stage Kernel::stage() const { return state_->stage; }
 VkDescriptorSetLayout Kernel::set_layout() const { return state_->set_layout; }
+
+Result<KernelStatistics> Kernel::statistics() const {
+    auto out = pipeline_statistics(state_->context, state_->pipeline, stage_flag(state_->stage));
+    if (!out) return out;
+    out->name = state_->spec.name;
+    if (state_->stage == Stage::Compute) out->workgroup = state_->spec.workgroup;
+    return out;
+}
 
 void Kernel::write_set(const Invocation& invocation) const {
     DARKROOM_ASSERT(invocation.images.size() == state_->spec.images.size());

@@ -30,6 +30,7 @@
 
 #include <array>
 #include <cstdint>
+#include <darkroom/kernel_statistics.hpp>
 #include <darkroom/result.hpp>
 #include <memory>
 #include <span>
@@ -119,6 +120,8 @@ class Kernel {
     [[nodiscard]] Stage stage() const;
     /// The same for all kernels with the same images, outputs and stage.
     [[nodiscard]] VkDescriptorSetLayout set_layout() const;
+    /// Of its stage's program; on a device that compiles only.
+    [[nodiscard]] Result<KernelStatistics> statistics() const;
 
     struct Block {
         VkBuffer buffer = VK_NULL_HANDLE;

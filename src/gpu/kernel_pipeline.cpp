@@ -67,10 +67,16 @@ Result<std::vector<std::uint32_t>> full_screen_vertex(Context& context) {
     return words;
 }
 
+VkPipelineCreateFlags flags_of(const Context& context) {
+    if (!context.compiles_only) return 0;
+    return VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR | VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
+}
+
 Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& spec, VkPipelineLayout layout,
                                            const ShaderModule& module) {
     const VkComputePipelineCreateInfo create_info{
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+        .flags = flags_of(context),
         .stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT),
         .layout = layout,
     };
@@ -140,6 +146,7 @@ Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& sp
     const VkGraphicsPipelineCreateInfo create_info{
         .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
         .pNext = &rendering,
+        .flags = flags_of(context),
         .stageCount = static_cast<std::uint32_t>(stages.size()),
         .pStages = stages.data(),
         .pVertexInputState = &vertex_input,

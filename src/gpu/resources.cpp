@@ -169,7 +169,7 @@ Result<Image> Image::place(Context& context, const ImageInfo& info, const Memory
 }
 
 Result<VkMemoryRequirements> Image::measure(Context& context, const ImageInfo& info) {
-    if (context.is_assumed) return assumed_requirements(info);
+    if (context.is_assumed || context.compiles_only) return assumed_requirements(info);
     const Result<VkImage> handle = create_image(context, info);
     if (!handle) return failure(handle.error());
     const VkMemoryRequirements requirements = requirements_of(context, *handle);
