@@ -27,6 +27,7 @@
 #include <darkroom/device.hpp>
 #include <darkroom/effect.hpp>
 #include <darkroom/frame.hpp>
+#include <darkroom/kernel_statistics.hpp>
 #include <darkroom/modulation.hpp>
 #include <darkroom/plan.hpp>
 #include <darkroom/resource.hpp>
@@ -243,6 +244,9 @@ class Composer {
     [[nodiscard]] const Plan* current_plan() const;
     /// The same as compile() without a device's objects, so on Device::assumed(), too: for `darkroom plan`.
     [[nodiscard]] Result<Plan> plan(const CompileDesc& desc) const;
+    /// What the driver's compiler makes of the kernels of that plan, one for each of its passes: lean ones, as frames
+    /// get them with the present values. Needs a device of DeviceDesc::compiles_only.
+    [[nodiscard]] Result<std::vector<KernelStatistics>> statistics(const CompileDesc& desc) const;
 
     /// Records the whole stack. Errors (a missing or mismatching image, an extent beyond the compiled maximum, no plan)
     /// record nothing; they name the image and the field, such as frame.depth.layout.

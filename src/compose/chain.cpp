@@ -19,15 +19,6 @@ using plan::PassInput;
 using plan::ProgramPass;
 using plan::Shape;
 
-namespace {
-
-bool is_whole(const gpu::Region& region) {
-    return region.offset.x == 0 && region.offset.y == 0 && region.extent.width == region.image.width &&
-           region.extent.height == region.image.height;
-}
-
-}  // namespace
-
 Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
     find_watched(frame);
@@ -252,38 +243,10 @@ std::span<const std::uint32_t> Chain::write_words(const ProgramPass& pass) {
     return std::span(words_).first(count);
 }
 
-Shape Chain::shape_of(const ProgramPass& pass, std::span<const plan::Entry* const> entries, const gpu::Region& output,
-                      std::span<const gpu::Binding> inputs) const {
-    Shape shape;
-    if (!plan::has_lean(pass)) return shape;
-    if (is_whole(output) && std::ranges::all_of(inputs, [](const gpu::Binding& b) { return is_whole(b.region); }))
-        shape.steps |= Shape::is_whole;
-    if (pass.asks_input_is_twice && !inputs.empty() && inputs[0].region.extent.width == 2 * output.extent.width &&
-        inputs[0].region.extent.height == 2 * output.extent.height)
-        shape.steps |= Shape::input_is_twice;
-    if (pass.is_fused) {
-        if (pass.finish == plan::Finish::OfFrame)
-            shape.steps |= static_cast<std::uint64_t>(values_.finish()) << Shape::finish_bit;
-        for (std::size_t i = 0; i < pass.steps.size(); ++i) {
-            const std::uint32_t entry = pass.steps[i].entry;
-            if (!values_.is_on(entry)) continue;
-            shape.steps |= (entries[entry]->is_plain(values_.opacity(entry)) ? std::uint64_t{1} : std::uint64_t{3})
-                           << (2 * i);
-        }
-    }
-    for (const plan::Literal& literal : pass.literals) {
-        const std::uint32_t entry = pass.steps[literal.step].entry;
-        // An entry that is off is not in the kernel; a pass of an effect that is off does not run, or for another one.
-        if (pass.is_fused && !values_.is_on(entry)) continue;
-        shape.choices |= (values_.words(entry)[literal.row->word] & literal.mask()) << literal.bit;
-    }
-    return shape;
-}
-
 const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& output,
                                     std::span<const gpu::Binding> inputs) {
     PassKernels& kernels = *desc_.program->kernels[pass];
-    last_shapes_[pass] = shape_of(program_of().passes[pass], entries_, output, inputs);
+    last_shapes_[pass] = plan::shape_of(program_of().passes[pass], entries_, values_, output, inputs);
     if (const gpu::Kernel* const kernel = kernels.find(last_shapes_[pass], recordings_, desc_.slots, worker_.garbage()))
         return *kernel;
     worker_.want(kernels, last_shapes_[pass]);

@@ -14,7 +14,7 @@
 #include "compose/worker.hpp"
 #include "gpu/resources.hpp"
 #include "graph/physical.hpp"
-#include "plan/frame_values.hpp"
+#include "plan/frame_shape.hpp"
 
 namespace darkroom::compose {
 
@@ -70,10 +70,7 @@ class Chain final : public Garbage {
     [[nodiscard]] gpu::Region watched_region(const gpu::Region& whole, const Watched& watched, VkExtent2D extent) const;
     void prepare_histories(VkCommandBuffer commands, const Frame& frame);
     void derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame);
-    [[nodiscard]] plan::Shape shape_of(const plan::ProgramPass& pass, std::span<const plan::Entry* const> entries,
-                                       const gpu::Region& output, std::span<const gpu::Binding> inputs) const;
-    [[nodiscard]] plan::Shape expected_shape(const plan::ProgramPass& pass,
-                                             std::span<const plan::Entry* const> entries) const;
+    [[nodiscard]] plan::Shape expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const;
     [[nodiscard]] gpu::Binding bind(const plan::PassInput& input, const Frame& frame, VkExtent2D extent) const;
     [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
                                          VkExtent2D extent) const;

@@ -88,7 +88,7 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     const Camera camera;
     derive({.frame_extent = extent, .output_extent = extent, .camera = &camera}, entries, 0);
     last_shapes_.resize(program.passes.size());
-    for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(program.passes[i], entries);
+    for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(i, entries);
 
     // The complete kernel and the one of the expected shape, for every pass, unless this program has them.
     std::vector<std::pair<std::uint32_t, bool>> missing;
@@ -105,26 +105,10 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     });
 }
 
-/// The shape that a frame of the largest extent will have, in whole images: what most frames are.
-plan::Shape Chain::expected_shape(const plan::ProgramPass& pass, std::span<const plan::Entry* const> entries) const {
-    const VkExtent2D largest = desc_.compile.max_extent;
-    const auto region = [&](std::uint32_t slot, std::uint32_t mip_level) {
-        // A pass that is off has no slot: any region does.
-        if (slot >= compiled_->slots().size()) return gpu::Region{{}, largest, largest};
-        const graph::ImageDesc& desc = compiled_->slots()[slot].desc;
-        const VkExtent2D extent = graph::mip_extent(desc.size.of(largest), std::min(mip_level, desc.mip_levels - 1));
-        return gpu::Region{{}, extent, extent};
-    };
-    std::array<gpu::Binding, gpu::most_images> inputs;
-    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
-        const plan::PassInput& input = pass.inputs[i];
-        inputs[i] =
-            input.table != plan::no_table
-                ? tables_.binding(input.table)
-                : gpu::Binding{.region = region(schedule_->slot_of(input.version, input.instead), input.mip_level)};
-    }
-    return shape_of(pass, entries, region(schedule_->slot_of(pass.output), pass.output_mip_level),
-                    {inputs.data(), pass.inputs.size()});
+plan::Shape Chain::expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const {
+    const plan::Program& program = program_of();
+    return plan::expected_shape(program, *compiled_, *schedule_, values_, entries, program.passes[pass],
+                                desc_.compile.max_extent);
 }
 
 Result<> Chain::build_lean() {
@@ -134,7 +118,7 @@ Result<> Chain::build_lean() {
     for (std::size_t i = 0; i < program_of().passes.size(); ++i) {
         if (pass_sets_[i].first == ~0u) continue;
         PassKernels& kernels = *desc_.program->kernels[i];
-        for (const plan::Shape& shape : {expected_shape(program_of().passes[i], entries_), last_shapes_[i]}) {
+        for (const plan::Shape& shape : {expected_shape(i, entries_), last_shapes_[i]}) {
             if (kernels.find(shape, recordings_, desc_.slots, worker_.garbage()) != nullptr) continue;
             if (auto ok = kernels.build(*context_.kernels, shape); !ok) return ok;
         }

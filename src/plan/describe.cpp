@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include "gpu/formats.hpp"
 #include "plan/frame_values.hpp"
@@ -16,20 +15,6 @@ std::uint64_t bytes_of(const graph::Slot& slot, VkExtent2D frame, std::uint32_t 
     const VkExtent2D extent =
         graph::mip_extent(slot.desc.size.of(frame), mip_level < slot.desc.mip_levels ? mip_level : 0);
     return std::uint64_t{extent.width} * extent.height * gpu::format_traits(slot.desc.format).bits / 8;
-}
-
-/// Lights that no condition of a pass leaves out: before a camera that looks along -z, bright and casting shadows.
-std::array<Light, max_shadow_lights> example_lights(const CompileDesc& desc) {
-    std::array<Light, max_shadow_lights> lights;
-    for (Light& light : lights) {
-        light.direction = {0, 0, -1};
-        light.volumetric_intensity = 1;
-        if (!desc.has_shadows) continue;
-        // Conditions ask whether there is a view, never what it is.
-        light.cascades.view = std::bit_cast<VkImageView>(std::uintptr_t{1});
-        light.cascade_count = 1;
-    }
-    return lights;
 }
 
 const char* name_of(Domain domain) {
@@ -142,12 +127,7 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
               .frame_images = frame_images(program),
               .transient_bytes = compiled.transient_bytes(),
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
-    FrameValues values(program, entries);
-    const Camera camera;
-    const auto lights = example_lights(desc);
-    values.evaluate(
-        program, desc, entries,
-        {.frame_extent = desc.max_extent, .output_extent = desc.max_extent, .camera = &camera, .lights = lights});
+    const FrameValues values = example_values(program, desc, entries);
     remark_domains(program, values, entries, plan.remarks);
     graph::Schedule schedule(compiled);
     schedule.derive(values.gates(), std::vector<graph::ImportState>(program.imports.size()), 0);

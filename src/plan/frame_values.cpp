@@ -2,8 +2,28 @@
 #include "plan/frame_values.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 
 namespace darkroom::plan {
+
+namespace {
+
+/// Lights that no condition of a pass leaves out: before a camera that looks along -z, bright and casting shadows.
+std::array<Light, max_shadow_lights> example_lights(const CompileDesc& desc) {
+    std::array<Light, max_shadow_lights> lights;
+    for (Light& light : lights) {
+        light.direction = {0, 0, -1};
+        light.volumetric_intensity = 1;
+        if (!desc.has_shadows) continue;
+        // Conditions ask whether there is a view, never what it is.
+        light.cascades.view = std::bit_cast<VkImageView>(std::uintptr_t{1});
+        light.cascade_count = 1;
+    }
+    return lights;
+}
+
+}  // namespace
 
 Presence Entry::evaluate(std::span<std::uint32_t> out, const Moment& moment) const {
     std::copy(base.begin(), base.end(), out.begin());
@@ -65,6 +85,16 @@ bool FrameValues::is_open(const Program& program, const Gate& gate, const PassCo
     for (std::size_t i = 0; i < gate.entries.size() && !is_wanted; ++i)
         is_wanted = is_on(gate.entries[i]) && (gate.conditions.empty() || holds(gate.entries[i], gate.conditions[i]));
     return is_wanted && holds(gate.entries.front(), gate.condition);
+}
+
+FrameValues example_values(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries) {
+    FrameValues values(program, entries);
+    const Camera camera;
+    const auto lights = example_lights(desc);
+    values.evaluate(
+        program, desc, entries,
+        {.frame_extent = desc.max_extent, .output_extent = desc.max_extent, .camera = &camera, .lights = lights});
+    return values;
 }
 
 }  // namespace darkroom::plan

@@ -48,4 +48,8 @@ class FrameValues {
     std::size_t gate_count_ = 0;
 };
 
+/// Of a frame that brings all that `desc` promises, and a light to look at.
+[[nodiscard]] FrameValues example_values(const Program& program, const CompileDesc& desc,
+                                         std::span<const Entry* const> entries);
+
 }  // namespace darkroom::plan

@@ -194,8 +194,8 @@ struct PlannerTraits {
 [[nodiscard]] Finish finish_of(Domain domain, const CompileDesc& desc);
 [[nodiscard]] Domain target_domain(const CompileDesc& desc);
 
-/// The program as users read it: the passes that run with the entries' present values, in a frame that brings all that
-/// `desc` promises and a light to look at.
+/// The program as users read it: the passes that run with the entries' present values, in a frame of
+/// example_values().
 [[nodiscard]] Plan describe_program(const Program& program, const graph::Compiled& compiled, const CompileDesc& desc,
                                     std::span<const Entry* const> entries);
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// What a driver's compiler makes of a plan's kernels.
+#include "compose/composer_state.hpp"
+
+namespace darkroom {
+
+namespace {
+
+/// Of the kernel that a frame gets for this pass.
+Result<KernelStatistics> statistics_of(gpu::Context& context, const plan::ProgramPass& pass, const plan::Shape& shape) {
+    const auto spec = plan::has_lean(pass) ? plan::lean_spec(pass, shape) : plan::complete_spec(pass);
+    if (!spec) return failure(spec.error());
+    const auto kernel = gpu::Kernel::create(context, *spec, pass.stage);
+    if (!kernel) return failure(kernel.error());
+    auto out = (*kernel)->statistics();
+    if (out) out->name = pass.name;
+    return out;
+}
+
+}  // namespace
+
+Result<std::vector<KernelStatistics>> Composer::statistics(const CompileDesc& desc) const {
+    gpu::Context& context = *state_->context;
+    if (!context.compiles_only)
+        return user_error(
+            "statistics: the composer's device is for recording or planning; allowed is one created with "
+            "compiles_only");
+    auto snapshot = state_->snapshot(desc);
+    if (!snapshot) return failure(std::move(snapshot));
+    const auto program = plan::plan_program(snapshot->values, desc, compose::planner_traits(context, desc.kernels));
+    if (!program) return failure(program.error());
+    const auto compiled = program->graph.compile(desc.max_extent, graph::measure_on(context));
+    if (!compiled) return failure(compiled.error());
+    std::vector<const plan::Entry*> entries;
+    for (const plan::Entry& entry : snapshot->values) entries.push_back(&entry);
+    const plan::FrameValues values = plan::example_values(*program, desc, entries);
+    graph::Schedule schedule(*compiled);
+    schedule.derive(values.gates(), std::vector<graph::ImportState>(program->imports.size()), 0);
+
+    std::vector<KernelStatistics> out;
+    for (std::uint32_t i = 0; i < program->passes.size(); ++i) {
+        const std::uint32_t kept = compiled->kept_pass_of({i});
+        if (kept == ~0u || !schedule.runs(kept)) continue;
+        const plan::ProgramPass& pass = program->passes[i];
+        auto one = statistics_of(
+            context, pass, plan::expected_shape(*program, *compiled, schedule, values, entries, pass, desc.max_extent));
+        if (!one) return failure(std::move(one));
+        out.push_back(std::move(*one));
+    }
+    return out;
+}
+
+}  // namespace darkroom
