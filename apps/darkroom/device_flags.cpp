@@ -40,6 +40,10 @@ Result<darkroom::Device> DeviceFlags::create_if_named() const {
     return device_.empty() ? darkroom::Device::assumed() : create();
 }
 
+Result<darkroom::Device> DeviceFlags::create_compiler() const {
+    return darkroom::Device::create({.select = device_, .compiles_only = true, .log = log_sink()});
+}
+
 Result<VkExtent2D> parse_size(const std::string& text) {
     std::array<std::uint32_t, 2> sides{};
     const char* at = text.data();

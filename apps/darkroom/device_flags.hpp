@@ -19,6 +19,8 @@ class DeviceFlags {
     [[nodiscard]] darkroom::Result<darkroom::Device> create() const;
     /// For what runs no kernel: an assumed device, unless --device names one.
     [[nodiscard]] darkroom::Result<darkroom::Device> create_if_named() const;
+    /// For what compiles kernels and runs none: null devices, too.
+    [[nodiscard]] darkroom::Result<darkroom::Device> create_compiler() const;
     [[nodiscard]] const std::string& name() const { return device_; }
     [[nodiscard]] bool is_fused() const { return !is_unfused_; }
 

@@ -10,13 +10,18 @@ namespace app {
 
 namespace {
 
+const char* kind_of(const darkroom::DeviceInfo& device) {
+    if (device.is_null) return "null";
+    return device.is_software ? "software" : "hardware";
+}
+
 int list() {
     const darkroom::Result<std::vector<darkroom::DeviceInfo>> devices = darkroom::Device::list();
     if (!devices) return fail(devices.error());
     for (const darkroom::DeviceInfo& device : *devices) {
         fmt::print("{}: {} | {} | Vulkan {}.{}.{} | {}{}\n", device.index, device.name, device.driver,
                    VK_API_VERSION_MAJOR(device.api_version), VK_API_VERSION_MINOR(device.api_version),
-                   VK_API_VERSION_PATCH(device.api_version), device.is_software ? "software" : "hardware",
+                   VK_API_VERSION_PATCH(device.api_version), kind_of(device),
                    device.is_usable ? "" : fmt::format(" | not usable: {}", device.reason));
     }
     if (!devices->empty()) return exit_ok;

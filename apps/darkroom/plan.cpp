@@ -10,6 +10,7 @@
 #include "device_flags.hpp"
 #include "frames.hpp"
 #include "look_flags.hpp"
+#include "plan_statistics.hpp"
 #include "report.hpp"
 
 namespace app {
@@ -21,9 +22,28 @@ using darkroom::Result;
 struct Options {
     LookFlags look;
     DeviceFlags device;
-    std::string size, frame, bits = "8";
-    bool is_json = false;
+    std::string size, frame, bits = "8", chip;
+    std::vector<std::string> loops;
+    bool is_json = false, wants_statistics = false;
 };
+
+Result<std::string> statistics_of(const Options& options, const darkroom::Device& device,
+                                  const darkroom::Composer& composer, const darkroom::Plan& plan,
+                                  const darkroom::CompileDesc& compile) {
+    const Result<const darkroom::Chip*> chip = chip_named(options.chip, device.info());
+    if (!chip) return failure(chip.error());
+    std::vector<GivenLoops> loops;
+    for (const std::string& text : options.loops) {
+        Result<GivenLoops> parsed = parse_loops(text);
+        if (!parsed) return failure(std::move(parsed));
+        loops.push_back(std::move(*parsed));
+    }
+    const auto kernels = composer.statistics(compile);
+    if (!kernels) return failure(kernels.error());
+    const StatisticsReport report{
+        .device = device.info(), .plan = plan, .kernels = *kernels, .chip = *chip, .loops = loops};
+    return options.is_json ? json_of(report) : text_of(report);
+}
 
 Result<std::string> text_of(const Options& options) {
     const Result<darkroom::Look> look = options.look.look();
@@ -45,7 +65,8 @@ Result<std::string> text_of(const Options& options) {
         if (!size) return failure(size.error());
         input.extent = *size;
     }
-    Result<darkroom::Device> device = options.device.create_if_named();
+    Result<darkroom::Device> device =
+        options.wants_statistics ? options.device.create_compiler() : options.device.create_if_named();
     if (!device) return failure(std::move(device));
     if (Result<> done = darkroom::check_extent(*device, input.extent); !done) return failure(std::move(done));
     darkroom::Composer composer(*device);
@@ -59,6 +80,7 @@ Result<std::string> text_of(const Options& options) {
         std::ranges::any_of(frame.lights, [](const darkroom::FrameLight& light) { return !light.cascades.empty(); });
     const Result<darkroom::Plan> plan = composer.plan(compile);
     if (!plan) return failure(plan.error());
+    if (options.wants_statistics) return statistics_of(options, *device, composer, *plan, compile);
     return options.is_json ? plan->json() : plan->text();
 }
 
@@ -82,6 +104,16 @@ Command add_plan(CLI::App& program, std::span<const darkroom::LookEntry> named) 
     command->add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")
         ->type_name("FRAME");
     command->add_option("--bits", options->bits, "The target: 8, 16, half or float")->type_name("BITS");
+    CLI::Option* const statistics =
+        command->add_flag("--statistics", options->wants_statistics,
+                          "What the device's compiler makes of each kernel: registers, waves, instructions, cycles");
+    command->add_option("--chip", options->chip, "With --statistics: the graphics card that milliseconds are of")
+        ->type_name("NAME")
+        ->needs(statistics);
+    command->add_option("--loops", options->loops, "With --statistics: how often the loops of a kernel run")
+        ->type_name("KERNEL=N,...")
+        ->allow_extra_args(false)
+        ->needs(statistics);
     options->device.add_to(*command);
     options->look.add_to(*command, false, named);
     return {command, [options] { return run(*options); }};
