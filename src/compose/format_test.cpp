@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Formats of which a device can do less than the software driver: its table of formats is faked. What it cannot load is
-// sampled, and what it cannot filter is sampled with the nearest texel.
+// sampled, and what it cannot filter the kernels do.
 
 #include <map>
 #include <set>
@@ -63,6 +63,7 @@ class ComposeFormat : public test::StackTest {
     }
     void TearDown() override { EXPECT_EQ(device.validation_messages(), 0u); }
 
+    ReferenceImage enlarged();
     static ReferenceImage picture() { return test::round_to_half(test::random_display(40, 33, 5)); }
     static void fill(Composer& composer) {
         test::add(composer, "exposure", {{"exposure", 2}});
@@ -113,8 +114,8 @@ TEST_F(ComposeFormat, AnExtendedFormatIsLoadedOnlyWhereTheFeatureIsEnabled) {
     }
 }
 
-TEST_F(ComposeFormat, WhatCannotBeFilteredIsSampledWithTheNearestTexel) {
-    fake.missing[whole] = fake.missing[single] = filter;
+/// A picture of 32 bits, with depth of 32 bits, on a larger target.
+ReferenceImage ComposeFormat::enlarged() {
     test::Host host(picture(), whole, whole, device);
     const gpu::test::Picture depth = gpu::test::upload(
         device.context(),
@@ -138,6 +139,15 @@ TEST_F(ComposeFormat, WhatCannotBeFilteredIsSampledWithTheNearestTexel) {
     frame.camera = test::look_at({0, 0, 0}, {0, 0, -1}, 1, 1);
     frame.target = test::image_ref(large);
     test::must(host.record(composer, frame));
+    return test::image_of(gpu::test::download(device.context(), large));
+}
+
+TEST_F(ComposeFormat, WhatCannotBeFilteredTheKernelsFilter) {
+    const ReferenceImage expected = enlarged();
+    EXPECT_TRUE(fake.filtered.contains(whole));
+    renew();
+    fake.missing[whole] = fake.missing[single] = filter;
+    EXPECT_LE(test::worst_difference(enlarged(), expected), 1e-4);
     EXPECT_TRUE(fake.sampled.contains(whole) && fake.sampled.contains(single));
     EXPECT_FALSE(fake.filtered.contains(whole));
     EXPECT_FALSE(fake.filtered.contains(single));

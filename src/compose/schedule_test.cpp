@@ -164,9 +164,8 @@ TEST_F(ComposeSchedule, KernelsKeepToTheStorageImagesOfTheDevice) {
             for (const ProgramPass& pass : program->passes) {
                 EXPECT_EQ(pass.inputs.size(), pass.spec.images.size());
                 std::size_t storage = 1;
-                for (std::size_t i = 0; i < pass.inputs.size(); ++i)
-                    if (pass.inputs[i].table == no_table && pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED)
-                        ++storage;
+                for (const gpu::KernelImage& image : pass.spec.images)
+                    if (image.storage_format != VK_FORMAT_UNDEFINED) ++storage;
                 worst = std::max(worst, storage);
             }
             return worst;

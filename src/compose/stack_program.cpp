@@ -45,6 +45,7 @@ bool StackProgram::serves(std::span<const plan::Entry> other_stack, const Compil
 plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kernels) {
     return {.stage_of = [&context, kernels](const gpu::KernelSpec& spec) { return stage_of(context, spec, kernels); },
             .can_load = [&context](VkFormat format) { return gpu::can_load(context, format); },
+            .can_filter = [&context](VkFormat format) { return gpu::can_filter(context, format); },
             .loads_are_cheap = context.traits.is_software,
             .max_storage_images = context.traits.max_storage_images,
             .workgroup = gpu::usual_workgroup(context)};

@@ -13,8 +13,9 @@ Result<Tables> Tables::create(gpu::Context& context, std::span<const plan::Fixed
     for (const plan::FixedImage& one : fixed) {
         const TableDesc& desc = one.desc;
         const bool is_neutral = one.import_index != ~0u;
-        VkImageUsageFlags read = desc.is_load_only ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT;
-        if (is_neutral) read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+        VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT;
+        // A kernel that has too many storage images samples it all the same.
+        if (is_neutral || desc.is_load_only) read |= VK_IMAGE_USAGE_STORAGE_BIT;
         const VkImageLayout layout = (read & VK_IMAGE_USAGE_STORAGE_BIT) != 0
                                          ? VK_IMAGE_LAYOUT_GENERAL
                                          : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;

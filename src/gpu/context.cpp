@@ -149,7 +149,8 @@ Result<> Context::finish() {
     traits.max_storage_range = limits.maxStorageBufferRange;
     traits.max_workgroup_invocations = limits.maxComputeWorkGroupInvocations;
     std::ranges::copy(limits.maxComputeWorkGroupSize, traits.max_workgroup_size.begin());
-    traits.max_storage_images = limits.maxPerStageDescriptorStorageImages;
+    traits.max_storage_images =
+        std::min(limits.maxPerStageDescriptorStorageImages, limits.maxFragmentCombinedOutputResources);
     traits.max_sampled_images =
         std::min(limits.maxPerStageDescriptorSampledImages, limits.maxPerStageDescriptorSamplers);
 

@@ -77,7 +77,8 @@ TEST(GpuContext, KnowsTheLimitsThatKernelsMustKeep) {
     const VkPhysicalDeviceLimits& limits = properties.limits;
     EXPECT_EQ(context.traits.max_workgroup_invocations, limits.maxComputeWorkGroupInvocations);
     EXPECT_EQ(context.traits.max_workgroup_size[2], limits.maxComputeWorkGroupSize[2]);
-    EXPECT_EQ(context.traits.max_storage_images, limits.maxPerStageDescriptorStorageImages);
+    EXPECT_LE(context.traits.max_storage_images, limits.maxPerStageDescriptorStorageImages);
+    EXPECT_LE(context.traits.max_storage_images, limits.maxFragmentCombinedOutputResources);
     EXPECT_LE(context.traits.max_sampled_images, limits.maxPerStageDescriptorSampledImages);
     EXPECT_LE(context.traits.max_sampled_images, limits.maxPerStageDescriptorSamplers);
     EXPECT_EQ(context.traits.max_uniform_range, limits.maxUniformBufferRange);

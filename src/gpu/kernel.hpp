@@ -63,6 +63,8 @@ struct KernelImage {
     /// one.
     std::string loads_by{};
     std::string sampler_type = "sampler2D";  ///< or "sampler3D", "usampler2D", ...
+    /// The device cannot filter its format: sample_linear() mixes four loads. Of "sampler2D" only.
+    bool is_filtered_by_loads = false;
 };
 
 struct KernelSpec {

@@ -94,6 +94,21 @@ void write_storage_input(Text text, const KernelImage& image, std::uint32_t bind
         image.name, prefix, is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name));
 }
 
+/// Vulkan 1.3 specification, "Texel Filtering", with the address mode CLAMP_TO_EDGE.
+void write_filter(Text text, std::string_view name) {
+    fmt::format_to(text,
+                   "vec4 sample_linear_{0}(vec2 uv) {{\n"
+                   "    ivec2 last = textureSize({0}, 0) - 1;\n"
+                   "    vec2 place = clamp(darkroom_place_{0}(uv) * vec2(last + 1), vec2(0), vec2(last + 1)) - 0.5;\n"
+                   "    ivec2 low = max(ivec2(floor(place)), 0), high = min(ivec2(floor(place)) + 1, last);\n"
+                   "    vec2 weight = place - floor(place);\n"
+                   "    return mix(mix(texelFetch({0}, low, 0), texelFetch({0}, ivec2(high.x, low.y), 0), weight.x),\n"
+                   "               mix(texelFetch({0}, ivec2(low.x, high.y), 0), texelFetch({0}, high, 0), weight.x),\n"
+                   "               weight.y);\n"
+                   "}}\n",
+                   name);
+}
+
 void write_sampled_input(Text text, const KernelImage& image, std::uint32_t binding, Stage stage, bool is_whole) {
     fmt::format_to(text, "layout(set = 0, binding = {}) uniform {} {};\n", binding, image.sampler_type, image.name);
     if (!is_plain_2d(image.sampler_type)) return;
@@ -117,6 +132,7 @@ void write_sampled_input(Text text, const KernelImage& image, std::uint32_t bind
         "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 0); }}\n"
         "{1}vec4 gather_green_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 1); }}\n",
         image.name, prefix, load, place);
+    if (image.is_filtered_by_loads) return write_filter(text, image.name);
     // A view has one mip level, so the implicit level of detail changes no bit; some drivers filter much faster with
     // it.
     const std::string_view function = stage == Stage::Raster ? "texture" : "textureLod";

@@ -354,7 +354,11 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
 void Planner::limit_storage_images(ProgramPass& pass) const {
     std::vector<gpu::KernelImage>& images = pass.spec.images;
     const auto is_storage = [](const gpu::KernelImage& image) { return image.storage_format != VK_FORMAT_UNDEFINED; };
-    if (std::ranges::count_if(images, is_storage) + 1 <= traits_.max_storage_images) return;
+    const auto is_beyond = [&] {
+        const auto count = static_cast<std::size_t>(std::ranges::count_if(images, is_storage));
+        return count + pass.spec.outputs.size() > traits_.max_storage_images;
+    };
+    if (!is_beyond()) return;
     // An image that is both loaded and sampled stands there twice: the sampled one stays.
     for (gpu::KernelImage& image : images) {
         if (image.loads_by.empty()) continue;
@@ -368,10 +372,30 @@ void Planner::limit_storage_images(ProgramPass& pass) const {
         images.erase(images.begin() + static_cast<std::ptrdiff_t>(i));
         pass.inputs.erase(pass.inputs.begin() + static_cast<std::ptrdiff_t>(i));
     }
+    // Then tables, the last first.
+    for (std::size_t i = images.size(); i-- > 0 && is_beyond();) images[i].storage_format = VK_FORMAT_UNDEFINED;
+}
+
+bool Planner::can_filter(const PassInput& input) const {
+    if (!traits_.can_filter) return true;
+    if (input.table != no_table) return traits_.can_filter(program_.fixed_images[input.table].desc.format);
+    const auto known = facts_.find(input.version.index);
+    if (known == facts_.end()) return true;
+    const Facts& facts = known->second;
+    // Depth is never filtered.
+    return gpu::is_depth(facts.format) ||
+           (traits_.can_filter(facts.format) && std::ranges::all_of(facts.fall_backs, [&](graph::Version instead) {
+                return can_filter({.version = instead});
+            }));
 }
 
 Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level) {
     limit_storage_images(pass);
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        gpu::KernelImage& image = pass.spec.images[i];
+        image.is_filtered_by_loads = image.storage_format == VK_FORMAT_UNDEFINED && image.sampler_type == "sampler2D" &&
+                                     !can_filter(pass.inputs[i]);
+    }
     pass.spec.loads_are_cheap = traits_.loads_are_cheap;
     pass.spec.workgroup = traits_.workgroup;
     lay_out_literals(pass);

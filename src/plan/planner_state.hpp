@@ -128,6 +128,8 @@ class Planner {
     /// Reads images by sampling where the device has no more storage images for a kernel. Tables that are only loaded
     /// stay.
     void limit_storage_images(ProgramPass& pass) const;
+    /// Whether a linear sampler reads whatever may stand behind the input.
+    [[nodiscard]] bool can_filter(const PassInput& input) const;
     [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
     /// One of a watch, or of what entries share: others do not join it because they look alike.
     [[nodiscard]] bool is_special_gate(std::size_t index) const;

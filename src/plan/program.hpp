@@ -181,6 +181,8 @@ struct PlannerTraits {
     std::function<Result<gpu::Stage>(const gpu::KernelSpec&)> stage_of;
     /// Whether the device reads this format by imageLoad; null: every one.
     std::function<bool(VkFormat)> can_load{};
+    /// Whether a linear sampler reads this format; null: every one. Else the kernels filter by loads.
+    std::function<bool(VkFormat)> can_filter{};
     bool loads_are_cheap = false;          ///< see gpu/kernel.hpp
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
     std::array<std::uint32_t, 2> workgroup{16, 8};
