@@ -129,6 +129,7 @@ TEST_F(ComposeWatch, OutputsAreWhatShorterStacksMake) {
 }
 
 TEST_F(ComposeWatch, WhoGivesNoTargetRunsNoPassAndGetsTheSamePicture) {
+    if (gpu::test::context().traits.timestamp_valid_bits == 0) GTEST_SKIP() << "this device measures no times";
     composer = Composer(host.device, {.has_timers = true});
     const std::vector<Handle> entries = fill(composer);
     const Plan plain = test::must(composer.compile(desc()));

@@ -20,6 +20,7 @@
 #include "gpu/formats.hpp"
 #include "gpu/kernel.hpp"
 #include "gpu/resources.hpp"
+#include "gpu/test_support_smallest.hpp"
 
 namespace darkroom::gpu::test {
 
@@ -40,11 +41,25 @@ class SharedDevice : public ::testing::Environment {
         static auto* const shared = static_cast<SharedDevice*>(::testing::AddGlobalTestEnvironment(new SharedDevice));
         return *shared;
     }
+    /// With DARKROOM_TEST_DEVICE=smallest, that one.
     Device& device() {
+        if (is_smallest()) return smallest();
         if (device_ == nullptr) device_ = std::make_unique<Device>(must(create()));
         return *device_;
     }
+    Device& smallest() {
+        if (smallest_ == nullptr) smallest_ = std::make_unique<SmallestDevice>(must(create()));
+        return smallest_->device();
+    }
+    static bool is_smallest() {
+        const char* const variable = std::getenv("DARKROOM_TEST_DEVICE");
+        return variable != nullptr && std::string_view(variable) == "smallest";
+    }
     void TearDown() override {
+        if (smallest_ != nullptr) {
+            EXPECT_EQ(smallest_->validation_messages(), 0U);
+        }
+        smallest_.reset();
         if (device_ == nullptr) return;
         EXPECT_EQ(device_->validation_messages(), 0U);
         device_.reset();
@@ -63,6 +78,7 @@ class SharedDevice : public ::testing::Environment {
         return Device::create(desc);
     }
     std::unique_ptr<Device> device_;
+    std::unique_ptr<SmallestDevice> smallest_;
 };
 // Environments must be there before the tests start, and only register themselves here.
 inline SharedDevice& shared_device = SharedDevice::instance();

@@ -135,6 +135,8 @@ double place(std::uint32_t target, std::uint32_t from, std::uint32_t to) {
 }  // namespace
 
 TEST(GraphPhysicalResample, AGradientGoesOnWithinHalfACode) {
+    if (!gpu::test::context().is_filterable(VK_FORMAT_R32_SFLOAT))
+        GTEST_SKIP() << "this device filters no floats of 32 bits: a history of them keeps its nearest texels";
     for (const Change& change : changes) {
         SCOPED_TRACE(
             fmt::format("{}x{} to {}x{}", change.from.width, change.from.height, change.to.width, change.to.height));
