@@ -11,12 +11,8 @@ struct BloomTaps {
     vec3 middle;
 };
 
-vec3 bloom_clean(vec3 color) {
-    return max(sanitize(vec4(color, 1.0)).rgb, 0.0);
-}
-
 vec3 bloom_tap(vec2 uv) {
-    return bloom_clean(sample_linear(bloom_source, uv).rgb);
+    return sanitize_light(sample_linear(bloom_source, uv).rgb);
 }
 
 BloomTaps bloom_by_taps(Pixel pixel) {
@@ -58,7 +54,7 @@ BloomRow bloom_row(ivec2 first) {
 }
 
 vec3 bloom_mean(vec3 upper, vec3 lower) {
-    return bloom_clean(0.25 * (upper + lower));
+    return sanitize_light(0.25 * (upper + lower));
 }
 
 // The same taps where all lie on corners of texels: each is the mean of the 2x2 around it, and all cover 6x6. What is

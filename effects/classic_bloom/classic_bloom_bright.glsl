@@ -4,7 +4,7 @@
 #include "shared/sanitize.glsl"
 
 vec3 classic_bloom_tap(vec2 uv, ClassicBloom parameters) {
-    vec3 color = max(sanitize(sample_linear(classic_bloom_source, uv)).rgb, 0.0);
+    vec3 color = sanitize_light(sample_linear(classic_bloom_source, uv).rgb);
     // ITU-R BT.709.
     float luminance = dot(color, vec3(0.2126, 0.7152, 0.0722));
     float brightness = max(color.r, max(color.g, color.b));

@@ -3,8 +3,8 @@
 #include "shared/sanitize.glsl"
 
 vec3 classic_bloom_tap(vec2 uv) {
-    vec3 color = max(sanitize(sample_linear(classic_bloom_picture, uv)).rgb, 0.0);
-    return color * clamp(sanitize(sample_linear(classic_bloom_source, uv)).r, 0.0, 1.0);
+    vec3 color = sanitize_light(sample_linear(classic_bloom_picture, uv).rgb);
+    return color * clamp(sample_linear(classic_bloom_source, uv).r, 0.0, 1.0);
 }
 
 vec4 shade(Pixel pixel) {

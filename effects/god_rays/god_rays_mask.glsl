@@ -7,7 +7,7 @@ vec4 shade(Pixel pixel) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 16; ++i) {
         ivec2 texel = pixel.texel * 4 + ivec2(i & 3, i >> 2);
-        vec3 color = max(sanitize(load_clamped(god_rays_source, texel)).rgb, vec3(0.0));
+        vec3 color = sanitize_light(load_clamped(god_rays_source, texel).rgb);
         // ITU-R BT.709.
         float luminance = dot(color, vec3(0.2126, 0.7152, 0.0722));
         float kept = clamp(luminance - custom[1].x, 0.0, custom[1].y);

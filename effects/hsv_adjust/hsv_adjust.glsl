@@ -10,7 +10,7 @@ float hsv_adjust_hue(vec3 color, float value, float chroma) {
 }
 
 vec4 hsv_adjust(vec4 color, Pixel pixel, HsvAdjust parameters) {
-    vec3 rgb = max(sanitize(color).rgb, 0.0);
+    vec3 rgb = sanitize_light(color.rgb);
     float value = max(max(rgb.r, rgb.g), rgb.b);
     float chroma = value - min(min(rgb.r, rgb.g), rgb.b);
     float hue = hsv_adjust_hue(rgb, value, chroma) + parameters.hue / 60.0;

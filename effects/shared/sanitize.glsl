@@ -10,4 +10,7 @@ vec4 sanitize(vec4 value) {
     return clamp(number, -65504.0, 65504.0);
 }
 
+// Of light, which is not negative: that becomes 0, too. All shaders are compiled so that a clamp takes NaN to its lower end.
+vec3 sanitize_light(vec3 value) { return clamp(value, 0.0, 65504.0); }
+
 #endif

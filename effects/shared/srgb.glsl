@@ -3,18 +3,16 @@
 #ifndef SHARED_SRGB
 #define SHARED_SRGB
 
-// A comparison with NaN is false; what clamp makes of it is not defined.
-vec3 srgb_range(vec3 color) {
-    return mix(vec3(0.0), min(color, vec3(1.0)), greaterThan(color, vec3(0.0)));
-}
+// All shaders are compiled so that a clamp takes NaN to its lower end.
+vec3 srgb_range(vec3 color) { return clamp(color, 0.0, 1.0); }
 
-// The power is a polynomial in t = 1 - x^(1/4), fitted by Remez exchange for the smallest relative error of the encoded
-// value over [0.0031308, 1] with 1 kept exact: 3.3e-5 (2^-14.9; 3.5e-5 with rounding), less than 1/100 of an 8-bit code. Two square roots and
-// five multiply-adds cost less than half of a pow.
+// The power is a polynomial in x^(1/4), fitted by Remez exchange for the smallest relative error of the encoded value over
+// [0.0031308, 1] with 1 kept exact: 3.3e-5 (2^-14.9), less than 1/100 of an 8-bit code. Two square roots and five
+// multiply-adds cost less than half of a pow.
 vec3 srgb_encode(vec3 linear) {
     vec3 light = srgb_range(linear);
-    vec3 t = 1.0 - sqrt(sqrt(light));
-    vec3 power = 1.0 - t * (1.75715567 + t * (-0.571225668 + t * (-0.127878612 + t * (0.0903737166 - t * 0.0879412007))));
+    vec3 s = sqrt(sqrt(light));
+    vec3 power = s * (s * (s * (s * (0.349332273 - s * 0.0879411995) - 0.645795763) + 1.29203117) + 0.152857363) - 0.0604839064;
     return mix(power, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
 }
 

@@ -62,8 +62,7 @@ vec3 tonemap_pbr_neutral(vec3 light) {
 }
 
 vec4 tonemap(vec4 color, Pixel pixel, Tonemap parameters) {
-    // A comparison with NaN is false; what min and max make of it is not defined.
-    vec3 light = mix(vec3(0.0), min(color.rgb, vec3(tonemap_ceiling)), greaterThan(color.rgb, vec3(0.0)));
+    vec3 light = clamp(color.rgb, 0.0, tonemap_ceiling);
     uint curve = parameters.curve;
     if (curve == Tonemap_curve_aces_narkowicz) {
         light = tonemap_narkowicz(light);

@@ -22,7 +22,7 @@ namespace {
 using Words = std::vector<std::uint32_t>;
 
 // Raised whenever the options below change, so that no entry made with others is found.
-constexpr std::string_view options_version = "darkroom 2: vulkan 1.2, spir-v 1.5, performance";
+constexpr std::string_view options_version = "darkroom 3: vulkan 1.2, spir-v 1.5, performance, clamped NaN";
 
 shaderc_shader_kind kind_of(ShaderStage stage) {
     switch (stage) {
@@ -134,6 +134,8 @@ Result<Words> run_compiler(const ShaderSource& source) {
         options.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_2);
         options.SetTargetSpirv(shaderc_spirv_version_1_5);
         options.SetOptimizationLevel(shaderc_optimization_level_performance);
+        // min, max and clamp take the operand that is a number: clamp(NaN, low, high) is low.
+        options.SetNanClamp(true);
         const shaderc::SpvCompilationResult result =
             compiler.CompileGlslToSpv(source.text, kind_of(source.stage), source.name.c_str(), options);
         if (result.GetCompilationStatus() != shaderc_compilation_status_success) {

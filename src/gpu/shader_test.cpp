@@ -44,6 +44,29 @@ class GpuShaderCache : public ::testing::Test {
     ShaderSource empty = source("layout(local_size_x = 1) in;\nvoid main() {}\n");
 };
 
+/// How many instructions call this function of GLSL.std.450.
+std::ptrdiff_t calls_of(const Words& words, std::uint32_t function) {
+    constexpr std::uint32_t header_words = 5, call_instruction = 12;
+    std::ptrdiff_t calls = 0;
+    for (std::size_t i = header_words; i < words.size() && words[i] >> 16 != 0; i += words[i] >> 16)
+        if ((words[i] & 0xffff) == call_instruction && words[i + 4] == function) ++calls;
+    return calls;
+}
+
+// A driver may make anything of FMin, FMax and FClamp of NaN.
+TEST(GpuShaderCompiler, ClampsTakeTheOperandThatIsANumber) {
+    constexpr std::uint32_t f_min = 37, f_max = 40, f_clamp = 43, n_min = 79, n_max = 80, n_clamp = 81;
+    ShaderCompiler compiler{std::filesystem::path()};
+    const Result<Words> words =
+        compiler.compile({.name = "test",
+                          .text = "#version 460\nlayout(location = 0) in vec3 a;\nlayout(location = 0) out vec3 b;\n"
+                                  "void main() { b = vec3(clamp(a.x, a.y, a.z), min(a.x, a.y), max(a.y, a.z)); }\n",
+                          .stage = ShaderStage::Fragment});
+    ASSERT_TRUE(words) << words.error().text;
+    for (const std::uint32_t function : {f_min, f_max, f_clamp}) EXPECT_EQ(calls_of(*words, function), 0) << function;
+    for (const std::uint32_t function : {n_min, n_max, n_clamp}) EXPECT_EQ(calls_of(*words, function), 1) << function;
+}
+
 TEST_F(GpuShaderCache, GivesTheSameWordsWithoutTheCompiler) {
     ShaderCompiler first(folder);
     const Result<Words> made = first.compile(empty);
