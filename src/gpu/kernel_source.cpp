@@ -16,11 +16,13 @@ namespace {
 constexpr std::array<std::string_view, 6> image_functions{"sample_linear", "load",         "load_clamped",
                                                           "gather_red",    "gather_green", "size"};
 constexpr std::uint32_t first_image_binding = 2;
+constexpr std::uint32_t vectors_of_output = 2;
 constexpr std::uint32_t vectors_per_image = 3;
 
 /// Words of the own block before its members.
 std::uint32_t first_member_word(const KernelSpec& spec) {
-    return 4 * (1 + vectors_per_image * static_cast<std::uint32_t>(spec.images.size()) + spec.custom_vectors);
+    return 4 * (vectors_of_output + vectors_per_image * static_cast<std::uint32_t>(spec.images.size()) +
+                spec.custom_vectors);
 }
 
 constexpr std::string_view preamble = R"(#version 460
@@ -32,8 +34,7 @@ struct Pixel { ivec2 texel; vec2 uv; ivec2 size; };
 // Both stages reach pixel.uv by the same operations in the same order; gl_FragCoord would not do.
 constexpr std::string_view pixel_functions = R"(ivec2 output_size() { return darkroom_output.zw; }
 Pixel darkroom_pixel(ivec2 texel) {
-    precise vec2 uv = (vec2(texel) + 0.5) / vec2(darkroom_output.zw);
-    return Pixel(texel, uv, darkroom_output.zw);
+    return Pixel(texel, fma(vec2(texel), darkroom_texel.xy, darkroom_texel.zw), darkroom_output.zw);
 }
 )";
 
@@ -65,7 +66,9 @@ void write_blocks(Text text, const KernelSpec& spec, const BlockSource& own) {
         fmt::format_to(text, "layout(std140, set = 0, binding = 0) uniform DarkroomFrame {{\n{}}};\n",
                        block_source(spec.frame, 0).members);
     }
-    fmt::format_to(text, "layout(std140, set = 0, binding = 1) uniform DarkroomOwn {{\n    ivec4 darkroom_output;\n");
+    fmt::format_to(text,
+                   "layout(std140, set = 0, binding = 1) uniform DarkroomOwn {{\n"
+                   "    ivec4 darkroom_output;\n    vec4 darkroom_texel;\n");
     for (const KernelImage& image : spec.images) {
         fmt::format_to(text,
                        "    vec4 darkroom_uv_{0};\n    vec4 darkroom_bounds_{0};\n    ivec4 darkroom_region_{0};\n",
@@ -153,10 +156,10 @@ void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index
     const std::string_view old = is_read ? " + imageLoad(result_0, place)" : "";
     fmt::format_to(text,
                    "void store_{0}(ivec2 texel, vec4 value) {{\n"
-                   "    ivec2 place = texel + darkroom_output.xy;\n"
+                   "    ivec2 place = texel{3};\n"
                    "    imageStore(result_{0}, place, {1}vec4(value){2});\n"
                    "}}\n",
-                   index, prefix_of(traits.numeric), old);
+                   index, prefix_of(traits.numeric), old, spec.is_whole ? "" : " + darkroom_output.xy");
 }
 
 void write_outputs(Text text, const KernelSpec& spec, Stage stage) {
@@ -181,8 +184,9 @@ void write_shade_call(Text text, std::size_t output_count) {
 
 void write_main(Text text, const KernelSpec& spec, Stage stage) {
     const bool is_compute = stage == Stage::Compute;
-    const std::string_view place =
-        is_compute ? "ivec2(gl_GlobalInvocationID.xy)" : "ivec2(gl_FragCoord.xy) - darkroom_output.xy";
+    const std::string place =
+        is_compute ? "ivec2(gl_GlobalInvocationID.xy)"
+                   : fmt::format("ivec2(gl_FragCoord.xy){}", spec.is_whole ? "" : " - darkroom_output.xy");
     const std::string_view condition = is_compute ? "if (all(lessThan(texel, darkroom_output.zw))) " : "";
     fmt::format_to(text, "void main() {{\n    ivec2 texel = {};\n    {}{{\n", place, condition);
     write_shade_call(text, spec.outputs.size());
@@ -195,6 +199,17 @@ void write_main(Text text, const KernelSpec& spec, Stage stage) {
         }
     }
     fmt::format_to(text, "    }}\n}}\n");
+}
+
+/// Of the texels along one side, in uv.
+struct TexelPlaces {
+    float step = 1.0F, first = 0.5F;
+};
+
+/// The middle texel of an odd number lies at 0.5 exactly, however `step` was rounded.
+TexelPlaces places_of(std::uint32_t extent) {
+    const float step = 1.0F / static_cast<float>(extent);
+    return {.step = step, .first = static_cast<float>(0.5 - 0.5 * (extent - 1.0) * static_cast<double>(step))};
 }
 
 struct Axis {
@@ -273,6 +288,8 @@ void write_own_block(const KernelSpec& spec, const Region& output, std::span<con
     DARKROOM_ASSERT(custom.size() == spec.custom_vectors);
     DARKROOM_ASSERT(out.size() >= own_block_size(spec));
     append(out, rectangle(output));
+    const TexelPlaces x = places_of(output.extent.width), y = places_of(output.extent.height);
+    append(out, std::array{x.step, y.step, x.first, y.first});
     for (const Binding& image : images) {
         const Region& region = image.region;
         const Axis x = axis_of(region.offset.x, region.extent.width, region.image.width);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "gpu/glsl_scan.hpp"
@@ -104,28 +105,44 @@ TEST(GpuOwnBlock, DescribesRegionsAndHoldsMembers) {
                           .images = {{.name = "scene"}},
                           .members = {{BlockMember::Type::Float, "gain"}, {BlockMember::Type::Uint, "mode"}},
                           .custom_vectors = 1};
-    ASSERT_EQ(own_block_size(spec), 96U);
-    std::array<std::byte, 96> block{};
+    ASSERT_EQ(own_block_size(spec), 112U);
+    std::array<std::byte, 112> block{};
     const Binding scene{.region = {.offset = {16, 0}, .extent = {32, 64}, .image = {64, 64}}};
     const std::array<float, 4> custom{1, 2, 3, 4};
     const std::array<std::uint32_t, 2> words{41, 42};
     write_own_block(spec, {.offset = {1, 2}, .extent = {3, 4}, .image = {9, 9}}, {&scene, 1}, {&custom, 1}, words,
                     block);
-    std::array<std::int32_t, 24> integers{};
-    std::array<float, 24> floats{};
+    std::array<std::int32_t, 28> integers{};
+    std::array<float, 28> floats{};
     std::memcpy(integers.data(), block.data(), block.size());
     std::memcpy(floats.data(), block.data(), block.size());
     EXPECT_TRUE(std::ranges::equal(std::span(integers).first(4), std::array{1, 2, 3, 4}));
-    EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(4, 4), std::array{0.5F, 1.0F, 0.25F, 0.0F}));
-    EXPECT_NEAR(floats[8], 16.5 / 64, 1e-6);
-    EXPECT_EQ(floats[9], 0.0F) << "the region touches the image's top, where the sampler clamps";
-    EXPECT_NEAR(floats[10], 47.5 / 64, 1e-6);
-    EXPECT_LT(floats[10], 47.5F / 64);
-    EXPECT_EQ(floats[11], 1.0F);
-    EXPECT_TRUE(std::ranges::equal(std::span(integers).subspan(12, 4), std::array{16, 0, 32, 64}));
-    EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(16, 4), custom));
-    EXPECT_EQ(integers[20], 41);
-    EXPECT_EQ(integers[21], 42);
+    EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(4, 4), std::array{1.0F / 3, 0.25F, 0.5F - 1.0F / 3, 0.125F}));
+    EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(8, 4), std::array{0.5F, 1.0F, 0.25F, 0.0F}));
+    EXPECT_NEAR(floats[12], 16.5 / 64, 1e-6);
+    EXPECT_EQ(floats[13], 0.0F) << "the region touches the image's top, where the sampler clamps";
+    EXPECT_NEAR(floats[14], 47.5 / 64, 1e-6);
+    EXPECT_LT(floats[14], 47.5F / 64);
+    EXPECT_EQ(floats[15], 1.0F);
+    EXPECT_TRUE(std::ranges::equal(std::span(integers).subspan(16, 4), std::array{16, 0, 32, 64}));
+    EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(20, 4), custom));
+    EXPECT_EQ(integers[24], 41);
+    EXPECT_EQ(integers[25], 42);
+}
+
+// However the driver rounds: an effect may be singular there.
+TEST(GpuOwnBlock, TheMiddleTexelOfEveryOddSizeLiesAtOneHalf) {
+    const KernelSpec spec{.name = "test", .body = ""};
+    std::array<std::byte, 32> block{};
+    for (std::uint32_t size = 1; size <= 16384; size += 2) {
+        write_own_block(spec, {.extent = {size, 1}, .image = {size, 1}}, {}, {}, {}, block);
+        std::array<float, 8> floats{};
+        std::memcpy(floats.data(), block.data(), block.size());
+        const float texel = static_cast<float>(size / 2);
+        const volatile float product = texel * floats[4];
+        ASSERT_EQ(product + floats[6], 0.5F) << size;
+        ASSERT_EQ(std::fma(texel, floats[4], floats[6]), 0.5F) << size;
+    }
 }
 
 }  // namespace
