@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <darkroom/effects/dither.hpp>
 
+#include <bit>
 #include <cstddef>
 #include <cstring>
 
@@ -22,6 +23,11 @@ float triangular(std::uint16_t rank) {
     return static_cast<float>(std::copysign(1.0 - std::sqrt(1.0 - std::abs(t)), t));
 }
 
+void shift_tile(const void*, const PassContext& context, std::span<PassVector> out) {
+    const DitherOffset offset = dither_offset(context.time, context.frame_index);
+    out[0] = {std::bit_cast<float>(offset.x), std::bit_cast<float>(offset.y), 0, 0};
+}
+
 void build(PassBuilder& builder) {
     const auto& tile = dither_tile();
     // Single precision, because half would lose ranks, and three channels in one texel, because a load costs more than
@@ -33,6 +39,7 @@ void build(PassBuilder& builder) {
                    .data = std::vector<std::byte>(sizeof tile)};
     std::memcpy(desc.data.data(), tile.data(), sizeof tile);
     builder.side("dither_tile", builder.table(desc), {});
+    builder.end_constants(1, shift_tile);
 }
 
 }  // namespace

@@ -6,5 +6,5 @@ vec4 vignette(vec4 color, Pixel pixel, Vignette parameters) {
     float squared = 2.0 * dot(offset, offset);
     // d^s = (d^2)^(s/2): saves the square root.
     float falloff = pow(squared, 0.5 * parameters.smoothness);
-    return vec4(color.rgb * max(0.0, 1.0 - falloff * parameters.intensity), color.a);
+    return vec4(color.rgb * clamp(1.0 - falloff * parameters.intensity, 0.0, 1.0), color.a);
 }
