@@ -1,25 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Any domain. fog_distance: planar distance.
+// Any domain. fog_depth: the host's. The CPU brings fog_custom, see fog.cpp: 0 and 1.x are the constants of
+// planar_distance().
 #include "shared/camera.glsl"
-
-// 1 - exp(-depth), to full precision for thin fog, too.
-float fog_coverage(float depth) {
-    return depth < 0.05 ? depth * (1.0 - depth * (0.5 - depth / 6.0)) : 1.0 - exp(-depth);
-}
+#include "shared/planar_distance.glsl"
 
 vec4 fog(vec4 color, Pixel pixel, Fog parameters) {
-    float planar = load(fog_distance, pixel.texel).r;
+    vec4 range = fog_custom(1), curve = fog_custom(2);
+    float planar = planar_distance(load(fog_depth, pixel.texel).r, fog_custom(0), range.x);
+    vec3 ray = view_position(pixel.uv, planar);
+    float true_length = length(ray);
+    float x = clamp(true_length - range.y, 0.0, range.z);
+    float amount = x * (curve.x + curve.y * x) + curve.z * (1.0 - exp2(curve.w * x));
     bool is_sky = planar >= sky_distance;
-    vec3 ray = view_position(pixel.uv, is_sky ? 1.0 : planar);
-    float true_length = length(ray), distance = is_sky ? parameters.end : true_length;
-    // Full at `end`.
-    float span = max(parameters.end - parameters.start, 1e-6);
-    float x = clamp(distance - parameters.start, 0.0, span);
-    float amount = fog_coverage(parameters.density * x) / max(fog_coverage(parameters.density * span), 1e-30);
     if (parameters.height_enabled != 0u) {
-        float rise = dot(frame_view_to_world_y.xyz, ray) * (is_sky ? parameters.end / true_length : 1.0);
-        float above = max(camera_position().y + rise - parameters.height_origin, 0.0);
-        amount *= exp(-parameters.height_falloff * above);
+        vec4 height = fog_custom(3);
+        float rise = dot(frame_view_to_world_y.xyz, ray) * (is_sky ? height.z / true_length : 1.0);
+        amount *= exp2(height.x * max(rise + height.y, 0.0));
     }
     if (is_sky && parameters.sky == 0u) amount = 0.0;
     return vec4(mix(color.rgb, parameters.color, clamp(amount, 0.0, 1.0)), color.a);

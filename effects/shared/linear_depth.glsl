@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Device depth to planar distance. custom[0] = (a, b, c, d) with distance = (depth * a + b) / (depth * c + d), custom[1].x
-// the depth of the sky. What is no number is sky, too: it compares as neither, so the comparison must not be turned round.
-vec4 shade(Pixel pixel) {
-    float depth = load(shared_depth, pixel.texel).r;
-    float planar = (depth * custom[0].x + custom[0].y) / (depth * custom[0].z + custom[0].w);
-    return vec4(depth != custom[1].x && planar < 1e9 ? max(planar, 0.0) : 1e10);
-}
+// Device depth to planar distance, by custom[0] and custom[1].x.
+#include "shared/planar_distance.glsl"
+
+vec4 shade(Pixel pixel) { return vec4(planar_distance(load(shared_depth, pixel.texel).r, custom[0], custom[1].x)); }

@@ -25,8 +25,10 @@ PassImage make_half_depth(PassBuilder& builder) {
     return builder.add(
         {.name = "half depth",
          .shader = "shared/half_depth.glsl",
-         .inputs = {{.name = "shared_linear_depth", .image = linear_depth(builder), .is_loaded = true}},
-         .output = builder.create({.name = "half depth", .format = VK_FORMAT_R32_SFLOAT, .denominator = 2})});
+         .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
+         .output = builder.create({.name = "half depth", .format = VK_FORMAT_R32_SFLOAT, .denominator = 2}),
+         .custom_vectors = 2,
+         .constants = linear_depth_constants});
 }
 
 void velocity_constants(const void*, const PassContext& context, std::span<PassVector> out) {

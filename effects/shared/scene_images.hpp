@@ -12,7 +12,8 @@ namespace darkroom {
 /// The same of every second pixel of every second row: half the size, floored.
 [[nodiscard]] PassImage half_depth(PassBuilder& builder, ConditionFunction condition = nullptr);
 
-/// For passes that read the depth image itself: a depth d is at the planar distance (d x + y) / (d z + w).
+/// For what reads the depth image itself, by planar_distance.glsl: a depth d is at the planar distance
+/// (d x + y) / (d z + w). One number a pixel costs less so than an image of distances.
 struct DepthConstants {
     PassVector distance{1, 0, 0, 1};
     float sky = 1e10f;  ///< depth of the sky
