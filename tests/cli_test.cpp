@@ -94,7 +94,7 @@ TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     expect_refused({}, 1, "a command is needed");
     expect_refused({"devlop"}, 1, "did you mean 'develop'?");
     expect_refused({"develop"}, 1, "INPUT");
-    expect_refused({"develop", frame}, 1, "--out");
+    expect_refused({"develop", frame}, 1, "--output");
     expect_refused({"develop", path("none.exr"), "-o", out}, 1, "none.exr");
     expect_refused({"develop", path(""), "-o", out}, 1, "folder");
     expect_refused({"develop", write("text.exr", "hello"), "-o", out}, 1, "text.exr");

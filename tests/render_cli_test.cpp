@@ -406,7 +406,7 @@ TEST_F(CliRenderRefused, WrongSizesAndFilesAreRefused) {
     expect_render_refused({"--size", "4x4", "--width", "5"}, "--size 4x4");
     expect_render_refused({"--size", "99999x2"}, "allows 1x1 to");
     expect_render_refused({"--bits", "12"}, "--bits 12");
-    expect_render_refused({"--frame", path("f.png")}, "--frame");
+    expect_render_refused({"--frame", path("f.png")}, "--save-frame");
     expect_render_refused({"--frame", path("none/f.exr")}, "none");
     expect_refused({"render", path("yard.scene.toml"), "-o", path("x.xyz")}, 1, ".xyz");
     expect_refused({"render", path("yard.scene.toml"), "-o", path("none/x.png")}, 1, "none");
@@ -459,7 +459,7 @@ TEST_F(CliRenderRefused, WrongMomentsAreRefused) {
     expect_render_refused({"--frames", "1-3"}, "%04d");
     expect_refused(
         {"render", path("yard.scene.toml"), "-o", path("p.%04d.png"), "--frames", "1-3", "--frame", path("f.exr")}, 1,
-        "--frame");
+        "--save-frame");
     expect_render_refused({"--time", "1", "--frames", "2"}, "--time");
 }
 

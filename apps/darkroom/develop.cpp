@@ -326,7 +326,7 @@ Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> name
                      "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.%04d.exr or shot.####.exr stands for all that match")
         ->required();
     command
-        ->add_option("-o,--out", options->out,
+        ->add_option("-o,--output,--out", options->out,
                      "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d, #### or "
                      "{name}")
         ->type_name("OUT")

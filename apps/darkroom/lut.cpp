@@ -34,7 +34,7 @@ Result<> write(const std::string& path, const darkroom::TableFile& file) {
 
 CLI::App* add(CLI::App& lut, const char* name, const char* help, std::string& out) {
     CLI::App* const command = lut.add_subcommand(name, help);
-    command->add_option("-o,--out", out, "The table: .cube")->type_name("OUT")->required();
+    command->add_option("-o,--output,--out", out, "The table: .cube")->type_name("OUT")->required();
     return command;
 }
 

@@ -35,7 +35,9 @@ void RenderFlags::add_to(CLI::App& command, std::span<const darkroom::LookEntry>
                     "The picture: .png .jpg .tif .exr .hdr; for several frames a name with %04d")
         ->type_name("OUT")
         ->capture_default_str();
-    command.add_option("--frame", frame_, "The raw frame, too: linear light, depth, normals, motion and camera (.exr)")
+    command
+        .add_option("--save-frame,--frame", frame_,
+                    "The raw frame, too: linear light, depth, normals, motion and camera (.exr)")
         ->type_name("OUT.exr");
     add_moments(command);
     drawn.add_to(command, default_extent, moment_group);
@@ -91,10 +93,10 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
     if (frame_) {
         const Result<darkroom::FileKind> kind = darkroom::file_kind(*frame_);
         if (!kind || *kind != darkroom::FileKind::OpenExr)
-            return user_error(fmt::format("--frame {}: a frame is an .exr file", printable(*frame_)));
+            return user_error(fmt::format("--save-frame {}: a frame is an .exr file", printable(*frame_)));
         if (is_many && !darkroom::has_number_pattern(*frame_))
             return user_error(
-                fmt::format("--frame {}: {} frames need a name with %04d", printable(*frame_), shots.size()));
+                fmt::format("--save-frame {}: {} frames need a name with %04d", printable(*frame_), shots.size()));
     }
     const FileSet inputs(std::array<fs::path, 1>{scene});
     std::set<fs::path> outputs;
