@@ -43,13 +43,13 @@ TEST_F(CliFlags, EveryNumberIsRefusedWithFlagValueAndRange) {
         {"render", "--time", "-1", " = -1: allowed is [0, 1000000000] s"},
         {"render", "--fps", "0", " = 0: allowed is [0.001, 1000000]"},
         {"render", "--seed", "-1", " = -1: allowed is [0, 9007199254740991]"},
-        {"render", "--distance", "0", " = 0: allowed is ]0, 1000000000[ m"},
+        {"render", "--distance", "0", " = 0: allowed is (0, 1000000000) m"},
         {"render", "--yaw", "inf", ": 'inf' is not a number, allowed is [-1000000, 1000000] deg"},
         {"render", "--pitch", "90.5", " = 90.5: allowed is [-90, 90] deg"},
-        {"render", "--fov", "x", ": 'x' is not a number, allowed is ]0, 180[ deg"},
+        {"render", "--fov", "x", ": 'x' is not a number, allowed is (0, 180) deg"},
         {"render", "--shadow-resolution", "15", " = 15: allowed is [16, 16384] texels"},
         {"render", "--msaa", "abc", ": 'abc' is not a whole number, allowed is [1, 64]"},
-        {"develop", "--fov", "nan", ": 'nan' is not a number, allowed is ]0, 180[ deg"},
+        {"develop", "--fov", "nan", ": 'nan' is not a number, allowed is (0, 180) deg"},
         {"develop", "--time", "1e30", " = 1e30: allowed is [0, 1000000000] s"},
         {"compare", "--fail-above", "1.5", " = 1.5: allowed is [0, 1]"},
     };
@@ -106,7 +106,7 @@ TEST_F(NumberFlagTest, EverythingElseIsRefusedInOneLine) {
     for (const std::string text : {"-90.001", "1e30", "99999999999999999999"})
         EXPECT_EQ(read(closed, {"--flag", text}), "--flag = " + text + ": allowed is [-90, 90] deg");
     for (const std::string text : {"0", "180", "-1"})
-        EXPECT_EQ(read(open, {"--flag", text}), "--flag = " + text + ": allowed is ]0, 180[");
+        EXPECT_EQ(read(open, {"--flag", text}), "--flag = " + text + ": allowed is (0, 180)");
     EXPECT_EQ(read(whole, {"--flag", "1.5"}), "--flag: '1.5' is not a whole number, allowed is [1, 64]");
     EXPECT_EQ(read(whole, {"--flag", "0"}), "--flag = 0: allowed is [1, 64]");
 }

@@ -16,7 +16,7 @@ namespace {
 
 std::string interval(const NumberRange& range) {
     const std::string_view before = range.unit.empty() ? "" : " ";
-    return fmt::format("{}{}, {}{}{}{}", range.is_open ? ']' : '[', range.least, range.most, range.is_open ? '[' : ']',
+    return fmt::format("{}{}, {}{}{}{}", range.is_open ? '(' : '[', range.least, range.most, range.is_open ? ')' : ']',
                        before, range.unit);
 }
 

@@ -14,7 +14,7 @@ namespace app {
 
 struct NumberRange {
     double least = 0, most = 0;
-    bool is_open = false;   ///< the ends are not allowed
+    bool is_open = false;   ///< (least, most): the ends are not allowed
     bool is_whole = false;  ///< whole numbers only
     std::string_view unit = {};
 };

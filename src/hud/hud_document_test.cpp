@@ -160,7 +160,7 @@ TEST_F(HudDocuments, HostileOnesAreRefused) {
     const auto document = load({.is_headless = true, .limits = {.side = 100, .pixels = 5000}});
     for (const auto& [width, height] : {std::pair{0u, 10u}, {10u, 0u}, {101u, 10u}, {80u, 80u}, {~0u, ~0u}}) {
         EXPECT_EQ(document->picture(width, height), nullptr);
-        EXPECT_NE(document->error().find("allowed is 1 to 100 a side, at most 5000 pixels"), std::string::npos)
+        EXPECT_NE(document->error().find("allowed is [1, 100] a side, at most 5000 pixels"), std::string::npos)
             << document->error();
     }
     EXPECT_NE(document->picture(70, 70), nullptr) << document->error();

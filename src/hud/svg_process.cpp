@@ -123,7 +123,7 @@ void SvgProcess::stop() {
 Result<HudPicture> SvgProcess::draw(std::string_view document, std::uint32_t width, std::uint32_t height) {
     const std::uint64_t pixels = std::uint64_t{width} * height;
     if (width == 0 || height == 0 || width > limits_.side || height > limits_.side || pixels > limits_.pixels)
-        return user_error(fmt::format("a picture of {}x{}: allowed is 1 to {} a side, at most {} pixels", width, height,
+        return user_error(fmt::format("a picture of {}x{}: allowed is [1, {}] a side, at most {} pixels", width, height,
                                       limits_.side, limits_.pixels));
     if (document.size() > limits_.document_bytes)
         return user_error(fmt::format("{} bytes: allowed are {}", document.size(), limits_.document_bytes));

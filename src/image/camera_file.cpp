@@ -53,7 +53,7 @@ Result<> read_entry(std::string_view key, const toml::node& node, FrameCamera& c
         camera.vertical_field_of_view = number(node);
         if (!camera.vertical_field_of_view || *camera.vertical_field_of_view <= 0 ||
             *camera.vertical_field_of_view >= 180)
-            return user_error("fov: a number of degrees, more than 0 and less than 180, is needed");
+            return user_error("fov: a number of degrees in (0, 180) is needed");
         return {};
     }
     const auto value = matrix(node);

@@ -129,11 +129,11 @@ Result<> read_channels(Reader reader, Part& part) {
         const auto x_sampling = reader.number<std::int32_t>();
         const auto y_sampling = reader.number<std::int32_t>();
         if (reader.is_past_end()) return malformed("the channel list has no end");
-        if (type > 2) return malformed(fmt::format("a channel has pixel type {}, 0 to 2 is allowed", type));
+        if (type > 2) return malformed(fmt::format("a channel has pixel type {}, [0, 2] is allowed", type));
         // Chroma at half the resolution is what there is.
         constexpr std::int32_t coarsest = 64;
         if (std::min(x_sampling, y_sampling) < 1 || std::max(x_sampling, y_sampling) > coarsest)
-            return malformed(fmt::format("channel {} is sampled {}x{}, 1 to {} is allowed", one_printable_line(name),
+            return malformed(fmt::format("channel {} is sampled {}x{}, [1, {}] is allowed", one_printable_line(name),
                                          x_sampling, y_sampling, coarsest));
         part.bytes_per_pixel += (type == 1 ? 2.0 : 4.0) / (x_sampling * y_sampling);
         if (++part.channel_count > 1024) return malformed("more than 1024 channels");
@@ -225,7 +225,7 @@ Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
     if (auto checked = check_window(*part.data, "data window"); !checked) return checked;
     if (part.channel_count == 0) return user_error("has no channels");
     if (*part.compression >= compressions.size())
-        return malformed(fmt::format("compression {}, 0 to 9 is allowed", *part.compression));
+        return malformed(fmt::format("compression {}, [0, 9] is allowed", *part.compression));
     const Compression compression = compressions[*part.compression];
 
     const Wide bytes = part.bytes =
@@ -242,8 +242,8 @@ Result<> check_part(Part& part, bool is_tiled, std::size_t file_size) {
     if (!part.tiles) return malformed("a tiled part without a tile description");
     const Tiles& tiles = *part.tiles;
     if (tiles.width < 1 || tiles.height < 1 || tiles.width > 8192 || tiles.height > 8192)
-        return malformed(fmt::format("tiles of {}x{}, 1 to 8192 a side is allowed", tiles.width, tiles.height));
-    if (tiles.level_mode > 2) return malformed(fmt::format("tile level mode {}, 0 to 2 is allowed", tiles.level_mode));
+        return malformed(fmt::format("tiles of {}x{}, [1, 8192] a side is allowed", tiles.width, tiles.height));
+    if (tiles.level_mode > 2) return malformed(fmt::format("tile level mode {}, [0, 2] is allowed", tiles.level_mode));
     part.chunk_count = count_tiles(*part.data, tiles);
     return check_chunk(tiles.width, tiles.height, part);
 }

@@ -390,7 +390,7 @@ Result<FlipErrors> flip(const Picture& reference, const Picture& test, const Fli
     if (count == 0) return user_error("compare: the pictures are empty (0 pixels); at least one is needed");
     if (!(desc.pixels_per_degree >= 1.0 && desc.pixels_per_degree <= 1000.0)) {
         return user_error(
-            fmt::format("compare: pixels_per_degree is {}; allowed is 1 to 1000", desc.pixels_per_degree));
+            fmt::format("compare: pixels_per_degree is {}; allowed is [1, 1000]", desc.pixels_per_degree));
     }
     FlipErrors out{.width = reference.width, .height = reference.height, .errors = std::vector<float>(count)};
     const Filters filters(desc.pixels_per_degree);

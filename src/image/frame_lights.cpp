@@ -30,7 +30,7 @@ bool is_finite(std::span<const float> values) {
 
 Result<> check_side(std::string_view what, std::uint32_t width, std::uint32_t height) {
     if (width == height && width >= 1 && width <= max_cascade_side) return {};
-    return user_error(fmt::format("{}: cascades of {}x{} texels; squares of 1 to {} a side are allowed", what, width,
+    return user_error(fmt::format("{}: cascades of {}x{} texels; squares of [1, {}] a side are allowed", what, width,
                                   height, max_cascade_side));
 }
 
@@ -68,7 +68,7 @@ class LightReader {
         const double count = decoder_.number(part_, count_name).value_or(0);
         if (!is_whole(count, max_frame_lights))
             return user_error(
-                fmt::format("{} = {}; whole numbers from 0 to {} are allowed", count_name, count, max_frame_lights));
+                fmt::format("{} = {}; whole numbers in [0, {}] are allowed", count_name, count, max_frame_lights));
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
             if (auto done = read_light(i); !done) return done;
         warn_of_unused_parts();
@@ -121,7 +121,7 @@ class LightReader {
         const std::string name = attribute_name(light, "shadow");
         if (!is_whole(shadow, max_frame_shadows - 1))
             return user_error(
-                fmt::format("{} = {}; whole numbers from 0 to {} are allowed", name, shadow, max_frame_shadows - 1));
+                fmt::format("{} = {}; whole numbers in [0, {}] are allowed", name, shadow, max_frame_shadows - 1));
         const std::span<const FilePart> parts = decoder_.parts();
         const auto found = std::find_if(parts.begin(), parts.end(), [&](const FilePart& part) {
             return part.name == part_name(static_cast<std::size_t>(shadow));

@@ -166,7 +166,7 @@ TEST_F(ImageLights, WhatCouldNotBeReadIsNotWritten) {
     refused([](FrameLight& l) { l.cascades[1].world_to_cascade[5] = infinity; }, "a number of a cascade is not finite");
     refused([](FrameLight& l) { l.cascades[0].split = infinity; }, "a number of a cascade is not finite");
     refused([](FrameLight& l) { l.cascades[1].depth = Plane<1>(5, 5); }, "its cascades differ in size");
-    refused([](FrameLight& l) { l.cascades[0].depth = Plane<1>(4, 5); }, "4x5 texels; squares of 1 to 16384");
+    refused([](FrameLight& l) { l.cascades[0].depth = Plane<1>(4, 5); }, "4x5 texels; squares of [1, 16384]");
     refused([](FrameLight& l) { l.cascades[0].depth.width = l.cascades[0].depth.height = 16385; },
             "16385x16385 texels");
     refused([](FrameLight& l) { l.cascades.resize(5, l.cascades[0]); }, "5 cascades, at most 4 are allowed");
@@ -255,7 +255,7 @@ TEST_F(ImageLightsHostile, UnchangedItIsRead) {
 TEST_F(ImageLightsHostile, WrongNumbersAreRefused) {
     for (const auto& [value, shown] : std::vector<std::pair<float, std::string>>{
              {99, "99"}, {17, "17"}, {-1, "-1"}, {0.5F, "0.5"}, {1e30F, "1.0000000150474662e+30"}, {infinity, "inf"}})
-        expect_refused("darkroom:lights = " + shown + "; whole numbers from 0 to 16 are allowed",
+        expect_refused("darkroom:lights = " + shown + "; whole numbers in [0, 16] are allowed",
                        set("darkroom:lights", value));
     const auto damaged = [](const std::string& name, int count) {
         return "darkroom:light" + name + " is missing or damaged; it has " + std::to_string(count) + " finite numbers";
@@ -275,8 +275,8 @@ TEST_F(ImageLightsHostile, WrongNumbersAreRefused) {
 
 TEST_F(ImageLightsHostile, WrongPartsAreRefused) {
     const std::string shadow = "darkroom:light0.shadow";
-    expect_refused(shadow + " = 4; whole numbers from 0 to 3 are allowed", set(shadow, 4));
-    expect_refused(shadow + " = -1; whole numbers from 0 to 3 are allowed", set(shadow, -1));
+    expect_refused(shadow + " = 4; whole numbers in [0, 3] are allowed", set(shadow, 4));
+    expect_refused(shadow + " = -1; whole numbers in [0, 3] are allowed", set(shadow, -1));
     expect_refused(shadow + " = 3; the file has no part shadow3", set(shadow, 3));
     expect_refused("darkroom:light1.shadow = 0; each light has shadows of its own", set("darkroom:light1.shadow", 0));
     expect_refused("shadow0 has 2 channels with cascade2 among them; cascade0 to cascade3 are allowed",
@@ -284,7 +284,7 @@ TEST_F(ImageLightsHostile, WrongPartsAreRefused) {
     expect_refused("shadow0 has 1 channels with Z among them; cascade0 to cascade3 are allowed", channels(1, {"Z"}));
     expect_refused("shadow0 has 5 channels with cascade0 among them; cascade0 to cascade3 are allowed",
                    channels(1, {"cascade0", "cascade1", "cascade2", "cascade3", "cascade4"}));
-    expect_refused("shadow1: cascades of 3x2 texels; squares of 1 to 16384 a side are allowed",
+    expect_refused("shadow1: cascades of 3x2 texels; squares of [1, 16384] a side are allowed",
                    [](Parts& parts) { parts[2].header.dataWindow().max.y = 1; });
 }
 

@@ -386,8 +386,8 @@ Result<> FrameReader::read_camera_of_file() {
     }
     if (options_.vertical_field_of_view) {
         if (!(*options_.vertical_field_of_view > 0 && *options_.vertical_field_of_view < 180))
-            return user_error(fmt::format("a field of view of {} degrees; more than 0 and less than 180 is allowed",
-                                          *options_.vertical_field_of_view));
+            return user_error(
+                fmt::format("a field of view of {} degrees; (0, 180) is allowed", *options_.vertical_field_of_view));
         forget();
         camera.projection.reset();
         camera.vertical_field_of_view = options_.vertical_field_of_view;

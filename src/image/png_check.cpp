@@ -25,7 +25,7 @@ Result<> check_header(std::span<const std::byte> data, std::size_t file_size) {
     const std::uint64_t height = big_endian(data.subspan(4));
     constexpr auto most = static_cast<std::uint64_t>(max_picture_side);
     if (width == 0 || height == 0 || width > most || height > most)
-        return user_error(fmt::format("the picture is {}x{}, 1 to {} a side is allowed", width, height, most));
+        return user_error(fmt::format("the picture is {}x{}, [1, {}] a side is allowed", width, height, most));
     constexpr std::array<std::uint64_t, 7> samples_of_color_type{1, 0, 3, 1, 2, 0, 4};
     const auto depth = std::to_integer<std::uint64_t>(data[8]);
     const auto color_type = std::to_integer<std::size_t>(data[9]);

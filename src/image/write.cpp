@@ -64,7 +64,7 @@ Format format_of(FileKind kind) {
 Result<> check_size(const std::filesystem::path& path, FileKind kind, std::uint32_t width, std::uint32_t height) {
     const std::uint32_t most = kind == FileKind::Jpeg ? 65500 : 65536;
     if (width >= 1 && height >= 1 && width <= most && height <= most) return {};
-    return user_error(fmt::format("{}: a picture of {}x{}; 1 to {} a side is allowed in {}", path.string(), width,
+    return user_error(fmt::format("{}: a picture of {}x{}; [1, {}] a side is allowed in {}", path.string(), width,
                                   height, most, name_of(kind)));
 }
 
@@ -99,7 +99,7 @@ Result<> check_coding(const std::filesystem::path& path, FileKind kind, const Wr
         return user_error(fmt::format("{}: {} has no quality; .jpg has", path.string(), name_of(kind)));
     if (options.quality && (*options.quality < 1 || *options.quality > 100))
         return user_error(
-            fmt::format("{}: a JPEG quality of {}; 1 to 100 is allowed", path.string(), *options.quality));
+            fmt::format("{}: a JPEG quality of {}; [1, 100] is allowed", path.string(), *options.quality));
     const std::span<const std::string_view> known = format_of(kind).compressions;
     if (options.compression.empty() || std::ranges::find(known, options.compression) != known.end()) return {};
     return user_error(fmt::format("{}: compression {} in {}; allowed: {}", path.string(),

@@ -117,7 +117,7 @@ TEST_F(ImageWrite, WhatCannotBeIsRefusedInOneLine) {
     EXPECT_EQ(text("a.png", {.samples = SampleKind::Half}),
               "a.png: half samples in PNG; allowed: 8-bit integer, 16-bit integer");
     EXPECT_EQ(text("a.jpg", {.alpha = true}), "a.jpg: JPEG has no alpha; .png .tif .exr have");
-    EXPECT_EQ(text("a.jpg", {.quality = 0}), "a.jpg: a JPEG quality of 0; 1 to 100 is allowed");
+    EXPECT_EQ(text("a.jpg", {.quality = 0}), "a.jpg: a JPEG quality of 0; [1, 100] is allowed");
     EXPECT_EQ(file_count(), 0u);
 }
 

@@ -126,7 +126,7 @@ Result<> read_vertices(Document& document, AttributeReader& reader, const tinygl
     if (!colors) return failure(std::move(colors));
     const auto is_outside = [](float value) { return value < 0 || value > 1; };
     if (*colors && std::any_of((*colors)->values.begin(), (*colors)->values.end(), is_outside))
-        document.faults().warn(fmt::format("/accessors/{}: colours outside 0 to 1", source.attributes.at("COLOR_0")));
+        document.faults().warn(fmt::format("/accessors/{}: colours outside [0, 1]", source.attributes.at("COLOR_0")));
     for (std::size_t i = 0; i < reader.count(); ++i) {
         Vertex& vertex = primitive.vertices[i];
         if (*normals) {
@@ -279,7 +279,7 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
                                                    const std::string& pointer) {
     check_names(document, source, pointer);
     if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
-        return user_error(fmt::format("{}/mode: {}, allowed is 0 to 6", pointer, source.mode));
+        return user_error(fmt::format("{}/mode: {}, allowed is [0, 6]", pointer, source.mode));
     if (!source.attributes.contains("POSITION")) {
         document.faults().warn(fmt::format("{}: has no positions and is not drawn", pointer));
         return std::nullopt;

@@ -41,7 +41,7 @@ class OpenedImage {
         const FilePart& part = opened->source->parts().front();
         if (part.channels.empty()) return user_error("is no flat picture");
         if (part.width > most_texture_side || part.height > most_texture_side)
-            return user_error(fmt::format("the picture is {}x{}, 1 to {} a side is allowed", part.width, part.height,
+            return user_error(fmt::format("the picture is {}x{}, [1, {}] a side is allowed", part.width, part.height,
                                           most_texture_side));
         return OpenedImage(std::move(opened->source), bytes.size());
     }

@@ -94,7 +94,7 @@ void PrefabExpander::add_entity(const Level& level, const toml::key& key, const 
                   .archetypes = level.archetypes};
     if (raw.name.empty() || raw.name.size() > longest_name)
         return report_.error(place, [&] {
-            return fmt::format("entity '{}': a name has 1 to {} bytes", printable(raw.name), longest_name);
+            return fmt::format("entity '{}': a name has [1, {}] bytes", printable(raw.name), longest_name);
         });
     const auto [known, is_new] = names_.try_emplace(raw.name, entities_.size());
     if (!is_new)
@@ -140,7 +140,7 @@ std::optional<PrefabExpander::Instance> PrefabExpander::read_instance(const Leve
     }
     if (out.prefix.empty() || out.prefix.size() > longest_prefix) {
         report_.error(place, [&] {
-            return fmt::format("{}.prefix = \"{}\": allowed are 1 to {} bytes", shown, printable(out.prefix),
+            return fmt::format("{}.prefix = \"{}\": allowed are [1, {}] bytes", shown, printable(out.prefix),
                                longest_prefix);
         });
         return std::nullopt;

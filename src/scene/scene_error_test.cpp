@@ -189,7 +189,7 @@ TEST(SceneError, PrefabErrorsNameThePlace) {
               "a.toml:4:11: prefabs.p.overrides.blub: the template \"t\" has no such entity, did you mean 'p_bulb'?");
     EXPECT_EQ(error_of("[templates.t.entities.x]\n[prefabs.p]\ntemplate = \"t\"\noverrides = 3\n"),
               "a.toml:4:13: prefabs.p.overrides = 3: expected a table");
-    EXPECT_TRUE(contains(error_of("[prefabs.p]\ntemplate = \"t\"\nprefix = \"\"\n"), "allowed are 1 to 256 bytes"));
+    EXPECT_TRUE(contains(error_of("[prefabs.p]\ntemplate = \"t\"\nprefix = \"\"\n"), "allowed are [1, 256] bytes"));
     EXPECT_TRUE(contains(error_of("[templates.t.entities.x.light]\nintensity = true\n[prefabs.p]\ntemplate = \"t\"\n"),
                          "a.toml:2:13: entities.p_x.light.intensity = true"));
 }
