@@ -71,14 +71,19 @@ class CliFixture : public testing::Test {
         return names;
     }
     [[nodiscard]] Outcome run(const std::vector<std::string>& arguments) const {
-        const std::filesystem::path out = folder_.string() + ".out", err = folder_.string() + ".err";
         std::string command = quoted(program);
         for (const std::string& argument : arguments) command.append(1, ' ').append(quoted(argument));
-        const int status =
-            std::system((command + " >" + quoted(out.string()) + " 2>" + quoted(err.string()) + " </dev/null").c_str());
-        Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128, content(out), content(err)};
-        std::filesystem::remove(out);
-        std::filesystem::remove(err);
+        return run_command(command);
+    }
+    /// Lines as one types them, run by bash in the folder of the test; the first that fails ends them.
+    [[nodiscard]] Outcome run_lines(const std::string& lines) const {
+        const std::string script = folder_.string() + ".sh";
+        std::ofstream(script) << "set -eo pipefail\ncd " << quoted(folder_.string())
+                              << "\nPATH=" << quoted(std::filesystem::path(program).parent_path().string())
+                              << ":$PATH\n"
+                              << lines << '\n';
+        const Outcome outcome = run_command("bash " + quoted(script));
+        std::filesystem::remove(script);
         return outcome;
     }
     /// Refused: the code, one line that names the program and `part`, and no new file.
@@ -100,6 +105,16 @@ class CliFixture : public testing::Test {
     static constexpr const char* program = DARKROOM_BINARY_FOLDER "/bin/darkroom";
 
   private:
+    [[nodiscard]] Outcome run_command(const std::string& command) const {
+        const std::filesystem::path out = folder_.string() + ".out", err = folder_.string() + ".err";
+        const int status =
+            std::system((command + " >" + quoted(out.string()) + " 2>" + quoted(err.string()) + " </dev/null").c_str());
+        Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128, content(out), content(err)};
+        std::filesystem::remove(out);
+        std::filesystem::remove(err);
+        return outcome;
+    }
+
     std::filesystem::path folder_;
 };
 

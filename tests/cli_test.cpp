@@ -118,7 +118,7 @@ TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
 }
 
 TEST_F(Cli, EveryParameterIsAFlag) {
-    const std::string help = run({"develop", "--help"}).out;
+    const std::string help = run({"develop", "--help-all"}).out;
     for (const EffectInfo* const effect : all_effects())
         for (const ParamInfo& row : effect->parameters.rows) {
             const std::string flag = flag_name(flat_key(effect->name, row.name));

@@ -111,7 +111,7 @@ TEST_F(CliCustomEffects, AFileHasAPageAndFlags) {
     EXPECT_NE(page.out.find("`two_pass_blur_radius` | `6.0` | [0.5, 32] px"), std::string::npos) << page.out;
     EXPECT_NE(run({"effects", path("duotone.glsl"), "--json"}).out.find("\"flag\": \"--duotone-amount\""),
               std::string::npos);
-    EXPECT_NE(run({"develop", "--effect", path("duotone.glsl"), "--help"}).out.find("--duotone-amount"),
+    EXPECT_NE(run({"develop", "--effect", path("duotone.glsl"), "--help", "duotone"}).out.find("--duotone-amount"),
               std::string::npos);
     EXPECT_NE(run({"info", path("all.toml")}).out.find("feedback_trail.glsl"), std::string::npos);
     expect_refused({"plan", path("all.toml"), "--duotone-amont", "1"}, 1,

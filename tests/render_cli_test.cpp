@@ -156,7 +156,7 @@ TEST_F(CliRenderFlags, DefaultsAreThoseOfTheHelp) {
             .code,
         0);
     EXPECT_EQ(content(path("a.png")), content(path("b.png")));
-    const std::string help = run({"render", "--help"}).out;
+    const std::string help = run({"render", "--help-all"}).out;
     for (const char* const flag : {"--output",
                                    "--width",
                                    "--height",

@@ -184,9 +184,9 @@ TEST_F(CliViewer, GoesOnAfterItWasMinimised) {
 }
 
 TEST_F(CliViewer, TakesTheFlagsOfRender) {
-    const std::string render = run({"render", "--help"}).out;
+    const std::string render = run({"render", "--help-all"}).out;
     for (const char* const mode : {"play", "edit"}) {
-        const std::string help = run({mode, "--help"}).out;
+        const std::string help = run({mode, "--help-all"}).out;
         std::istringstream lines(render.substr(render.find("The look:")));
         std::size_t flags = 0;
         for (std::string line; std::getline(lines, line);) {

@@ -85,6 +85,15 @@ Result<> add_to(darkroom::ContactSheet& sheet, const std::string& name, const st
     return sheet.add(name, color->reference.picture, color->test.picture, color->comparison, color->reference.encoding);
 }
 
+void tell_lines(std::string_view lines) { tell(lines.substr(0, lines.find_last_not_of('\n') + 1)); }
+
+void print(const Options& options, const Json& document, const std::string& text) {
+    if (options.is_json)
+        fmt::print("{}\n", document.dump(2));
+    else
+        tell_lines(text);
+}
+
 int compare_one(const FilePairs::Pair& pair, const CompareRequest& request, const Options& options) {
     std::optional<ComparedColor> color;
     const Result<ComparedFiles> files = compare_files(pair.reference, pair.test, request, &color);
@@ -97,7 +106,7 @@ int compare_one(const FilePairs::Pair& pair, const CompareRequest& request, cons
         if (Result<> done = add_to(sheet, files->test, color); !done) return fail(done.error());
         if (Result<> done = darkroom::write_picture(options.sheet, sheet.picture()); !done) return fail(done.error());
     }
-    fmt::print("{}", options.is_json ? json_of(*files).dump(2) + "\n" : text_of(*files));
+    print(options, json_of(*files), text_of(*files));
     if (files->failures.empty()) return exit_ok;
     complain(
         fmt::format("{} and {}: {}", printable(options.a), printable(options.b), fmt::join(files->failures, "; ")));
@@ -111,7 +120,7 @@ int compare_many(const FilePairs& pairs, const CompareRequest& request, const Op
     std::size_t width = 4;
     for (const FilePairs::Pair& pair : pairs.pairs)
         width = std::max(width, printable(pair.test.filename().string()).size());
-    if (!options.is_json) fmt::print("{}", table_head(width));
+    if (!options.is_json) tell_lines(table_head(width));
     darkroom::ContactSheet sheet;
     int worst = exit_ok;
     for (const FilePairs::Pair& pair : pairs.pairs) {
@@ -123,8 +132,7 @@ int compare_many(const FilePairs& pairs, const CompareRequest& request, const Op
             set.errors.push_back(files.error().text);
             continue;
         }
-        if (!options.is_json) fmt::print("{}", table_lines(*files, width));
-        std::fflush(stdout);
+        if (!options.is_json) tell_lines(table_lines(*files, width));
         if (Result<> done = add_to(sheet, pair.test.filename().string(), color); !done) return fail(done.error());
         set.pairs.push_back(std::move(*files));
     }
@@ -132,7 +140,7 @@ int compare_many(const FilePairs& pairs, const CompareRequest& request, const Op
         set.sheet_rows = sheet.names();
         if (Result<> done = darkroom::write_picture(options.sheet, sheet.picture()); !done) return fail(done.error());
     }
-    fmt::print("{}", options.is_json ? json_of(set).dump(2) + "\n" : summary(set));
+    print(options, json_of(set), summary(set));
     if (worst != exit_ok) return worst;
     if (set.failed() + set.missing() == 0) return exit_ok;
     complain(fmt::format("{} and {}: {} of {} pairs differ, {} files are missing", printable(options.a),
@@ -160,6 +168,10 @@ Command add_compare(CLI::App& program) {
     CLI::App* const command = program.add_subcommand(
         "compare", "Compares pictures, folders or sequences: errors, PSNR and FLIP; exit code 3: they differ");
     const auto options = std::make_shared<Options>();
+    command->footer(
+        "darkroom compare frame.exr frame.exr --fail-max 0\n"
+        "darkroom compare reference.png changed.png --fail-flip 0.9 --diff difference.png\n"
+        "darkroom compare expected/ pictures/ --fail-max 0 --sheet worst.png");
     command->add_option("A", options->a, "The reference: a file, a folder or a sequence")->required();
     command->add_option("B", options->b, "What is under test, of the same kind")->required();
     options->fail_max.add_to(*command, "Fails if a channel is further apart anywhere")->type_name("X");

@@ -321,6 +321,10 @@ int run(const Options& options) {
 Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> named) {
     CLI::App* const command = program.add_subcommand("develop", "Develops HDR frames into finished pictures");
     const auto options = std::make_shared<Options>();
+    command->footer(
+        "darkroom develop frame.exr --look my.toml --exposure 2 -o picture.png\n"
+        "darkroom develop 'shot.####.exr' --frames 1-2 -o 'out.####.png'\n"
+        "darkroom develop frame.exr --ssao --no-bloom --tonemap-curve agx -o picture.exr");
     command
         ->add_option("INPUT", options->inputs,
                      "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.%04d.exr or shot.####.exr stands for all that match")

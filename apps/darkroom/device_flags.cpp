@@ -19,8 +19,8 @@ void DeviceFlags::add_to(CLI::App& command) {
     command.add_option("--device", device_, "Name (or a part of it) or index; see `darkroom devices`")
         ->type_name("NAME|INDEX")
         ->group(group);
-    command.add_option("--kernels", kernels_, "Which stage runs the kernels: auto, compute or raster")
-        ->type_name("STAGE")
+    command.add_option("--kernels", kernels_, "Which stage runs the kernels")
+        ->type_name("auto|compute|raster")
         ->group(group);
     command.add_flag("--no-fuse", is_unfused_, "Every effect in a pass of its own")->group(group);
 }
@@ -33,7 +33,9 @@ Result<darkroom::KernelStage> DeviceFlags::stage() const {
 }
 
 Result<darkroom::Device> DeviceFlags::create() const {
-    return darkroom::Device::create({.select = device_, .log = log_sink()});
+    Result<darkroom::Device> device = darkroom::Device::create({.select = device_, .log = log_sink()});
+    if (device) remark(fmt::format("device: {}", device->info().name));
+    return device;
 }
 
 Result<darkroom::Device> DeviceFlags::create_if_named() const {

@@ -32,7 +32,12 @@ int list() {
 }  // namespace
 
 Command add_devices(CLI::App& program) {
-    return {program.add_subcommand("devices", "Lists the Vulkan devices, best first"), list};
+    CLI::App* const command = program.add_subcommand("devices", "Lists the Vulkan devices, best first");
+    command->footer(
+        "darkroom devices\n"
+        "darkroom develop frame.exr --device 0 -o picture.png\n"
+        "DARKROOM_VALIDATE=1 darkroom develop frame.exr -o picture.png");
+    return {command, list};
 }
 
 }  // namespace app

@@ -133,8 +133,15 @@ int show(const Options& options) {
 
 Command add_effects(CLI::App& program) {
     CLI::App* const command = program.add_subcommand("effects", "Lists the effects, or shows the page of one");
+    command->footer(
+        "darkroom effects\n"
+        "darkroom effects tonemap\n"
+        "darkroom effects tonemap --json");
     const auto options = std::make_shared<Options>();
-    command->add_option("NAME", options->name, "An effect, or the file of one (.glsl); its page is shown");
+    std::vector<std::string_view> names;
+    for (const EffectInfo* const effect : darkroom::all_effects()) names.push_back(effect->name);
+    command->add_option("NAME", options->name, "An effect, or the file of one (.glsl); its page is shown")
+        ->option_text(fmt::format("{}", fmt::join(names, "|")));
     command->add_flag("--json", options->is_json, "For programs: parameters, flags and what effects need");
     return {command, [options] {
                 if (!options->name.empty()) return show(*options);

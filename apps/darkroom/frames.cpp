@@ -183,7 +183,11 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
         const bool is_flat = (look.is_flat || look.was_flat) && info.flat.starts_on;
         const bool is_usual = (is_flat || (look.ui && info.flat.is_of_ui)) &&
                               std::ranges::equal(composer.words(*entry), info.parameters.defaults);
-        if (!composer.desc(*entry)->enabled || info.is_last_step || is_usual) continue;
+        if (!composer.desc(*entry)->enabled || info.is_last_step) continue;
+        if (is_usual) {
+            remark(fmt::format("{}left out: {}", frame, text));
+            continue;
+        }
         warn(fmt::format("{}left out: {}", frame, text));
         ++told;
     }

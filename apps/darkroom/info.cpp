@@ -142,6 +142,10 @@ Command add_info(CLI::App& program) {
     CLI::App* const command = program.add_subcommand(
         "info", "Tells what is in files: pictures and frames, models, scenes, looks and colour tables");
     const auto options = std::make_shared<Options>();
+    command->footer(
+        "darkroom info frame.exr\n"
+        "darkroom info scene.toml my.toml\n"
+        "darkroom info frame.exr --json");
     command->add_option("FILE", options->files, "Files of any known kind, which is told by their content")->required();
     command->add_flag("--json", options->is_json, "For programs: a document, or an array of them for several files");
     command->add_flag(no_custom_effects, options->has_no_custom_effects,

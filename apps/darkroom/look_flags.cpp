@@ -9,6 +9,7 @@
 #include <darkroom/effects.hpp>
 
 #include "core/param_text.hpp"
+#include "describe.hpp"
 #include "image/resource_file.hpp"
 #include "looks/look_parts.hpp"
 #include "named_effects.hpp"
@@ -26,6 +27,30 @@ namespace {
 // Scenes hold a look beside other tables; what has another name is a look alone, and unknown tables are slips.
 bool is_scene_name(const std::filesystem::path& path) { return path.filename().string().ends_with(".scene.toml"); }
 
+// What a flag takes, as help and completions show it.
+std::string shown_value(const darkroom::ParamInfo& row) {
+    switch (row.kind) {
+        case darkroom::Kind::Choice:
+            return fmt::format("{}", fmt::join(row.choices, "|"));
+        case darkroom::Kind::Toggle:
+            return "on|off";
+        case darkroom::Kind::Resource:
+            return "FILE";
+        case darkroom::Kind::Vec2:
+            return "X,Y";
+        case darkroom::Kind::Vec3:
+            return "X,Y,Z";
+        case darkroom::Kind::Vec4:
+            return "X,Y,Z,W";
+        case darkroom::Kind::Rgb:
+            return "R,G,B";
+        case darkroom::Kind::Curve:
+            return "X:Y,...";
+        default:
+            return "N";
+    }
+}
+
 // The values of a command stay as they are, so what is off needs no place among the passes, no images and no kernels.
 // What changes the domain stays: an encoding that is off is not the same as none.
 void drop_what_is_off(Look& look) {
@@ -40,27 +65,47 @@ void drop_what_is_off(Look& look) {
 
 }  // namespace
 
-void LookFlags::add_value(CLI::App& command, const std::string& key, const std::string& help,
-                          const std::string& group) {
+LookFlags::Value& LookFlags::add_value(std::string key, std::string flag) {
+    return *values_.emplace_back(std::make_unique<Value>(Value{.key = std::move(key), .flag = std::move(flag)}));
+}
+
+void LookFlags::add_flag(CLI::App& command, const std::string& key, const std::string& value, const std::string& help,
+                         const std::string& group) {
     // Of an effect of a file that has the name of another flag; --set reaches it still.
     if (command.get_option_no_throw(darkroom::flag_name(key)) != nullptr) return;
-    values_.push_back(std::make_unique<Value>(Value{.key = key, .flag = darkroom::flag_name(key)}));
-    Value& value = *values_.back();
-    value.option = command.add_option(value.flag, value.text, help)->group(group)->type_name("")->expected(1);
-    value.option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    Value& to = add_value(key, darkroom::flag_name(key));
+    to.option =
+        command.add_option(to.flag, to.text, help)->group(group)->type_name("")->option_text(value)->expected(1);
+    to.option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+void LookFlags::add_switch(CLI::App& command, const darkroom::EffectInfo& effect, const std::string& group) {
+    const std::string on = darkroom::flag_name(effect.name), off = "--no-" + on.substr(2);
+    // A parameter that bears its effect's name (--exposure 2) has the name to itself.
+    const bool is_value = std::ranges::any_of(effect.parameters.rows, [&](const darkroom::ParamInfo& row) {
+        return darkroom::flat_key(effect.name, row.name) == effect.name;
+    });
+    std::string names;
+    if (!is_value && command.get_option_no_throw(on) == nullptr) names = on;
+    if (command.get_option_no_throw(off) == nullptr) names += (names.empty() ? "!" : ",!") + off;
+    if (names.empty()) return;
+    Value& to = add_value(darkroom::flat_key(effect.name, "enabled"), names.starts_with('!') ? off : on);
+    to.option = command.add_flag(names, to.text, "Switches it on or off")->group(group)->type_name("");
 }
 
 void LookFlags::add_effect(CLI::App& command, const darkroom::EffectInfo& effect) {
-    const std::string title = fmt::format("{}: {}", effect.name, effect.doc);
-    add_value(command, darkroom::flat_key(effect.name, "enabled"), "on or off", title);
+    const std::string title = effect_group(effect.name, effect.doc);
+    add_switch(command, effect, title);
+    add_flag(command, darkroom::flat_key(effect.name, "enabled"), "on|off", "The same", title);
     for (const darkroom::ParamInfo& row : effect.parameters.rows)
-        add_value(command, darkroom::flat_key(effect.name, row.name),
-                  fmt::format("{} {}, default {}", darkroom::full_doc(row), darkroom::interval(row),
-                              darkroom::format(row, effect.parameters.defaults)),
-                  title);
+        add_flag(command, darkroom::flat_key(effect.name, row.name), shown_value(row),
+                 fmt::format("{} {}, default {}", darkroom::full_doc(row), darkroom::interval(row),
+                             darkroom::format(row, effect.parameters.defaults)),
+                 title);
 }
 
 void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const darkroom::LookEntry> named) {
+    command_ = &command;
     const std::string group = "The look";
     if (has_look_flag)
         command
@@ -84,8 +129,8 @@ void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const da
         command.add_option("--events", events, "What happens to the look: a file of [[event]]s (TOML)")
             ->type_name("FILE")
             ->group(group);
-    command.add_option("--order", order_, "Order of the flat table: documented or scene_linear")
-        ->type_name("ORDER")
+    command.add_option("--order", order_, "Order of the flat table")
+        ->type_name("documented|scene_linear")
         ->group(group);
     command
         .add_option("--set", sets_, "Any parameter of an entry, by its name: bloom#2.intensity=0.3, bloom.opacity=0.5")
@@ -115,9 +160,16 @@ void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const da
 }
 
 Result<std::vector<LookOverride>> LookFlags::overrides() const {
-    std::vector<LookOverride> out;
+    std::vector<const Value*> typed;
     for (const std::unique_ptr<Value>& value : values_)
-        if (value->option->count() > 0) out.push_back({value->key, value->text, value->flag});
+        if (value->option->count() > 0) typed.push_back(value.get());
+    // What was typed last counts, also among flags that say the same in two ways.
+    const std::vector<CLI::Option*>& order = command_->parse_order();
+    std::ranges::sort(typed, {}, [&](const Value* value) {
+        return std::ranges::find(order.rbegin(), order.rend(), value->option).base() - order.begin();
+    });
+    std::vector<LookOverride> out;
+    for (const Value* const value : typed) out.push_back({value->key, value->text, value->flag});
     for (const std::string& set : sets_) {
         const std::size_t equals = set.find('=');
         if (equals == std::string::npos || equals == 0)

@@ -45,7 +45,12 @@ class LookFlags {
         CLI::Option* option = nullptr;
     };
     void add_effect(CLI::App& command, const darkroom::EffectInfo& effect);
-    void add_value(CLI::App& command, const std::string& key, const std::string& help, const std::string& group);
+    Value& add_value(std::string key, std::string flag);
+    /// `value`: what it takes, as help shows it.
+    void add_flag(CLI::App& command, const std::string& key, const std::string& value, const std::string& help,
+                  const std::string& group);
+    /// --bloom and --no-bloom.
+    void add_switch(CLI::App& command, const darkroom::EffectInfo& effect, const std::string& group);
     [[nodiscard]] darkroom::Result<std::vector<darkroom::LookOverride>> overrides() const;
     /// Puts those of --effect behind the look's entries, at their defaults.
     [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
@@ -55,6 +60,7 @@ class LookFlags {
     std::string order_, ui_file_;
     std::vector<std::string> sets_, effect_files_, game_;
     std::vector<std::unique_ptr<Value>> values_;  // CLI11 keeps references to the texts
+    const CLI::App* command_ = nullptr;           // knows in which order they were typed
     bool is_strict_ = false;
     bool has_no_custom_effects_ = false;
     bool is_off_ = false;

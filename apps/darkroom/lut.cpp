@@ -95,7 +95,24 @@ Command add_export(CLI::App& lut, std::span<const darkroom::LookEntry> named) {
 std::vector<Command> add_lut(CLI::App& program, std::span<const darkroom::LookEntry> named) {
     CLI::App* const lut = program.add_subcommand("lut", "Colour tables: tells of them, converts them, makes them");
     lut->require_subcommand(1);
-    return {add_info(*lut), add_convert(*lut), add_export(*lut, named)};
+    lut->footer(
+        "darkroom lut info film.cube\n"
+        "darkroom lut convert film.cube -o copy.cube\n"
+        "darkroom lut export my.toml -o my.cube");
+    const Command info = add_info(*lut), convert = add_convert(*lut), exported = add_export(*lut, named);
+    info.app->footer(
+        "darkroom lut info film.cube\n"
+        "darkroom lut info film.cube bright.cube\n"
+        "darkroom lut info film.cube --json");
+    convert.app->footer(
+        "darkroom lut convert film.cube -o copy.cube\n"
+        "darkroom lut convert strip.png -o film.cube\n"
+        "darkroom lut convert film.spi1d -o film.cube");
+    exported.app->footer(
+        "darkroom lut export my.toml -o my.cube\n"
+        "darkroom lut export --exposure 2 -o bright.cube\n"
+        "darkroom lut export my.toml --no-tonemap -o linear.cube");
+    return {info, convert, exported};
 }
 
 }  // namespace app

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
+#include <iterator>
 #include <new>
 #include <optional>
 
 #include "commands.hpp"
 #include "core/files.hpp"
 #include "core/param_text.hpp"
+#include "help.hpp"
 #include "named_effects.hpp"
 #include "report.hpp"
 
@@ -53,24 +56,57 @@ std::optional<std::string> empty_option(const CLI::App& command) {
     return std::nullopt;
 }
 
+void add_voice(CLI::App& command) {
+    command.add_flag_callback(
+        "-q,--quiet", [] { app::set_voice(app::Voice::Quiet); }, "Says nothing but warnings and errors");
+    command.add_flag_callback(
+        "-v,--verbose", [] { app::set_voice(app::Voice::Verbose); },
+        "Says more: the device, and all that is left out with the reason");
+}
+
+/// The command that is called `asked`, or all of them where none is. Flags of all effects in seven commands take longer
+/// to make than everything else before the work.
+std::vector<app::Command> add_commands(CLI::App& program, std::span<const darkroom::LookEntry> named,
+                                       std::string_view asked) {
+    using Commands = std::vector<app::Command>;
+    struct Adding {
+        std::vector<std::string_view> names;
+        std::function<Commands()> add;
+    };
+    const std::vector<Adding> all{
+        {{"render"}, [&] { return Commands{app::add_render(program, named)}; }},
+        {{"develop"}, [&] { return Commands{app::add_develop(program, named)}; }},
+        {{"probe"}, [&] { return Commands{app::add_probe(program, named)}; }},
+        {{"plan"}, [&] { return Commands{app::add_plan(program, named)}; }},
+        {{"effects"}, [&] { return Commands{app::add_effects(program)}; }},
+        {{"devices"}, [&] { return Commands{app::add_devices(program)}; }},
+        {{"compare"}, [&] { return Commands{app::add_compare(program)}; }},
+        {{"info"}, [&] { return Commands{app::add_info(program)}; }},
+        {{"lut"}, [&] { return app::add_lut(program, named); }},
+#ifdef DARKROOM_VIEWER
+        {{"play", "edit"}, [&] { return app::add_viewer(program, named); }},
+#endif
+    };
+    for (const Adding& one : all)
+        if (std::ranges::find(one.names, asked) != one.names.end()) return one.add();
+    Commands out;
+    for (const Adding& one : all) std::ranges::move(one.add(), std::back_inserter(out));
+    return out;
+}
+
 int run(int argc, char** argv) {
     CLI::App program("Renders scenes, and develops raw HDR frames into finished pictures.", "darkroom");
     program.set_version_flag("--version", "darkroom " DARKROOM_VERSION);
     program.require_subcommand(1);
-    program.get_formatter()->column_width(34);
     program.footer(
-        "`darkroom COMMAND --help` lists the flags of a command.\n"
-        "DARKROOM_VALIDATE=1 turns the Vulkan validation layer on. Exit codes: 0 done, 1 the request is wrong, 2 the "
-        "machine failed; `compare` has 3: they differ.");
+        "darkroom render scene.toml --size 640x360 -o picture.png\n"
+        "darkroom develop frame.exr --exposure 2 --vignette-intensity 0.3 -o picture.png\n"
+        "darkroom develop --help bloom");
+    app::add_help_flags(program);
     const std::vector<darkroom::LookEntry> named = app::effects_named_by({argv, static_cast<std::size_t>(argc)});
-    std::vector commands{app::add_render(program, named), app::add_develop(program, named),
-                         app::add_probe(program, named),  app::add_plan(program, named),
-                         app::add_effects(program),       app::add_devices(program),
-                         app::add_compare(program),       app::add_info(program)};
-    std::ranges::move(app::add_lut(program, named), std::back_inserter(commands));
-#ifdef DARKROOM_VIEWER
-    std::ranges::move(app::add_viewer(program, named), std::back_inserter(commands));
-#endif
+    const std::vector<app::Command> commands = add_commands(program, named, argc > 1 ? argv[1] : "");
+    for (const app::Command& command : commands) add_voice(*command.app);
+    if (const std::optional<int> code = app::answer_help(program, {argv, static_cast<std::size_t>(argc)})) return *code;
     // CLI11 would take the next argument for the value.
     for (int i = 1; i < argc; ++i) {
         const std::string_view argument = argv[i];
@@ -80,7 +116,7 @@ int run(int argc, char** argv) {
     }
     try {
         program.parse(argc, argv);
-    } catch (const CLI::Success& done) {
+    } catch (const CLI::Success& done) {  // --version
         return program.exit(done);
     } catch (const CLI::ExtrasError&) {
         return app::fail_user(unknown_argument(program));

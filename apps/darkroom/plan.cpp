@@ -96,6 +96,10 @@ int run(const Options& options) {
 Command add_plan(CLI::App& program, std::span<const darkroom::LookEntry> named) {
     CLI::App* const command = program.add_subcommand(
         "plan", "Shows what the planner makes of a look: kernels, what fused and why not, bytes, memory");
+    command->footer(
+        "darkroom plan my.toml\n"
+        "darkroom plan my.toml --input frame.exr --size 3840x2160\n"
+        "darkroom plan --bloom-intensity 0.2 --json");
     const auto options = std::make_shared<Options>();
     command->add_option("LOOK", options->look.file, "A look file (TOML). Default: the flat table at its defaults");
     command->add_flag("--json", options->is_json, "For programs");
@@ -103,7 +107,7 @@ Command add_plan(CLI::App& program, std::span<const darkroom::LookEntry> named) 
         ->type_name("WxH");
     command->add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")
         ->type_name("FRAME");
-    command->add_option("--bits", options->bits, "The target: 8, 16, half or float")->type_name("BITS");
+    command->add_option("--bits", options->bits, "Samples of the target")->type_name("8|16|half|float");
     CLI::Option* const statistics =
         command->add_flag("--statistics", options->wants_statistics,
                           "What the device's compiler makes of each kernel: registers, waves, instructions, cycles");

@@ -351,6 +351,10 @@ Command add_probe(CLI::App& program, std::span<const darkroom::LookEntry> named)
     CLI::App* const command =
         program.add_subcommand("probe", "Tells what every effect of a look makes of pixels of a frame");
     const auto options = std::make_shared<Options>();
+    command->footer(
+        "darkroom probe frame.exr --at 12,4\n"
+        "darkroom probe frame.exr --look my.toml --at 12,4 --at 3,3\n"
+        "darkroom probe frame.exr --at 12,4 --json");
     command->add_option("FRAME", options->input, "A frame (EXR, HDR, PNG, JPEG, TIFF)")->required();
     command
         ->add_option("--at", options->at, "A pixel of the picture, from its top left corner; may stand several times")

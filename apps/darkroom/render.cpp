@@ -139,8 +139,7 @@ class Render {
         });
         if (way_ == Way::Developed)
             if (Result<> done = add_pre_roll(); !done) return done;
-        fmt::print("Loaded scene {}\nEntities: {}\n", darkroom::printable(scene_.name), scene_.entities.size());
-        std::fflush(stdout);
+        tell(fmt::format("Loaded scene {}\nEntities: {}", darkroom::printable(scene_.name), scene_.entities.size()));
         return {};
     }
 
@@ -339,6 +338,10 @@ int run(const RenderFlags& flags) {
 
 Command add_render(CLI::App& program, std::span<const darkroom::LookEntry> named) {
     CLI::App* const command = program.add_subcommand("render", "Renders a scene and post-processes it");
+    command->footer(
+        "darkroom render scene.toml --size 640x360 -o picture.png\n"
+        "darkroom render scene.toml --frames 0-1 --fps 24 --size 64x36 -o 'out.####.png'\n"
+        "darkroom render scene.toml --size 64x36 --yaw 200 --save-frame frame.exr -o picture.png");
     const auto flags = std::make_shared<RenderFlags>();
     flags->add_to(*command, named);
     return {command, [flags] { return run(*flags); }};

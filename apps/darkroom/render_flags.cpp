@@ -53,7 +53,7 @@ void RenderFlags::add_moments(CLI::App& command) {
         ->type_name("S")
         ->group(group);
     command.add_option("--frames", frames_, "Several frames; the time of a frame is its number / fps")
-        ->type_name("FIRST-LAST")
+        ->type_name("A-B")
         ->group(group);
     frames_per_second_.add_to(command, "Frames a second, for --frames and for motion")
         ->type_name("N")

@@ -12,6 +12,8 @@ namespace app {
 
 namespace {
 
+Voice voice = Voice::Usual;
+std::FILE* told_to = stdout;
 bool is_bar_shown = false;
 std::mutex terminal;  // whose lines come from several threads
 
@@ -27,6 +29,21 @@ void say(std::string_view prefix, std::string_view text) {
 
 }  // namespace
 
+void set_voice(Voice to) { voice = to; }
+void leave_standard_output() { told_to = stderr; }
+
+void answer(std::string_view line) {
+    fmt::print(told_to, "{}\n", line);
+    std::fflush(told_to);
+}
+
+void tell(std::string_view line) {
+    if (voice != Voice::Quiet) answer(line);
+}
+
+void remark(std::string_view text) {
+    if (voice == Voice::Verbose) say("", text);
+}
 void complain(std::string_view text) { say("", text); }
 void warn(std::string_view text) { say("warning: ", text); }
 
@@ -42,6 +59,7 @@ int fail_user(std::string_view text) {
 
 darkroom::LogSink log_sink() {
     return [](darkroom::Severity severity, std::string_view text) {
+        if (severity == darkroom::Severity::Info) remark(text);
         if (severity == darkroom::Severity::Warning) warn(text);
         if (severity == darkroom::Severity::Error) complain(text);
     };
@@ -57,14 +75,8 @@ Progress::~Progress() {
 void Progress::step(std::string_view line) {
     const std::lock_guard lock(terminal);
     ++done_;
-    if (total_ < 2 || !is_terminal_) {
-        if (total_ < 2)
-            fmt::print("{}\n", line);
-        else
-            fmt::print("{}/{} {}\n", done_, total_, line);
-        std::fflush(stdout);
-        return;
-    }
+    if (total_ < 2) return tell(line);
+    if (!is_terminal_ || voice == Voice::Quiet) return tell(fmt::format("{}/{} {}", done_, total_, line));
     constexpr std::size_t width = 30;
     const std::size_t filled = width * done_ / total_;
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;

@@ -12,6 +12,18 @@ namespace app {
 
 inline constexpr int exit_ok = 0, exit_user = 1, exit_machine = 2;
 
+/// How much is said. Quiet: warnings, errors, and what was asked for. Verbose: remarks, too.
+enum class Voice { Quiet, Usual, Verbose };
+void set_voice(Voice voice);
+/// Standard output belongs to a stream of pictures: all that is said goes to standard error.
+void leave_standard_output();
+
+/// What was asked for, a line.
+void answer(std::string_view line);
+/// What was done, a line; not where it is to be quiet.
+void tell(std::string_view line);
+/// "darkroom: <text>" on one line of standard error, where that was asked for.
+void remark(std::string_view text);
 /// "darkroom: <text>" on one line of standard error.
 void complain(std::string_view text);
 /// "darkroom: warning: <text>".
@@ -20,7 +32,7 @@ void warn(std::string_view text);
 [[nodiscard]] int fail(const darkroom::Error& error);
 [[nodiscard]] int fail_user(std::string_view text);
 
-/// Prints the library's warnings and errors.
+/// Prints the library's warnings and errors, and where it is to be verbose its remarks.
 [[nodiscard]] darkroom::LogSink log_sink();
 
 /// How far a list of files has come: on a terminal a bar with frames a second and the time that is left, else a line

@@ -17,12 +17,12 @@ using darkroom::user_error;
 
 void WriteFlags::add_to(CLI::App& command) {
     const std::string group = "The files";
-    command.add_option("--bits", bits_, "Samples of the file: 8, 16, half or float")->type_name("BITS")->group(group);
+    command.add_option("--bits", bits_, "Samples of the file")->type_name("8|16|half|float")->group(group);
     command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque")->group(group);
     command
         .add_option("--compression", compression_,
                     "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab; TIFF: none, packbits, lzw or zip; "
-                    "PNG: 0 to 12")
+                    "PNG: [0, 12]")
         ->type_name("NAME")
         ->group(group);
     quality_.add_to(command, "Of JPEG files")->type_name("1-100")->default_str("95")->group(group);
@@ -54,7 +54,7 @@ Result<FrameRange> parse_frames(const std::string& text) {
     constexpr std::uint64_t most_number = 1'000'000'000;  // what fits a file name and a float file's attributes
     if (error != std::errc() || last != end || range.first > most_number || range.last > most_number)
         return user_error(
-            fmt::format("--frames {}: expected FIRST-LAST, whole numbers from 0 to {}", printable(text), most_number));
+            fmt::format("--frames {}: expected A or A-B, whole numbers in [0, {}]", printable(text), most_number));
     if (range.last < range.first)
         return user_error(fmt::format("--frames {}: the last frame is before the first", printable(text)));
     constexpr std::uint64_t most = 100'000;

@@ -140,10 +140,8 @@ void SceneFlags::add_camera(CLI::App& command) {
 void SceneFlags::add_drawing(CLI::App& command) {
     const std::string group = "What is drawn";
     command.add_flag("--no-grid", has_no_grid_, "No grid on the ground")->group(group);
-    command
-        .add_option("--debug-mode", debug_mode_,
-                    "wireframe, normals, depth, uv, unlit or metalrough; neither tone-mapped nor post-processed")
-        ->type_name("MODE")
+    command.add_option("--debug-mode", debug_mode_, "Instead of the picture; neither tone-mapped nor post-processed")
+        ->type_name("wireframe|normals|depth|uv|unlit|metalrough")
         ->group(group);
     command.add_flag("--wireframe-overlay", has_wireframe_overlay_, "Edges of all triangles on top")->group(group);
     command.add_flag("--show-normals", has_normal_arrows_, "An arrow for the normal of every vertex")->group(group);

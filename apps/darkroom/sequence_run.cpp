@@ -15,13 +15,14 @@ namespace {
 void print_stages(const PipelineTimes& times, std::size_t pictures) {
     const double count = static_cast<double>(std::max<std::size_t>(1, pictures));
     const auto share = [&](double milliseconds) { return 100 * milliseconds / times.wall; };
-    fmt::print("{:>10.3f} ms  decode a frame, on {} threads\n", times.decode / count, times.workers);
-    fmt::print("{:>10.3f} ms  upload, GPU and read-back a frame, on one; it waited {:.0f} % of the time for decode\n",
-               times.work / count, share(times.wait_for_decode));
-    fmt::print("{:>10.3f} ms  encode a frame, on {} threads; the last ones took {:.0f} % of the time\n",
-               times.encode / count, times.workers, share(times.wait_for_encode));
-    fmt::print("{:>10.3f} ms  a frame, overlapped: {:.2f} frames a second\n", times.wall / count,
-               1000 * count / times.wall);
+    answer(fmt::format("{:>10.3f} ms  decode a frame, on {} threads", times.decode / count, times.workers));
+    answer(fmt::format(
+        "{:>10.3f} ms  upload, GPU and read-back a frame, on one; it waited {:.0f} % of the time for decode",
+        times.work / count, share(times.wait_for_decode)));
+    answer(fmt::format("{:>10.3f} ms  encode a frame, on {} threads; the last ones took {:.0f} % of the time",
+                       times.encode / count, times.workers, share(times.wait_for_encode)));
+    answer(fmt::format("{:>10.3f} ms  a frame, overlapped: {:.2f} frames a second", times.wall / count,
+                       1000 * count / times.wall));
 }
 
 }  // namespace
@@ -70,10 +71,10 @@ void PassTimes::print() const {
     double together = 0;
     for (const std::string& name : order_) {
         const double mean = sums_.at(name) / static_cast<double>(frames_);
-        fmt::print("{:>10.3f} ms  {}\n", mean, name);
+        answer(fmt::format("{:>10.3f} ms  {}", mean, name));
         together += mean;
     }
-    fmt::print("{:>10.3f} ms  together{}\n", together, frames_ > 1 ? ", means of all frames" : "");
+    answer(fmt::format("{:>10.3f} ms  together{}", together, frames_ > 1 ? ", means of all frames" : ""));
 }
 
 }  // namespace app

@@ -16,6 +16,11 @@ namespace {
 Command add_view(CLI::App& program, const char* name, const char* doc, bool is_edit,
                  std::span<const darkroom::LookEntry> named) {
     CLI::App* const command = program.add_subcommand(name, doc);
+    command->footer(
+        fmt::format("darkroom {0} scene.toml\n"
+                    "darkroom {0} scene.toml --look my.toml --fullscreen\n"
+                    "darkroom {0} 'shot.####.exr' --fps 24",
+                    name));
     const auto flags = std::make_shared<ViewFlags>();
     flags->add_to(*command, is_edit, named);
     return {command, [flags] {

@@ -35,10 +35,8 @@ void ViewFlags::add_to(CLI::App& command, bool is_edit, std::span<const darkroom
                        "A scene (.toml), a model (.glb, .gltf), a frame or picture, or a sequence: shot.####.exr");
     const std::string group = "The window";
     command.add_flag("--fullscreen", is_fullscreen_, "The whole screen")->group(group);
-    command
-        .add_option("--present", presentation_,
-                    "vsync: with the display; mailbox: with it, the newest frame; immediate: at once")
-        ->type_name("MODE")
+    command.add_option("--present", presentation_, "With the display; with it, the newest frame; at once")
+        ->type_name("vsync|mailbox|immediate")
         ->capture_default_str()
         ->group(group);
     frames_.add_to(command, "Shows so many frames, 1 / fps seconds apart, and ends")->type_name("N")->group(group);

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "edit/edits.hpp"
+#include "report.hpp"
 #include "viewer_state.hpp"
 
 namespace app {
@@ -153,8 +154,7 @@ void Viewer::toggle_effects(std::uint32_t number) {
 }
 
 void Viewer::tell(std::string line) {
-    fmt::print("{}\n", line);
-    std::fflush(stdout);
+    app::tell(line);
     screen_.tell(std::move(line));
 }
 
