@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "commands.hpp"
 #include "core/param_text.hpp"
@@ -31,6 +32,8 @@ using darkroom::user_error;
 
 /// Of frames that say nothing else: as DevelopInput has it.
 constexpr double usual_frames_per_second = 60;
+/// Of a stream of pictures, where nothing says how fast they go.
+constexpr double stream_frames_per_second = 24;
 
 struct Options {
     LookFlags look;
@@ -65,13 +68,16 @@ struct Job {
     darkroom::DevelopDesc develop;
     std::optional<VkExtent2D> size;
     std::optional<double> time, frames_per_second;
+    std::optional<StreamDesc> stream;
 };
 
 /// The frames that are asked for and are not there yet, each with those before it that histories need.
 Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     const Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
     if (!inputs) return failure(inputs.error());
-    const Result<std::vector<std::filesystem::path>> outputs = output_paths(*inputs, options.out, ui_files(job.look));
+    using Paths = std::vector<std::filesystem::path>;
+    const Result<Paths> outputs = job.stream ? Result<Paths>(Paths(inputs->size(), stream_name))
+                                             : output_paths(*inputs, options.out, ui_files(job.look));
     if (!outputs) return failure(outputs.error());
     FrameRange range{.first = 0, .last = ~std::uint64_t{0}};
     if (options.frames) {
@@ -117,6 +123,12 @@ Result<Job> job_of(const Options& options) {
     Result<darkroom::WriteOptions> write = options.write.options();
     if (!write) return failure(std::move(write));
     job.write = std::move(*write);
+    Result<std::optional<StreamDesc>> stream =
+        options.write.stream(options.out, job.frames_per_second.value_or(stream_frames_per_second));
+    if (!stream) return failure(std::move(stream));
+    job.stream = *stream;
+    if (job.stream)
+        if (Result<> done = options.run.check_stream(); !done) return failure(std::move(done));
     const Result<std::size_t> jobs = options.run.jobs();
     if (!jobs) return failure(jobs.error());
     job.jobs = *jobs;
@@ -150,7 +162,9 @@ Result<Job> job_of(const Options& options) {
 
 class Develop {
   public:
-    Develop(const Options& options, Job job) : options_(options), job_(std::move(job)), items_(job_.steps.size()) {}
+    Develop(const Options& options, Job job) : options_(options), job_(std::move(job)), items_(job_.steps.size()) {
+        if (job_.stream) stream_.emplace(*job_.stream);
+    }
 
     Result<> run() {
         const auto pictures = std::ranges::count(job_.steps, true, &Step::is_written);
@@ -164,6 +178,7 @@ class Develop {
                                             .begin = [this](std::size_t i) { return begin(i); },
                                             .finish = [this](std::size_t i) { return finish_step(i); },
                                             .encode = [this](std::size_t i) { return encode(i); },
+                                            .deliver = [this](std::size_t i) { return deliver(i); },
                                             .line = [this](std::size_t i) { return line(i); },
                                             .release = [this](std::size_t i) { items_[i] = {}; }});
         if (options_.run.has_timings && done) pass_times_.print();
@@ -180,6 +195,7 @@ class Develop {
         std::shared_ptr<const std::vector<std::uint8_t>> ui;
         darkroom::DevelopInput input;
         darkroom::DevelopedPicture picture;
+        std::vector<std::byte> packed;  ///< of a stream: what goes out
         VkExtent2D extent{};
     };
 
@@ -282,6 +298,10 @@ class Develop {
 
     Result<> encode(std::size_t i) {
         if (!job_.steps[i].is_written) return {};
+        if (stream_) {
+            items_[i].packed = stream_->pack(std::exchange(items_[i].picture, {}));
+            return {};
+        }
         darkroom::WriteOptions options = job_.write;
         options.attributes = items_[i].frame.attributes;
         return write(job_.steps[i].output, std::move(items_[i].picture), options);
@@ -297,6 +317,7 @@ class Develop {
     const Options& options_;
     Job job_;
     std::vector<Item> items_;
+    std::optional<PictureStream> stream_;
     std::mutex making_;
     std::unique_ptr<darkroom::Device> device_;
     std::unique_ptr<darkroom::Composer> composer_;
@@ -332,7 +353,7 @@ Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> name
     command
         ->add_option("-o,--output,--out", options->out,
                      "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d, #### or "
-                     "{name}")
+                     "{name}; - is standard output, with --format")
         ->type_name("OUT")
         ->required();
     command->add_option("--size", options->size, "Develops at this size; the frame is resampled first")

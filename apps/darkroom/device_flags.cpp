@@ -76,6 +76,11 @@ darkroom::DevelopTarget target_for(darkroom::SampleKind samples) {
     return darkroom::DevelopTarget::SceneLinear;
 }
 
+darkroom::DevelopTarget target_for(darkroom::VideoFormat format) {
+    return format == darkroom::VideoFormat::Rgba64le ? darkroom::DevelopTarget::EncodedFloat
+                                                     : darkroom::DevelopTarget::Encoded8;
+}
+
 int finish(const darkroom::Device& device, int code) {
     const std::uint64_t messages = device.validation_messages();
     if (messages == 0) return code;

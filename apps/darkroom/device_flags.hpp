@@ -8,6 +8,7 @@
 #include <string>
 
 #include "develop/developer.hpp"
+#include "image/video_frame.hpp"
 #include "image/write.hpp"
 
 namespace app {
@@ -35,6 +36,7 @@ class DeviceFlags {
 /// "8", "16", "half", "float".
 [[nodiscard]] darkroom::Result<darkroom::SampleKind> parse_bits(const std::string& text);
 [[nodiscard]] darkroom::DevelopTarget target_for(darkroom::SampleKind samples);
+[[nodiscard]] darkroom::DevelopTarget target_for(darkroom::VideoFormat format);
 /// Exit code 2 if the validation layer has spoken.
 [[nodiscard]] int finish(const darkroom::Device& device, int code);
 

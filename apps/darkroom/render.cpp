@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "commands.hpp"
 #include "core/param_text.hpp"
@@ -71,6 +72,7 @@ class Render {
                                             .begin = [this](std::size_t i) { return render(i); },
                                             .finish = [](std::size_t) { return Result<>(); },
                                             .encode = [this](std::size_t i) { return encode(i); },
+                                            .deliver = [this](std::size_t i) { return deliver(i); },
                                             .line = [this](std::size_t i) { return line(job_.shots[i]); },
                                             .release = [this](std::size_t i) { items_[i] = {}; }});
         if (composer_ && flags_.run.has_timings && done) pass_times_.print();
@@ -84,6 +86,8 @@ class Render {
     struct Item {
         std::optional<scene::Snapshot> snapshot;
         DevelopedPicture picture;
+        std::vector<std::byte> packed;  ///< of a stream: what goes out
+        VkExtent2D extent{};            ///< of that
         std::optional<darkroom::FrameFile> frame;
     };
 
@@ -92,9 +96,10 @@ class Render {
         Result<RenderJob> job = flags_.job();
         if (!job) return failure(std::move(job));
         job_ = std::move(*job);
+        if (job_.stream) stream_.emplace(*job_.stream);
         const Result<darkroom::KernelStage> stage = flags_.device.stage();
         if (!stage) return failure(stage.error());
-        develop_ = {.target = target_for(job_.samples), .kernels = *stage, .fuse = flags_.device.is_fused()};
+        develop_ = {.target = job_.target, .kernels = *stage, .fuse = flags_.device.is_fused()};
         std::vector<std::string> warnings;
         Result<scene::Scene> scene =
             scene::read_scene(flags_.scene, {.is_strict = flags_.look.is_strict(), .warnings = &warnings});
@@ -132,7 +137,7 @@ class Render {
         const FileSet files(inputs);
         for (const Shot& shot : job_.shots)
             for (const std::filesystem::path& path : {shot.picture, shot.frame})
-                if (!path.empty())
+                if (!path.empty() && path != stream_name)
                     if (Result<> done = check_output(path, files); !done) return done;
         std::erase_if(job_.shots, [&](const Shot& shot) {
             return flags_.run.is_skipped(shot.picture) && (shot.frame.empty() || flags_.run.is_skipped(shot.frame));
@@ -261,7 +266,15 @@ class Render {
         if (item.frame)
             if (Result<> done = darkroom::write_frame(shot.frame, *item.frame, job_.write.max_threads); !done)
                 return done;
-        return write(shot.picture, std::move(item.picture), job_.write);
+        if (!stream_) return write(shot.picture, std::move(item.picture), job_.write);
+        item.extent = item.picture.extent;
+        item.packed = stream_->pack(std::exchange(item.picture, {}));
+        return {};
+    }
+
+    Result<> deliver(std::size_t i) {
+        if (!stream_ || !job_.shots[i].is_written) return {};
+        return stream_->write(items_[i].packed, items_[i].extent, shown(flags_.scene));
     }
 
     [[nodiscard]] std::string line(const Shot& shot) const {
@@ -325,6 +338,7 @@ class Render {
     UiSource ui_;  ///< moves the composer, so it goes first
     std::unique_ptr<darkroom::Developer> developer_;
     std::vector<Item> items_;
+    std::optional<PictureStream> stream_;
     PassTimes pass_times_;
 };
 

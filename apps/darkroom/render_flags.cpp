@@ -32,7 +32,8 @@ void RenderFlags::add_to(CLI::App& command, std::span<const darkroom::LookEntry>
     command.add_option("SCENE", scene, "A scene (.toml) or a model (.glb, .gltf)")->required();
     command
         .add_option("-o,--output,--out", out_,
-                    "The picture: .png .jpg .tif .exr .hdr; for several frames a name with %04d")
+                    "The picture: .png .jpg .tif .exr .hdr; for several frames a name with %04d; - is standard output, "
+                    "with --format")
         ->type_name("OUT")
         ->capture_default_str();
     command
@@ -88,7 +89,7 @@ Result<std::vector<Shot>> RenderFlags::shots() const {
 Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
     const bool is_many = shots.size() > 1;
     if (out_.empty()) return user_error("-o: an output file is needed");
-    if (is_many && !darkroom::has_number_pattern(out_))
+    if (is_many && !darkroom::has_number_pattern(out_) && out_ != stream_name)
         return user_error(fmt::format("-o {}: {} frames need a name with %04d", printable(out_), shots.size()));
     if (frame_) {
         const Result<darkroom::FileKind> kind = darkroom::file_kind(*frame_);
@@ -102,11 +103,27 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
     std::set<fs::path> outputs;
     for (const Shot& shot : shots)
         for (const fs::path& path : {shot.picture, shot.frame}) {
-            if (path.empty()) continue;
+            if (path.empty() || path == stream_name) continue;
             if (!outputs.insert(path.lexically_normal()).second)
                 return user_error(fmt::format("{}: would be picture and frame", printable(path.string())));
             if (Result<> done = check_output(path, inputs); !done) return done;
         }
+    return {};
+}
+
+Result<> RenderFlags::set_target(RenderJob& job) const {
+    double frames_per_second = default_frames_per_second;
+    if (Result<> done = frames_per_second_.read_to(frames_per_second); !done) return done;
+    Result<std::optional<StreamDesc>> stream = write.stream(out_, frames_per_second);
+    if (!stream) return failure(std::move(stream));
+    job.stream = *stream;
+    if (job.stream) {
+        job.target = target_for(job.stream->format);
+        return run.check_stream();
+    }
+    const Result<darkroom::SampleKind> samples = darkroom::sample_kind(out_, job.write);
+    if (!samples) return failure(samples.error());
+    job.target = target_for(*samples);
     return {};
 }
 
@@ -127,9 +144,7 @@ Result<RenderJob> RenderFlags::job() const {
     const Result<std::size_t> jobs = run.jobs();
     if (!jobs) return failure(jobs.error());
     job.jobs = *jobs;
-    const Result<darkroom::SampleKind> samples = darkroom::sample_kind(out_, job.write);
-    if (!samples) return failure(samples.error());
-    job.samples = *samples;
+    if (Result<> done = set_target(job); !done) return failure(std::move(done));
     Result<std::vector<Shot>> shots = this->shots();
     if (!shots) return failure(std::move(shots));
     job.shots = std::move(*shots);

@@ -36,7 +36,8 @@ struct RenderJob {
     std::vector<Shot> shots;
     darkroom::WriteOptions write;
     std::size_t jobs = 0;
-    darkroom::SampleKind samples = darkroom::SampleKind::Integer8;  ///< of the pictures
+    darkroom::DevelopTarget target = darkroom::DevelopTarget::Encoded8;
+    std::optional<StreamDesc> stream;
     std::uint64_t seed = 0;
 };
 
@@ -57,6 +58,8 @@ class RenderFlags {
   private:
     void add_moments(CLI::App& command);
     [[nodiscard]] darkroom::Result<std::vector<Shot>> shots() const;
+    /// What becomes of the pictures: files or a stream.
+    [[nodiscard]] darkroom::Result<> set_target(RenderJob& job) const;
     [[nodiscard]] darkroom::Result<> check_files(const std::vector<Shot>& shots) const;
 
     // Optional, so that an empty text is a wrong value, not a missing one.

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <system_error>
 
@@ -15,6 +19,13 @@ using darkroom::printable;
 using darkroom::Result;
 using darkroom::user_error;
 
+namespace {
+
+/// Those of VideoFormat, in its order.
+constexpr std::array<std::string_view, 3> format_names{"y4m", "rgb24", "rgba64le"};
+
+}  // namespace
+
 void WriteFlags::add_to(CLI::App& command) {
     const std::string group = "The files";
     command.add_option("--bits", bits_, "Samples of the file")->type_name("8|16|half|float")->group(group);
@@ -25,7 +36,13 @@ void WriteFlags::add_to(CLI::App& command) {
                     "PNG: [0, 12]")
         ->type_name("NAME")
         ->group(group);
-    quality_.add_to(command, "Of JPEG files")->type_name("1-100")->default_str("95")->group(group);
+    command
+        .add_option(
+            "--format", format_,
+            "Of -o -, which sends the pictures to another program: 8 bits, BT.709 in limited range; 8 bits; 16 bits")
+        ->type_name(fmt::format("{}", fmt::join(format_names, "|")))
+        ->group(group);
+    quality_.add_to(command, "Of JPEG files")->type_name("N")->default_str("95")->group(group);
 }
 
 Result<darkroom::WriteOptions> WriteFlags::options() const {
@@ -37,6 +54,29 @@ Result<darkroom::WriteOptions> WriteFlags::options() const {
     }
     if (Result<> done = quality_.read_to(out.quality); !done) return failure(std::move(done));
     return out;
+}
+
+Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, double frames_per_second) const {
+    if (!format_) {
+        if (out != stream_name) return std::optional<StreamDesc>();
+        return user_error(fmt::format("-o -: --format {} is needed", fmt::join(format_names, "|")));
+    }
+    const auto name = std::ranges::find(format_names, *format_);
+    if (name == format_names.end())
+        return user_error(
+            fmt::format("--format {}: allowed is {}", printable(*format_), fmt::join(format_names, ", ")));
+    if (out != stream_name) return user_error(fmt::format("--format {}: is of -o -, not of files", *format_));
+    const StreamDesc desc{.format = static_cast<darkroom::VideoFormat>(name - format_names.begin()),
+                          .rate = darkroom::frame_rate(frames_per_second),
+                          .has_alpha = has_alpha_};
+    for (const auto& [is_given, flag] :
+         {std::pair(bits_.has_value(), "--bits"), std::pair(!compression_.empty(), "--compression"),
+          std::pair(quality_.is_given(), "--quality")})
+        if (is_given) return user_error(fmt::format("{}: is of files, and not of --format {}", flag, *format_));
+    if (has_alpha_ && desc.format != darkroom::VideoFormat::Rgba64le)
+        return user_error(fmt::format("--alpha: --format {} has none; rgba64le has", *format_));
+    if (isatty(STDOUT_FILENO) != 0) return user_error("-o -: standard output is a terminal, which shows no pictures");
+    return desc;
 }
 
 Result<FrameRange> parse_frames(const std::string& text) {
@@ -85,6 +125,13 @@ Result<std::size_t> RunFlags::jobs() const {
     std::size_t out = 0;
     if (Result<> done = jobs_.read_to(out); !done) return failure(std::move(done));
     return out;
+}
+
+Result<> RunFlags::check_stream() const {
+    for (const auto& [is_given, flag] :
+         {std::pair(skips_existing_, "--skip-existing"), std::pair(keeps_going, "--keep-going")})
+        if (is_given) return user_error(fmt::format("{}: a stream has no gaps, leave it out with -o -", flag));
+    return {};
 }
 
 bool RunFlags::is_skipped(const std::filesystem::path& output) const {

@@ -12,17 +12,22 @@
 
 #include "image/write.hpp"
 #include "number_flag.hpp"
+#include "picture_stream.hpp"
 
 namespace app {
 
-/// --bits, --alpha, --compression, --quality.
+/// --bits, --alpha, --compression, --quality, --format.
 class WriteFlags {
   public:
     void add_to(CLI::App& command);
     [[nodiscard]] darkroom::Result<darkroom::WriteOptions> options() const;
+    /// What `out` asks for if it is standard output, else nothing. Errors: it and --format must go together, other
+    /// flags of files say nothing of a stream, and a terminal shows no pictures.
+    [[nodiscard]] darkroom::Result<std::optional<StreamDesc>> stream(const std::string& out,
+                                                                     double frames_per_second) const;
 
   private:
-    std::optional<std::string> bits_;
+    std::optional<std::string> bits_, format_;
     std::string compression_;
     NumberFlag quality_{"--quality", {.least = 1, .most = 100, .is_whole = true}};
     bool has_alpha_ = false;
@@ -46,6 +51,8 @@ class RunFlags {
     [[nodiscard]] darkroom::Result<std::size_t> jobs() const;
     /// Is this file there and not empty, and should it stay?
     [[nodiscard]] bool is_skipped(const std::filesystem::path& output) const;
+    /// Standard output has no pictures that are there already, and no place for one that is missing.
+    [[nodiscard]] darkroom::Result<> check_stream() const;
 
     bool keeps_going = false, has_timings = false;
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
+
 #include "report.hpp"
 
 namespace app {
@@ -30,9 +32,16 @@ void print_stages(const PipelineTimes& times, std::size_t pictures) {
 Result<> run_sequence(const SequenceDesc& desc, const SequenceStages& stages) {
     std::vector<darkroom::Error> failures;
     PipelineTimes times;
+    std::atomic<bool> is_undeliverable = false;
+    const auto encode = [&](std::size_t step) -> Result<> {
+        // The failure that counts has been noted.
+        return is_undeliverable ? darkroom::machine_error("nobody takes the pictures") : stages.encode(step);
+    };
     {
         Progress progress(desc.pictures);
-        const auto is_done = [&](std::size_t step, const Result<>& result) {
+        const auto is_done = [&](std::size_t step, const Result<>& encoded) {
+            const Result<> result = encoded && stages.deliver && !is_undeliverable ? stages.deliver(step) : encoded;
+            is_undeliverable = is_undeliverable || (encoded && !result);
             if (!result)
                 failures.push_back(result.error());
             else if (const std::string line = stages.line(step); !line.empty())
@@ -44,7 +53,7 @@ Result<> run_sequence(const SequenceDesc& desc, const SequenceStages& stages) {
             {.decode = stages.decode,
              .begin = stages.begin,
              .finish = stages.finish,
-             .encode = stages.encode,
+             .encode = encode,
              .is_done = is_done});
     }
     if (desc.has_timings && desc.pictures > 1) print_stages(times, desc.pictures);

@@ -17,6 +17,8 @@ namespace app {
 
 struct SequenceStages {
     std::function<darkroom::Result<>(std::size_t)> decode, begin, finish, encode;  ///< as in PipelineStages
+    /// What has been encoded goes out, in order; may be left out. A failure ends the work.
+    std::function<darkroom::Result<>(std::size_t)> deliver{};
     /// What was done for a step, "a.exr -> b.png"; empty: a step that makes no picture.
     std::function<std::string(std::size_t)> line;
     std::function<void(std::size_t)> release;  ///< the step is over, its memory can go
