@@ -46,7 +46,7 @@ struct Options {
     std::optional<std::string> frames;
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
-    bool is_reference = false;
+    bool is_reference = false, keeps_layers = false;
 };
 
 /// One frame to go through the stack. What is read for the sake of effects with history alone makes no picture.
@@ -71,6 +71,11 @@ struct Job {
     std::optional<StreamDesc> stream;
 };
 
+darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
+    return user_error(
+        fmt::format("--keep-layers: {} has no place for them, .exr has", darkroom::printable(output.string())));
+}
+
 /// The frames that are asked for and are not there yet, each with those before it that histories need.
 Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     const Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
@@ -85,9 +90,13 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
         if (!parsed) return failure(parsed.error());
         range = *parsed;
     }
-    for (const std::filesystem::path& output : *outputs) {
+    if (job.stream) job.develop.target = target_for(job.stream->format);
+    if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
+    for (const std::filesystem::path& output : job.stream ? Paths() : *outputs) {
         const Result<darkroom::SampleKind> samples = darkroom::sample_kind(output, job.write);
         if (!samples) return failure(samples.error());
+        if (options.keeps_layers && *darkroom::file_kind(output) != darkroom::FileKind::OpenExr)
+            return no_place_for_layers(output);
         job.develop.target = target_for(*samples);
     }
     const std::vector<long long> numbers = numbers_of(*inputs);
@@ -304,7 +313,24 @@ class Develop {
         }
         darkroom::WriteOptions options = job_.write;
         options.attributes = items_[i].frame.attributes;
+        if (options_.keeps_layers)
+            if (Result<> done = keep_layers(i, options); !done) return done;
         return write(job_.steps[i].output, std::move(items_[i].picture), options);
+    }
+
+    /// Read again, so that only those that are being encoded are in memory.
+    Result<> keep_layers(std::size_t i, darkroom::WriteOptions& options) const {
+        Result<darkroom::KeptLayers> layers =
+            darkroom::read_kept_layers(job_.steps[i].input, job_.frame.names, job_.frame.max_threads);
+        if (!layers) return failure(std::move(layers));
+        for (const std::string& warning : layers->warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        options.layers = std::make_shared<const darkroom::KeptLayers>(std::move(*layers));
+        return {};
+    }
+
+    Result<> deliver(std::size_t i) {
+        if (!stream_ || !job_.steps[i].is_written) return {};
+        return stream_->write(items_[i].packed, items_[i].extent, shown(i));
     }
 
     [[nodiscard]] std::string line(std::size_t i) const {
@@ -358,6 +384,8 @@ Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> name
         ->required();
     command->add_option("--size", options->size, "Develops at this size; the frame is resampled first")
         ->type_name("WxH");
+    command->add_flag("--keep-layers", options->keeps_layers,
+                      "Puts the frame's other layers, as they are, beside the picture in an .exr file");
     command->add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
     command->add_option("--frames", options->frames, "Of the inputs those with these numbers")->type_name("A-B");
     options->time.add_to(*command, "For effects that move; default: what the frame says, or 0")->type_name("S");

@@ -53,13 +53,13 @@ void convert(const ExrChannel& channel, std::size_t first, std::size_t count, st
     if (channel.kind == SampleKind::Half) {
         constexpr float largest_half = 65504.0f;
         for (std::size_t i = 0; i < count; ++i, from += channel.stride) {
-            const std::uint16_t bits = imath_float_to_half(clamped(*from, largest_half));
+            const std::uint16_t bits = imath_float_to_half(channel.is_clamped ? clamped(*from, largest_half) : *from);
             std::memcpy(to.data() + i * sizeof bits, &bits, sizeof bits);
         }
         return;
     }
     for (std::size_t i = 0; i < count; ++i, from += channel.stride) {
-        const float value = clamped(*from, std::numeric_limits<float>::max());
+        const float value = channel.is_clamped ? clamped(*from, std::numeric_limits<float>::max()) : *from;
         std::memcpy(to.data() + i * sizeof value, &value, sizeof value);
     }
 }

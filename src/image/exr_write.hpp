@@ -21,9 +21,10 @@ namespace darkroom {
 /// A channel of a plane whose pixels are `stride` floats apart.
 struct ExrChannel {
     std::string name;
-    SampleKind kind = SampleKind::Half;  ///< in the file, Half or Float: clamped to its largest number, NaN becomes 0
+    SampleKind kind = SampleKind::Half;  ///< in the file, Half or Float
     const float* values = nullptr;       ///< of the first pixel
     std::size_t stride = 1;
+    bool is_clamped = true;  ///< to the largest number of its kind, and NaN becomes 0
 };
 
 struct ExrPart {

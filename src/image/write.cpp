@@ -157,6 +157,18 @@ Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc
     return write_file(path, *bytes);
 }
 
+Result<> add_layers(const std::filesystem::path& path, const Picture& picture, const KeptLayers& layers,
+                    ExrPart& part) {
+    if (layers.width != picture.width || layers.height != picture.height)
+        return user_error(
+            fmt::format("{}: the layers of the frame are {}x{}, the picture {}x{}; they are kept at their size",
+                        path.string(), layers.width, layers.height, picture.width, picture.height));
+    for (const KeptLayers::Channel& channel : layers.channels)
+        part.channels.push_back(
+            {.name = channel.name, .kind = channel.kind, .values = channel.values.data(), .is_clamped = false});
+    return {};
+}
+
 Result<> write_floats(const std::filesystem::path& path, const Picture& picture, SampleKind samples,
                       const WriteOptions& options) {
     ExrPart part{.header = exr_header(picture.width, picture.height, options.compression)};
@@ -165,6 +177,8 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
     constexpr std::array names{"R", "G", "B", "A"};
     for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)
         part.channels.push_back({.name = names[c], .kind = samples, .values = picture.pixels.data() + c, .stride = 4});
+    if (options.layers)
+        if (Result<> done = add_layers(path, picture, *options.layers, part); !done) return done;
     return write_exr(path, {&part, 1}, options.max_threads);
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "image/decoder.hpp"
+#include "image/kept_layers.hpp"
 #include "image/picture.hpp"
 
 namespace darkroom {
@@ -26,6 +27,7 @@ struct WriteOptions {
     /// dwaa, dwab. Empty: PNG fast, the others zip.
     std::string compression;
     std::shared_ptr<const ExrAttributes> attributes;  ///< of the frame that the picture was made of: into OpenEXR files
+    std::shared_ptr<const KeptLayers> layers;         ///< of that frame, into OpenEXR files of its size; null: none
     std::size_t max_threads = 0;                      ///< that compress, 0: as many as there are processors
 };
 
