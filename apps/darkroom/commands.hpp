@@ -29,6 +29,7 @@ struct Command {
 [[nodiscard]] Command add_info(CLI::App& program);
 /// One for each command below it.
 [[nodiscard]] std::vector<Command> add_lut(CLI::App& program, std::span<const darkroom::LookEntry> named);
+[[nodiscard]] Command add_new(CLI::App& program);
 /// play and edit.
 [[nodiscard]] std::vector<Command> add_viewer(CLI::App& program, std::span<const darkroom::LookEntry> named);
 

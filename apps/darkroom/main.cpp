@@ -86,6 +86,7 @@ std::vector<app::Command> add_commands(CLI::App& program, std::span<const darkro
 #ifdef DARKROOM_VIEWER
         {{"play", "edit"}, [&] { return app::add_viewer(program, named); }},
 #endif
+        {{"new"}, [&] { return Commands{app::add_new(program)}; }},
     };
     for (const Adding& one : all)
         if (std::ranges::find(one.names, asked) != one.names.end()) return one.add();
