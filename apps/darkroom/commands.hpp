@@ -30,6 +30,8 @@ struct Command {
 /// One for each command below it.
 [[nodiscard]] std::vector<Command> add_lut(CLI::App& program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_new(CLI::App& program);
+[[nodiscard]] Command add_completion(CLI::App& program);
+[[nodiscard]] Command add_man(CLI::App& program);
 /// play and edit.
 [[nodiscard]] std::vector<Command> add_viewer(CLI::App& program, std::span<const darkroom::LookEntry> named);
 

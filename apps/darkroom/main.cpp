@@ -87,6 +87,11 @@ std::vector<app::Command> add_commands(CLI::App& program, std::span<const darkro
         {{"play", "edit"}, [&] { return app::add_viewer(program, named); }},
 #endif
         {{"new"}, [&] { return Commands{app::add_new(program)}; }},
+        // These tell of all others.
+        {{},
+         [&] {
+             return Commands{app::add_completion(program), app::add_man(program)};
+         }},
     };
     for (const Adding& one : all)
         if (std::ranges::find(one.names, asked) != one.names.end()) return one.add();
