@@ -139,6 +139,7 @@ class ViewerFixture : public CliFixture {
     void type_command(const std::string& text) const {
         press("grave");
         settle();
+        settle();  // frames until the console has the keyboard
         ASSERT_EQ(shell("xdotool type '" + text + "'"), 0);
         settle();
         ASSERT_EQ(shell("xdotool keydown Return"), 0);
@@ -148,13 +149,14 @@ class ViewerFixture : public CliFixture {
     }
     /// Where a widget of edit lies in the window: left, top, right, bottom. The console knows, once it was asked.
     [[nodiscard]] std::array<int, 4> place(const std::string& name) const {
+        const std::string line = "place " + name + " ";
+        const std::size_t before = count(line);
         type_command("places " + name);
-        const std::string text = said();
-        const std::size_t at = text.rfind("place " + name + " ");
+        const bool is_told = wait_until([&] { return count(line) > before; }, 10);
+        EXPECT_TRUE(is_told) << "no widget " << name << ": " << said();
         std::array<int, 4> out{};
-        EXPECT_NE(at, std::string::npos) << "no widget " << name << ": " << text;
-        if (at == std::string::npos) return out;
-        std::istringstream numbers(text.substr(at + 7 + name.size()));
+        const std::string text = said();
+        std::istringstream numbers(is_told ? text.substr(text.rfind(line) + line.size()) : "");
         for (int& number : out) numbers >> number;
         return out;
     }
