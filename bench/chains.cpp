@@ -159,13 +159,15 @@ Stack flat_stack(bool keeps_what_is_off) {
 
 Stack default_stack() { return flat_stack(false); }
 
-Stack documented_stack() {
+Stack documented_stack(const std::string& ssao_method) {
     Stack stack = default_stack();
-    for (Step& step : stack)
+    for (Step& step : stack) {
         if (step.effect->name == "vignette") {
             step.is_on = true;
             make_visible(step);
         }
+        if (step.effect->name == "ssao") (void)assign(*step.effect->parameters.find("method"), step.words, ssao_method);
+    }
     return stack;
 }
 

@@ -47,8 +47,9 @@ using Stack = std::vector<Step>;
 [[nodiscard]] Stack flat_stack(bool keeps_what_is_off);
 /// The same as looks have it.
 [[nodiscard]] Stack default_stack();
-/// The same with the vignette on: with the world, ambient occlusion, bloom, exposure, ACES, encode, vignette.
-[[nodiscard]] Stack documented_stack();
+/// The same with the vignette on: with the world, ambient occlusion, bloom, exposure, ACES, encode, vignette. Its
+/// occlusion is the documented one, unless another method is named.
+[[nodiscard]] Stack documented_stack(const std::string& ssao_method = "hemisphere");
 /// One effect at its defaults; where these change nothing, at the next values that do.
 [[nodiscard]] Stack single_stack(const EffectInfo& effect);
 

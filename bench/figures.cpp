@@ -79,6 +79,7 @@ constexpr std::array targets{
     Target{"plain bloom / calibration", "plain bloom", calibration_name, 12.0},
     Target{"documented stack / calibration", "documented/fused/auto", calibration_name, 14.0},
     Target{"documented stack / calibration, all given", "documented/fused/auto, all given", calibration_name},
+    Target{"documented stack / calibration, ground truth", "documented/ground_truth", calibration_name},
     Target{"documented stack / calibration, compute", "documented/fused/compute", calibration_name},
     Target{"documented stack / calibration, raster", "documented/fused/raster", calibration_name},
 };

@@ -114,6 +114,7 @@ void add_world_chains(std::vector<Recipe>& recipes) {
     add_chain(recipes, "tail/fog, all given", foggy_tail_stack({}), {.world = WorldUse::Planar});
     add_chains(recipes, "documented", documented_stack(), engine);
     add_chain(recipes, "documented/fused/auto, all given", documented_stack(), {.world = WorldUse::Planar});
+    add_chain(recipes, "documented/ground_truth", documented_stack("ground_truth"), {.world = engine});
 }
 
 /// As many bytes as the scene has, from one buffer into another.
