@@ -47,6 +47,7 @@ plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kern
             .can_load = [&context](VkFormat format) { return gpu::can_load(context, format); },
             .can_filter = [&context](VkFormat format) { return gpu::can_filter(context, format); },
             .loads_are_cheap = context.traits.is_software,
+            .has_robust_images = context.traits.has_robust_images,
             .max_storage_images = context.traits.max_storage_images,
             .workgroup = gpu::usual_workgroup(context)};
 }

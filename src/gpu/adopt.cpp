@@ -20,6 +20,7 @@ struct EnabledFeatures {
     VkPhysicalDeviceFeatures core{};
     bool has_synchronization2 = false;
     bool has_dynamic_rendering = false;
+    bool has_robust_images = false;
 };
 
 EnabledFeatures read_chain(const VkPhysicalDeviceFeatures2* features) {
@@ -33,12 +34,16 @@ EnabledFeatures read_chain(const VkPhysicalDeviceFeatures2* features) {
             const auto& features13 = *static_cast<const VkPhysicalDeviceVulkan13Features*>(structure);
             enabled.has_synchronization2 |= features13.synchronization2 == VK_TRUE;
             enabled.has_dynamic_rendering |= features13.dynamicRendering == VK_TRUE;
+            enabled.has_robust_images |= features13.robustImageAccess == VK_TRUE;
         } else if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES) {
             const auto& single = *static_cast<const VkPhysicalDeviceSynchronization2Features*>(structure);
             enabled.has_synchronization2 |= single.synchronization2 == VK_TRUE;
         } else if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES) {
             const auto& single = *static_cast<const VkPhysicalDeviceDynamicRenderingFeatures*>(structure);
             enabled.has_dynamic_rendering |= single.dynamicRendering == VK_TRUE;
+        } else if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_ROBUSTNESS_FEATURES) {
+            const auto& single = *static_cast<const VkPhysicalDeviceImageRobustnessFeatures*>(structure);
+            enabled.has_robust_images |= single.robustImageAccess == VK_TRUE;
         }
     }
     return enabled;
@@ -143,6 +148,7 @@ Result<Device> Device::adopt(const AdoptDesc& desc) {
     context->info.is_usable = true;
     context->traits.has_extended_storage_formats = enabled.core.shaderStorageImageExtendedFormats == VK_TRUE;
     context->traits.has_storage_write_without_format = enabled.core.shaderStorageImageWriteWithoutFormat == VK_TRUE;
+    context->traits.has_robust_images = enabled.has_robust_images;
     context->traits.has_wireframe = enabled.core.fillModeNonSolid == VK_TRUE;
     context->traits.has_depth_clamp = enabled.core.depthClamp == VK_TRUE;
     context->traits.has_debug_labels = has_debug_utils;

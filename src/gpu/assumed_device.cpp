@@ -15,6 +15,7 @@ std::shared_ptr<Context> assumed_context() {
     Traits& traits = context->traits;
     traits.has_extended_storage_formats = true;
     traits.has_storage_write_without_format = true;
+    traits.has_robust_images = true;
     traits.max_image_dimension = 16384;
     traits.max_workgroup_invocations = 1024;
     traits.max_workgroup_size = {1024, 1024, 64};

@@ -32,6 +32,7 @@ struct Traits {
     bool has_extended_storage_formats = false;  ///< shaderStorageImageExtendedFormats: r8, rg16f, r11f_g11f_b10f ...
     bool has_storage_write_without_format = false;
     bool has_debug_labels = false;
+    bool has_robust_images = false;                            ///< robustImageAccess
     bool has_wireframe = false;                                ///< fillModeNonSolid
     bool has_depth_clamp = false;                              ///< depthClamp
     VkSampleCountFlags sample_counts = VK_SAMPLE_COUNT_1_BIT;  ///< of colour and depth attachments that are sampled

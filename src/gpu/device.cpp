@@ -216,14 +216,25 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
         .pNext = &synchronization,
         .dynamicRendering = VK_TRUE,
     };
+    void* first = &rendering;
+    // Every device of 1.3 has it.
+    const gpu::PromotedNames names = gpu::promoted_names(context.info.api_version);
+    context.traits.has_robust_images = names == gpu::PromotedNames::Core;
+    VkPhysicalDeviceImageRobustnessFeatures robustness{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_ROBUSTNESS_FEATURES,
+        .pNext = first,
+        .robustImageAccess = VK_TRUE,
+    };
+    if (context.traits.has_robust_images) first = &robustness;
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
-        .pNext = &rendering,
+        .pNext = first,
         .pipelineExecutableInfo = VK_TRUE,
     };
+    if (context.compiles_only) first = &statistics;
     const VkPhysicalDeviceFeatures2 features{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-        .pNext = context.compiles_only ? static_cast<void*>(&statistics) : &rendering,
+        .pNext = first,
         .features = {.fullDrawIndexUint32 = available.fullDrawIndexUint32,
                      .imageCubeArray = available.imageCubeArray,
                      .independentBlend = available.independentBlend,
@@ -235,7 +246,6 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
                      .shaderStorageImageExtendedFormats = available.shaderStorageImageExtendedFormats,
                      .shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat},
     };
-    const gpu::PromotedNames names = gpu::promoted_names(context.info.api_version);
     std::vector<const char*> extensions(wanted.begin(), wanted.end());
     if (names == gpu::PromotedNames::Khr) std::ranges::copy(gpu::promoted_extensions, std::back_inserter(extensions));
     if (context.compiles_only) extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);

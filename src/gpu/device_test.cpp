@@ -98,6 +98,7 @@ TEST(GpuDevice, AdoptNamesEverythingThatIsMissing) {
 
 TEST(GpuDevice, AdoptReadsEitherKindOfFeatureStructure) {
     VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                                .robustImageAccess = VK_TRUE,
                                                 .synchronization2 = VK_TRUE,
                                                 .dynamicRendering = VK_TRUE};
     const VkPhysicalDeviceFeatures2 together{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
@@ -115,6 +116,7 @@ TEST(GpuDevice, AdoptReadsEitherKindOfFeatureStructure) {
         Result<Device> device = Device::adopt(host_desc(features));
         ASSERT_TRUE(device) << device.error().text;
         EXPECT_EQ(device->context().traits.has_extended_storage_formats, features == &apart);
+        EXPECT_EQ(device->context().traits.has_robust_images, features == &together);
         EXPECT_FALSE(device->context().traits.has_debug_labels);
         EXPECT_FALSE(gpu::submit_and_wait(device->context(), "testing", [](VkCommandBuffer) {}));
     }

@@ -14,6 +14,7 @@
 // It may read KernelSpec::frame and members by their names, custom[i], output_size(), which is pixel.size, and the
 // constants, for choices that must not cost a branch,
 //     bool loads_are_cheap                   this device loads an own texel for less than a linear tap
+//     bool loads_outside_are_zero            a load outside any image gives zeros here, and may be made
 //     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
 // Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
 // The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where
@@ -74,7 +75,8 @@ struct KernelSpec {
     bool is_whole = false;        ///< all regions are whole images: no region arithmetic
     bool input_is_twice = false;  ///< constants that the body may ask for, see the top of this file
     bool loads_are_cheap = false;
-    bool is_additive = false;  ///< output 0 += result instead of = result
+    bool has_robust_images = false;  ///< robustImageAccess: with whole images, loads outside are zero
+    bool is_additive = false;        ///< output 0 += result instead of = result
     /// What all kernels of a frame read: laid out by its owner, who outlives the spec. Empty: no such block.
     std::span<const BlockMember> frame;
     std::vector<BlockMember> members;  ///< of the kernel's own block, behind what kernel_source() puts there

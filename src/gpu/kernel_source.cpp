@@ -253,8 +253,10 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
         fmt::format_to(text, "layout(local_size_x = {}, local_size_y = {}) in;\n", spec.workgroup[0],
                        spec.workgroup[1]);
     }
-    fmt::format_to(text, "const bool loads_are_cheap = {};\nconst bool input_is_twice = {};\n", spec.loads_are_cheap,
-                   spec.input_is_twice);
+    fmt::format_to(text,
+                   "const bool loads_are_cheap = {};\nconst bool loads_outside_are_zero = {};\n"
+                   "const bool input_is_twice = {};\n",
+                   spec.loads_are_cheap, spec.has_robust_images && spec.is_whole, spec.input_is_twice);
     const BlockSource own = block_source(spec.members, first_member_word(spec));
     write_blocks(text, spec, own);
     source += pixel_functions;

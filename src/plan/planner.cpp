@@ -397,6 +397,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
                                      !can_filter(pass.inputs[i]);
     }
     pass.spec.loads_are_cheap = traits_.loads_are_cheap;
+    pass.spec.has_robust_images = traits_.has_robust_images;
     pass.spec.workgroup = traits_.workgroup;
     lay_out_literals(pass);
     pass.asks_input_is_twice = std::ranges::any_of(

@@ -184,6 +184,7 @@ struct PlannerTraits {
     /// Whether a linear sampler reads this format; null: every one. Else the kernels filter by loads.
     std::function<bool(VkFormat)> can_filter{};
     bool loads_are_cheap = false;          ///< see gpu/kernel.hpp
+    bool has_robust_images = false;        ///< likewise
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
     std::array<std::uint32_t, 2> workgroup{16, 8};
 };
