@@ -65,7 +65,8 @@ void occlusion_constants(const void* parameters, const PassContext& context, std
                      ssao.resolution == SsaoResolution::Half ? 2.0f : 1.0f, out);
     out[5] = {ssao.radius, 1.0f / ssao.radius, ssao.bias, ssao.intensity};
     out[6] = {ssao.fade_start, 1.0f / std::max(ssao.fade_end - ssao.fade_start, 1e-6f),
-              1.0f / (ssao.radius * ssao_fade), 0};
+              ssao.thickness > 0 ? ssao.thickness : ssao_endless,
+              std::bit_cast<float>(ssao_tile(context.time, context.frame_index))};
 }
 
 template <SsaoResolution resolution>
@@ -160,6 +161,10 @@ std::array<std::array<float, 4>, 16> ssao_noise() {
         }
     }
     return out;
+}
+
+std::uint32_t ssao_tile(double time, std::uint64_t frame_index) {
+    return time > 0.0 ? static_cast<std::uint32_t>(frame_index % 16) : 0;
 }
 
 std::array<std::int32_t, 2> ssao_slices(std::int32_t samples) {

@@ -23,6 +23,7 @@ struct Ssao {
     float intensity = 1.0f;
     float radius = 0.5f;
     float bias = 0.025f;
+    float thickness = 0.8f;
     std::int32_t samples = 16;
     SsaoMethod method = SsaoMethod::Hemisphere;
     SsaoResolution resolution = SsaoResolution::Half;
@@ -35,6 +36,9 @@ inline constexpr auto ssao_rows = describe(
     field<&Ssao::radius>("How far away surfaces occlude.", {0.001, 1000}, unit::metres),
     field<&Ssao::bias>("What lies closer above a surface does not occlude it: hides the steps of the depth buffer.",
                        {0, 100}, unit::metres),
+    field<&Ssao::thickness>(
+        "How far surfaces reach behind what is seen of them; 0 is as deep as it goes. Of ground_truth.", {0, 1000},
+        unit::metres),
     field<&Ssao::samples>("Reads of the depth buffer for a pixel.", {1, 64}).as_loop_count(),
     field<&Ssao::method>("How occlusion is estimated."),
     field<&Ssao::resolution>("Of the occlusion; half is brought back to full along depth edges."),
@@ -50,10 +54,15 @@ inline constexpr auto ssao_rows = describe(
 /// in a row and once in a column (Jimenez et al., "Practical Realtime Strategies for Accurate Indirect Occlusion",
 /// 2016).
 [[nodiscard]] std::array<std::array<float, 4>, 16> ssao_noise();
+/// Where the tile begins in a frame for the ground-truth method, x + 4 y: while time runs, each pixel meets all its
+/// texels within 16 frames, and four that lie far apart within four.
+[[nodiscard]] std::uint32_t ssao_tile(double time, std::uint64_t frame_index);
+/// Into how many sectors the ground-truth method cuts what one side of a slice sees.
+inline constexpr std::int32_t ssao_sectors = 31;
+/// A thickness that no radius reaches, in metres.
+inline constexpr float ssao_endless = 1e6f;
 /// Slices of the ground-truth method, and steps to a side of each, that take `samples` reads or fewer (at least two).
 [[nodiscard]] std::array<std::int32_t, 2> ssao_slices(std::int32_t samples);
-/// Share of the radius, at its end, over which occluders of the ground-truth method fade.
-inline constexpr float ssao_fade = 0.1f;
 
 [[nodiscard]] const EffectInfo& effect_info(const Ssao&);
 

@@ -6,7 +6,7 @@
 //     [2], [3]  texel of a view position: (xy * [2].xy + z * [2].zw + [3].xy) / (z * [3].z + [3].w) + [4].xy
 //     [4].zw    just below the number of texels
 //     [5]       (radius, 1 / radius, bias, intensity)
-//     [6]       (distance where fading begins, 1 / its length, 1 / length over which occluders fade)
+//     [6]       (distance where fading begins, 1 / its length, thickness, bits of the tile's offset: x + 4 y)
 
 struct SsaoPoint {
     ivec2 texel;
@@ -17,6 +17,13 @@ struct SsaoPoint {
 
 vec2 ssao_place(vec2 texel, float planar) {
     return (texel * custom[0].xy + custom[0].zw) * planar + (texel * custom[1].xy + custom[1].zw);
+}
+
+// The distance at a place, in texels; 0 outside the picture. A place within one texel before it is on its border.
+float ssao_load(vec2 place) {
+    if (loads_outside_are_zero) return load(ssao_distance, ivec2(place)).r;
+    vec2 inside = clamp(place, vec2(-0.99), custom[4].zw);
+    return place == inside ? load(ssao_distance, ivec2(inside)).r : 0.0;
 }
 
 #include "ssao_hemisphere.glsl"
@@ -39,9 +46,8 @@ vec4 ssao_packed(SsaoPoint point, float visibility) {
     float seen = clamp(1.0 - (1.0 - visibility) * custom[5].w, 0.0, 1.0);
     float fade = clamp((point.planar - custom[6].x) * custom[6].y, 0.0, 1.0);
     seen = mix(seen, 1.0, fade * fade * (3.0 - 2.0 * fade));
-    int bits = point.is_surface ? int(seen * 1023.0 + 0.5) : 1023;
-    int distance = floatBitsToInt(point.is_surface ? point.planar : 1e10) & ~1023;
-    return vec4(intBitsToFloat(distance | bits), 0.0, 0.0, 0.0);
+    int bits = (floatBitsToInt(point.planar) & ~1023) | int(seen * 1023.0 + 0.5);
+    return vec4(intBitsToFloat(point.is_surface ? bits : floatBitsToInt(1e10) | 1023), 0.0, 0.0, 0.0);
 }
 
 vec4 shade(Pixel pixel) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Ambient occlusion in double precision: both methods, both sizes, blur, upsampling and merge. It follows the shaders'
-// choice of pixels, and computes what they approximate: no packed bits, no polynomial for an arc cosine.
+// choice of pixels and sectors, and takes its points from the camera's matrices; no packed bits.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <darkroom/effects/ssao.hpp>
 #include <darkroom/reference.hpp>
@@ -12,6 +13,19 @@
 #include "shared/camera_reference.hpp"
 
 namespace darkroom {
+
+/// Equation 7 of Jimenez et al. (ssao_horizon.glsl) from the surface's plane to the view vector, by the sine of the
+/// angle n between normal and view vector, positive toward the plane: cos n + (n + pi / 2) sin n, within 0.01.
+[[nodiscard]] inline double ssao_arc(double sine) {
+    const double squared = sine * sine;
+    return 1 + squared * (0.5 + 0.0707963 * squared) + sine * std::numbers::pi / 2;
+}
+/// How many sectors of that arc lie below the direction with this cosine to the view vector: equation 7 within 0.02,
+/// and 0.05 where the normal leans over by more than 75 degrees.
+[[nodiscard]] inline double ssao_sector(double cosine, double sine) {
+    const double x = std::clamp(1 - (1 - cosine) / std::max(1 + sine, 1e-4), 0.0, 1.0), bend = 1 / (1 - 0.6 * sine);
+    return ssao_sectors * x * x * (bend + (1 - bend) * x);
+}
 
 /// The numbers of every pixel, or of every second pixel of every second row.
 class SsaoReference {
@@ -66,10 +80,10 @@ class SsaoReference {
     [[nodiscard]] double planar_at(int x, int y) const { return input_.depth->clamped(x * step_, y * step_).r; }
 
     /// View position of a pixel of the frame at a distance.
-    [[nodiscard]] Double3 frame_position(int x, int y, double planar) const {
+    [[nodiscard]] Double3 frame_position(double x, double y, double planar) const {
         return camera_.view_position((x + 0.5) / input_.depth->width, (y + 0.5) / input_.depth->height, planar);
     }
-    [[nodiscard]] Double3 position(int x, int y, double planar) const {
+    [[nodiscard]] Double3 position(double x, double y, double planar) const {
         return frame_position(x * step_, y * step_, planar);
     }
     /// Where a point of view space is, in pixels of the occlusion; that of pixel i covers [i, i + 1).
@@ -137,58 +151,74 @@ class SsaoReference {
         return 1 - occlusion / ssao_.samples;
     }
 
-    /// Equations 5 to 7 of the paper, a direction at a time, over what the open surface would see by the same ones.
+    /// 0 outside the picture. A place within one pixel before it is on its border.
+    [[nodiscard]] double distance_or_zero(double x, double y) const {
+        const bool is_near = x > -1 && y > -1 && x < width_ && y < height_;
+        return is_near ? planar_at(static_cast<int>(x), static_cast<int>(y)) : 0;
+    }
+
+    /// The shares of the arcs that are hidden, over what the open surface would see by the same directions.
     [[nodiscard]] double horizons(int x, int y, const Double3& at) const {
-        const auto noise = ssao_noise()[static_cast<std::size_t>(y % 4 * 4 + x % 4)];
+        const auto tile = static_cast<int>(ssao_tile(input_.time, input_.frame_index));
+        const auto noise = ssao_noise()[static_cast<std::size_t>((y + tile / 4) % 4 * 4 + (x + tile % 4) % 4)];
         const Double3 up = normal(x, y);
         const Double3 view = normalized(sum(position(x, y, 1), position(x, y, 2), -1));
         const double a = 1 / (1 + view[2]), b = -view[0] * view[1] * a;
         const Double3 right{1 - view[0] * view[0] * a, b, -view[0]};
         const Double3 above{b, 1 - view[1] * view[1] * a, -view[1]};
-        const auto [slices, steps] = ssao_slices(ssao_.samples);
-        double visible = 0, open = 0;
-        for (int i = 0; i < 2 * slices; ++i) {
+        const std::int32_t slices = ssao_slices(ssao_.samples)[0];
+        const double facing = std::max(dot(up, view), 0.0);
+        double occluded = 0, open = 0;
+        for (int i = 0; i < slices; ++i) {
             const double angle = (i + double{noise[2]} / 16) * pi / slices;
-            const Double3 across = sum(sum({}, right, std::cos(angle)), above, std::sin(angle));
-            const double facing = std::max(dot(up, view), 0.0), sideways = dot(up, across);
-            const double length = std::sqrt(std::max(facing * facing + sideways * sideways, 1e-12));
-            const double gamma = std::atan2(sideways, facing);
-            const double low = gamma + pi / 2;
-            const double cosine = horizon(x, y, at, up, view, across, double{noise[3]}, std::cos(low));
-            const auto arc = [&](double h) {
-                return length * (std::cos(gamma) + 2 * h * std::sin(gamma) - std::cos(2 * h - gamma));
-            };
-            visible += arc(std::acos(std::clamp(cosine, -1.0, 1.0)));
-            open += arc(low);
+            const Double3 ahead = sum(sum({}, right, std::cos(angle)), above, std::sin(angle));
+            for (const Double3& across : {ahead, sum({}, ahead, -1)}) {
+                const double sideways = dot(up, across);
+                const double length = std::sqrt(std::max(facing * facing + sideways * sideways, 1e-12));
+                const double arc = length * ssao_arc(sideways / length);
+                occluded += arc * hidden_share({x, y}, at, view, across, double{noise[3]}, {facing, sideways}, length);
+                open += arc;
+            }
         }
-        return visible / std::max(open, 1e-6);
+        return 1 - occluded / std::max(open, 1e-6);
     }
 
-    [[nodiscard]] double horizon(int x, int y, const Double3& at, const Double3& up, const Double3& view,
-                                 const Double3& across, double share, double lowest) const {
+    /// Of the arc on one side of a slice, in whole sectors. `up` is the normal toward the eye and across, `length` its.
+    [[nodiscard]] double hidden_share(const std::array<int, 2>& pixel, const Double3& at, const Double3& view,
+                                      const Double3& across, double share, const std::array<double, 2>& up,
+                                      double length) const {
         // The place moves with a step across the view as it does with a very small one.
         constexpr double small = 1e-6;
         const double scale = small * std::abs(at[2]), radius = double{ssao_.radius};
-        const auto ahead = place(sum(at, across, scale)), behind = place(sum(at, across, -scale));
-        const double motion_x = (ahead[0] - behind[0]) / (2 * scale), motion_y = (ahead[1] - behind[1]) / (2 * scale);
-        const double per_metre = std::hypot(motion_x, motion_y);
-        const double reach = std::max(radius * per_metre - 1, 0.0);
+        const auto forth = place(sum(at, across, scale)), back = place(sum(at, across, -scale));
+        const double motion_x = (forth[0] - back[0]) / (2 * scale), motion_y = (forth[1] - back[1]) / (2 * scale);
+        const double texel = 1 / std::max({std::abs(motion_x), std::abs(motion_y), 1e-10});
+        const double thickness = double{ssao_.thickness > 0 ? ssao_.thickness : ssao_endless};
         const std::int32_t steps = ssao_slices(ssao_.samples)[1];
-        double best = lowest;
+        const double leave = std::min(4.0 / steps, 1.0);
+        double room = radius, height = 0;
+        std::uint32_t mask = 0;
         for (int i = 0; i < steps; ++i) {
-            const double along = (i + share) / steps;
-            const double far = (1 + along * along * reach) / std::max(per_metre, 1e-10);
-            const std::array<double, 2> there{x + 0.5 + motion_x * far, y + 0.5 + motion_y * far};
-            if (!is_inside(there)) continue;
-            const int column = static_cast<int>(there[0]), row = static_cast<int>(there[1]);
-            const double found = planar_at(column, row);
-            const Double3 offset = sum(position(column, row, found), at, -1);
-            if (!(dot(offset, up) > double{ssao_.bias})) continue;
-            const double distance = std::sqrt(dot(offset, offset));
-            const double near = std::clamp((radius - distance) / (radius * double{ssao_fade}), 0.0, 1.0);
-            best = std::max(best, std::lerp(lowest, dot(offset, view) / distance, near));
+            const double along = texel + (i + share) / steps * std::max(radius - texel, 0.0);
+            const double there_x = pixel[0] + motion_x * along, there_y = pixel[1] + motion_y * along;
+            const double found = distance_or_zero(there_x + 0.5, there_y + 0.5);
+            // In the slice, so at the place itself and not at the middle of its texel.
+            const Double3 offset = sum(position(there_x, there_y, found), at, -1);
+            const double out = dot(offset, across), toward = dot(offset, view), distance = std::hypot(out, toward);
+            const double inside = radius - distance;
+            const double part = room / (room - std::min(inside, 0.0));
+            const double top = i == 0 ? toward : height + part * (toward - height);
+            const double cosine = top / (i == 0 ? distance : std::min(distance, radius));
+            const double bottom = top - thickness, lower = bottom / std::hypot(bottom, out);
+            const bool counts = inside > -leave * room && found > 0 &&
+                                out * up[1] + toward * up[0] > std::max(double{ssao_.bias}, texel);
+            if (counts)
+                mask |= (1u << static_cast<std::uint32_t>(ssao_sector(cosine, up[1] / length) + 0.5)) -
+                        (1u << static_cast<std::uint32_t>(ssao_sector(lower, up[1] / length) + 0.5));
+            room = std::max(inside, 1e-6);
+            height = toward;
         }
-        return best;
+        return std::popcount(mask) / double{ssao_sectors};
     }
 
     [[nodiscard]] double blur(const std::vector<double>& raw, int x, int y) const {
