@@ -68,22 +68,29 @@ inline BoxHit first_hit(const std::vector<Box>& boxes, const Double3& from, cons
     return best;
 }
 
-inline BoxView view_of(const BoxScene& scene, std::uint32_t width, std::uint32_t height) {
-    BoxView out{.depth{width, height},
-                .normals{width, height},
-                .camera = look_at(scene.eye, scene.target, scene.field_of_view_rad, double(width) / height)};
+/// What a camera sees, by `cast`, which gives the first hit of a ray.
+template <class Cast>
+BoxView view_through(const Camera& camera, std::uint32_t width, std::uint32_t height, const Cast& cast) {
+    BoxView out{.depth{width, height}, .normals{width, height}, .camera = camera};
     const ReferenceCamera reference(out.camera);
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
             // One metre along the view axis, so that `along` is the planar distance.
             const Double3 ray =
                 reference.world_direction(reference.view_position((x + 0.5) / width, (y + 0.5) / height, 1));
-            const BoxHit hit = first_hit(scene.boxes, scene.eye, ray);
+            const BoxHit hit = cast(reference.eye, ray);
             out.depth.at(x, y).r = std::isfinite(hit.along) ? double{static_cast<float>(hit.along)} : 1e10;
             out.normals.at(x, y) = {hit.normal[0], hit.normal[1], hit.normal[2], 0};
         }
     }
     return out;
+}
+
+inline BoxView view_of(const BoxScene& scene, std::uint32_t width, std::uint32_t height) {
+    const Camera camera = look_at(scene.eye, scene.target, scene.field_of_view_rad, double(width) / height);
+    return view_through(camera, width, height, [&](const Double3& from, const Double3& direction) {
+        return first_hit(scene.boxes, from, direction);
+    });
 }
 
 inline Box box(double x, double y, double z, double width, double height, double depth) {
