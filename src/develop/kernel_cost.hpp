@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What a kernel costs on AMD's GPUs, counted from its machine code, and on which chip that takes how long. A lower
-// bound that compares kernels: it knows no latency and no cache. docs/kernel_costs.md says what is counted how.
+// What a kernel costs on AMD's GPUs, counted from its machine code, and on which chip that takes how long. It compares
+// kernels, and knows no latency and no cache. docs/kernel_costs.md says what is counted how.
 
 #include <cstdint>
 #include <darkroom/kernel_statistics.hpp>
