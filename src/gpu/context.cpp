@@ -182,7 +182,8 @@ Result<> Context::create_samplers() {
     create_info.minFilter = VK_FILTER_NEAREST;
     const VkResult nearest = vk.CreateSampler(device, &create_info, allocator, &nearest_sampler);
     if (Result<> checked = check(nearest, "creating the nearest sampler"); !checked) return checked;
-    create_info.addressModeU = create_info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+    create_info.addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+    create_info.addressModeV = create_info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
     create_info.borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
     create_info.compareEnable = VK_TRUE;
     create_info.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;

@@ -123,7 +123,7 @@ Result<VkSampler> GpuTextures::sampler(scene::Wrap wrap_u, scene::Wrap wrap_v, b
         .mipmapMode = is_nearest ? VK_SAMPLER_MIPMAP_MODE_NEAREST : VK_SAMPLER_MIPMAP_MODE_LINEAR,
         .addressModeU = address_mode(wrap_u),
         .addressModeV = address_mode(wrap_v),
-        .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .addressModeW = address_mode(wrap_u),
         .anisotropyEnable = is_anisotropic ? VK_TRUE : VK_FALSE,
         .maxAnisotropy = is_anisotropic ? most_anisotropy : 1,
         .maxLod = VK_LOD_CLAMP_NONE};

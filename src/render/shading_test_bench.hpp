@@ -147,7 +147,8 @@ struct FragmentBench::Sets {
     VkSampler comparing = VK_NULL_HANDLE;
 
     explicit Sets(const FragmentBench& bench) {
-        const VkSamplerCreateInfo sampler{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO, .compareEnable = VK_TRUE};
+        const VkSamplerCreateInfo sampler{
+            .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO, .compareEnable = VK_TRUE, .maxLod = VK_LOD_CLAMP_NONE};
         gpu::test::must(context.check(context.vk.CreateSampler(context.device, &sampler, nullptr, &comparing),
                                       "creating a sampler"));
         gpu::test::must(gpu::submit_and_wait(context, "readying a shadow map", [&](VkCommandBuffer commands) {

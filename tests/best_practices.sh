@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# best_practices.sh LIST COMMAND...: runs a command under the best practices of the validation layer and of the vendors
+# that it knows. What LIST (docs/best_practices.md) has in its table is muted, so that any other finding is a message,
+# which fails a test, and ends the command line with 2. LIST may be /dev/null: all is said.
+set -euo pipefail
+list=$1
+shift
+vendors=VALIDATION_CHECK_ENABLE_VENDOR_SPECIFIC
+export DARKROOM_VALIDATE=1 VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_BEST_PRACTICES_EXT
+# Arm's check of blending crashes where a multisampled pipeline has no render pass (layer 1.3.239).
+for vendor in ${DARKROOM_VENDORS:-AMD ARM IMG NVIDIA}; do VK_LAYER_ENABLES+=:${vendors}_$vendor; done
+VK_LAYER_MESSAGE_ID_FILTER=$(sed -nE 's/^\| `([A-Za-z0-9_-]+)` \|.*/UNASSIGNED-BestPractices-\1/p' "$list" | paste -sd:)
+export VK_LAYER_MESSAGE_ID_FILTER
+exec "$@"
