@@ -12,10 +12,10 @@ namespace {
 
 using gpu::Dispatch;
 
-/// What the faked driver lacks, and what was asked of it.
+/// What the faked driver lacks, or says it can beyond the real one, and what was asked of it.
 struct Fake {
     Dispatch real{};
-    std::map<VkFormat, VkFormatFeatureFlags> missing;
+    std::map<VkFormat, VkFormatFeatureFlags> missing, more;
     std::map<VkImageView, VkFormat> formats;
     std::set<VkFormat> loaded, sampled, filtered;  ///< by storage descriptors that are read or written, and by samplers
     VkSampler linear = VK_NULL_HANDLE;
@@ -26,6 +26,8 @@ void fake_properties(VkPhysicalDevice device, VkFormat format, VkFormatPropertie
     fake.real.GetPhysicalDeviceFormatProperties(device, format, out);
     if (const auto found = fake.missing.find(format); found != fake.missing.end())
         out->optimalTilingFeatures &= ~found->second;
+    if (const auto found = fake.more.find(format); found != fake.more.end())
+        out->optimalTilingFeatures |= found->second;
 }
 VkResult fake_view(VkDevice device, const VkImageViewCreateInfo* info, const VkAllocationCallbacks* allocator,
                    VkImageView* out) {
@@ -96,6 +98,24 @@ TEST_F(ComposeFormat, WhatCannotBeLoadedIsSampled) {
         EXPECT_TRUE(fake.sampled.contains(half) || !is_missing);
         if (!is_missing) expected = out;
         EXPECT_EQ(test::worst_difference(out, expected), 0);
+    }
+}
+
+TEST_F(ComposeFormat, DepthIsNoTargetThoughADeviceStoresIt) {
+    fake.more[VK_FORMAT_D32_SFLOAT] = storage;
+    Composer composer(device);
+    fill(composer);
+    const ImageUse depth{VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT};
+    const CompileDesc good{.max_extent = {40, 33}, .color = {half}, .target = {half, VK_IMAGE_USAGE_STORAGE_BIT}};
+    CompileDesc bad = good, badly_watched = good;
+    bad.target = depth;
+    badly_watched.watches = {{.id = 1, .target = depth}};
+    test::must(composer.compile(good));
+    for (const auto& [desc, name] : {std::pair{bad, "target"}, {badly_watched, "watches[0].target"}}) {
+        const auto plan = composer.compile(desc);
+        ASSERT_FALSE(plan) << name;
+        EXPECT_TRUE(plan.error().text.starts_with(std::string("compile: ") + name + ".format = D32_SFLOAT"))
+            << plan.error().text;
     }
 }
 

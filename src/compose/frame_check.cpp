@@ -251,7 +251,11 @@ Result<> check_input(const gpu::Context& context, const char* name, const ImageU
 }
 
 Result<> check_target(const gpu::Context& context, const std::string& name, const ImageUse& use) {
-    const auto supports = [&](VkFormatFeatureFlags features) { return context.supports(use.format, features); };
+    // Some devices store to depth formats; a shader of ours declares an image of colour.
+    const bool is_color = gpu::format_traits(use.format).aspects == VK_IMAGE_ASPECT_COLOR_BIT;
+    const auto supports = [&](VkFormatFeatureFlags features) {
+        return is_color && context.supports(use.format, features);
+    };
     const bool can_attach = supports(VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT);
     const bool can_store = supports(VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
     if (use.format == VK_FORMAT_UNDEFINED || (!can_attach && !can_store))
