@@ -126,15 +126,26 @@ void write_sampled_input(Text text, const KernelImage& image, std::uint32_t bind
                                         "    precise vec2 place = uv * darkroom_uv_{0}.xy + darkroom_uv_{0}.zw;\n"
                                         "    return clamp(place, darkroom_bounds_{0}.xy, darkroom_bounds_{0}.zw);\n",
                                         image.name);
+    // Hardware rounds coordinates to 2^-subTexelPrecisionBits of a texel, and at a texel's centre may so pick up the
+    // four on the other side of it. A quarter of a texel nearer to the region's middle the four inside it are meant,
+    // too.
+    const std::string corner = is_whole
+                                   ? "    return uv;\n"
+                                   : fmt::format(
+                                         "    vec2 quarter = 0.25 / vec2(textureSize({0}, 0));\n"
+                                         "    return clamp(darkroom_place_{0}(uv), darkroom_bounds_{0}.xy + quarter,\n"
+                                         "                 darkroom_bounds_{0}.zw - quarter);\n",
+                                         image.name);
     fmt::format_to(
         text,
         "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n"
         "{1}vec4 load_{0}(ivec2 texel) {{ return {2}; }}\n"
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n"
         "vec2 darkroom_place_{0}(vec2 uv) {{\n{3}}}\n"
-        "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 0); }}\n"
-        "{1}vec4 gather_green_{0}(vec2 uv) {{ return textureGather({0}, darkroom_place_{0}(uv), 1); }}\n",
-        image.name, prefix, load, place);
+        "vec2 darkroom_corner_{0}(vec2 uv) {{\n{4}}}\n"
+        "{1}vec4 gather_red_{0}(vec2 uv) {{ return textureGather({0}, darkroom_corner_{0}(uv), 0); }}\n"
+        "{1}vec4 gather_green_{0}(vec2 uv) {{ return textureGather({0}, darkroom_corner_{0}(uv), 1); }}\n",
+        image.name, prefix, load, place, corner);
     if (image.is_filtered_by_loads) return write_filter(text, image.name);
     // A view has one mip level, so the implicit level of detail changes no bit; some drivers filter much faster with
     // it.

@@ -149,6 +149,30 @@ TEST(GpuKernel, FilteringDoesNotSeeWhatLiesOutsideTheRegion) {
     }
 }
 
+// Hardware rounds coordinates to 1/256 of a texel and less: the four texels meant must be the same with that.
+TEST(GpuKernel, GathersLieInsideTheRegionHoweverTheyAreRounded) {
+    constexpr double rounding = 1 / 256.0;
+    Picture in = test::upload(context(), scene(33, 19), VK_FORMAT_R32G32B32A32_SFLOAT);
+    Picture out = test::blank(context(), {40, 40}, VK_FORMAT_R32G32B32A32_SFLOAT);
+    const KernelSpec spec =
+        spec_of("vec4 shade(Pixel pixel) { return vec4(darkroom_corner_scene(pixel.uv * 1.6 - 0.3), 0.0, 0.0); }",
+                VK_FORMAT_R32G32B32A32_SFLOAT);
+    const std::unique_ptr<Kernel> kernel = must(Kernel::create(context(), spec, Stage::Compute));
+    test::run_kernel(context(), *kernel,
+                     {.inputs = {&in},
+                      .outputs = {&out},
+                      .input_regions = {{.offset = {7, 4}, .extent = {13, 11}, .image = {33, 19}}}});
+    const Pixels places = test::download(context(), out);
+    for (std::uint32_t y = 0; y < 40; ++y)
+        for (std::uint32_t x = 0; x < 40; ++x) {
+            const double u = double{places.at(x, y)[0]} * 33 - 0.5, v = double{places.at(x, y)[1]} * 19 - 0.5;
+            EXPECT_GE(u - rounding, 7);
+            EXPECT_LT(u + rounding, 19) << "the texel at 20 is outside";
+            EXPECT_GE(v - rounding, 4);
+            EXPECT_LT(v + rounding, 14) << "the texel at 15 is outside";
+        }
+}
+
 TEST(GpuKernel, ReadsMembersCustomVectorsAndStorageImages) {
     const KernelSpec spec{.name = "members",
                           .images = {{.name = "scene", .storage_format = half4}},
