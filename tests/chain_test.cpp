@@ -43,6 +43,31 @@ void fill_default(Composer& composer, bool is_documented) {
     for (const EffectInfo* const info : flat) composer.add(*info, nullptr, {.source = scene_color});
 }
 
+/// What of the reference's pictures is nearest to `made`: of the picture as it is, and where the device filters less
+/// precisely than the references, all between those of the picture with what a filtered fetch may lose taken off and
+/// added.
+ReferenceImage reference_near(const Composer& composer, const ReferenceImage& picture, const ReferenceImage& made) {
+    const auto reference = [&](double sign) {
+        ReferenceImage input = picture;
+        const ReferenceImage loss = test::filter_loss(picture);
+        for (std::size_t i = 0; i < input.pixels.size(); ++i) {
+            input.pixels[i].r += sign * loss.pixels[i].r;
+            input.pixels[i].g += sign * loss.pixels[i].g;
+            input.pixels[i].b += sign * loss.pixels[i].b;
+        }
+        return test::must(run_reference(composer, {.color = &input, .time = 2.5, .frame_index = 150})).picture;
+    };
+    ReferenceImage near = reference(0);
+    if (gpu::test::filter_step() == 0) return near;
+    const ReferenceImage less = reference(-1), more = reference(1);
+    for (std::size_t i = 0; i < near.pixels.size(); ++i)
+        for (double Rgba::*const c : {&Rgba::r, &Rgba::g, &Rgba::b}) {
+            const auto [low, high] = std::minmax({near.pixels[i].*c, less.pixels[i].*c, more.pixels[i].*c});
+            near.pixels[i].*c = std::clamp(made.pixels[i].*c, low, high);
+        }
+    return near;
+}
+
 void expect_is_the_reference(Composer& composer, VkFormat intermediate, double allowed_codes) {
     const ReferenceImage picture = scene(131, 77);
     const test::Host host(picture, VK_FORMAT_R16G16B16A16_SFLOAT);
@@ -54,11 +79,10 @@ void expect_is_the_reference(Composer& composer, VkFormat intermediate, double a
     frame.time = 2.5;
     frame.frame_index = 150;
     test::must(host.record(composer, frame));
-    const auto expected = run_reference(composer, {.color = &picture, .time = 2.5, .frame_index = 150});
-    ASSERT_TRUE(expected) << expected.error().text;
-    EXPECT_LE(test::worst_codes(host.read_target(), expected->picture), allowed_codes);
+    const ReferenceImage expected = reference_near(composer, picture, host.read_target());
+    EXPECT_LE(test::worst_codes(host.read_target(), expected), allowed_codes);
     // Not only rounded alike.
-    EXPECT_LE(test::worst_difference(host.read_target(), expected->picture), 0.5 / 255);
+    EXPECT_LE(test::worst_difference(host.read_target(), expected), 0.5 / 255);
 }
 
 TEST_F(ChainReference, TheDefaultOrders) {
@@ -221,10 +245,12 @@ TEST_F(ChainEverything, IsItsReferencesInThatOrder) {
         const double error = mean_codes(made, expected);
         EXPECT_LE(error, 0.04);
         EXPECT_LE(255 * test::worst_difference(made, expected), 4);
-        // Only this order gives this picture. Volumetric light and the bloom of the scene are both added.
+        // Only this order gives this picture, which filtering may hide in part. Volumetric light and the bloom of the
+        // scene are both added.
+        const double clearly = gpu::test::filter_step() == 0 ? 2 : 1;
         for (std::size_t i = 0; i + 1 < composer.size(); ++i) {
             if (composer.desc(composer.entry(i))->name == "volumetric") continue;
-            EXPECT_GT(mean_codes(made, references_in_turn(composer, floor, i)), 2 * error)
+            EXPECT_GT(mean_codes(made, references_in_turn(composer, floor, i)), clearly * error)
                 << composer.desc(composer.entry(i))->name << " and what follows it";
         }
     }

@@ -10,6 +10,7 @@
 
 #include "compose/test_support.hpp"
 #include "fxaa/fxaa_reference.hpp"
+#include "gpu/test_support.hpp"
 
 namespace darkroom {
 namespace {
@@ -111,7 +112,9 @@ TEST(EffectFxaa, FaintTextAndStraightEdgesAreNoStairs) {
     EXPECT_EQ(test::worst_difference(developed({.subpixel = 1}, faint), faint), 0.0);
     for (const bool is_upright : {false, true}) {
         const ReferenceImage straight = slanted_edge(64, 32, 1000, is_upright);
-        EXPECT_EQ(test::worst_difference(developed({.subpixel = 0}, straight), straight), 0.0);
+        // Weights that a filter of hardware gives equal texels need not add up to 1 in the last bit.
+        EXPECT_LE(test::worst_difference(developed({.subpixel = 0}, straight), straight),
+                  gpu::test::context().traits.is_software ? 0 : 0x1p-24);
     }
 }
 

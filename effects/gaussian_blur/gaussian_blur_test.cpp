@@ -11,6 +11,7 @@
 
 #include "compose/test_support.hpp"
 #include "gaussian_blur/gaussian_blur_reference.hpp"
+#include "gpu/test_support.hpp"
 
 namespace darkroom {
 namespace {
@@ -161,8 +162,9 @@ double largest_around(const ReferenceImage& image, std::int64_t x, std::int64_t 
 /// The largest excess over what rounding can explain. Writes in half precision, two and as many for each halving and
 /// doubling, which the software driver cuts off toward zero: up to 2^-10 of the value each; with both signs in the
 /// picture it is the sum of magnitudes that counts. And a bilinear tap's place is a float, so across a picture of up to
-/// 64 pixels it is known to 2^-17 of one, which moves that much of the brightest pixel in reach. (GPUs know it to 2^-9
-/// only.)
+/// 64 pixels it is known to 2^-17 of one, which moves that much of the brightest pixel in reach. Where it is filtered,
+/// it is known to filter_step: along a line in the two passes of the blur, in both directions when halving and
+/// doubling.
 double worst_excess(const GaussianBlur& blur, const ReferenceImage& picture, const ReferenceImage& gpu) {
     const ReferenceImage expected = test::reference_of(blur, picture);
     ReferenceImage magnitude = picture;
@@ -171,10 +173,11 @@ double worst_excess(const GaussianBlur& blur, const ReferenceImage& picture, con
     if (gpu.pixels.size() != expected.pixels.size()) return 1e9;
     const std::uint32_t level = gaussian_blur_level(blur), reach = blur.radius + (4u << level);
     const double writes = 2.0 + 2.0 * level;
+    const double place = 0x1p-17 + (2.0 + 4.0 * level) * gpu::test::filter_step();
     double worst = 0;
     for (std::uint32_t y = 0; y < picture.height; ++y)
         for (std::uint32_t x = 0; x < picture.width; ++x) {
-            const double moved = largest_around(picture, x, y, reach) * 0x1p-17;
+            const double moved = largest_around(picture, x, y, reach) * place;
             const auto check = [&](double want, double got, double of) {
                 const double allowed = of * writes * 0x1p-10 + moved + writes * 0x1p-23;
                 worst = std::max(worst, std::isfinite(got) ? std::abs(want - got) / allowed : 1e9);

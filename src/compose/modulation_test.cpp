@@ -310,11 +310,11 @@ TEST_F(ComposeModulatedFrames, LayersMoveOpacityAndSwitchesAsTheReferencesDo) {
         test::must(composer.set_layer_weight("soft", weight));
         const ReferenceImage seen = host.run(composer);
         composer.wait_for_kernels();
-        EXPECT_EQ(test::worst_difference(host.run(composer), seen), 0) << weight;
+        EXPECT_LE(test::worst_difference(host.run(composer), seen), gpu::test::code_between_kernels()) << weight;
         const auto expected = run_reference(composer, {.color = &picture, .encodes_target = false});
         ASSERT_TRUE(expected) << expected.error().text;
-        // The blur writes two images in half precision, of values below 1.
-        EXPECT_LE(test::worst_difference(seen, expected->picture), 2 * 0x1p-11) << weight;
+        // The blur writes two images in half precision, of values below 1, and filters along one axis for each.
+        EXPECT_LE(test::worst_difference(seen, expected->picture), 2 * (0x1p-11 + gpu::test::filter_step())) << weight;
         for (const ReferenceImage& other : pictures) EXPECT_GT(test::worst_difference(other, seen), 0.02) << weight;
         pictures.push_back(seen);
     }

@@ -202,7 +202,7 @@ TEST_F(ComposeResolution, OneLevelOfOneLayerOfTheHostsImages) {
         test::must(composer.compile(with));
         test::must(host.record(composer, {.color = color.ref(), .target = target.ref()}));
         target.copy(host.target, false);
-        EXPECT_EQ(test::worst_difference(host.read_target(), expected), 0);
+        EXPECT_LE(test::worst_difference(host.read_target(), expected), gpu::test::code_between_kernels());
     }
 }
 

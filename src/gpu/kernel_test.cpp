@@ -61,6 +61,15 @@ std::array<std::vector<std::byte>, 2> bits_of(Stage stage, const KernelSpec& spe
     return results;
 }
 
+/// Of bytes at the same place.
+int most_apart(const std::array<std::vector<std::byte>, 2>& a, const std::array<std::vector<std::byte>, 2>& b) {
+    int most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t j = 0; j < a[i].size(); ++j)
+            most = std::max(most, std::abs(std::to_integer<int>(a[i][j]) - std::to_integer<int>(b[i][j])));
+    return most;
+}
+
 class GpuKernelStages : public ::testing::TestWithParam<VkFormat> {};
 
 TEST_P(GpuKernelStages, GiveTheSameBits) {
@@ -77,7 +86,13 @@ TEST_P(GpuKernelStages, GiveTheSameBitsWhenTheyAdd) {
     const std::array<std::vector<std::byte>, 2> once = bits_of(Stage::Compute, spec);
     spec.is_additive = true;
     const std::array<std::vector<std::byte>, 2> twice = bits_of(Stage::Compute, spec);
-    EXPECT_EQ(twice, bits_of(Stage::Raster, spec));
+    const std::array<std::vector<std::byte>, 2> blended = bits_of(Stage::Raster, spec);
+    // Hardware blends with a precision no lower than the format's (Vulkan specification, "Blending"): a code of two
+    // ways to round.
+    if (!context().traits.is_software && GetParam() == VK_FORMAT_R8G8B8A8_UNORM)
+        EXPECT_LE(most_apart(twice, blended), 1);
+    else
+        EXPECT_EQ(twice, blended);
     EXPECT_NE(once, twice);
 }
 

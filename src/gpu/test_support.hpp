@@ -86,6 +86,27 @@ inline SharedDevice& shared_device = SharedDevice::instance();
 inline Device& device() { return shared_device.device(); }
 inline Context& context() { return device().context(); }
 
+inline VkPhysicalDeviceLimits limits() {
+    VkPhysicalDeviceProperties properties{};
+    context().vk.GetPhysicalDeviceProperties(context().physical_device, &properties);
+    return properties.limits;
+}
+
+/// The part of the difference between two neighbouring texels that a filtered fetch may be wrong by, for each axis it
+/// filters along. 0 on the software driver, which filters in single precision: bounds are there what they are without.
+/// Elsewhere one division of a texel. Vulkan specification, "Limits", subTexelPrecisionBits: "the number of bits of
+/// precision in the division along an axis of an image used for minification and magnification filters. [...] Sub-texel
+/// values calculated during image sampling will snap to these locations when generating the filtered results."
+inline double filter_step() {
+    if (context().traits.is_software) return 0;
+    return std::ldexp(1.0, -static_cast<int>(limits().subTexelPrecisionBits));
+}
+
+/// What two kernels of one picture may differ by, for values in [0,1]: nothing on the software driver. Elsewhere a code
+/// of 8 bits: kernels of other forms or stages may be contracted differently, and Vulkan lets an implementation take
+/// either neighbour where a value is rounded to half precision or to a code.
+inline double code_between_kernels() { return context().traits.is_software ? 0 : 1 / 255.0; }
+
 inline float half_to_float(std::uint16_t half) {
     const std::uint32_t sign = (half & 0x8000U) << 16U;
     const std::uint32_t exponent = (half >> 10U) & 0x1fU;

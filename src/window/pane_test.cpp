@@ -71,10 +71,12 @@ class WindowGpuPane : public test::GuiPassTest {
         return make_pixels(width * zoom, height * zoom,
                            [&](std::uint32_t x, std::uint32_t y) { return whole.at(x + left, y + top); });
     }
-    static void expect_color(const std::array<float, 4>& found, const Rgb& wanted, const std::string& what) {
+    void expect_color(const std::array<float, 4>& found, const Rgb& wanted, const std::string& what) const {
         for (std::size_t i = 0; i < 3; ++i)
-            // Half a code, and what the driver's pow loses.
-            EXPECT_NEAR(found[i] * 255, std::clamp(wanted[i], 0.0, 1.0) * 255, 0.55) << what << ", channel " << i;
+            // Half a code, and what the driver's pow loses; blending units of hardware need be no more precise than
+            // what they blend into (Vulkan specification, "Blending"), and may round a tenth of a code off.
+            EXPECT_NEAR(found[i] * 255, std::clamp(wanted[i], 0.0, 1.0) * 255, context.traits.is_software ? 0.55 : 0.65)
+                << what << ", channel " << i;
     }
 
     /// Light and code of all kinds, from below black to above white.

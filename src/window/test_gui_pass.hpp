@@ -40,7 +40,8 @@ class Interface {
     }
 };
 
-inline constexpr std::array<float, 4> background{0.25, 0.5, 0.125, 1};
+/// Not half way between two codes, where a device may take either.
+inline constexpr std::array<float, 4> background{0.25, 0.4F, 0.125, 1};
 
 class GuiPassTest : public ::testing::Test {
   protected:
