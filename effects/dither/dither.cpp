@@ -25,7 +25,7 @@ float triangular(std::uint16_t rank) {
 
 void shift_tile(const void*, const PassContext& context, std::span<PassVector> out) {
     const DitherOffset offset = dither_offset(context.time, context.frame_index);
-    out[0] = {std::bit_cast<float>(offset.x), std::bit_cast<float>(offset.y), 0, 0};
+    out[0] = {std::bit_cast<float>(offset.y << 6u | offset.x), 0, 0, 0};
 }
 
 void build(PassBuilder& builder) {
