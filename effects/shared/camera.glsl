@@ -6,7 +6,9 @@
 const float sky_distance = 1e9;
 
 vec3 view_position(vec2 uv, float planar) {
-    return vec3((uv * frame_ray.xy + frame_ray.zw) * planar + (uv * frame_ray_flat.xy + frame_ray_flat.zw), -planar);
+    vec2 place = (uv * frame_ray.xy + frame_ray.zw) * planar;
+    if (!rays_meet) place += uv * frame_ray_flat.xy + frame_ray_flat.zw;
+    return vec3(place, -planar);
 }
 
 /// Where a point of view space is in the picture.

@@ -16,6 +16,7 @@
 //     bool loads_are_cheap                   this device loads an own texel for less than a linear tap
 //     bool loads_outside_are_zero            a load outside any image gives zeros here, and may be made
 //     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
+//     bool rays_meet                         the frame's camera is perspective: all its rays come from one point
 // Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
 // The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where
 // a region ends inside its image, a gather does not leave it either, but gives the last whole 2x2 block there.
@@ -74,6 +75,7 @@ struct KernelSpec {
     std::vector<VkFormat> outputs;
     bool is_whole = false;        ///< all regions are whole images: no region arithmetic
     bool input_is_twice = false;  ///< constants that the body may ask for, see the top of this file
+    bool rays_meet = false;
     bool loads_are_cheap = false;
     bool has_robust_images = false;  ///< robustImageAccess: with whole images, loads outside are zero
     bool is_additive = false;        ///< output 0 += result instead of = result

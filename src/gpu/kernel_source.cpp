@@ -266,8 +266,8 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
     }
     fmt::format_to(text,
                    "const bool loads_are_cheap = {};\nconst bool loads_outside_are_zero = {};\n"
-                   "const bool input_is_twice = {};\n",
-                   spec.loads_are_cheap, spec.has_robust_images && spec.is_whole, spec.input_is_twice);
+                   "const bool input_is_twice = {};\nconst bool rays_meet = {};\n",
+                   spec.loads_are_cheap, spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.rays_meet);
     const BlockSource own = block_source(spec.members, first_member_word(spec));
     write_blocks(text, spec, own);
     source += pixel_functions;
@@ -301,8 +301,8 @@ void write_own_block(const KernelSpec& spec, const Region& output, std::span<con
     DARKROOM_ASSERT(custom.size() == spec.custom_vectors);
     DARKROOM_ASSERT(out.size() >= own_block_size(spec));
     append(out, rectangle(output));
-    const TexelPlaces x = places_of(output.extent.width), y = places_of(output.extent.height);
-    append(out, std::array{x.step, y.step, x.first, y.first});
+    const TexelPlaces columns = places_of(output.extent.width), rows = places_of(output.extent.height);
+    append(out, std::array{columns.step, rows.step, columns.first, rows.first});
     for (const Binding& image : images) {
         const Region& region = image.region;
         const Axis x = axis_of(region.offset.x, region.extent.width, region.image.width);

@@ -23,6 +23,7 @@ Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, c
     if (pass.asks_input_is_twice && !inputs.empty() && inputs[0].region.extent.width == 2 * output.extent.width &&
         inputs[0].region.extent.height == 2 * output.extent.height)
         shape.steps |= Shape::input_is_twice;
+    if (pass.asks_rays_meet && values.rays_meet()) shape.steps |= Shape::rays_meet;
     if (pass.is_fused) {
         if (pass.finish == Finish::OfFrame)
             shape.steps |= static_cast<std::uint64_t>(values.finish()) << Shape::finish_bit;
@@ -62,8 +63,10 @@ Shape expected_shape(const Program& program, const graph::Compiled& compiled, co
             inputs[i].region.extent = inputs[i].region.image = {extent.width, extent.height};
         }
     }
-    return shape_of(pass, entries, values, region(schedule.slot_of(pass.output), pass.output_mip_level),
-                    {inputs.data(), pass.inputs.size()});
+    Shape shape = shape_of(pass, entries, values, region(schedule.slot_of(pass.output), pass.output_mip_level),
+                           {inputs.data(), pass.inputs.size()});
+    if (pass.asks_rays_meet) shape.steps |= Shape::rays_meet;
+    return shape;
 }
 
 }  // namespace darkroom::plan

@@ -10,8 +10,8 @@ namespace darkroom::plan {
 [[nodiscard]] Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, const FrameValues& values,
                              const gpu::Region& output, std::span<const gpu::Binding> inputs);
 
-/// The shape that a frame of extent `largest` has, in whole images: what most frames are. `schedule` was derived from
-/// the gates of `values`; `entries` may be other ones of the same stack.
+/// The shape that a frame of extent `largest` has, in whole images, with a perspective camera: what most frames are.
+/// `schedule` was derived from the gates of `values`; `entries` may be other ones of the same stack.
 [[nodiscard]] Shape expected_shape(const Program& program, const graph::Compiled& compiled,
                                    const graph::Schedule& schedule, const FrameValues& values,
                                    std::span<const Entry* const> entries, const ProgramPass& pass, VkExtent2D largest);

@@ -67,6 +67,7 @@ void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std:
         domains_[i] = entry.domain_after(domain_before(program, i), words, is_on(i));
     }
     finish_ = finish_of(last_domain(program), desc);
+    rays_meet_ = context.camera != nullptr && plan::rays_meet(*context.camera);
     for (std::size_t i = 0; i < gate_count_; ++i) gates_[i] = is_open(program, program.gates[i], context, watched);
 }
 

@@ -30,6 +30,8 @@ class FrameValues {
     }
     [[nodiscard]] Domain last_domain(const Program& program) const { return domain_behind(program.last_entry); }
     [[nodiscard]] Finish finish() const { return finish_; }
+    /// Of the frame's camera, see glsl.hpp.
+    [[nodiscard]] bool rays_meet() const { return rays_meet_; }
     [[nodiscard]] std::span<const bool> gates() const { return {gates_.get(), gate_count_}; }
 
   private:
@@ -44,6 +46,7 @@ class FrameValues {
     std::vector<float> opacities_;
     std::vector<Domain> domains_;  ///< behind each entry
     Finish finish_ = Finish::None;
+    bool rays_meet_ = false;
     std::unique_ptr<bool[]> gates_;
     std::size_t gate_count_ = 0;
 };

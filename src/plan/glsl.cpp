@@ -213,6 +213,11 @@ CameraBlock camera_block(const Camera& camera) {
     return out;
 }
 
+bool rays_meet(const Camera& camera) {
+    const Matrix& p = camera.projection;
+    return p[11] != 0 && p[15] == 0 && p[12] == 0 && p[13] == 0;
+}
+
 gpu::BlockMember finish_member() { return {gpu::BlockMember::Type::Uint, "finish_"}; }
 
 void append_header_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
@@ -307,6 +312,7 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, st
         if (may_be_literal && members.contains(row.name)) out.literal_rows.push_back(&row);
     }
     if (auto ok = append_with_includes(out.glsl, renamed, shown, 0); !ok) return failure(std::move(ok));
+    out.asks_rays_meet = out.glsl.find("rays_meet") != std::string::npos;
     return out;
 }
 

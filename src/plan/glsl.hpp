@@ -33,6 +33,8 @@ void write_parameters(const ParamTable& table, std::span<const std::uint32_t> wo
 /// What effects/shared/camera.glsl is made of: five vectors.
 using CameraBlock = std::array<float, 28>;
 [[nodiscard]] CameraBlock camera_block(const Camera& camera);
+/// Do its rays come from one point? frame_ray_flat is 0 then.
+[[nodiscard]] bool rays_meet(const Camera& camera);
 inline constexpr std::uint32_t frame_words = 4 + std::tuple_size_v<CameraBlock>;
 
 void append_header_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out);
@@ -51,6 +53,7 @@ struct EffectText {
     std::string glsl;
     std::vector<const ParamInfo*> literal_rows;  ///< that it names and a lean kernel may hold as literals
     bool asks_input_is_twice = false;
+    bool asks_rays_meet = false;
     bool loads_picture_alone = true;  ///< names it in load(), load_clamped() and size(), and nowhere else
     bool asks_parameters = false;     ///< calls <effect>_parameters(); a pass that does not has none in its block
 };

@@ -400,8 +400,10 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     pass.spec.has_robust_images = traits_.has_robust_images;
     pass.spec.workgroup = traits_.workgroup;
     lay_out_literals(pass);
-    pass.asks_input_is_twice = std::ranges::any_of(
-        pass.steps, [](const FusedStep& step) { return step.text && step.text->asks_input_is_twice; });
+    for (const FusedStep& step : pass.steps) {
+        pass.asks_input_is_twice |= step.text && step.text->asks_input_is_twice;
+        pass.asks_rays_meet |= step.text && step.text->asks_rays_meet;
+    }
     const auto stage = traits_.stage_of(pass.spec);
     if (!stage) return failure(stage.error());
     pass.stage = *stage;
