@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <darkroom/effects/fog.hpp>
-#include <numbers>
 
 #include "fog/fog_reference.hpp"
 #include "shared/camera.hpp"
@@ -22,28 +21,18 @@ std::string conflict(const void* parameters) {
     return fmt::format("end = {}: must lie beyond start = {} m", fog.end, fog.start);
 }
 
-/// The share of the fog's colour at x metres behind `start` is x (curve.x + curve.y x) + curve.z (1 - 2^(curve.w x)),
-/// and `range` is the depth of the sky, start, and the largest x. With height it is multiplied by 2^(height.x max(y,
-/// 0)), with y the rise above the camera plus height.y; the sky lies at the distance height.z.
+/// The constants of planar_distance(), then: optical depth is distance * range.y + range.z, from 0 to range.w; full fog
+/// is 1 / more.x of it; height counts from the camera, by more.y from -more.z on.
 void fog_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Fog& fog = fog_of(parameters);
-    const DepthConstants depth = depth_constants(*context.camera);
-    const double span = std::max(double{fog.end} - double{fog.start}, 1e-6);
-    const double density = std::max(double{fog.density}, 1e-30);
-    const double coverage = -std::expm1(-density * span);
-    out[0] = depth.distance;
-    out[1] = {depth.sky, fog.start, static_cast<float>(span), 0};
-    // In single precision 1 - 2^x would lose what thin fog is made of. The parabola that has the curve's slope at 0 and
-    // its value at the end is within 1e-5 of it there.
-    constexpr double thin = 0.01;
-    const double slope = density / coverage;
-    if (density * span < thin)
-        out[2] = {static_cast<float>(slope), static_cast<float>((1 / span - slope) / span), 0, 0};
-    else
-        out[2] = {0, 0, static_cast<float>(1 / coverage), static_cast<float>(-density * std::numbers::log2e)};
-    const SolvedCamera camera(*context.camera);
-    out[3] = {static_cast<float>(-double{fog.height_falloff} * std::numbers::log2e),
-              static_cast<float>(camera.eye[1] - double{fog.height_origin}), fog.end, 0};
+    const double density = fog.density, start = fog.start, span = std::max(double{fog.end} - start, 1e-6);
+    const double rise = SolvedCamera(*context.camera).eye[1] - double{fog.height_origin};
+    depth_vectors(parameters, context, out);
+    out[1][1] = fog.density;
+    out[1][2] = static_cast<float>(-density * start);
+    out[1][3] = static_cast<float>(density * span);
+    out[2] = {static_cast<float>(-1 / std::expm1(-std::max(density * span, 1e-30))), -fog.height_falloff,
+              static_cast<float>(rise), 0};
 }
 
 }  // namespace
@@ -62,7 +51,7 @@ const EffectInfo& effect_info(const Fog&) {
         .build =
             [](PassBuilder& builder) {
                 builder.loaded_side("fog_depth", builder.frame_image(FrameImage::Depth), {});
-                builder.end_constants(4, fog_constants);
+                builder.end_constants(3, fog_constants);
             },
         .reference = fog_reference,
         .conflict = conflict,

@@ -103,6 +103,24 @@ TEST(EffectFog, GpuReadsEveryKindOfDepth) {
     }
 }
 
+// Lean kernels of a perspective camera leave out what moves the rays of this one, which lean to the side, too.
+TEST(EffectFog, GpuKnowsParallelRaysToo) {
+    const Case data;
+    test::RunOptions options = data.options();
+    Matrix& p = options.camera.projection;
+    p = {};
+    p[0] = 0.05f;
+    p[5] = -0.1f;
+    p[8] = 0.02f;
+    p[10] = -0.01f;
+    p[15] = 1;
+    const Fog fog{.density = 0.05f, .height_enabled = true, .height_origin = -5};
+    const ReferenceImage expected = test::scene_reference_of(fog, data.picture, options);
+    const auto fill = [&](Composer& composer) { composer.add(fog); };
+    EXPECT_LE(test::worst_half_ulps(test::develop(fill, data.picture, options), expected), 2);
+    EXPECT_GT(test::worst_half_ulps(test::develop(fill, data.picture, data.options()), expected), 20);
+}
+
 TEST(EffectFog, GpuLeavesTheSkyBitForBit) {
     const Case data;
     for (const Fog& fog : {Fog{.density = 1000, .end = 6}, Fog{.density = 3, .height_enabled = true}}) {

@@ -5,12 +5,6 @@ namespace darkroom {
 
 namespace {
 
-void linear_depth_constants(const void*, const PassContext& context, std::span<PassVector> out) {
-    const DepthConstants depth = depth_constants(*context.camera);
-    out[0] = depth.distance;
-    out[1] = {depth.sky, 0, 0, 0};
-}
-
 PassImage make_linear_depth(PassBuilder& builder) {
     return builder.add(
         {.name = "linear depth",
@@ -18,7 +12,7 @@ PassImage make_linear_depth(PassBuilder& builder) {
          .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
          .output = builder.create({.name = "linear depth", .format = VK_FORMAT_R32_SFLOAT}),
          .custom_vectors = 2,
-         .constants = linear_depth_constants});
+         .constants = depth_vectors});
 }
 
 PassImage make_half_depth(PassBuilder& builder) {
@@ -28,7 +22,7 @@ PassImage make_half_depth(PassBuilder& builder) {
          .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
          .output = builder.create({.name = "half depth", .format = VK_FORMAT_R32_SFLOAT, .denominator = 2}),
          .custom_vectors = 2,
-         .constants = linear_depth_constants});
+         .constants = depth_vectors});
 }
 
 void velocity_constants(const void*, const PassContext& context, std::span<PassVector> out) {
@@ -91,6 +85,12 @@ DepthConstants depth_constants(const Camera& camera) {
     const Matrix& p = camera.projection;
     if (camera.depth == DepthKind::Planar) return {};
     return {.distance = {-p[15], p[14], -p[11], p[10]}, .sky = camera.depth == DepthKind::Reversed ? 0.0f : 1.0f};
+}
+
+void depth_vectors(const void*, const PassContext& context, std::span<PassVector> out) {
+    const DepthConstants depth = depth_constants(*context.camera);
+    out[0] = depth.distance;
+    out[1] = {depth.sky, 0, 0, 0};
 }
 
 RayConstants ray_constants(const Camera& camera, VkExtent2D frame, float step) {

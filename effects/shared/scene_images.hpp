@@ -19,6 +19,8 @@ struct DepthConstants {
     float sky = 1e10f;  ///< depth of the sky
 };
 [[nodiscard]] DepthConstants depth_constants(const Camera& camera);
+/// The same as two vectors of a pass or an end: distance, and the sky in x.
+void depth_vectors(const void* parameters, const PassContext& context, std::span<PassVector> out);
 
 /// Previous minus current position, in pixels, y down, without jitter, whatever Camera::velocity says of the host's
 /// image: red and green. For effects whose needs name velocity.
