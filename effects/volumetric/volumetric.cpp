@@ -145,7 +145,8 @@ void build(PassBuilder& builder) {
                             .condition = is_lit});
     };
     const PassImage half_done = blur("blur across", "volumetric_blur_x.glsl", light);
-    builder.loaded_side("volumetric_depth", linear_depth(builder), {1e10f, 0, 0, 0});
+    builder.loaded_side("volumetric_depth", builder.frame_image(FrameImage::Depth), {});
+    builder.end_constants(2, depth_vectors);
     builder.loaded_side("volumetric_shafts", blur("blur down", "volumetric_blur_y.glsl", half_done), {0, 0, 0, 0});
 }
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // scene_linear -> scene_linear. Adds the shafts: of the four nearest half-size pixels those count whose distance, in alpha,
-// is like this pixel's.
+// is like this pixel's. volumetric_depth: the host's; volumetric_custom(0) and (1).x: the constants of planar_distance().
+#include "shared/planar_distance.glsl"
 
 vec4 volumetric(vec4 color, Pixel pixel, Volumetric parameters) {
-    // Neutral images are of one texel, so nothing is read beyond what size() says.
-    float planar = load_clamped(volumetric_depth, pixel.texel).r;
-    // NaN counts as sky, which lies where half precision ends.
-    planar = planar < 60000.0 ? max(planar, 1e-3) : 60000.0;
+    float depth = load(volumetric_depth, pixel.texel).r;
+    // The sky lies where half precision ends.
+    float planar = clamp(planar_distance(depth, volumetric_custom(0), volumetric_custom(1).x), 1e-3, 60000.0);
     float inverse = 1.0 / planar;
+    // Neutral images are of one texel, so nothing is read beyond what size() says.
     ivec2 base = pixel.texel >> 1, last = size(volumetric_shafts) - 1;
     vec2 part = vec2(pixel.texel & 1) * 0.5;
     vec3 sum = vec3(0.0);

@@ -267,9 +267,12 @@ TEST(EffectVolumetric, GpuHostileValuesAreHarmless) {
 // Neutral images are of one texel: around it lies poison.
 TEST(EffectVolumetric, NothingIsReadBeyondNeutralImages) {
     gpu::Context& context = gpu::test::context();
-    std::string_view text;
+    std::string text;
+    for (const EffectFile& file : shared_files())
+        if (file.name == "shared/planar_distance.glsl") text += file.text;
     for (const EffectFile& file : embedded_files("volumetric"))
-        if (file.name == "volumetric.glsl") text = file.text;
+        if (file.name == "volumetric.glsl") text += file.text;
+    text.erase(text.find("#include"), text.find('\n', text.find("#include")) - text.find("#include"));
     for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster})
         for (const VkFormat storage : {VK_FORMAT_UNDEFINED, VK_FORMAT_R32G32B32A32_SFLOAT}) {
             const auto kernel = gpu::test::must(gpu::Kernel::create(
@@ -278,7 +281,9 @@ TEST(EffectVolumetric, NothingIsReadBeyondNeutralImages) {
                  .images = {{.name = "volumetric_depth", .storage_format = storage},
                             {.name = "volumetric_shafts", .storage_format = storage}},
                  .outputs = {VK_FORMAT_R32G32B32A32_SFLOAT},
-                 .body = "struct Volumetric { float max_distance; };\n" + std::string(text) +
+                 .body = "struct Volumetric { float max_distance; };\n"
+                         "vec4 volumetric_custom(int i) { return i == 0 ? vec4(1, 0, 0, 1) : vec4(1e10); }\n" +
+                         text +
                          "\nvec4 shade(Pixel pixel) { return volumetric(vec4(0.5), pixel, Volumetric(100.0)); }\n"},
                 stage));
             const auto poisoned = [&](const std::array<float, 4>& neutral) {
@@ -290,11 +295,13 @@ TEST(EffectVolumetric, NothingIsReadBeyondNeutralImages) {
                                            }),
                     VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
             };
-            gpu::test::Picture depth = poisoned({1e10F, 0, 0, 0}), shafts = poisoned({0, 0, 0, 0});
+            gpu::test::Picture depth = poisoned({7.0F, 0, 0, 0}), shafts = poisoned({0, 0, 0, 0});
             gpu::test::Picture out = gpu::test::blank(context, {width, height}, VK_FORMAT_R32G32B32A32_SFLOAT);
             const gpu::Region one{{}, {1, 1}, {width, height}};
             gpu::test::run_kernel(context, *kernel,
-                                  {.inputs = {&depth, &shafts}, .outputs = {&out}, .input_regions = {one, one}});
+                                  {.inputs = {&depth, &shafts},
+                                   .outputs = {&out},
+                                   .input_regions = {{{}, {width, height}, {width, height}}, one}});
             for (const float value : gpu::test::download(context, out).rgba) ASSERT_EQ(value, 0.5F);
         }
 }
