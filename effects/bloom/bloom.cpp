@@ -38,8 +38,18 @@ void prefilter_constants(const void* parameters, const PassContext& context, std
     out[1] = {bloom.firefly_filter ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
 }
 
-void upsample_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
-    out[0] = {gain(bloom_of(parameters)), 0.0f, 0.0f, 0.0f};
+void upsample_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const auto below = [](std::uint32_t side) { return static_cast<float>(std::max(side / 2, 1u)); };
+    const float width = below(context.output_extent.width), height = below(context.output_extent.height);
+    out[0] = {width, height, 1.0f / width, 1.0f / height};
+    out[1] = {gain(bloom_of(parameters)), 0.0f, 0.0f, 0.0f};
+}
+
+void end_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const Bloom& bloom = bloom_of(parameters);
+    const bool is_additive = bloom.mode == BloomMode::Additive;
+    const bool glows = used_levels(bloom, context.frame_extent) > 0;
+    out[0] = {glows ? is_additive ? bloom.intensity : std::min(bloom.intensity, 1.0f) : 0.0f, 0.0f, 0.0f, 0.0f};
 }
 
 /// Frames may be smaller than the largest one that the pyramid was made for.
@@ -50,11 +60,16 @@ bool is_level_used(const void* parameters, const PassContext& context, std::uint
 void build(PassBuilder& builder) {
     const PassVector neutral{0.0f, 0.0f, 0.0f, 0.0f};
     const std::uint32_t levels = builder.from_max_extent(bloom_level_count);
+    builder.end_constants(1, end_constants);
     if (levels == 0) {
         builder.side("bloom_pyramid", PassImage{}, neutral);
         return;
     }
-    PassImage pyramid = builder.create({.name = "pyramid", .denominator = 2, .mip_levels = levels});
+    const VkFormat packed = VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+    PassImage pyramid = builder.create({.name = "pyramid",
+                                        .format = builder.is_stored(packed) ? packed : VK_FORMAT_R16G16B16A16_SFLOAT,
+                                        .denominator = 2,
+                                        .mip_levels = levels});
     pyramid = builder.add({.name = "prefilter",
                            .shader = "bloom_prefilter.glsl",
                            .inputs = {{.name = "bloom_source", .image = builder.source(), .is_loaded = true}},
@@ -80,7 +95,7 @@ void build(PassBuilder& builder) {
              .output = pyramid,
              .output_mip_level = level,
              .is_additive = true,
-             .custom_vectors = 1,
+             .custom_vectors = 2,
              .constants = upsample_constants,
              .condition = is_level_used,
              .argument = level + 1});

@@ -155,6 +155,15 @@ void write_sampled_input(Text text, const KernelImage& image, std::uint32_t bind
                    image.name, prefix, function, level);
 }
 
+/// To the nearest of the packed floats of 6 and 5 bits, so that no driver is left to cut off. The largest are those
+/// that are finite.
+constexpr std::string_view packed_rounding = R"(vec4 darkroom_rounded(vec4 value) {
+    uvec3 bits = floatBitsToUint(clamp(value.rgb, vec3(0.0), vec3(65024.0, 65024.0, 64512.0)));
+    bits = bits + uvec3(0x10000u, 0x10000u, 0x20000u) & uvec3(0xfffe0000u, 0xfffe0000u, 0xfffc0000u);
+    return vec4(uintBitsToFloat(bits), 1.0);
+}
+)";
+
 void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index) {
     const FormatTraits traits = format_traits(spec.outputs[index]);
     const bool is_read = spec.is_additive && index == 0;
@@ -165,12 +174,15 @@ void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index
     fmt::format_to(text, "layout(set = 0, binding = {}{}{}) uniform {}{}image2D result_{};\n", binding, separator,
                    traits.glsl_qualifier, access, prefix_of(traits.numeric), index);
     const std::string_view old = is_read ? " + imageLoad(result_0, place)" : "";
+    const bool is_packed = spec.outputs[index] == VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+    if (is_packed) fmt::format_to(text, "{}", packed_rounding);
     fmt::format_to(text,
                    "void store_{0}(ivec2 texel, vec4 value) {{\n"
                    "    ivec2 place = texel{3};\n"
-                   "    imageStore(result_{0}, place, {1}vec4(value){2});\n"
+                   "    imageStore(result_{0}, place, {4}({1}vec4(value){2}));\n"
                    "}}\n",
-                   index, prefix_of(traits.numeric), old, spec.is_whole ? "" : " + darkroom_output.xy");
+                   index, prefix_of(traits.numeric), old, spec.is_whole ? "" : " + darkroom_output.xy",
+                   is_packed ? "darkroom_rounded" : "");
 }
 
 void write_outputs(Text text, const KernelSpec& spec, Stage stage) {

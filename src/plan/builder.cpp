@@ -72,6 +72,11 @@ PassImage Builder::create(const PassImageDesc& desc) {
     return remember_new(planner_.program_.graph.create(image), image);
 }
 
+bool Builder::is_stored(VkFormat format) const {
+    const auto stage = planner_.traits_.stage_of({.name = "", .outputs = {format}, .is_additive = true});
+    return stage && *stage == gpu::Stage::Compute;
+}
+
 PassBuilder::History Builder::history(const PassImageDesc& desc) {
     const graph::ImageDesc image = image_desc(desc);
     auto& entries = planner_.program_.history_entries;

@@ -222,6 +222,7 @@ class Builder final : public PassBuilder {
         return find_resource(planner_.stack_[entry_].resources.get(), resource);
     }
     [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
+    [[nodiscard]] bool is_stored(VkFormat format) const override;
     [[nodiscard]] History history(const PassImageDesc& desc) override;
     [[nodiscard]] PassImage frame_image(FrameImage which) override;
     [[nodiscard]] bool has_frame_image(FrameImage which) const override;
