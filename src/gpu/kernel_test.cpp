@@ -99,7 +99,6 @@ TEST_P(GpuKernelStages, GiveTheSameBitsWhenTheyAdd) {
 INSTANTIATE_TEST_SUITE_P(Formats, GpuKernelStages,
                          ::testing::Values(VK_FORMAT_R32G32B32A32_SFLOAT, half4, VK_FORMAT_R8G8B8A8_UNORM));
 
-// What the sampler rounds its weights to is its own affair; the software driver keeps all bits of a float.
 TEST(GpuKernel, FiltersByLoadsAsTheSamplerDoes) {
     for (const Stage stage : {Stage::Compute, Stage::Raster}) {
         KernelSpec spec = spec_of(bodies[1], VK_FORMAT_R32G32B32A32_SFLOAT);
@@ -115,7 +114,8 @@ TEST(GpuKernel, FiltersByLoadsAsTheSamplerDoes) {
                 std::memcpy(&b, &loaded[run][at], sizeof b);
                 worst = std::max(worst, std::abs(a - b));
             }
-            EXPECT_LE(worst, 1e-4F) << run;
+            // The scene's neighbours are up to 4 apart.
+            EXPECT_LE(worst, 1e-4 + 2 * test::filter_step() * 4) << run;
         }
     }
 }
