@@ -40,7 +40,7 @@ stack() {
     for state in off on; do picture "$2" "${1}_$state.jpg" --look "$work/$state.toml"; done
 }
 
-pair ssao dungeon --exposure 6 --ssao-enabled off --volumetric-enabled off -- --exposure 6 --ssao-radius 1.5 --ssao-intensity 2.5 --volumetric-enabled off
+pair ssao dungeon --exposure 6 --ssao-enabled off --volumetric-enabled off -- --exposure 6 --ssao-radius 1.5 --volumetric-enabled off
 pair volumetric dungeon --volumetric-enabled off -- --volumetric-density 30
 pair fog courtyard --fog-enabled off -- --fog-density 0.05
 pair bloom forge --bloom-enabled off -- --bloom-intensity 0.12

@@ -25,7 +25,7 @@ struct Ssao {
     float bias = 0.025f;
     float thickness = 0.8f;
     std::int32_t samples = 16;
-    SsaoMethod method = SsaoMethod::Hemisphere;
+    SsaoMethod method = SsaoMethod::GroundTruth;
     SsaoResolution resolution = SsaoResolution::Half;
     SsaoMerge merge = SsaoMerge::Multiply;
     float fade_start = 200.0f;
