@@ -57,7 +57,8 @@ std::set<std::string> first_cells(const std::vector<std::pair<std::string, std::
 std::vector<std::string> flat_names(std::int32_t FlatPlace::*order, bool only_those_on = false) {
     std::vector<const EffectInfo*> effects;
     for (const EffectInfo* const effect : all_effects())
-        if (effect->flat.*order >= 0 && !effect->flat.is_of_ui && (!only_those_on || effect->flat.starts_on)) effects.push_back(effect);
+        if (effect->flat.*order >= 0 && !effect->flat.is_of_ui && (!only_those_on || effect->flat.starts_on))
+            effects.push_back(effect);
     std::ranges::sort(effects, {}, [order](const EffectInfo* effect) { return effect->flat.*order; });
     std::vector<std::string> names;
     for (const EffectInfo* const effect : effects) names.emplace_back(effect->name);
@@ -95,6 +96,42 @@ TEST(Documents, TablesNameWhatShips) {
     std::set<std::string> effects;
     for (const EffectInfo* const effect : all_effects()) effects.emplace(effect->name);
     EXPECT_EQ(first_cells(rows_of("README.md", "| Effect |", R"(\[`([a-z_]+)`\]\(effects/[a-z_/.]+\))")), effects);
+}
+
+/// The files of these folders that end so, one after the other.
+std::string all_text(const std::vector<fs::path>& folders, const std::string& end) {
+    std::string out;
+    for (const fs::path& folder : folders)
+        for (const auto& file : fs::recursive_directory_iterator(source / folder))
+            if (file.is_regular_file() && file.path().filename().string().ends_with(end))
+                out += test::content(file.path());
+    return out;
+}
+
+TEST(Documents, EveryFlagIsRunByATest) {
+    // Those of parameters are run by Cli.EveryParameterIsAFlag; the lines of recipes by CliRecipes. The first are
+    // CMake's and pkg-config's.
+    std::set<std::string> run{"--build", "--install", "--prefix", "--test-dir", "--cflags", "--libs"};
+    for (const EffectInfo* const effect : all_effects()) {
+        const std::string name = flag_name(effect->name);
+        run.insert({name, "--no-" + name.substr(2), name + "-enabled"});
+        for (const ParamInfo& row : effect->parameters.rows) run.insert(flag_name(flat_key(effect->name, row.name)));
+    }
+    const std::string tests = all_text({"tests", "src"}, "_test.cpp") + test::content(source / "docs/recipes.md");
+    std::string pages = test::content(source / "README.md");
+    for (const auto& page : fs::directory_iterator(source / "docs"))
+        // Architecture tells of programs of its own.
+        if (page.path().extension() == ".md" && page.path().filename() != "architecture.md")
+            pages += test::content(page.path());
+    const std::regex flag("[` (](--[a-z][a-z0-9-]*[a-z0-9])");
+    std::size_t flags = 0;
+    for (std::sregex_iterator at(pages.begin(), pages.end(), flag), end; at != end; ++at) {
+        const std::string name = (*at)[1];
+        if (!run.insert(name).second) continue;
+        ++flags;
+        EXPECT_TRUE(std::regex_search(tests, std::regex("[ \"]" + name + "[ \"=]"))) << name << " is run by no test";
+    }
+    EXPECT_GT(flags, 60U);
 }
 
 class CliDocuments : public test::CliFixture {
