@@ -4,7 +4,6 @@
 // keys, and read what it says: a line on standard output for what a key did, an error on standard error.
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -127,56 +126,6 @@ class ViewerFixture : public CliFixture {
     }
     [[nodiscard]] bool wait_for(const std::string& line) {
         return wait_until([&] { return count(line) > 0; }, 120);
-    }
-    /// Waits until frames have seen what the mouse and the keys did: nothing is ever undone where this is used.
-    void settle() const {
-        for (int i = 0; i < 2; ++i) {
-            const std::size_t before = count("nothing to redo");
-            press("ctrl+shift+z");
-            ASSERT_TRUE(wait_until([&] { return count("nothing to redo") > before; }, 60)) << said() << complained();
-        }
-    }
-    void type_command(const std::string& text) const {
-        press("grave");
-        settle();
-        settle();  // frames until the console has the keyboard
-        ASSERT_EQ(shell("xdotool type '" + text + "'"), 0);
-        settle();
-        ASSERT_EQ(shell("xdotool keydown Return"), 0);
-        settle();
-        ASSERT_EQ(shell("xdotool keyup Return key grave"), 0);
-        settle();
-    }
-    /// Where a widget of edit lies in the window: left, top, right, bottom. The console knows, once it was asked.
-    [[nodiscard]] std::array<int, 4> place(const std::string& name) const {
-        const std::string line = "place " + name + " ";
-        const std::size_t before = count(line);
-        type_command("places " + name);
-        const bool is_told = wait_until([&] { return count(line) > before; }, 10);
-        EXPECT_TRUE(is_told) << "no widget " << name << ": " << said();
-        std::array<int, 4> out{};
-        const std::string text = said();
-        std::istringstream numbers(is_told ? text.substr(text.rfind(line) + line.size()) : "");
-        for (int& number : out) numbers >> number;
-        return out;
-    }
-    /// Presses the mouse's first button there, moves it to another place, and lets it go: a click where both are one.
-    void drag(std::array<int, 2> from, std::array<int, 2> to) const {
-        const auto move = [&](std::array<int, 2> at) {
-            ASSERT_EQ(shell(fmt::format("xdotool mousemove --window {} {} {}", window_, at[0], at[1])), 0);
-            settle();
-        };
-        move(from);
-        ASSERT_EQ(shell("xdotool mousedown 1"), 0);
-        settle();
-        if (to != from) move({(from[0] + to[0]) / 2, (from[1] + to[1]) / 2});
-        if (to != from) move(to);
-        ASSERT_EQ(shell("xdotool mouseup 1"), 0);
-        settle();
-    }
-    void click(const std::string& name) const {
-        const auto [left, top, right, bottom] = place(name);
-        drag({(left + right) / 2, (top + bottom) / 2}, {(left + right) / 2, (top + bottom) / 2});
     }
     /// Stores the picture, and reads it.
     [[nodiscard]] Picture shot() {

@@ -125,33 +125,6 @@ TEST_F(CliViewer, EditsAreUndoneSavedAndReadAgain) {
     EXPECT_EQ(difference(before, shot()), 0) << "a broken one leaves the last good state";
 }
 
-TEST_F(CliViewer, SlidersAndTheOrderOfTheStackFollowTheMouse) {
-    const std::string text =
-        "[[stack]]\neffect = \"bloom\"\nintensity = 0.2  # slid\n\n"
-        "[[stack]]\neffect = \"exposure\"\nexposure = 0.4\n\n[[stack]]\neffect = \"tonemap\"\n";
-    const std::string look = write("my.toml", text);
-    start({"edit", scenes + "showcase.scene.toml", "--look", look, "--size", "1280x720"});
-    press("p", "P pause: on");
-    const Picture before = shot();
-    type_command("places");  // from now on they are noted
-    click("stack/bloom");
-    const auto [left, top, right, bottom] = place("bloom.intensity");
-    const int middle = (top + bottom) / 2;
-    drag({left + (right - left) / 2, middle}, {right - 8, middle});
-    const Picture slid = shot();
-    EXPECT_GT(difference(before, slid), 0) << "the slider moves the value";
-    const std::array<int, 4> first = place("stack/exposure"), last = place("stack/tonemap");
-    drag({first[0] + 20, (first[1] + first[3]) / 2}, {last[0] + 20, last[3] - 4});
-    EXPECT_GT(difference(slid, shot()), 0) << "exposure after the curve is another picture";
-    press("ctrl+s", "saved my.toml");
-    const std::string saved = content(look);
-    const std::size_t tonemap = saved.find("tonemap"), exposure = saved.find("exposure");
-    EXPECT_TRUE(tonemap < exposure && exposure != std::string::npos) << saved;
-    EXPECT_NE(saved.find("  # slid"), std::string::npos) << saved;
-    EXPECT_EQ(saved.find("intensity = 0.2 "), std::string::npos) << saved;
-    leave();
-}
-
 TEST_F(CliViewer, SurvivesAStormOfSizes) {
     start({"play", scenes + "showcase.scene.toml", "--size", "320x180", "--paused"});
     constexpr int sizes = 200;
@@ -162,15 +135,13 @@ TEST_F(CliViewer, SurvivesAStormOfSizes) {
     ASSERT_EQ(shell(command), 0);
     ASSERT_EQ(shell(fmt::format("xdotool windowsize --sync {} 301 203", window())), 0);
     EXPECT_TRUE(wait_until([&] { return shot().width == 301; }, 60));
-    // The plan for this very size comes when the size has settled.
-    std::this_thread::sleep_for(std::chrono::seconds(2));
-    const Picture last = shot();
-    ASSERT_EQ(last.height, 203U);
-    leave();
     const Outcome rendered =
         run({"render", scenes + "showcase.scene.toml", "--size", "301x203", "--fps", "60", "-o", path("render.png")});
     ASSERT_EQ(rendered.code, 0);
-    EXPECT_LE(difference(picture("render.png"), last), 1.001 / 255);
+    const Picture expected = picture("render.png");
+    // The plan for this very size comes when the size has settled.
+    EXPECT_TRUE(wait_until([&] { return difference(expected, shot()) <= 1.001 / 255; }, 60));
+    leave();
 }
 
 TEST_F(CliViewer, GoesOnAfterItWasMinimised) {
