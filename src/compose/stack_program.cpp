@@ -21,7 +21,11 @@ auto wiring_of(const plan::Entry& entry) {
 
 /// The stage the user asked for where it can run the kernel, else the other one.
 Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& spec, KernelStage wanted) {
-    if (wanted == KernelStage::Auto) return gpu::preferred_stage(context, spec);
+    if (wanted == KernelStage::Auto) {
+        const gpu::Stage preferred = gpu::preferred_stage(context, spec);
+        if (auto ok = gpu::usable(context, spec, preferred); !ok) return failure(std::move(ok));
+        return preferred;
+    }
     const gpu::Stage first = wanted == KernelStage::Compute ? gpu::Stage::Compute : gpu::Stage::Raster;
     const gpu::Stage second = wanted == KernelStage::Compute ? gpu::Stage::Raster : gpu::Stage::Compute;
     auto ok = gpu::usable(context, spec, first);
