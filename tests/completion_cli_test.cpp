@@ -90,9 +90,10 @@ TEST_F(CliCompletion, TheParserTakesWhateverIsOffered) {
             if (!line.starts_with("  -")) continue;
             std::string shown = line.substr(2, line.find("  ", 2) - 2);
             Words of_one;
-            for (std::smatch found; std::regex_search(shown, found, std::regex("(--?[a-z0-9-]+)( [^ ,]+)?(, |$)"));
+            for (std::smatch found; std::regex_search(shown, found, std::regex("(--?[a-z0-9-]+)( [^ ]+?)?(, |$)"));
                  shown = found.suffix())
                 of_one.push_back(found[1].str() + (found[2].length() > 0 ? "=1" : ""));
+            ASSERT_FALSE(of_one.empty()) << command << ": " << line;
             names += of_one.size();
             for (std::size_t i = 0; i < typed.size() && !line.starts_with("  -h"); ++i)
                 if (const std::string& name = of_one[std::min(i, of_one.size() - 1)]; name != "--help-all") {
