@@ -172,7 +172,7 @@ void Viewer::move_time(double passed) {
     previous_time_ = time_;
     delta_time_ = is_fixed() ? job_.step : std::min(passed, longest_frame);
     if (is_paused_) return;
-    ++frame_index_;
+    if (shown_frames_ > 0) ++frame_index_;
     // Of the frames that are counted the first is at the time that was asked for.
     if (is_fixed() && shown_frames_ == 0) {
         previous_time_ = std::max(0.0, time_ - job_.step);

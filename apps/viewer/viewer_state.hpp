@@ -111,7 +111,7 @@ class Viewer {
     std::optional<std::string> places_;                  ///< widgets that were asked for, by how their names begin
     Clock::time_point sure_until_{};                     ///< who leaves again before then means it
     std::uint64_t shown_frames_ = 0, frame_number_ = 0;  ///< so far; of the one that is recorded, in the presenter
-    std::uint64_t frame_index_ = ~std::uint64_t{0};      ///< as Frame has it: stands still with the time
+    std::uint64_t frame_index_ = 0;                      ///< as Frame has it: stands still with the time
     bool is_cut_ = true;
 
     /// What is on its way to a file.
