@@ -74,6 +74,20 @@ TEST_F(CliHabits, EffectsAreSwitchedByTheirNames) {
     expect_refused({"develop", path("frame.exr"), "-o", path("x.png"), "--exposure"}, 1, "one value is needed");
 }
 
+TEST_F(CliHabits, ExposureTakesStops) {
+    if (find_effect("exposure") == nullptr) GTEST_SKIP() << "the effect exposure is not in this build";
+    const std::string brighter = developed({"--exposure", "2"});
+    EXPECT_NE(brighter, developed({}));
+    EXPECT_EQ(developed({"--exposure", "1ev"}), brighter);
+    EXPECT_EQ(developed({"--exposure=-1EV"}), developed({"--exposure", "0.5"}));
+    EXPECT_EQ(developed({"--set", "exposure.exposure=1ev"}), brighter);
+    for (const char* const text : {"ev", "one ev", "1stop"})
+        expect_refused({"develop", path("frame.exr"), "-o", path("x.png"), "--exposure", text}, 1,
+                       fmt::format("--exposure: '{}' is not a number, allowed is [0, 1024] x", text));
+    expect_refused({"develop", path("frame.exr"), "-o", path("x.png"), "--exposure", "11ev"}, 1,
+                   "--exposure = 2048: allowed is [0, 1024] x");
+}
+
 TEST_F(CliHabits, QuietIsSilentAndVerboseSaysMore) {
     const std::vector<std::string> develop{"develop", path("frame.exr"), "-o", path("a.png")};
     const auto with = [&](std::vector<std::string> flags) {

@@ -9,8 +9,8 @@ namespace darkroom {
 struct Exposure {
     float exposure = 1.0f;
 };
-inline constexpr auto exposure_rows =
-    describe(field<&Exposure::exposure>("Multiplier of the scene's light; 2 is one stop brighter.", {0, 1024}));
+inline constexpr auto exposure_rows = describe(field<&Exposure::exposure>(
+    "Multiplier of the scene's light; 2 is one stop brighter.", {0, 1024}, unit::multiplier));
 
 [[nodiscard]] const EffectInfo& effect_info(const Exposure&);
 

@@ -33,7 +33,9 @@ struct Unit {
 namespace unit {
 inline constexpr Unit none{""}, pixels{"px"}, nits{"cd/m2"}, metres{"m"}, per_metre{"1/m"}, degrees{"deg"},
     seconds{"s"};
-}
+/// How many times as much light; its texts may say stops instead: "1.5ev".
+inline constexpr Unit multiplier{"x"};
+}  // namespace unit
 
 enum class Scale : std::uint8_t { Linear, Log };
 

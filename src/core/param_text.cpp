@@ -214,6 +214,15 @@ std::optional<ParamValue> value_of(const ParamInfo& info, std::span<const std::u
     return numbers;
 }
 
+bool takes_stops(const ParamInfo& info) { return info.unit.symbol == unit::multiplier.symbol; }
+
+// "1.5" as it is, "-2ev" as two stops less.
+std::optional<double> parse_multiplier(std::string_view text) {
+    if (!text.ends_with("ev") && !text.ends_with("EV")) return parse_number(text);
+    const std::optional<double> stops = parse_number(text.substr(0, text.size() - 2));
+    return stops ? std::optional(std::exp2(*stops)) : std::nullopt;
+}
+
 std::vector<std::string_view> split(std::string_view text, char separator) {
     std::vector<std::string_view> out;
     for (;;) {
@@ -306,7 +315,7 @@ Result<ParamValue> parse_text(const ParamInfo& info, std::string_view text) {
         if (numbers.size() != info.words) return refuse();
         return ParamValue(std::move(numbers));
     }
-    const std::optional<double> number = parse_number(text);
+    const std::optional<double> number = takes_stops(info) ? parse_multiplier(text) : parse_number(text);
     if (!number) return refuse();
     return ParamValue(*number);
 }
@@ -351,7 +360,8 @@ std::string interval(const ParamInfo& info) {
 }
 
 std::string full_doc(const ParamInfo& info) {
-    return std::string(info.doc) + (info.is_at_compile ? " A change takes full effect with the next compile." : "");
+    return std::string(info.doc) + (takes_stops(info) ? " As text also in stops: 1ev is 2." : "") +
+           (info.is_at_compile ? " A change takes full effect with the next compile." : "");
 }
 
 std::string_view expected_kind(Kind kind) {

@@ -39,7 +39,8 @@ struct ParamProblem {
 [[nodiscard]] Result<> check_words(const ParamInfo& info, std::span<const std::uint32_t> words,
                                    std::string_view shown = {});
 
-/// Reads a flag's or console's text: "1.5", "on" or "off", "1,0.5,0.2", a choice's name, "0:0,0.5:0.2,1:1" for a curve.
+/// Reads a flag's or console's text: "1.5", "on" or "off", "1,0.5,0.2", a choice's name, "0:0,0.5:0.2,1:1" for a curve;
+/// for multipliers of light also stops, "1.5ev".
 /// Its errors name neither key nor place; ranges are assign's to check.
 [[nodiscard]] Result<ParamValue> parse_text(const ParamInfo& info, std::string_view text);
 /// on/off, true/false, yes/no, 1/0.
@@ -51,7 +52,7 @@ struct ParamProblem {
 [[nodiscard]] std::string format(const ParamInfo& info, std::span<const std::uint32_t> words);
 /// "[0, 16]", "[1, 64] px", "srgb, gamma22 or none", "true or false".
 [[nodiscard]] std::string interval(const ParamInfo& info);
-/// The row's sentence, and another one where a change needs a compile.
+/// The row's sentence, and more where its text may be in stops or a change needs a compile.
 [[nodiscard]] std::string full_doc(const ParamInfo& info);
 /// What a value of this kind looks like: "a number", "an array of 3 numbers".
 [[nodiscard]] std::string_view expected_kind(Kind kind);

@@ -113,6 +113,28 @@ TEST(ParamText, ReadsTextOfFlags) {
     EXPECT_EQ(from_text("response", "0:0,1:2"), "[[0.0, 0.0], [1.0, 2.0]]");
 }
 
+struct Light {
+    float gain = 1;
+};
+constexpr auto light_rows = describe(field<&Light::gain>("Gain.", {0, 1024}, unit::multiplier));
+
+TEST(ParamText, MultipliersAreReadInStops) {
+    const ParamInfo& gain = light_rows.rows[0];
+    const auto read = [&](std::string_view text) {
+        const Result<ParamValue> value = parse_text(gain, text);
+        return value ? std::get<double>(*value) : std::numeric_limits<double>::quiet_NaN();
+    };
+    EXPECT_EQ(read("2.5"), 2.5);
+    EXPECT_EQ(read("1ev"), 2);
+    EXPECT_EQ(read("-2EV"), 0.25);
+    EXPECT_EQ(read("+0.5ev"), std::exp2(0.5));
+    EXPECT_EQ(read("0ev"), 1);
+    for (const char* const text : {"ev", "1 ev", "1eV", "1evev", "nanev", ""})
+        EXPECT_TRUE(std::isnan(read(text))) << text;
+    EXPECT_EQ(from_text("amount", "1ev"), "'1ev' is not a number, allowed is [0, 16] px") << "it is no multiplier";
+    EXPECT_EQ(interval(gain), "[0, 1024] x");
+}
+
 TEST(ParamText, FloatsReadBackWithTheSameBits) {
     std::uint32_t state = 1;
     std::vector<std::uint32_t> words(table.defaults.begin(), table.defaults.end());
