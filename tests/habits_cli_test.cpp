@@ -88,6 +88,28 @@ TEST_F(CliHabits, ExposureTakesStops) {
                    "--exposure = 2048: allowed is [0, 1024] x");
 }
 
+TEST_F(CliHabits, WhatIsAskedForAndLeftOutIsTold) {
+    if (find_effect("ssao") == nullptr) GTEST_SKIP() << "the effect ssao is not in this build";
+    const std::string warning = "darkroom: warning: left out: ssao: needs depth, which the frame does not have\n";
+    const auto said = [&](std::vector<std::string> flags) {
+        flags.insert(flags.begin(), {"develop", path("frame.exr"), "-o", path("a.png")});
+        return run(flags).err;
+    };
+    const auto look = [&](const std::string& line) {
+        return std::vector<std::string>{"--look", write("a.toml", "[post_process]\n" + line + "\n")};
+    };
+    EXPECT_EQ(said({}), "") << "the table has it on by itself";
+    EXPECT_EQ(said(look("exposure = 2.0")), "");
+    EXPECT_EQ(said(look("ssao_enabled = false")), "");
+    EXPECT_EQ(said({"--no-ssao"}), "");
+    EXPECT_EQ(said({"--ssao"}), warning);
+    EXPECT_EQ(said({"--ssao-enabled", "on"}), warning);
+    EXPECT_EQ(said({"--ssao-intensity", "1"}), warning);
+    EXPECT_EQ(said(look("ssao_enabled = true")), warning);
+    EXPECT_EQ(said(look("ssao_intensity = 1")), warning);
+    EXPECT_EQ(said({"--ssao", "--no-ssao"}), "");
+}
+
 TEST_F(CliHabits, QuietIsSilentAndVerboseSaysMore) {
     const std::vector<std::string> develop{"develop", path("frame.exr"), "-o", path("a.png")};
     const auto with = [&](std::vector<std::string> flags) {

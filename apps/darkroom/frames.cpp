@@ -175,12 +175,15 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, T
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
                                      std::span<const std::string> left_out, std::string_view frame) {
     std::size_t told = 0;
+    const std::vector<std::string> names = darkroom::entry_names(look);
     for (const std::string& text : left_out) {
         const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
         if (!entry) continue;
         const darkroom::EffectInfo& info = *composer.info(*entry);
         // What a table has on by itself, nobody asked for.
-        const bool is_flat = (look.is_flat || look.was_flat) && info.flat.starts_on;
+        const auto named = std::ranges::find(names, text.substr(0, text.find(':')));
+        const bool is_asked_for = named != names.end() && look.entries[named - names.begin()].is_asked_for;
+        const bool is_flat = (look.is_flat || look.was_flat) && info.flat.starts_on && !is_asked_for;
         const bool is_usual = (is_flat || (look.ui && info.flat.is_of_ui)) &&
                               std::ranges::equal(composer.words(*entry), info.parameters.defaults);
         if (!composer.desc(*entry)->enabled || info.is_last_step) continue;

@@ -67,6 +67,8 @@ struct LookEntry {
     EntryState state;
     std::string name;  ///< empty: see entry_names
     std::string input, source, second, mask, output;
+    /// Of a flat table: what was written or typed switches it on, not the table by itself.
+    bool is_asked_for = false;
     bool is_of_ui = false;                       ///< of the table [ui]: in a stack, behind all that is listed
     std::string effect_file{};                   ///< of a custom effect: its file, as the look names it
     std::shared_ptr<const void> effect_owner{};  ///< keeps a custom effect for as long as the entry

@@ -20,7 +20,10 @@ class Overrider {
         for (const LookOverride& one : overrides)
             if (Result<> done = set(one); !done) return done;
         // A toggle that was typed counts, whatever an amount implies.
-        for (const auto& [entry, on] : toggles_) entry->state.enabled = on;
+        for (const auto& [entry, on] : toggles_) {
+            entry->state.enabled = on;
+            entry->is_asked_for = on.on != 0;
+        }
         for (const LookEntry& entry : look_.entries)
             if (const std::string conflict = conflict_of(entry); !conflict.empty()) return user_error(conflict);
         return {};
@@ -47,10 +50,13 @@ class Overrider {
         if (!is_state) {
             if (Result<> done = assign(*row, entry->words, *value, shown); !done) return done;
             const bool is_positive = std::bit_cast<float>(entry->words[row->word]) > 0;
-            if (row->is_amount) entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
+            if (row->is_amount) {
+                entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
+                entry->is_asked_for = entry->state.enabled.on != 0;
+            }
             if (row->switched_word < entry->words.size() && is_positive) {
                 entry->words[row->switched_word] = 1;
-                entry->state.enabled = true;
+                entry->state.enabled = entry->is_asked_for = true;
             }
             return {};
         }

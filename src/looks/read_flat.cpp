@@ -32,7 +32,7 @@ class FlatReader {
         for (const auto& [key, node] : table) {
             const auto found = targets_.find(key.str());
             if (found != targets_.end() && found->second.row == &enabled_row)
-                reader_.take(entry_rows.rows[0], found->second.entry->state, node, key.str());
+                read_toggle(*found->second.entry, node, key.str());
         }
         for (const LookEntry& entry : look_.entries)
             if (const std::string conflict = conflict_of(entry); !conflict.empty())
@@ -76,8 +76,13 @@ class FlatReader {
         if (found == targets_.end()) return read_unknown(key, node);
         const auto& [entry, row] = found->second;
         if (row == &enabled_row) return;
-        if (reader_.take(*row, *entry, node, key.str()) && row->is_amount && !is_of_ui_)
-            entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
+        if (!reader_.take(*row, *entry, node, key.str()) || !row->is_amount || is_of_ui_) return;
+        entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
+        entry->is_asked_for = entry->state.enabled.on != 0;
+    }
+
+    void read_toggle(LookEntry& entry, const toml::node& node, std::string_view key) {
+        if (reader_.take(entry_rows.rows[0], entry.state, node, key)) entry.is_asked_for = entry.state.enabled.on != 0;
     }
 
     void read_enabled(const toml::node& node) {
