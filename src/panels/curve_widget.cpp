@@ -152,14 +152,14 @@ ValueEdit draw_curve(const ParamInfo& row, std::span<std::uint32_t> words) {
     float farthest = std::min(widest, 4.0f);
     for (std::uint32_t i = 0; i < curve.count; ++i)
         farthest = std::max({farthest, std::abs(curve.x[i]), std::abs(curve.y[i])});
-    float* const span = storage.GetFloatRef(span_id, farthest);
-    int* const chosen = storage.GetIntRef(chosen_id, -1);
-    if (*chosen >= static_cast<int>(curve.count)) *chosen = -1;
+    float span = storage.GetFloat(span_id, farthest);
+    int chosen = storage.GetInt(chosen_id, -1);
+    if (chosen >= static_cast<int>(curve.count)) chosen = -1;
 
     const float width = std::max(1.0f, ImGui::GetContentRegionAvail().x), height = 9 * ImGui::GetFontSize();
-    const float least = std::max(-*span, static_cast<float>(row.range.min));
-    const float most = std::min(*span, static_cast<float>(row.range.max));
-    const View view{ImGui::GetCursorScreenPos(), {width, height}, least, std::max(most, *span), least, most};
+    const float least = std::max(-span, static_cast<float>(row.range.min));
+    const float most = std::min(span, static_cast<float>(row.range.max));
+    const View view{ImGui::GetCursorScreenPos(), {width, height}, least, std::max(most, span), least, most};
     ValueEdit edit;
     ImGui::BeginGroup();
     ImGui::InvisibleButton("##value", view.size);
@@ -168,25 +168,27 @@ ValueEdit draw_curve(const ParamInfo& row, std::span<std::uint32_t> words) {
     const float reach = ImGui::GetFontSize() * 0.6f;
     if (ImGui::IsItemActivated()) {
         edit.is_begun = true;
-        *chosen = point_at(curve, view, mouse, reach);
-        if (*chosen >= 0 && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
-            remove_point(curve, static_cast<std::uint32_t>(*chosen));
-            *chosen = -1;
+        chosen = point_at(curve, view, mouse, reach);
+        if (chosen >= 0 && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+            remove_point(curve, static_cast<std::uint32_t>(chosen));
+            chosen = -1;
             edit.is_changed = true;
-        } else if (*chosen < 0) {
-            *chosen = add_point(curve, view.x_of(mouse.x), view.y_of(mouse.y), row.range);
-            edit.is_changed = *chosen >= 0;
+        } else if (chosen < 0) {
+            chosen = add_point(curve, view.x_of(mouse.x), view.y_of(mouse.y), row.range);
+            edit.is_changed = chosen >= 0;
         }
-    } else if (ImGui::IsItemActive() && *chosen >= 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left)) {
-        move_point(curve, static_cast<std::uint32_t>(*chosen), view.x_of(mouse.x), view.y_of(mouse.y), row.range);
+    } else if (ImGui::IsItemActive() && chosen >= 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left)) {
+        move_point(curve, static_cast<std::uint32_t>(chosen), view.x_of(mouse.x), view.y_of(mouse.y), row.range);
         edit.is_changed = true;
     }
     if (is_hovered && ImGui::GetIO().MouseWheel != 0 && ImGui::GetIO().KeyCtrl)
-        *span = std::clamp(*span * std::pow(0.8f, ImGui::GetIO().MouseWheel), std::min(1.0f, widest), widest);
-    paint(curve, view, *chosen);
-    if (*chosen >= 0)
-        edit.is_changed |= edit_numbers(curve, static_cast<std::uint32_t>(*chosen), row.range, edit.is_begun);
+        span = std::clamp(span * std::pow(0.8f, ImGui::GetIO().MouseWheel), std::min(1.0f, widest), widest);
+    paint(curve, view, chosen);
+    if (chosen >= 0)
+        edit.is_changed |= edit_numbers(curve, static_cast<std::uint32_t>(chosen), row.range, edit.is_begun);
     ImGui::EndGroup();
+    storage.SetFloat(span_id, span);
+    storage.SetInt(chosen_id, chosen);
     if (edit.is_changed)
         std::ranges::copy(std::bit_cast<std::array<std::uint32_t, sizeof(Curve) / 4>>(curve), words.begin());
     return edit;
