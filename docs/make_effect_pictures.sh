@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Makes docs/pictures/effects/: every effect off and on, for docs/effects.md: docs/make_effect_pictures.sh [DARKROOM
 # [EFFECT ...]]. Without names all are made.
+# docs/pictures/ssao_truth.jpg is of rays that a test traces: DARKROOM_PICTURES=docs/pictures
+# build/bin/darkroom_tests --gtest_filter=SoakGpuSsaoTruth.Strip
 set -euo pipefail
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
 darkroom=${1:-./darkroom}
