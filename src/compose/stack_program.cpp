@@ -52,6 +52,7 @@ plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kern
             .can_filter = [&context](VkFormat format) { return gpu::can_filter(context, format); },
             .loads_are_cheap = context.traits.is_software,
             .has_robust_images = context.traits.has_robust_images,
+            .packing_pays = !context.traits.is_software,
             .max_storage_images = context.traits.max_storage_images,
             .workgroup = gpu::usual_workgroup(context)};
 }

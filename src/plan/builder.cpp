@@ -73,8 +73,7 @@ PassImage Builder::create(const PassImageDesc& desc) {
 }
 
 bool Builder::is_stored(VkFormat format) const {
-    // The software driver gains no time by packing, and its stages give the same bits.
-    if (planner_.traits_.loads_are_cheap) return false;
+    if (!planner_.traits_.packing_pays) return false;
     const auto stage = planner_.traits_.stage_of({.name = "", .outputs = {format}, .is_additive = true});
     return stage && *stage == gpu::Stage::Compute;
 }

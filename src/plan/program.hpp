@@ -186,6 +186,7 @@ struct PlannerTraits {
     std::function<bool(VkFormat)> can_filter{};
     bool loads_are_cheap = false;          ///< see gpu/kernel.hpp
     bool has_robust_images = false;        ///< likewise
+    bool packing_pays = true;              ///< smaller pixels take less time, which no software driver shows
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
     std::array<std::uint32_t, 2> workgroup{16, 8};
 };
