@@ -28,13 +28,6 @@ VkResult create_shader(VkDevice device, const VkShaderModuleCreateInfo* info, co
     return result;
 }
 
-void destroy_shader(VkDevice device, VkShaderModule module, const VkAllocationCallbacks* allocator) {
-    SmallestState& state = smallest();
-    const std::lock_guard lock(state.mutex);
-    state.shaders.erase(module);
-    state.real.DestroyShaderModule(device, module, allocator);
-}
-
 /// Descriptors of a stage or of a set, by what limits them.
 struct Counts {
     std::uint32_t samplers = 0, uniform_buffers = 0, storage_buffers = 0, sampled_images = 0, storage_images = 0;
@@ -138,13 +131,6 @@ VkResult create_set_layout(VkDevice device, const VkDescriptorSetLayoutCreateInf
     const std::lock_guard lock(state.mutex);
     if (result == VK_SUCCESS) state.set_layouts[*layout] = bindings;
     return result;
-}
-
-void destroy_set_layout(VkDevice device, VkDescriptorSetLayout layout, const VkAllocationCallbacks* allocator) {
-    SmallestState& state = smallest();
-    const std::lock_guard lock(state.mutex);
-    state.set_layouts.erase(layout);
-    state.real.DestroyDescriptorSetLayout(device, layout, allocator);
 }
 
 std::string beyond(const VkPipelineLayoutCreateInfo& info) {
@@ -319,9 +305,11 @@ VkResult create_pipelines(VkDevice device, VkPipelineCache cache, std::uint32_t 
 
 void replace_pipelines(Replacements& functions) {
     functions["vkCreateShaderModule"] = as_void(create_shader);
-    functions["vkDestroyShaderModule"] = as_void(destroy_shader);
+    functions["vkDestroyShaderModule"] =
+        as_void(forget<&SmallestState::shaders, &Dispatch::DestroyShaderModule, VkShaderModule>);
     functions["vkCreateDescriptorSetLayout"] = as_void(create_set_layout);
-    functions["vkDestroyDescriptorSetLayout"] = as_void(destroy_set_layout);
+    functions["vkDestroyDescriptorSetLayout"] =
+        as_void(forget<&SmallestState::set_layouts, &Dispatch::DestroyDescriptorSetLayout, VkDescriptorSetLayout>);
     functions["vkCreatePipelineLayout"] = as_void(create_pipeline_layout);
     functions["vkCreateComputePipelines"] =
         as_void(create_pipelines<&Dispatch::CreateComputePipelines, VkComputePipelineCreateInfo>);

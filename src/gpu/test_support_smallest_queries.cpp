@@ -34,8 +34,16 @@ void get_format_properties(VkPhysicalDevice, VkFormat format, VkFormatProperties
 }
 
 void get_memory_properties(VkPhysicalDevice device, VkPhysicalDeviceMemoryProperties* memory) {
-    smallest().real.GetPhysicalDeviceMemoryProperties(device, memory);
+    SmallestState& state = smallest();
+    state.real.GetPhysicalDeviceMemoryProperties(device, memory);
+    const VkPhysicalDeviceMemoryProperties real = *memory;
     limit_memory(*memory);
+    for (std::uint32_t type = 0; type < memory->memoryTypeCount; ++type) {
+        const VkMemoryPropertyFlags wanted = memory->memoryTypes[type].propertyFlags;
+        const auto has_them = [&](const VkMemoryType& there) { return (there.propertyFlags & wanted) == wanted; };
+        const std::span types(real.memoryTypes, real.memoryTypeCount);
+        state.real_types[type] = static_cast<std::uint32_t>(std::ranges::find_if(types, has_them) - types.begin());
+    }
 }
 
 void get_queue_families(VkPhysicalDevice device, std::uint32_t* count, VkQueueFamilyProperties* families) {

@@ -12,9 +12,6 @@ namespace darkroom::gpu::test {
 
 namespace {
 
-/// The driver has one type of memory that does all.
-constexpr std::uint32_t real_memory_type = 0;
-
 VkResult allocate_memory(VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* allocator,
                          VkDeviceMemory* memory) {
     SmallestState& state = smallest();
@@ -32,17 +29,10 @@ VkResult allocate_memory(VkDevice device, const VkMemoryAllocateInfo* info, cons
         return VK_ERROR_TOO_MANY_OBJECTS;
     }
     VkMemoryAllocateInfo real_info = *info;
-    real_info.memoryTypeIndex = real_memory_type;
+    real_info.memoryTypeIndex = state.real_types[info->memoryTypeIndex];
     const VkResult result = state.real.AllocateMemory(device, &real_info, allocator, memory);
     if (result == VK_SUCCESS) state.memories[*memory] = {.type = info->memoryTypeIndex};
     return result;
-}
-
-void free_memory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* allocator) {
-    SmallestState& state = smallest();
-    const std::lock_guard lock(state.mutex);
-    state.memories.erase(memory);
-    state.real.FreeMemory(device, memory, allocator);
 }
 
 VkResult map_memory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
@@ -159,13 +149,6 @@ VkResult create_image(VkDevice device, const VkImageCreateInfo* info, const VkAl
     return result;
 }
 
-void destroy_image(VkDevice device, VkImage image, const VkAllocationCallbacks* allocator) {
-    SmallestState& state = smallest();
-    const std::lock_guard lock(state.mutex);
-    state.images.erase(image);
-    state.real.DestroyImage(device, image, allocator);
-}
-
 VkResult create_view(VkDevice device, const VkImageViewCreateInfo* info, const VkAllocationCallbacks* allocator,
                      VkImageView* view) {
     SmallestState& state = smallest();
@@ -181,13 +164,6 @@ VkResult create_view(VkDevice device, const VkImageViewCreateInfo* info, const V
     const std::lock_guard lock(state.mutex);
     if (result == VK_SUCCESS) state.views[*view] = info->format;
     return result;
-}
-
-void destroy_view(VkDevice device, VkImageView view, const VkAllocationCallbacks* allocator) {
-    SmallestState& state = smallest();
-    const std::lock_guard lock(state.mutex);
-    state.views.erase(view);
-    state.real.DestroyImageView(device, view, allocator);
 }
 
 VkResult create_sampler(VkDevice device, const VkSamplerCreateInfo* info, const VkAllocationCallbacks* allocator,
@@ -214,18 +190,11 @@ VkResult create_sampler(VkDevice device, const VkSamplerCreateInfo* info, const 
     return result;
 }
 
-void destroy_sampler(VkDevice device, VkSampler sampler, const VkAllocationCallbacks* allocator) {
-    SmallestState& state = smallest();
-    const std::lock_guard lock(state.mutex);
-    state.samplers.erase(sampler);
-    state.real.DestroySampler(device, sampler, allocator);
-}
-
 }  // namespace
 
 void replace_resources(Replacements& functions) {
     functions["vkAllocateMemory"] = as_void(allocate_memory);
-    functions["vkFreeMemory"] = as_void(free_memory);
+    functions["vkFreeMemory"] = as_void(forget<&SmallestState::memories, &Dispatch::FreeMemory, VkDeviceMemory>);
     functions["vkMapMemory"] = as_void(map_memory);
     functions["vkGetImageMemoryRequirements"] = as_void(get_image_requirements);
     functions["vkGetBufferMemoryRequirements"] = as_void(get_buffer_requirements);
@@ -233,11 +202,11 @@ void replace_resources(Replacements& functions) {
     functions["vkBindBufferMemory"] = as_void(bind_buffer);
     functions["vkCreateBuffer"] = as_void(create_buffer);
     functions["vkCreateImage"] = as_void(create_image);
-    functions["vkDestroyImage"] = as_void(destroy_image);
+    functions["vkDestroyImage"] = as_void(forget<&SmallestState::images, &Dispatch::DestroyImage, VkImage>);
     functions["vkCreateImageView"] = as_void(create_view);
-    functions["vkDestroyImageView"] = as_void(destroy_view);
+    functions["vkDestroyImageView"] = as_void(forget<&SmallestState::views, &Dispatch::DestroyImageView, VkImageView>);
     functions["vkCreateSampler"] = as_void(create_sampler);
-    functions["vkDestroySampler"] = as_void(destroy_sampler);
+    functions["vkDestroySampler"] = as_void(forget<&SmallestState::samplers, &Dispatch::DestroySampler, VkSampler>);
 }
 
 }  // namespace darkroom::gpu::test

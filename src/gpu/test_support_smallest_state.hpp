@@ -2,6 +2,7 @@
 #pragma once
 // For tests only: what the functions of the smallest device share.
 
+#include <array>
 #include <map>
 #include <mutex>
 #include <set>
@@ -20,6 +21,7 @@ struct SmallestState {
     Dispatch real;  ///< of the driver
     VkPhysicalDeviceLimits limits{};
     LogSink log;
+    std::array<std::uint32_t, 2> real_types{};  ///< the driver's memory type for each of its two
 
     std::mutex mutex;  ///< guards what follows
     std::map<VkImage, VkFormat> images;
@@ -48,6 +50,15 @@ void replace_queries(Replacements& functions);
 void replace_resources(Replacements& functions);
 void replace_pipelines(Replacements& functions);
 void replace_commands(Replacements& functions);
+
+/// Destroys an object, of which no facts are then known.
+template <auto facts, auto destroy, class Object>
+void forget(VkDevice device, Object object, const VkAllocationCallbacks* allocator) {
+    SmallestState& state = smallest();
+    const std::lock_guard lock(state.mutex);
+    (state.*facts).erase(object);
+    (state.real.*destroy)(device, object, allocator);
+}
 
 template <class Function>
 PFN_vkVoidFunction as_void(Function* function) {
