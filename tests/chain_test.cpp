@@ -240,10 +240,10 @@ TEST_F(ChainEverything, IsItsReferencesInThatOrder) {
         const ReferenceImage made = test::develop([&](Composer& stack) { fill_with_everything(stack, is_documented); },
                                                   floor.picture, floor.options());
         // Occlusion chooses pixels to read, and may round to another one than its reference: few pixels then differ by
-        // more than the half floats between kernels explain.
+        // more than the half floats between kernels explain; a GPU's pyramid has fewer bits than those.
         const ReferenceImage expected = references_in_turn(composer, floor, composer.size());
         const double error = mean_codes(made, expected);
-        EXPECT_LE(error, 0.04);
+        EXPECT_LE(error, gpu::test::filter_step() == 0 ? 0.04 : 0.08);
         EXPECT_LE(255 * test::worst_difference(made, expected), 4);
         // Only this order gives this picture, which filtering may hide in part. Volumetric light and the bloom of the
         // scene are both added.
