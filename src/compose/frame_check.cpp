@@ -131,7 +131,7 @@ Result<> check_cascades(const Given& given, const Light& light) {
     const ImageRef& image = *given.image;
     if (auto ok = check_handles(given); !ok) return ok;
     if (light.cascade_count > Light::max_cascades)
-        return user_error(fmt::format("record: frame.lights[{}].cascade_count is {}: allowed is 0 to {}", given.place,
+        return user_error(fmt::format("record: frame.lights[{}].cascade_count is {}: allowed is [0, {}]", given.place,
                                       light.cascade_count, Light::max_cascades));
     if (auto ok = check_state(given, VK_FORMAT_D32_SFLOAT, "for every light"); !ok) return ok;
     if (auto ok = check_region(given); !ok) return ok;
@@ -355,7 +355,7 @@ Result<> check_frame(const plan::Program& program, const CompileDesc& desc, cons
             "record: frame.camera.velocity is not the default: compiled with is_velocity_plain, it must be");
     if (frame.view >= desc.views)
         return user_error(
-            fmt::format("record: frame.view is {}: allowed is 0 to {}, as compiled", frame.view, desc.views - 1));
+            fmt::format("record: frame.view is {}: allowed is [0, {}], as compiled", frame.view, desc.views - 1));
     return {};
 }
 

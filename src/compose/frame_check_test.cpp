@@ -134,7 +134,7 @@ TEST_F(ComposeFrameCheck, EveryFaultNamesImageAndField) {
          },
          "frame.target is 24x17: with a color of"},
         {[](Frame& f, Light&) { f.velocity.layer_count = 2; }, "frame.velocity.layer_count is 2: allowed is 1"},
-        {[](Frame& f, Light&) { f.view = 1; }, "frame.view is 1: allowed is 0 to 0"},
+        {[](Frame& f, Light&) { f.view = 1; }, "frame.view is 1: allowed is [0, 0]"},
         {[](Frame& f, Light&) { f.target.image = f.color.image; }, "frame.color.image is that of frame.target"},
         {[](Frame& f, Light&) { f.ui.image = f.normals.image; }, "frame.ui.image is that of frame.normals"},
         {[](Frame& f, Light& l) { f.depth.image = l.cascades.image; },
@@ -159,7 +159,7 @@ TEST_F(ComposeFrameCheck, EveryFaultNamesImageAndField) {
          "frame.lights[1].cascades.region is 1x1"},
         {[](Frame&, Light& l) { l.cascades.layer_count = 1; },
          "frame.lights[1].cascades.layer_count is 1: allowed is cascade_count = 2 and more"},
-        {[](Frame&, Light& l) { l.cascade_count = 5; }, "frame.lights[1].cascade_count is 5: allowed is 0 to 4"},
+        {[](Frame&, Light& l) { l.cascade_count = 5; }, "frame.lights[1].cascade_count is 5: allowed is [0, 4]"},
     };
     for (const Fault& fault : faults) {
         SCOPED_TRACE(fault.text);

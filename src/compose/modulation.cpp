@@ -26,8 +26,7 @@ Result<> check_pulse(const plan::Entry& entry, const ParamInfo& row, const Pulse
         return user_error(
             fmt::format("{}: the parameter takes {}; allowed is one of numbers", shown, expected_kind(row.kind)));
     if (!(desc.duration > 0 && desc.duration <= longest_pulse))
-        return user_error(
-            fmt::format("{}: duration = {}: allowed is above 0, to {} s", shown, desc.duration, longest_pulse));
+        return user_error(fmt::format("{}: duration = {}: allowed is (0, {}] s", shown, desc.duration, longest_pulse));
     for (const float amount : desc.amount)
         if (!std::isfinite(amount))
             return user_error(fmt::format("{}: amount = {}: allowed are finite numbers", shown, amount));

@@ -206,7 +206,7 @@ TEST_F(ComposeModulation, WhatCannotBeIsRefused) {
               "pulse 'hit' of kinds.on: the parameter takes a boolean; allowed is one of numbers");
     EXPECT_EQ(error(add_pulse("plan", 1)), "kinds has no parameter 'plan', did you mean 'plain'?");
     EXPECT_EQ(error(add_pulse("plain", 1, Envelope::Linear, 0)),
-              "pulse 'hit' of kinds.plain: duration = 0: allowed is above 0, to 3600 s");
+              "pulse 'hit' of kinds.plain: duration = 0: allowed is (0, 3600] s");
     EXPECT_NE(error(add_pulse("plain", std::numeric_limits<float>::quiet_NaN())), "done");
     EXPECT_NE(error(add_layer("a", "plain", words_of(11.0f))), "done");
     EXPECT_EQ(error(add_layer("a", "opacity", words_of(2.0f))), "layer 'a': kinds.opacity: allowed is [0, 1]");

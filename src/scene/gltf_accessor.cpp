@@ -178,7 +178,7 @@ Result<> Document::add_sparse(const tinygltf::Accessor& accessor, const std::str
         const std::uint32_t index = read_unsigned(indices->data() + i * index_size, layout.sparse_type);
         if (index < next || index >= layout.count)
             return wrong("indices",
-                         fmt::format("number {} is {}, allowed is {} to {}", i, index, next, layout.count - 1));
+                         fmt::format("number {} is {}, allowed is [{}, {}]", i, index, next, layout.count - 1));
         next = std::size_t{index} + 1;
     }
     layout.sparse_indices = *indices;
