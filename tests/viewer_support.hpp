@@ -4,7 +4,9 @@
 // keys, and read what it says: a line on standard output for what a key did, an error on standard error.
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,7 +24,7 @@ namespace darkroom::test {
 class Process {
   public:
     Process(const std::vector<std::string>& command, const std::filesystem::path& out, const std::filesystem::path& err,
-            const std::filesystem::path& folder, int inherited = -1) {
+            const std::filesystem::path& folder, int inherited = -1, int input = -1) {
         id_ = fork();
         if (id_ != 0) return;
         const auto open_as = [](const std::filesystem::path& path, int as) {
@@ -33,6 +35,7 @@ class Process {
         open_as(out, STDOUT_FILENO);
         open_as(err, STDERR_FILENO);
         if (inherited >= 0) fcntl(inherited, F_SETFD, 0);
+        if (input >= 0) dup2(input, STDIN_FILENO);
         std::vector<char*> arguments;
         for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
         arguments.push_back(nullptr);
@@ -95,6 +98,7 @@ class ViewerFixture : public CliFixture {
     }
     void TearDown() override {
         viewer_.reset();
+        close(commands_);
         manager_.reset();
         display_.reset();
         unsetenv("DISPLAY");
@@ -104,7 +108,12 @@ class ViewerFixture : public CliFixture {
     /// Starts the program, and waits for its window.
     void start(std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), program);
-        viewer_ = std::make_unique<Process>(arguments, path("out.txt"), path("err.txt"), path(""));
+        arguments.push_back("--commands");
+        std::array<int, 2> ends{};
+        ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
+        close(std::exchange(commands_, ends[0]));
+        viewer_ = std::make_unique<Process>(arguments, path("out.txt"), path("err.txt"), path(""), -1, ends[1]);
+        close(ends[1]);
         const bool is_open = wait_until(
             [&] {
                 window_ = answer("xdotool search --onlyvisible --name Darkroom");
@@ -126,6 +135,38 @@ class ViewerFixture : public CliFixture {
     }
     [[nodiscard]] bool wait_for(const std::string& line) {
         return wait_until([&] { return count(line) > 0; }, 120);
+    }
+    /// Tells the console, on standard input.
+    void command(const std::string& text) const {
+        const std::string line = text + '\n';
+        ASSERT_EQ(send(commands_, line.data(), line.size(), MSG_NOSIGNAL), static_cast<ssize_t>(line.size()));
+    }
+    /// Where a widget of edit lies in the window: left, top, right, bottom.
+    [[nodiscard]] std::array<int, 4> place(const std::string& name) const {
+        std::array<int, 4> out{};
+        std::istringstream numbers(ask("places " + name, "place " + name + " "));
+        for (int& number : out) numbers >> number;
+        return out;
+    }
+    /// Presses the mouse's first button there, moves it to another place, and lets it go: a click where both are one.
+    /// Each step waits for the frame that has seen it.
+    void drag(std::array<int, 2> from, std::array<int, 2> to) const {
+        const auto act = [&](const std::string& what, const char* button, std::array<int, 2> at) {
+            ASSERT_EQ(shell("xdotool " + what), 0);
+            (void)ask("places mouse/", fmt::format("place mouse/{} {} {} ", button, at[0], at[1]));
+        };
+        const auto move = [&](const char* button, std::array<int, 2> at) {
+            act(fmt::format("mousemove --window {} {} {}", window_, at[0], at[1]), button, at);
+        };
+        move("up", from);
+        act("mousedown 1", "down", from);
+        if (to != from) move("down", {(from[0] + to[0]) / 2, (from[1] + to[1]) / 2});
+        if (to != from) move("down", to);
+        act("mouseup 1", "up", to);
+    }
+    void click(const std::string& name) const {
+        const auto [left, top, right, bottom] = place(name);
+        drag({(left + right) / 2, (top + bottom) / 2}, {(left + right) / 2, (top + bottom) / 2});
     }
     /// Stores the picture, and reads it.
     [[nodiscard]] Picture shot() {
@@ -171,10 +212,27 @@ class ViewerFixture : public CliFixture {
     [[nodiscard]] Process& viewer() { return *viewer_; }
 
   private:
+    /// Asks the console until an answer begins so, and returns the rest of its line.
+    [[nodiscard]] std::string ask(const std::string& question, const std::string& begin) const {
+        const std::size_t before = said().size();
+        std::string answer;
+        const bool is_told = wait_until(
+            [&] {
+                command(question);
+                const std::string text = said();
+                const std::size_t at = text.find(begin, before);
+                if (at != std::string::npos) answer = text.substr(at + begin.size(), text.find('\n', at) - at);
+                return at != std::string::npos;
+            },
+            60);
+        EXPECT_TRUE(is_told) << begin << " is not in " << said() << complained();
+        return answer;
+    }
     [[nodiscard]] static bool has(const std::string& name) { return shell("command -v " + name) == 0; }
 
     std::unique_ptr<Process> display_, manager_, viewer_;
     std::string window_;
+    int commands_ = -1;  ///< the viewer's standard input
 };
 
 }  // namespace darkroom::test

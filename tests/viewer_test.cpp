@@ -125,6 +125,47 @@ TEST_F(CliViewer, EditsAreUndoneSavedAndReadAgain) {
     EXPECT_EQ(difference(before, shot()), 0) << "a broken one leaves the last good state";
 }
 
+TEST_F(CliViewer, SlidersAndTheOrderOfTheStackFollowTheMouse) {
+    const std::string text =
+        "[[stack]]\neffect = \"bloom\"\nintensity = 0.2  # slid\n\n"
+        "[[stack]]\neffect = \"exposure\"\nexposure = 0.4\n\n[[stack]]\neffect = \"tonemap\"\n";
+    const std::string look = write("my.toml", text);
+    start({"edit", scenes + "showcase.scene.toml", "--look", look, "--size", "1280x720"});
+    press("p", "P pause: on");
+    const Picture before = shot();
+    click("stack/bloom");
+    const auto [left, top, right, bottom] = place("bloom.intensity");
+    const int middle = (top + bottom) / 2;
+    drag({left + (right - left) / 2, middle}, {right - 8, middle});
+    const Picture slid = shot();
+    EXPECT_GT(difference(before, slid), 0) << "the slider moves the value";
+    const std::array<int, 4> first = place("stack/exposure"), last = place("stack/tonemap");
+    drag({first[0] + 20, (first[1] + first[3]) / 2}, {last[0] + 20, last[3] - 4});
+    EXPECT_TRUE(wait_until([&] { return difference(slid, shot()) > 0; }, 60))
+        << "exposure after the curve is another picture";
+    press("Escape", "not saved: once more to leave");
+    press("ctrl+s", "saved my.toml");
+    const std::string saved = content(look);
+    const std::size_t tonemap = saved.find("tonemap"), exposure = saved.find("exposure");
+    EXPECT_TRUE(tonemap < exposure && exposure != std::string::npos) << saved;
+    EXPECT_NE(saved.find("  # slid"), std::string::npos) << saved;
+    EXPECT_EQ(saved.find("intensity = 0.2 "), std::string::npos) << saved;
+    leave();
+}
+
+TEST_F(CliViewer, ObeysStandardInput) {
+    start({"edit", scenes + "showcase.scene.toml", "--size", "320x180"});
+    press("p", "P pause: on");
+    const Picture before = shot();
+    command("exposure.exposure 3\nexposure.exposure");
+    ASSERT_TRUE(wait_for("\"exposure.exposure\" is \"3\"")) << said() << complained();
+    EXPECT_GT(difference(before, shot()), 0);
+    press("ctrl+z", "undo: exposure.exposure 3");
+    command(std::string(600, 'x'));
+    EXPECT_TRUE(wait_until([&] { return complained().find("longer than 512 characters") != std::string::npos; }, 60));
+    press("ctrl+z", "nothing to undo");
+}
+
 TEST_F(CliViewer, SurvivesAStormOfSizes) {
     start({"play", scenes + "showcase.scene.toml", "--size", "320x180", "--paused"});
     constexpr int sizes = 200;

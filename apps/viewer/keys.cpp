@@ -36,7 +36,7 @@ constexpr std::array table{
     Key{GLFW_KEY_F, 0, KeyAction::FrameAll, "F", "looks at everything", false, true},
     Key{GLFW_KEY_V, 0, KeyAction::CameraKind, "V", "the camera orbits, or flies", false, true},
     Key{GLFW_KEY_B, 0, KeyAction::Compare, "B", "compares two looks at a divider", false, true},
-    Key{GLFW_KEY_ESCAPE, 0, KeyAction::Leave, "Esc", "frees the mouse, then leaves"},
+    Key{GLFW_KEY_ESCAPE, 0, KeyAction::Leave, "Esc", "frees the mouse, then leaves; twice where edits would be lost"},
 };
 
 }  // namespace

@@ -54,6 +54,10 @@ void ViewFlags::add_to(CLI::App& command, bool is_edit, std::span<const darkroom
     command.add_option("--window-screenshot", window_screenshot_, "The same of the window, with all that lies over it")
         ->type_name("OUT")
         ->group(group);
+    command
+        .add_flag("--commands", obeys_input_,
+                  "Obeys the console's commands from standard input, a line each, and prints what they answer")
+        ->group(group);
     command.add_flag("--help-keys", asks_for_keys_, "What keys and mouse do")->group(group);
     if (is_edit) command.add_flag("--auto-orbit", turns_, "The camera goes round by itself")->group(group);
     const std::string frame_group = "A stored frame";
@@ -155,6 +159,7 @@ Result<> ViewFlags::read_window(ViewerJob& job) const {
     job.device = device_.name();
     job.turns = turns_;
     job.is_paused = is_paused_;
+    job.obeys_input = obeys_input_;
     const std::string subject = (job.scene.empty() ? job.frames.front() : job.scene).filename().string();
     job.window = {.title = fmt::format("{} - Darkroom", printable(subject)),
                   .size = job.scene_desc.render.extent,

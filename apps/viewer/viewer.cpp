@@ -75,7 +75,7 @@ Result<> Viewer::open() {
     camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
     interface_ = std::make_unique<LiveInterface>(
         *device_, is_fixed(), frames_in_flight,
-        [this](darkroom::Severity, std::string_view line) { screen_.print(std::string(line)); });
+        [this](darkroom::Severity, std::string_view line) { print(std::string(line)); });
     const Result<LookView*> look = view(Side::Look);
     if (!look) return failure(look.error());
     if (Result<> done = start_interface(); !done) return done;
@@ -243,6 +243,7 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .inspection = inspection_ ? &*inspection_ : nullptr});
     list_places();
     for (const std::string& command : screen_.take_commands()) run_command(command);
+    obey_input();
     EditPanels* const panels = screen_.panels();
     if (panels == nullptr) return;
     if (panels->take_pause()) is_paused_ = !is_paused_;

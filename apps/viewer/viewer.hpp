@@ -38,8 +38,9 @@ struct ViewerJob {
     std::string device;  ///< as in DeviceDesc
     darkroom::window::WindowDesc window;
     darkroom::window::Presentation presentation = darkroom::window::Presentation::Vsync;
-    bool turns = false;      ///< the camera goes round by itself
-    bool is_paused = false;  ///< the time stands still at first
+    bool turns = false;        ///< the camera goes round by itself
+    bool is_paused = false;    ///< the time stands still at first
+    bool obeys_input = false;  ///< lines of standard input are the console's commands
 
     /// For tests and pictures: so many frames, `step` seconds apart, then it ends.
     std::optional<std::uint64_t> frames_to_show;

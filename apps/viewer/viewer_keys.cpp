@@ -2,9 +2,9 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <imgui.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "edit/edits.hpp"
 #include "report.hpp"
@@ -158,19 +158,32 @@ void Viewer::tell(std::string line) {
     screen_.tell(std::move(line));
 }
 
-// For programs that move the mouse: widgets and their corners in the window. They are noted from the first question on,
-// so the answer is of the frame after it.
+void Viewer::print(std::string line) {
+    if (job_.obeys_input) answer(line);
+    screen_.print(std::move(line));
+}
+
+// For programs that move the mouse: widgets and their corners in the window, and the mouse itself as the frame has it.
+// Widgets are noted from the first question on, so the answer is of the frame after it.
 void Viewer::list_places() {
-    if (!places_ || screen_.panels() == nullptr || screen_.panels()->look().places().empty()) return;
+    EditPanels* const panels = screen_.panels();
+    if (!places_ || (panels != nullptr && panels->look().places().empty())) return;
     const std::string name = *std::exchange(places_, std::nullopt);
-    for (const auto& [shown, place] : screen_.panels()->look().places()) {
-        if (!shown.starts_with(name)) continue;
-        const std::string line = fmt::format("place {} {:.0f} {:.0f} {:.0f} {:.0f}", shown, place.least.x,
-                                             place.least.y, place.most.x, place.most.y);
-        fmt::print("{}\n", line);
-        screen_.print(line);
-    }
-    std::fflush(stdout);
+    const auto list = [&](std::string_view shown, ImVec2 least, ImVec2 most) {
+        if (shown.starts_with(name))
+            print(fmt::format("place {} {:.0f} {:.0f} {:.0f} {:.0f}", shown, least.x, least.y, most.x, most.y));
+    };
+    if (panels != nullptr)
+        for (const auto& [shown, place] : panels->look().places()) list(shown, place.least, place.most);
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsMousePosValid()) list(io.MouseDown[0] ? "mouse/down" : "mouse/up", io.MousePos, io.MousePos);
+}
+
+void Viewer::obey_input() {
+    if (!job_.obeys_input) return;
+    const Result<std::vector<std::string>> lines = input_.take();
+    if (!lines) return screen_.tell_error("input", lines.error().text);
+    for (const std::string& line : *lines) run_command(line);
 }
 
 // The console sets values of the Composer; they are the document's, too, as one step.

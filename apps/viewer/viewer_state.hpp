@@ -13,6 +13,7 @@
 #include "edit/document.hpp"
 #include "gui.hpp"
 #include "keys.hpp"
+#include "line_input.hpp"
 #include "live_interface.hpp"
 #include "look_view.hpp"
 #include "screen.hpp"
@@ -59,6 +60,9 @@ class Viewer {
     /// At the second time, where something would be lost.
     void leave();
     void run_command(const std::string& command);
+    void obey_input();
+    /// What the console prints.
+    void print(std::string line);
     /// In the window, and on standard output.
     void tell(std::string line);
     void list_places();
@@ -108,6 +112,7 @@ class Viewer {
     darkroom::edit::Watch source_files_;
     std::future<darkroom::Result<std::unique_ptr<SceneSource>>> coming_;  ///< the scene, read again
     std::pair<std::string, std::vector<std::string>> interface_files_;    ///< document and controllers, as it started
+    LineInput input_;
     std::optional<std::string> places_;                  ///< widgets that were asked for, by how their names begin
     Clock::time_point sure_until_{};                     ///< who leaves again before then means it
     std::uint64_t shown_frames_ = 0, frame_number_ = 0;  ///< so far; of the one that is recorded, in the presenter
