@@ -115,8 +115,7 @@ Result<> Renderer::State::create() {
     settings = {.output = desc.output,
                 .environment = scene->surroundings,
                 .irradiance = scene->environment.irradiance,
-                .environment_levels = scene->environment.levels,
-                .has_environment = scene->environment.is_given};
+                .environment_levels = scene->environment.levels};
     apply(desc.draw);
     if (desc.output == Output::Hdr) {
         Result<> made = take(Resolve::create(*context, formats(), desc.frames_in_flight), resolve);
@@ -186,7 +185,7 @@ Result<> Renderer::State::create_passes() {
                           .output = desc.output,
                           .is_tone_mapped = desc.is_tone_mapped,
                           .shadow_maps = maps,
-                          .has_environment = settings.has_environment};
+                          .has_environment = scene->environment.is_given};
     meshes = MeshPass::create(*context, setup, scene->meshes);
     if (made = take(SkyPass::create(*context, setup), sky); !made) return made;
     return take(BillboardPass::create(*context, setup, scene->meshes), billboards);

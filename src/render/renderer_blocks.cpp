@@ -62,7 +62,7 @@ blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& 
         uvec4(directional_lights(snapshot).size(), lights_of(snapshot, LightType::Point, most_point_lights).size(),
               lights_of(snapshot, LightType::Spot, most_spot_lights).size(), 0);
     block.modes = uvec4(static_cast<std::uint32_t>(settings.output), settings.is_tone_mapped ? 1 : 0,
-                        static_cast<std::uint32_t>(settings.debug), settings.has_environment ? 1 : 0);
+                        static_cast<std::uint32_t>(settings.debug), 0);
     block.ambient_sky = vec4(environment.ambient_color.value_or(default_sky) * environment.ambient_intensity, 0);
     block.ambient_ground = vec4(environment.ambient_color.value_or(default_ground) * environment.ambient_intensity, 0);
     block.background = vec4(environment.background, 1);

@@ -21,7 +21,6 @@ struct FrameSettings {
     scene::Environment environment;
     std::array<scene::vec3, 9> irradiance{};
     std::uint32_t environment_levels = 1;
-    bool has_environment = false;
 };
 
 [[nodiscard]] blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& settings);

@@ -18,6 +18,7 @@ gpu::PipelineDesc sky_desc(const PassSetup& setup) {
             .vertex = shader_text("sky_vertex.glsl"),
             .fragment = shader_text("sky_fragment.glsl"),
             .sets = {setup.frame_layout},
+            .specialization = {setup.has_environment ? 1U : 0U, static_cast<std::uint32_t>(setup.output)},
             .colors = setup.formats.colors(opaque, TargetFormats::Layers::Written),
             .depth = setup.formats.depth,
             .samples = setup.formats.samples,

@@ -66,12 +66,17 @@ class Stage {
                                                 gpu::Memory::Kind::Upload, "frame block"));
         sets = must(gpu::DescriptorSets::create(context, {&frame_layout.handle, 1}));
         write_descriptors();
-        frame.modes = {static_cast<std::uint32_t>(Output::Hdr), 0, 0, environment.is_given ? 1 : 0};
+        frame.modes = {static_cast<std::uint32_t>(Output::Hdr), 0, 0, 0};
         frame.environment_settings = {1, static_cast<float>(environment.levels - 1), 0, 0};
         for (std::size_t i = 0; i < 9; ++i) frame.irradiance[i] = vec4(environment.irradiance[i], 0);
     }
 
-    [[nodiscard]] PassSetup setup() const { return {.frame_layout = frame_layout.handle, .formats = formats}; }
+    [[nodiscard]] PassSetup setup() const {
+        return {.frame_layout = frame_layout.handle,
+                .formats = formats,
+                .output = formats.has_layers ? Output::Hdr : Output::Display,
+                .has_environment = environment.is_given};
+    }
     [[nodiscard]] float aspect() const { return static_cast<float>(extent.width) / static_cast<float>(extent.height); }
 
     void look(const scene::CameraState& state) {
