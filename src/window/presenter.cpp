@@ -14,6 +14,8 @@ namespace darkroom::window {
 namespace {
 
 constexpr std::uint64_t forever = std::numeric_limits<std::uint64_t>::max();
+/// Swapchains that may wait to be freed. More: the window changes and shows nothing, and the device is waited for.
+constexpr std::size_t most_retired = 8;
 /// Of one attempt to get an image: a surface that nobody looks at may give none.
 constexpr std::uint64_t patience = 100'000'000;  // nanoseconds
 
@@ -120,6 +122,8 @@ struct Presenter::State {
     void retire();
     void destroy(Swapchain& swapchain);
     void free_retired();
+    void free_all_retired();
+    Result<> replace_surface();
     Result<> wait_for(std::uint64_t finished);
     Result<std::optional<PresentFrame>> begin(VkExtent2D window);
     void change_layout(VkImageLayout from, VkImageLayout to) const;
@@ -137,8 +141,8 @@ struct Presenter::State {
     VkSurfaceFormatKHR format{};
     bool can_copy = false;
     Swapchain swapchain;
-    VkExtent2D asked{};  ///< for which the swapchain was made
-    bool is_stale = true;
+    VkExtent2D asked{};                     ///< for which the swapchain was made
+    bool is_stale = true, is_lost = false;  ///< the swapchain, the surface
     struct Retired {
         Swapchain swapchain;
         std::uint64_t last_frame = 0;  ///< that may use it
@@ -310,7 +314,26 @@ void Presenter::State::free_retired() {
         destroy(retired.front().swapchain);
         retired.pop_front();
     }
+    if (retired.size() > most_retired) free_all_retired();
     counters.retired = retired.size();
+}
+
+void Presenter::State::free_all_retired() {
+    {
+        const std::lock_guard lock(context->queue_mutex);
+        context->vk.DeviceWaitIdle(context->device);
+    }
+    for (Retired& old : retired) destroy(old.swapchain);
+    retired.clear();
+}
+
+// Nothing of it may be left before it goes.
+Result<> Presenter::State::replace_surface() {
+    retire();
+    free_all_retired();
+    vk.DestroySurfaceKHR(context->instance, std::exchange(surface, VK_NULL_HANDLE), nullptr);
+    is_lost = false;
+    return make_surface();
 }
 
 Result<> Presenter::State::wait_for(std::uint64_t count) {
@@ -329,8 +352,8 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
         if (Result<> done = wait_for(next - in_flight + 1); !done) return failure(std::move(done));
     free_retired();
     const bool is_resized = window.width != asked.width || window.height != asked.height;
-    VkResult result = VK_SUCCESS;
-    if (is_stale || is_resized) result = make_swapchain(window);
+    VkResult result = is_lost ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS;
+    if (!is_lost && (is_stale || is_resized)) result = make_swapchain(window);
     const Slot& slot = slots[next % in_flight];
     if (result == VK_SUCCESS)
         result = vk.AcquireNextImageKHR(context->device, swapchain.handle, patience, slot.is_acquired, VK_NULL_HANDLE,
@@ -347,16 +370,9 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
         case VK_NOT_READY:
         case VK_TIMEOUT:
             return std::nullopt;
-        case VK_ERROR_SURFACE_LOST_KHR: {
-            // Nothing of it may be left before the surface goes.
-            if (Result<> done = wait_for(next); !done) return failure(std::move(done));
-            retire();
-            for (Retired& old : retired) destroy(old.swapchain);
-            retired.clear();
-            vk.DestroySurfaceKHR(context->instance, std::exchange(surface, VK_NULL_HANDLE), nullptr);
-            if (Result<> done = make_surface(); !done) return failure(std::move(done));
+        case VK_ERROR_SURFACE_LOST_KHR:
+            if (Result<> done = replace_surface(); !done) return failure(std::move(done));
             return std::nullopt;
-        }
         default:
             return failure(check(result, "getting a picture of the window"));
     }
@@ -433,6 +449,7 @@ Result<> Presenter::State::end() {
     result = vk.QueuePresentKHR(context->queue, &present);
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_SURFACE_LOST_KHR) {
         is_stale = true;
+        is_lost = result == VK_ERROR_SURFACE_LOST_KHR;
         return {};
     }
     return check(result, "showing a frame");
