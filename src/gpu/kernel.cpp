@@ -20,13 +20,20 @@ VkShaderStageFlagBits stage_flag(Stage stage) {
     return stage == Stage::Compute ? VK_SHADER_STAGE_COMPUTE_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
 }
 
+/// Vertices may read the blocks for the pixels: gpu/flat_values.hpp.
+VkShaderStageFlags block_stages(const KernelSpec& spec, Stage stage) {
+    const VkShaderStageFlags own = stage_flag(stage);
+    return stage == Stage::Raster && spec.loads_are_cheap ? own | VK_SHADER_STAGE_VERTEX_BIT : own;
+}
+
 std::vector<VkDescriptorSetLayoutBinding> layout_bindings(const KernelSpec& spec, Stage stage) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     const auto add = [&](std::uint32_t binding, VkDescriptorType type) {
+        const bool is_block = type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
         bindings.push_back({.binding = binding,
                             .descriptorType = type,
                             .descriptorCount = 1,
-                            .stageFlags = static_cast<VkShaderStageFlags>(stage_flag(stage))});
+                            .stageFlags = is_block ? block_stages(spec, stage) : stage_flag(stage)});
     };
     if (!spec.frame.empty()) add(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
     add(1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);

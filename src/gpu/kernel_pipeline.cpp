@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "gpu/context.hpp"
+#include "gpu/flat_values.hpp"
 #include "gpu/resources.hpp"
 #include "gpu/shader.hpp"
 
@@ -58,7 +59,13 @@ class ShaderModule {
     VkShaderModule handle_ = VK_NULL_HANDLE;
 };
 
-Result<std::vector<std::uint32_t>> full_screen_vertex(Context& context) {
+Result<std::vector<std::uint32_t>> full_screen_vertex(Context& context, const KernelSpec& spec,
+                                                      std::span<const std::uint32_t> fragment) {
+    const auto values = flat_values(spec, Stage::Raster);
+    if (values && reads_flat_inputs(fragment))
+        return context.shaders->compile({.name = "full-screen triangle with values",
+                                         .text = flat_vertex_source(spec, *values),
+                                         .stage = ShaderStage::Vertex});
     const std::lock_guard lock(context.full_screen_mutex);
     if (!context.full_screen_vertex.empty()) return context.full_screen_vertex;
     Result<std::vector<std::uint32_t>> words = context.shaders->compile(
@@ -89,8 +96,8 @@ Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& s
 }
 
 Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& spec, VkPipelineLayout layout,
-                                          const ShaderModule& fragment) {
-    const Result<std::vector<std::uint32_t>> words = full_screen_vertex(context);
+                                          std::span<const std::uint32_t> fragment_words, const ShaderModule& fragment) {
+    const Result<std::vector<std::uint32_t>> words = full_screen_vertex(context, spec, fragment_words);
     if (!words) return failure(words.error());
     const Result<ShaderModule> vertex = ShaderModule::create(context, *words, "full-screen triangle");
     if (!vertex) return failure(vertex.error());
@@ -179,7 +186,7 @@ Result<VkPipeline> create_kernel_pipeline(Context& context, const KernelSpec& sp
     const Result<ShaderModule> module = ShaderModule::create(context, *words, spec.name);
     if (!module) return failure(module.error());
     Result<VkPipeline> made = is_compute ? create_compute_pipeline(context, spec, layout, *module)
-                                         : create_raster_pipeline(context, spec, layout, *module);
+                                         : create_raster_pipeline(context, spec, layout, *words, *module);
     if (!made) return made;
     ++context.pipelines_created;
     name_object(context, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(*made), spec.name);

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/assert.hpp"
+#include "gpu/flat_values.hpp"
 #include "gpu/formats.hpp"
 #include "gpu/kernel.hpp"
 #include "gpu/rewrite.hpp"
@@ -16,14 +17,9 @@ namespace {
 constexpr std::array<std::string_view, 6> image_functions{"sample_linear", "load",         "load_clamped",
                                                           "gather_red",    "gather_green", "size"};
 constexpr std::uint32_t first_image_binding = 2;
-constexpr std::uint32_t vectors_of_output = 2;
-constexpr std::uint32_t vectors_per_image = 3;
 
 /// Words of the own block before its members.
-std::uint32_t first_member_word(const KernelSpec& spec) {
-    return 4 * (vectors_of_output + vectors_per_image * static_cast<std::uint32_t>(spec.images.size()) +
-                spec.custom_vectors);
-}
+std::uint32_t first_member_word(const KernelSpec& spec) { return 4 * first_member_vector(spec); }
 
 constexpr std::string_view preamble = R"(#version 460
 #extension GL_GOOGLE_cpp_style_line_directive : require
@@ -61,7 +57,11 @@ bool is_plain_2d(std::string_view sampler_type) {
     return sampler_type == "sampler2D" || sampler_type == "usampler2D" || sampler_type == "isampler2D";
 }
 
-void write_blocks(Text text, const KernelSpec& spec, const BlockSource& own) {
+void write_blocks(Text text, const KernelSpec& spec, Stage stage, const BlockSource& own) {
+    if (const auto values = flat_values(spec, stage)) {
+        fmt::format_to(text, "{}", flat_inputs(spec, *values));
+        return;
+    }
     if (!spec.frame.empty()) {
         fmt::format_to(text, "layout(std140, set = 0, binding = 0) uniform DarkroomFrame {{\n{}}};\n",
                        block_source(spec.frame, 0).members);
@@ -281,7 +281,7 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
                    "const bool input_is_twice = {};\nconst bool rays_meet = {};\n",
                    spec.loads_are_cheap, spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.rays_meet);
     const BlockSource own = block_source(spec.members, first_member_word(spec));
-    write_blocks(text, spec, own);
+    write_blocks(text, spec, stage, own);
     source += pixel_functions;
     std::vector<std::string_view> names;
     for (const KernelImage& image : spec.images) {
