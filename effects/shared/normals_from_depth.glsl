@@ -1,27 +1,11 @@
 // SPDX-License-Identifier: MIT
-// View-space normals from planar distance: of each axis the neighbour that differs less, so that edges do not bend them.
-// custom[0], custom[1].xy: RayConstants of the frame's pixels; custom[1].z: 1 where a pixel here is the first of 2 x 2.
-
-// The difference to the neighbour taken, and that one's distance. At the picture's edge there is one neighbour only.
-vec2 shared_step(float before, float here, float after, bool is_first, bool is_last) {
-    bool takes_after = is_first || (!is_last && abs(after - here) < abs(here - before));
-    return takes_after ? vec2(after - here, after) : vec2(here - before, before);
-}
+// View-space normals of the pixels of shared_linear_depth.
+#include "shared/normal_of_distances.glsl"
 
 vec4 shade(Pixel pixel) {
-    ivec2 texel = pixel.texel << int(custom[1].z), last = size(shared_linear_depth) - 1;
+    ivec2 texel = pixel.texel, last = size(shared_linear_depth) - 1;
     ivec2 low = max(texel - 1, ivec2(0)), high = min(texel + 1, last);
-    float here = load(shared_linear_depth, texel).r;
-    vec2 x = shared_step(load(shared_linear_depth, ivec2(low.x, texel.y)).r, here,
-                         load(shared_linear_depth, ivec2(high.x, texel.y)).r, texel.x == 0, texel.x == last.x);
-    vec2 y = shared_step(load(shared_linear_depth, ivec2(texel.x, low.y)).r, here,
-                         load(shared_linear_depth, ivec2(texel.x, high.y)).r, texel.y == 0, texel.y == last.y);
-    // Of positions, each (ray * distance + flat, -distance), with ray and flat linear in the pixel.
-    vec2 ray = vec2(texel) * custom[0].xy + custom[0].zw;
-    vec3 along_x = vec3(ray.x * x.x + custom[0].x * x.y + custom[1].x, ray.y * x.x, -x.x);
-    vec3 along_y = vec3(ray.x * y.x, ray.y * y.x + custom[0].y * y.y + custom[1].y, -y.x);
-    // v runs down, so this order faces the camera.
-    vec3 normal = cross(along_y, along_x);
-    float squared = dot(normal, normal);
-    return vec4(squared > 0.0 ? normal * inversesqrt(squared) : vec3(0.0, 0.0, 1.0), 0.0);
+    vec4 around = vec4(load(shared_linear_depth, ivec2(low.x, texel.y)).r, load(shared_linear_depth, ivec2(texel.x, low.y)).r,
+                       load(shared_linear_depth, ivec2(high.x, texel.y)).r, load(shared_linear_depth, ivec2(texel.x, high.y)).r);
+    return shared_normal(texel, last, load(shared_linear_depth, texel).r, around);
 }

@@ -7,4 +7,8 @@ float planar_distance(float depth, vec4 distance, float sky) {
     float planar = (depth * distance.x + distance.y) / (depth * distance.z + distance.w);
     return depth == sky ? 1e10 : max(min(planar, 1e10), 0.0);
 }
+vec4 planar_distance(vec4 depth, vec4 distance, float sky) {
+    vec4 planar = (depth * distance.x + distance.y) / (depth * distance.z + distance.w);
+    return mix(max(min(planar, 1e10), 0.0), vec4(1e10), equal(depth, vec4(sky)));
+}
 #endif

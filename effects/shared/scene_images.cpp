@@ -53,29 +53,45 @@ PassImage make_velocity(PassBuilder& builder) {
 }
 
 template <NormalSource source, std::uint32_t step>
-void normal_constants(const void*, const PassContext& context, std::span<PassVector> out) {
-    constexpr float shift = step == 1 ? 0 : 1;
+void normal_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     if (source == NormalSource::Image) {
-        out[0] = {shift, 0, 0, 0};
+        out[0] = {step == 1 ? 0.0f : 1.0f, 0, 0, 0};
         return;
     }
     const auto [ray, flat] = ray_constants(*context.camera, context.frame_extent, 1);
     out[0] = ray;
-    out[1] = {flat[0], flat[1], shift, 0};
+    out[1] = flat;
+    if (step == 2) depth_vectors(parameters, context, out.subspan(2));
 }
 
-template <NormalSource source, std::uint32_t step>
-PassImage make_normals(PassBuilder& builder) {
-    constexpr bool is_given = source == NormalSource::Image;
+template <std::uint32_t step>
+PassImage make_given_normals(PassBuilder& builder) {
     const char* const name = step == 1 ? "view normals" : "half view normals";
-    const PassImage input = is_given ? builder.frame_image(FrameImage::Normals) : linear_depth(builder);
     return builder.add(
         {.name = name,
-         .shader = is_given ? "shared/view_normals.glsl" : "shared/normals_from_depth.glsl",
-         .inputs = {{.name = is_given ? "shared_normals" : "shared_linear_depth", .image = input, .is_loaded = true}},
+         .shader = "shared/view_normals.glsl",
+         .inputs = {{.name = "shared_normals", .image = builder.frame_image(FrameImage::Normals), .is_loaded = true}},
          .output = builder.create({.name = name, .denominator = step}),
-         .custom_vectors = is_given ? 1u : 2u,
-         .constants = normal_constants<source, step>});
+         .custom_vectors = 1,
+         .constants = normal_constants<NormalSource::Image, step>});
+}
+
+PassImage make_normals(PassBuilder& builder) {
+    return builder.add({.name = "view normals",
+                        .shader = "shared/normals_from_depth.glsl",
+                        .inputs = {{.name = "shared_linear_depth", .image = linear_depth(builder), .is_loaded = true}},
+                        .output = builder.create({.name = "view normals"}),
+                        .custom_vectors = 2,
+                        .constants = normal_constants<NormalSource::Depth, 1>});
+}
+
+PassImage make_half_normals(PassBuilder& builder) {
+    return builder.add({.name = "half view normals",
+                        .shader = "shared/half_normals_from_depth.glsl",
+                        .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth)}},
+                        .output = builder.create({.name = "half view normals", .denominator = 2}),
+                        .custom_vectors = 4,
+                        .constants = normal_constants<NormalSource::Depth, 2>});
 }
 
 }  // namespace
@@ -125,15 +141,13 @@ PassImage velocity(PassBuilder& builder, ConditionFunction condition) {
 }
 
 PassImage view_normals(PassBuilder& builder, NormalSource source, ConditionFunction condition) {
-    if (source == NormalSource::Image)
-        return builder.shared("view normals", make_normals<NormalSource::Image, 1>, condition);
-    return builder.shared("view normals from depth", make_normals<NormalSource::Depth, 1>, condition);
+    if (source == NormalSource::Image) return builder.shared("view normals", make_given_normals<1>, condition);
+    return builder.shared("view normals from depth", make_normals, condition);
 }
 
 PassImage half_view_normals(PassBuilder& builder, NormalSource source, ConditionFunction condition) {
-    if (source == NormalSource::Image)
-        return builder.shared("half view normals", make_normals<NormalSource::Image, 2>, condition);
-    return builder.shared("half view normals from depth", make_normals<NormalSource::Depth, 2>, condition);
+    if (source == NormalSource::Image) return builder.shared("half view normals", make_given_normals<2>, condition);
+    return builder.shared("half view normals from depth", make_half_normals, condition);
 }
 
 }  // namespace darkroom

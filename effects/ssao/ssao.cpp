@@ -102,12 +102,14 @@ PassImage add_chain(PassBuilder& builder, PassImage turns) {
                                            .output = create("blurred", VK_FORMAT_R32_SFLOAT),
                                            .condition = condition});
     if (!is_half) return blurred;
-    return builder.add(
-        {.name = "upsample",
-         .shader = "ssao_upsample.glsl",
-         .inputs = {{.name = "ssao_blurred", .image = blurred}, {.name = "ssao_depth", .image = linear_depth(builder)}},
-         .output = create("upsampled", VK_FORMAT_R16G16B16A16_SFLOAT),
-         .condition = condition});
+    return builder.add({.name = "upsample",
+                        .shader = "ssao_upsample.glsl",
+                        .inputs = {{.name = "ssao_blurred", .image = blurred},
+                                   {.name = "ssao_depth", .image = builder.frame_image(FrameImage::Depth)}},
+                        .output = create("upsampled", VK_FORMAT_R16G16B16A16_SFLOAT),
+                        .custom_vectors = 2,
+                        .constants = depth_vectors,
+                        .condition = condition});
 }
 
 void build(PassBuilder& builder) {

@@ -285,7 +285,7 @@ TEST_F(ComposePlan, EveryImageThatIsReadCounts) {
         CompileDesc desc = hd();
         desc.depth.format = format;
         const Plan made = plan(desc);
-        const auto pass = std::ranges::find(made.passes, "ssao.linear depth", &PlanPass::name);
+        const auto pass = std::ranges::find(made.passes, "ssao.half depth", &PlanPass::name);
         ASSERT_NE(pass, made.passes.end()) << passes_of(made);
         const std::uint64_t bytes = gpu::format_traits(format).bits / 8;
         EXPECT_GE(bytes, 2u);
