@@ -123,6 +123,11 @@ TEST_F(CliViewer, EditsAreUndoneSavedAndReadAgain) {
     write("my.toml", "[post_process]\nbloom_intensity = = 3\n");
     EXPECT_TRUE(wait_until([&] { return complained().find("my.toml:2:") != std::string::npos; }, 60)) << complained();
     EXPECT_EQ(difference(before, shot()), 0) << "a broken one leaves the last good state";
+    write("my.toml", "[post_process]\nbloom_intensity = 0.3\n");
+    EXPECT_TRUE(wait_until([&] { return count("read my.toml again") == 2; }, 60)) << said() << complained();
+    write("my.toml", "[post_process]\nbloom_intensity = = 3\n");
+    EXPECT_TRUE(wait_until([&] { return complained().find("my.toml:2:") != complained().rfind("my.toml:2:"); }, 60))
+        << "the same error is told again: " << complained();
 }
 
 TEST_F(CliViewer, SlidersAndTheOrderOfTheStackFollowTheMouse) {

@@ -52,7 +52,9 @@ void Screen::tell_error(std::string_view source, std::string line) {
         .report(source, darkroom::Error{darkroom::Fault::User, std::move(line)});
 }
 
-void Screen::clear_error(std::string_view source) { (panels_ ? panels_->look().messages() : messages_).clear(source); }
+void Screen::clear_error(std::string_view source) {
+    if (said_.erase(std::string(source)) > 0) (panels_ ? panels_->look().messages() : messages_).clear(source);
+}
 
 void Screen::print(std::string line) {
     printed_.push_back(std::move(line));

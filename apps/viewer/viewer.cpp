@@ -211,7 +211,7 @@ Result<> Viewer::show(const PresentFrame& frame) {
     }
     if (Result<> done = prepare(frame, wanted); !done) return done;
     settle("interface", interface_->advance(time_, camera_->head()));
-    for (const std::string& warning : source_->take_warnings()) screen_.tell_error("frame", warning);
+    for (const std::string& warning : source_->take_warnings()) screen_.tell_error("source", warning);
     store_picture(frame);
     if (Result<> done = gui_->begin(window_->scale()); !done) return done;
     draw_screen(frame);

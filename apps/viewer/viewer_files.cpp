@@ -30,10 +30,8 @@ void Viewer::reload() {
     interface_->reload_changed();
     const Result<bool> is_new = document_->reload_if_changed();
     if (!is_new) screen_.tell_error("reload", is_new.error().text);
-    if (is_new && *is_new) {
-        screen_.clear_error("reload");
-        tell(fmt::format("read {} again", document_->file().filename().string()));
-    }
+    if (!document_->is_broken()) screen_.clear_error("reload");
+    if (is_new && *is_new) tell(fmt::format("read {} again", document_->file().filename().string()));
     reload_source();
 }
 

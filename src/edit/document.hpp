@@ -61,6 +61,8 @@ class LookDocument {
     /// Reads what has changed on disk: the file, or one that the look names. True: the look is another, as a step of
     /// undo. An error, "file:line:column: ...", leaves it, and comes once for each state of the files.
     Result<bool> reload_if_changed();
+    /// Did the last reading of a change fail?
+    [[nodiscard]] bool is_broken() const { return is_broken_; }
 
   private:
     struct Step {
@@ -74,6 +76,7 @@ class LookDocument {
     void give_ids(Look& look);
     Result<> check(const Look& next) const;
     void watch_files();
+    Result<bool> reload();
     /// Splices what changed into a text; into none, all is written.
     Result<> write(const std::filesystem::path& file, std::string_view into);
 
@@ -85,7 +88,7 @@ class LookDocument {
     std::uint64_t last_id_ = 0;
     std::deque<Step> undo_, redo_;
     std::string merge_;
-    bool is_changed_ = false;
+    bool is_changed_ = false, is_broken_ = false;
     Watch watch_;
 };
 

@@ -171,6 +171,12 @@ Result<> LookDocument::write(const std::filesystem::path& file, std::string_view
 
 Result<bool> LookDocument::reload_if_changed() {
     if (!watch_.take_change()) return false;
+    Result<bool> is_new = reload();
+    is_broken_ = !is_new;
+    return is_new;
+}
+
+Result<bool> LookDocument::reload() {
     std::string text;
     if (!file_.empty()) {
         Result<std::string> now = read_look_text(file_);

@@ -206,7 +206,11 @@ TEST_F(Document, AWrongFileIsToldOnceAndKeepsTheLook) {
     EXPECT_NE(error.find("a.toml:2:"), std::string::npos) << error;
     EXPECT_EQ(exposure(document.look()), 1.5f);
     EXPECT_EQ(reloaded(document), "same");
+    EXPECT_TRUE(document.is_broken());
     EXPECT_NE(error_of(document.save()).find("changed by others"), std::string::npos);
+    write("a.toml", "[post_process]\nexposure = 1.5\n");
+    EXPECT_EQ(reloaded(document), "same");
+    EXPECT_FALSE(document.is_broken());
     write("a.toml", "");  // an editor that is about to write
     EXPECT_EQ(reloaded(document), "same");
     fs::remove(path);
