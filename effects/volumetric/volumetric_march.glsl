@@ -15,6 +15,28 @@ float volumetric_phase(float cosine) {
     return (1.0 - g * g) / (4.0 * 3.14159265 * x * sqrt(x));
 }
 
+// The samples of one cascade, `first` to `end` - 1, before the light of those behind them: from the last one on, since each
+// takes its share of what comes from behind. A round is run before it is asked whether it was the last, because the
+// software driver runs one more otherwise.
+float volumetric_lit(float sum, float first, float end, vec3 place, vec3 slope, float cascade) {
+    float left = custom[0].z, i = end - 1.0;
+    if (i >= first) {
+        [[dont_unroll]] do {
+            vec3 at = place + slope * i;
+            sum = sum * left + texture(volumetric_shadow, vec4(at.xy, cascade, min(at.z, 1.0)));
+            i -= 1.0;
+        } while (i >= first);
+    }
+    return sum;
+}
+
+float volumetric_cascade(float sum, float first, float end, vec4 start, vec4 ray, vec4 per_x, vec4 per_y, vec4 at,
+                         float cascade) {
+    float perspective = custom[3].w;
+    vec3 turn = per_x.xyz * at.x + per_y.xyz * at.y, slope = (ray.xyz + turn * perspective) * at.z;
+    return volumetric_lit(sum, first, end, start.xyz + turn * (1.0 - perspective) + slope * at.w, slope, cascade);
+}
+
 vec4 shade(Pixel pixel) {
     float planar = load(volumetric_distance, pixel.texel).r;
     // NaN counts as sky, which lies where half precision ends.
@@ -28,25 +50,18 @@ vec4 shade(Pixel pixel) {
 
     // Cascades lie one behind the other; samples behind the last are lit. Depth is compared no farther than where the
     // light's volume ends: nothing is known to cast behind it.
-    float sum = 0.0, transmittance = 1.0, i = 0.0;
-    float count = custom[5].w, perspective = custom[3].w;
-    [[dont_unroll]] for (float cascade = 0.0; cascade < count && i < samples; ++cascade) {
-        int first = 4 + 4 * int(cascade);
-        vec4 start = custom[first];
-        vec3 turn = custom[first + 2].xyz * texel.x + custom[first + 3].xyz * texel.y;
-        vec3 slope = (custom[first + 1].xyz + turn * perspective) * step_length;
-        vec3 place = start.xyz + turn * (1.0 - perspective) + slope * (jitter + i);
-        float end = start.w / max(step_length, 1e-20) - jitter;
-        [[dont_unroll]] for (; i < min(end, samples); ++i) {
-            sum += texture(volumetric_shadow, vec4(place.xy, cascade, min(place.z, 1.0))) * transmittance;
-            transmittance *= march.z;
-            place += slope;
-        }
-    }
-    [[dont_unroll]] for (; i < samples; ++i) {
-        sum += transmittance;
-        transmittance *= march.z;
-    }
+    vec4 ends = vec4(custom[4].w, custom[8].w, custom[12].w, custom[16].w) / max(step_length, 1e-20) - jitter;
+    ends = clamp(ceil(mix(vec4(0.0), ends, lessThan(vec4(0.0, 1.0, 2.0, 3.0), vec4(custom[5].w)))), 0.0, samples);
+    ends.y = max(ends.x, ends.y);
+    ends.z = max(ends.y, ends.z);
+    ends.w = max(ends.z, ends.w);
+    float sum = 0.0;
+    [[dont_unroll]] for (float i = ends.w; i < samples; ++i) sum = sum * march.z + 1.0;
+    vec4 at = vec4(texel, step_length, jitter);
+    sum = volumetric_cascade(sum, ends.z, ends.w, custom[16], custom[17], custom[18], custom[19], at, 3.0);
+    sum = volumetric_cascade(sum, ends.y, ends.z, custom[12], custom[13], custom[14], custom[15], at, 2.0);
+    sum = volumetric_cascade(sum, ends.x, ends.y, custom[8], custom[9], custom[10], custom[11], at, 1.0);
+    sum = volumetric_cascade(sum, 0.0, ends.x, custom[4], custom[5], custom[6], custom[7], at, 0.0);
     float cosine = (custom[2].x + custom[2].y * texel.x + custom[2].z * texel.y) / true_of_planar;
     float scattered = sum * step_length * true_of_planar * march.w * volumetric_phase(cosine);
     // Four lights must not add up to more than half precision holds.
