@@ -14,7 +14,9 @@ namespace darkroom::gpu {
 
 namespace {
 
-constexpr std::size_t most_flat_vectors = 31;
+// 128 components, less the 7 of what every vertex shader may write: position, point size, clip and cull distance.
+constexpr std::size_t most_flat_vectors = 30;
+constexpr std::uint32_t components_of_vertices = 128;
 
 struct Names {
     std::unordered_set<std::string_view> words;
@@ -102,8 +104,7 @@ bool writes_flat_values(const Context& context) {
     VkPhysicalDeviceProperties properties{};
     context.vk.GetPhysicalDeviceProperties(context.physical_device, &properties);
     const VkPhysicalDeviceLimits& limits = properties.limits;
-    // One more is the position.
-    return std::min(limits.maxVertexOutputComponents, limits.maxFragmentInputComponents) >= 4 * (most_flat_vectors + 1);
+    return std::min(limits.maxVertexOutputComponents, limits.maxFragmentInputComponents) >= components_of_vertices;
 }
 
 std::uint32_t first_custom_vector(const KernelSpec& spec) {

@@ -106,6 +106,24 @@ TEST(GpuFlatValues, AreTheBitsOfTheBlock) {
     }
 }
 
+// What is too much stays in the block; the validation layer knows the limit.
+TEST(GpuFlatValues, AreNoMoreThanVerticesMayWrite) {
+    if (!writes_flat_values(test::context())) GTEST_SKIP() << "this device's vertices write too little";
+    KernelSpec spec = spec_of("");
+    test::Run values{.custom = {{}, {}}};
+    spec.members.clear();
+    std::string sum;
+    for (std::uint32_t i = 0; i < 160; ++i) {
+        spec.members.push_back({Float, "number_" + std::to_string(i)});
+        values.words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(i)));
+        sum += " + number_" + std::to_string(i) + " * " + std::to_string(i % 7);
+    }
+    spec.body = "vec4 shade(Pixel pixel) { return custom[1]" + sum + "; }";
+    const std::vector<std::byte> flat = bits_of(spec, values);
+    spec.loads_are_cheap = false;
+    EXPECT_EQ(flat, bits_of(spec, values));
+}
+
 }  // namespace
 
 }  // namespace darkroom::gpu
