@@ -84,6 +84,12 @@ TEST_F(CliSequence, PiecesAreTheWhole) {
     EXPECT_EQ(none.err, "darkroom: --frames 30-50: none of the 7 inputs has such a number\n");
 }
 
+TEST_F(CliSequence, NamesOfPicturesThatAreNotAskedForAreNotTried) {
+    fs::create_directories(path(out("g", 2)));
+    EXPECT_NE(develop("g").code, 0) << "a folder is in the way";
+    EXPECT_EQ(develop("g", {"--frames", "3-5"}).code, 0);
+}
+
 TEST_F(CliSequence, WhatIsThereStaysWhereAsked) {
     fs::create_directories(path("b"));
     put(path(out("b", 3)), "there");

@@ -80,16 +80,17 @@ darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
 Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     const Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
     if (!inputs) return failure(inputs.error());
-    using Paths = std::vector<std::filesystem::path>;
-    const Result<Paths> outputs = job.stream ? Result<Paths>(Paths(inputs->size(), stream_name))
-                                             : output_paths(*inputs, options.out, ui_files(job.look));
-    if (!outputs) return failure(outputs.error());
     FrameRange range{.first = 0, .last = ~std::uint64_t{0}};
     if (options.frames) {
         const Result<FrameRange> parsed = parse_frames(*options.frames);
         if (!parsed) return failure(parsed.error());
         range = *parsed;
     }
+    const auto is_in_range = [&](long long number) { return !options.frames || range.contains(number); };
+    using Paths = std::vector<std::filesystem::path>;
+    const Result<Paths> outputs = job.stream ? Result<Paths>(Paths(inputs->size(), stream_name))
+                                             : output_paths(*inputs, options.out, ui_files(job.look), is_in_range);
+    if (!outputs) return failure(outputs.error());
     if (job.stream) job.develop.target = target_for(job.stream->format);
     if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
     for (const std::filesystem::path& output : job.stream ? Paths() : *outputs) {
@@ -103,7 +104,7 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     bool is_any_asked_for = false;
     std::size_t next_written = inputs->size();
     for (std::size_t i = inputs->size(); i-- > 0;) {
-        const bool is_asked_for = !options.frames || range.contains(numbers[i]);
+        const bool is_asked_for = is_in_range(numbers[i]);
         is_any_asked_for |= is_asked_for;
         const bool is_written = is_asked_for && !options.run.is_skipped((*outputs)[i]);
         if (is_written) next_written = i;

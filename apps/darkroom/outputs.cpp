@@ -53,6 +53,11 @@ std::vector<long long> numbers_of(std::span<const fs::path> inputs) {
     return numbers;
 }
 
+bool is_there(const fs::path& picture) {
+    std::error_code error;
+    return fs::is_regular_file(picture, error) && fs::file_size(picture, error) > 0 && !error;
+}
+
 Result<> check_output(const fs::path& output, const FileSet& inputs) {
     std::error_code error;
     if (inputs.contains(output))
@@ -65,16 +70,29 @@ Result<> check_output(const fs::path& output, const FileSet& inputs) {
     return {};
 }
 
+bool is_output_folder(const std::string& out) {
+    std::error_code error;
+    return fs::is_directory(out, error) || out.ends_with('/');
+}
+
+fs::path output_path(const fs::path& input, long long number, const std::string& out, bool is_folder) {
+    if (is_folder) return fs::path(out) / fs::path(input.filename()).replace_extension(".png");
+    std::string text = out;
+    if (const std::size_t name_at = out.find(name_pattern); name_at != std::string::npos)
+        text.replace(name_at, name_pattern.size(), input.stem().string());
+    return darkroom::has_number_pattern(out) ? darkroom::numbered(text, number) : fs::path(text);
+}
+
 Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, const std::string& out,
-                                           std::span<const fs::path> also_read) {
+                                           std::span<const fs::path> also_read,
+                                           const std::function<bool(long long)>& is_asked_for) {
     std::error_code error;
     if (out.empty()) return user_error("-o: an output file is needed");
-    const bool is_folder = fs::is_directory(out, error) || out.ends_with('/');
-    const bool has_number = darkroom::has_number_pattern(out);
-    const std::size_t name_at = out.find(name_pattern);
+    const bool is_folder = is_output_folder(out);
+    const bool has_name = darkroom::has_number_pattern(out) || out.find(name_pattern) != std::string::npos;
     if (is_folder && !fs::is_directory(out, error))
         return user_error(fmt::format("{}: no such folder", printable(out)));
-    if (inputs.size() > 1 && !is_folder && !has_number && name_at == std::string::npos)
+    if (inputs.size() > 1 && !is_folder && !has_name)
         return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d, #### or {{name}}",
                                       printable(out), inputs.size()));
     const std::vector<long long> numbers = numbers_of(inputs);
@@ -84,19 +102,13 @@ Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, con
     read.insert(read.end(), also_read.begin(), also_read.end());
     const FileSet files(read);
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-        fs::path path = out;
-        if (is_folder) {
-            path = fs::path(out) / inputs[i].filename().replace_extension(".png");
-        } else {
-            std::string text = out;
-            if (name_at != std::string::npos) text.replace(name_at, name_pattern.size(), inputs[i].stem().string());
-            path = has_number ? darkroom::numbered(text, numbers[i]) : fs::path(text);
-        }
+        fs::path path = output_path(inputs[i], numbers[i], out, is_folder);
         const auto [maker, is_new] = makers.try_emplace(path, inputs[i]);
         if (!is_new)
             return user_error(fmt::format("{}: would be made of {} and of {}", printable(path.string()),
                                           printable(maker->second.string()), printable(inputs[i].string())));
-        if (Result<> done = check_output(path, files); !done) return failure(std::move(done));
+        if (is_asked_for(numbers[i]))
+            if (Result<> done = check_output(path, files); !done) return failure(std::move(done));
         outputs.push_back(std::move(path));
     }
     return outputs;

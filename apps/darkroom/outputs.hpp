@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <span>
 #include <string>
@@ -24,16 +25,26 @@ class FileSet {
     std::set<std::pair<std::uintmax_t, std::uintmax_t>> files_;  ///< device and number
 };
 
+/// Is this picture made already? An empty file is none.
+[[nodiscard]] bool is_there(const std::filesystem::path& picture);
+
 /// Can this file be written, and is it none of the inputs? Told before any work is done.
 [[nodiscard]] darkroom::Result<> check_output(const std::filesystem::path& output, const FileSet& inputs);
 
 /// The frames' own numbers where all have one and no two the same, else 1, 2, 3.
 [[nodiscard]] std::vector<long long> numbers_of(std::span<const std::filesystem::path> inputs);
 
-/// One output for each input. Errors: one file for several inputs, two inputs for one output, an output that is one of
+/// Does OUT name a folder?
+[[nodiscard]] bool is_output_folder(const std::string& out);
+/// What an input of this number becomes. Nothing is looked at.
+[[nodiscard]] std::filesystem::path output_path(const std::filesystem::path& input, long long number,
+                                                const std::string& out, bool is_folder);
+
+/// One output for each input. Those of the inputs that are asked for are tried: a long sequence on a file server is
+/// developed in many pieces. Errors: one file for several inputs, two inputs for one output, an output that is one of
 /// the inputs or of what is `also_read`, a folder that does not exist, a name that cannot be written.
 [[nodiscard]] darkroom::Result<std::vector<std::filesystem::path>> output_paths(
     std::span<const std::filesystem::path> inputs, const std::string& out,
-    std::span<const std::filesystem::path> also_read);
+    std::span<const std::filesystem::path> also_read, const std::function<bool(long long number)>& is_asked_for);
 
 }  // namespace app

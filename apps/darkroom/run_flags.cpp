@@ -12,6 +12,7 @@
 
 #include "core/param_text.hpp"
 #include "device_flags.hpp"
+#include "outputs.hpp"
 
 namespace app {
 
@@ -134,10 +135,6 @@ Result<> RunFlags::check_stream() const {
     return {};
 }
 
-bool RunFlags::is_skipped(const std::filesystem::path& output) const {
-    std::error_code error;
-    return skips_existing_ && std::filesystem::is_regular_file(output, error) &&
-           std::filesystem::file_size(output, error) > 0 && !error;
-}
+bool RunFlags::is_skipped(const std::filesystem::path& output) const { return skips_existing_ && is_there(output); }
 
 }  // namespace app
