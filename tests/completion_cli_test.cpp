@@ -20,8 +20,9 @@ namespace {
 using test::Outcome;
 using Words = std::vector<std::string>;
 
-const Words commands{"render",   "develop",     "probe",      "plan", "effects", "devices", "compare",    "info",
-                     "lut info", "lut convert", "lut export", "play", "edit",    "new",     "completion", "man"};
+const Words commands{"render", "develop",  "probe",       "plan",       "effects",    "devices",   "compare",
+                     "info",   "lut info", "lut convert", "lut export", "farm slurm", "farm task", "farm status",
+                     "play",   "edit",     "new",         "completion", "man"};
 
 class CliCompletion : public test::CliFixture {
   protected:

@@ -29,6 +29,8 @@ struct Command {
 [[nodiscard]] Command add_info(CLI::App& program);
 /// One for each command below it.
 [[nodiscard]] std::vector<Command> add_lut(CLI::App& program, std::span<const darkroom::LookEntry> named);
+/// One for each command below it.
+[[nodiscard]] std::vector<Command> add_farm(CLI::App& program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_new(CLI::App& program);
 [[nodiscard]] Command add_completion(CLI::App& program);
 [[nodiscard]] Command add_man(CLI::App& program);

@@ -83,6 +83,7 @@ std::vector<app::Command> add_commands(CLI::App& program, std::span<const darkro
         {{"compare"}, [&] { return Commands{app::add_compare(program)}; }},
         {{"info"}, [&] { return Commands{app::add_info(program)}; }},
         {{"lut"}, [&] { return app::add_lut(program, named); }},
+        {{"farm"}, [&] { return app::add_farm(program, named); }},
 #ifdef DARKROOM_VIEWER
         {{"play", "edit"}, [&] { return app::add_viewer(program, named); }},
 #endif

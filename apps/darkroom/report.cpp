@@ -30,6 +30,7 @@ void say(std::string_view prefix, std::string_view text) {
 }  // namespace
 
 void set_voice(Voice to) { voice = to; }
+Voice current_voice() { return voice; }
 void leave_standard_output() { told_to = stderr; }
 
 void answer(std::string_view line) {

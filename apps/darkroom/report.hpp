@@ -15,6 +15,7 @@ inline constexpr int exit_ok = 0, exit_user = 1, exit_machine = 2;
 /// How much is said. Quiet: warnings, errors, and what was asked for. Verbose: remarks, too.
 enum class Voice { Quiet, Usual, Verbose };
 void set_voice(Voice voice);
+[[nodiscard]] Voice current_voice();
 /// Standard output belongs to a stream of pictures: all that is said goes to standard error.
 void leave_standard_output();
 

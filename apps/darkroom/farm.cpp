@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// darkroom farm: a sequence over many machines.
+#include "farm.hpp"
+
+namespace app {
+
+std::vector<Command> add_farm(CLI::App& program, std::span<const darkroom::LookEntry> named) {
+    CLI::App* const farm = program.add_subcommand("farm", "Makes the pictures of a sequence on many machines");
+    farm->require_subcommand(1);
+    farm->footer(
+        "darkroom farm slurm 'shot.####.exr' --look my.toml -o . --chunk 1 --dry-run\n"
+        "darkroom farm task 'shot.####.exr' --look my.toml -o . --frames 1-2\n"
+        "darkroom farm status .");
+    return {add_farm_slurm(*farm, named), add_farm_task(*farm), add_farm_status(*farm)};
+}
+
+}  // namespace app

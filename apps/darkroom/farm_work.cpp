@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "farm_work.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands.hpp"
+#include "core/param_text.hpp"
+#include "image/sequence.hpp"
+#include "look_flags.hpp"
+#include "named_effects.hpp"
+#include "outputs.hpp"
+#include "run_flags.hpp"
+#include "scene/assets.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+
+namespace {
+
+/// "out/shot.0001.png" -> "out/shot.farm"
+fs::path farm_folder(const fs::path& picture) {
+    std::string name = picture.stem().string();
+    const std::size_t last_digit = name.find_last_of("0123456789");
+    if (last_digit != std::string::npos) name.resize(name.find_last_not_of("0123456789", last_digit) + 1);
+    name.resize(name.find_last_not_of("._- ") + 1);
+    return picture.parent_path() / ((name.empty() ? "frames" : name) + farm_suffix);
+}
+
+std::vector<std::string> names_of(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* const option : command.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+}  // namespace
+
+void FarmFlags::add_to(CLI::App& command, const std::string& frames_doc) {
+    command.add_option("INPUT", input_, "A sequence (shot.%04d.exr or shot.####.exr), or a scene or a model")
+        ->required();
+    command.add_option("MORE", more_, "Behind --: flags of develop for a sequence, of render for a scene");
+    command
+        .add_option("-o,--output,--out", out_,
+                    "The pictures: a folder for those of a sequence, or a name with %04d, #### or {name}")
+        ->type_name("OUT")
+        ->required();
+    command.add_option("--look", look_, "As for develop and render")->type_name("FILE");
+    command.add_option("--frames", frames_, frames_doc)->type_name("A-B");
+    command.add_flag("--allow-custom-effects", allows_custom_effects_,
+                     "Lets the look name files of effects, which are code, and --effect bring some");
+}
+
+bool FarmFlags::is_scene() const {
+    return fs::path(input_).extension() == ".toml" || darkroom::scene::is_model_path(input_);
+}
+
+std::vector<std::string> FarmFlags::command(const std::string& frames) const {
+    std::vector<std::string> out{is_scene() ? "render" : "develop", input_, "-o", out_, "--frames", frames};
+    if (!look_.empty()) out.insert(out.end(), {"--look", look_});
+    if (!allows_custom_effects_) out.emplace_back(no_custom_effects);
+    out.insert(out.end(), {"--skip-existing", "--keep-going"});
+    out.insert(out.end(), more_.begin(), more_.end());
+    return out;
+}
+
+std::vector<std::string> FarmFlags::task() const {
+    std::vector<std::string> out{input_, "-o", out_};
+    if (!look_.empty()) out.insert(out.end(), {"--look", look_});
+    if (allows_custom_effects_) out.emplace_back("--allow-custom-effects");
+    if (!more_.empty()) out.emplace_back("--");
+    out.insert(out.end(), more_.begin(), more_.end());
+    return out;
+}
+
+Result<> FarmFlags::check_arguments() const {
+    if (!more_.empty() && !more_.front().starts_with('-'))
+        return user_error(fmt::format("unexpected '{}': allowed is one INPUT, and flags of {} behind --",
+                                      printable(more_.front()), is_scene() ? "render" : "develop"));
+    if (out_ == stream_name) return user_error("-o -: a farm writes files");
+    // Its end is where `develop` reads which frames are meant.
+    if (input_.ends_with(']')) return user_error(fmt::format("{}: --frames says which", printable(input_)));
+    if (!is_scene() && !darkroom::has_number_pattern(input_))
+        return user_error(
+            fmt::format("{}: expected a sequence, shot.%04d.exr or shot.####.exr, or a scene (.toml) "
+                        "or a model (.glb, .gltf)",
+                        printable(input_)));
+    if (is_scene() && frames_.empty()) return user_error(fmt::format("{}: --frames A-B is needed", printable(input_)));
+    const bool is_pattern = darkroom::has_number_pattern(out_);
+    if (is_scene() ? !is_pattern : !is_output_folder(out_) && !is_pattern && out_.find("{name}") == std::string::npos)
+        return user_error(fmt::format("-o {}: expected {}a name with %04d or ####", printable(out_),
+                                      is_scene() ? "" : "a folder, or "));
+    return {};
+}
+
+Result<FarmWork> FarmFlags::work() const {
+    if (Result<> done = check_arguments(); !done) return failure(std::move(done));
+    FrameRange range{.first = 0, .last = ~std::uint64_t{0}};
+    if (!frames_.empty()) {
+        const Result<FrameRange> parsed = parse_frames(frames_);
+        if (!parsed) return failure(parsed.error());
+        range = *parsed;
+    }
+    FarmWork work;
+    if (is_scene()) {
+        for (std::uint64_t i = range.first; i <= range.last; ++i) {
+            const auto number = static_cast<long long>(i);
+            work.frames.push_back({number, darkroom::numbered(out_, number)});
+        }
+    } else {
+        const Result<std::vector<fs::path>> inputs = darkroom::expand_inputs(std::span(&input_, 1));
+        if (!inputs) return failure(inputs.error());
+        const std::vector<long long> numbers = numbers_of(*inputs);
+        const bool is_folder = is_output_folder(out_);
+        for (std::size_t i = 0; i < inputs->size(); ++i)
+            if (range.contains(numbers[i]))
+                work.frames.push_back({numbers[i], output_path((*inputs)[i], numbers[i], out_, is_folder)});
+        if (work.frames.empty())
+            return user_error(fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_),
+                                          inputs->size()));
+    }
+    if (work.frames.size() > most_farm_frames)
+        return user_error(fmt::format("{}: {} frames, a farm takes {} at once; --frames says which", printable(input_),
+                                      work.frames.size(), most_farm_frames));
+    std::ranges::sort(work.frames, {}, &FarmFrame::number);
+    const fs::path pictures = work.frames.front().picture.parent_path();
+    std::error_code error;
+    if (!pictures.empty() && !fs::is_directory(pictures, error))
+        return user_error(
+            fmt::format("{}: no such folder, the pictures cannot be written", printable(pictures.string())));
+    work.folder = farm_folder(work.frames.front().picture);
+    return work;
+}
+
+// The command itself reads the arguments: what it would refuse is refused here, once, instead of by every task.
+Result<> FarmFlags::check_flags(std::span<const darkroom::LookEntry> named) const {
+    CLI::App program;
+    const Command command = is_scene() ? add_render(program, named) : add_develop(program, named);
+    std::vector<std::string> arguments = this->command("0-0");
+    std::ranges::reverse(arguments);  // as CLI11 takes them
+    try {
+        program.parse(arguments);
+    } catch (const CLI::ExtrasError&) {
+        const CLI::App& checked = *command.app;
+        const std::string argument = checked.remaining().empty() ? std::string() : checked.remaining().front();
+        return user_error(fmt::format("{}: unknown argument '{}'{}", checked.get_name(), printable(argument),
+                                      darkroom::suggestion(argument.substr(0, argument.find('=')), names_of(checked))));
+    } catch (const CLI::ParseError& problem) {
+        return user_error(fmt::format("{}: {}", command.app->get_name(), printable(problem.what())));
+    }
+    return {};
+}
+
+Result<> FarmFlags::check_look(std::span<const darkroom::LookEntry> named) const {
+    if (!allows_custom_effects_)
+        for (const std::string& argument : more_)
+            if (argument == "--effect" || argument.starts_with("--effect="))
+                return user_error(
+                    fmt::format("{}: such a file is code, --allow-custom-effects lets it run", printable(argument)));
+    CLI::App program;
+    program.allow_extras();
+    LookFlags look;
+    look.add_to(program, true, named);
+    std::vector<std::string> arguments = command("0-0");
+    std::ranges::reverse(arguments);
+    try {
+        program.parse(arguments);
+    } catch (const CLI::ParseError& problem) {
+        return user_error(printable(problem.what()));
+    }
+    const Result<darkroom::Look> read = look.look(darkroom::scene::is_model_path(input_) || !is_scene() ? "" : input_);
+    if (!read) return failure(read.error());
+    return {};
+}
+
+Result<> FarmFlags::check(std::span<const darkroom::LookEntry> named) const {
+    if (Result<> done = check_flags(named); !done) return done;
+    return check_look(named);
+}
+
+}  // namespace app
