@@ -159,6 +159,8 @@ TEST_F(CliViewer, SlidersAndTheOrderOfTheStackFollowTheMouse) {
 }
 
 TEST_F(CliViewer, ObeysStandardInput) {
+    EXPECT_EQ(run({"play", scenes + "showcase.scene.toml", "--size", "96x54", "--commands", "--frames", "2"}).code, 0)
+        << "the end of what is said is not the window's";
     start({"edit", scenes + "showcase.scene.toml", "--size", "320x180"});
     press("p", "P pause: on");
     const Picture before = shot();
