@@ -33,6 +33,8 @@ class LiveInterface {
     /// Before a frame: what the game says, one call of each controller, the offset. An error is why the picture is not
     /// that of its files; what was there before stays.
     [[nodiscard]] darkroom::Result<> advance(double time, const HeadMotion& motion);
+    /// What the game says at first, from now on.
+    void set_game(const darkroom::GameTable& game) { ui_.game = game; }
     /// Reads scripts again that have changed. Documents do so by themselves.
     void reload_changed();
     /// Brings its image up to date. Where must_wait() says so, no frame is unfinished. What Frame::ui takes.

@@ -70,6 +70,7 @@ void Viewer::follow_document() {
     const darkroom::LookUi ui = document_->look().ui.value_or(darkroom::LookUi{});
     if (ui.document != interface_files_.first || ui.controllers != interface_files_.second)
         settle("interface", start_interface());
+    interface_->set_game(ui.game);
 }
 
 std::filesystem::path Viewer::free_name(const std::string& stem, const std::string& extension) {

@@ -199,7 +199,10 @@ Result<bool> LookDocument::reload() {
         next = saved;
     } else {
         if (Result<> done = load_again(next, options_); !done) return failure(std::move(done));
-        next.layers = saved.layers;
+        for (LookLayer& layer : next.layers) {
+            const auto read = std::ranges::find(saved.layers, layer.name, &LookLayer::name);
+            if (!layer.file.empty() && read != saved.layers.end()) layer.values = read->values;
+        }
         keep_loaded(next, look_);
     }
     saved_ = std::move(saved);

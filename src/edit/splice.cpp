@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/param_text.hpp"
 #include "edit/compare.hpp"
+#include "edit/moved_values.hpp"
 #include "edit/stack_blocks.hpp"
 #include "edit/toml_editor.hpp"
 #include "looks/look_resources.hpp"
@@ -19,6 +21,8 @@ namespace {
 
 const TomlPath flat_path{"post_process"}, ui_path{"ui"};
 
+const std::vector<std::string> interface_keys{"document", "controllers", "game"};
+
 std::string bool_text(Toggle toggle) { return toggle.on != 0 ? "true" : "false"; }
 
 class Splicer {
@@ -26,26 +30,14 @@ class Splicer {
     Splicer(TomlEditor editor, const Look& was, const Look& is) : editor_(std::move(editor)), was_(was), is_(is) {}
 
     Result<std::string> run() {
-        if (Result<> done = check(); !done) return failure(std::move(done));
-        for (const auto step : {&Splicer::write_picture, &Splicer::write_ui})
+        if (!has_same_movers(was_, is_))
+            return user_error("there are other pulses or layers than before, which is not written back");
+        for (const auto step : {&Splicer::write_picture, &Splicer::write_ui, &Splicer::write_movers})
             if (Result<> done = (this->*step)(); !done) return failure(std::move(done));
         return editor_.text();
     }
 
   private:
-    /// Is the rest the same?
-    Result<> check() const {
-        std::string moved_before, moved_now;
-        write_modulation(moved_before, was_);
-        write_modulation(moved_now, is_);
-        if (moved_before != moved_now) return user_error("pulses and layers have changed, which is not written back");
-        if (was_.ui && is_.ui &&
-            (was_.ui->document != is_.ui->document || was_.ui->controllers != is_.ui->controllers ||
-             was_.ui->game != is_.ui->game))
-            return user_error("the interface's document, controllers or game have changed, which is not written back");
-        return {};
-    }
-
     Result<> write_picture() {
         if (is_.is_flat) {
             if (!was_.is_flat)
@@ -63,7 +55,83 @@ class Splicer {
         }
         if (!editor_.contains(ui_path))
             if (Result<> done = editor_.add_table(ui_path[0]); !done) return done;
+        if (Result<> done = write_interface(was_.ui.value_or(LookUi{}), *is_.ui); !done) return done;
         return write_table(ui_path, true);
+    }
+
+    /// Sets a key, or takes it out where there is no value.
+    Result<> write_text(const TomlPath& table, std::string_view key, const std::string& value) {
+        return value.empty() ? editor_.remove(table, key) : editor_.set(table, key, value, interface_keys);
+    }
+
+    Result<> write_interface(const LookUi& before, const LookUi& now) {
+        const auto text = [](const std::string& name) { return name.empty() ? name : toml_string(name); };
+        if (now.document != before.document)
+            if (Result<> done = write_text(ui_path, "document", text(now.document)); !done) return done;
+        if (now.controllers != before.controllers)
+            if (Result<> done = write_text(ui_path, "controllers", list_text(now.controllers)); !done) return done;
+        if (now.game == before.game) return {};
+        const TomlPath game{ui_path[0], "game"};
+        if (!editor_.contains(game) || now.game.empty()) return write_text(ui_path, "game", game_text(now.game));
+        for (const auto& [name, value] : before.game)
+            if (!now.game.contains(name))
+                if (Result<> done = editor_.remove(game, name); !done) return done;
+        for (const auto& [name, value] : now.game) {
+            const auto old = before.game.find(name);
+            if (old != before.game.end() && old->second == value) continue;
+            if (Result<> done = editor_.set(game, name, game_text(value)); !done) return done;
+        }
+        return {};
+    }
+
+    // Pulses and layers.
+
+    Result<> write_movers() {
+        for (std::size_t i = 0; i < is_.pulses.size(); ++i)
+            if (Result<> done = write_mover({"pulse", std::to_string(i)}, {false, i}); !done) return done;
+        for (std::size_t i = 0; i < is_.layers.size(); ++i)
+            if (Result<> done = write_mover({"layer", element_of(is_.layers[i].name)}, {true, i}); !done) return done;
+        return {};
+    }
+
+    Result<> write_mover(const TomlPath& table, Mover mover) {
+        const std::vector<MovedValue> before = values_of(was_, mover), now = values_of(is_, mover);
+        for (std::size_t i = 0; i < std::min(before.size(), now.size()); ++i) {
+            if (before[i].words == now[i].words) continue;
+            TomlPath place = table;
+            if (!now[i].table.empty()) place.push_back(now[i].table);
+            std::string key(now[i].row.name);
+            if (!now[i].entry.empty()) std::tie(place, key) = place_of(place, now[i]);
+            if (Result<> done = editor_.set(place, key, format(now[i].row, now[i].words)); !done) return done;
+        }
+        return {};
+    }
+
+    /// Which of the text's layers has this name: one that changes nothing is in no look.
+    std::string element_of(std::string_view name) const {
+        for (std::size_t i = 0;; ++i) {
+            const TomlItem* const item = editor_.find({"layer", std::to_string(i), "name"});
+            if (item == nullptr) return {};
+            const std::string value = editor_.text().substr(item->value_begin, item->end - item->value_begin);
+            const toml::parse_result read = toml::parse("name = " + value);
+            if (read && read.table()["name"].value_or(std::string_view()) == name) return std::to_string(i);
+        }
+    }
+
+    /// The table and the key of a layer's value, which may be written as "bloom.intensity", bloom_intensity or with
+    /// a table for the entry.
+    std::pair<TomlPath, std::string> place_of(const TomlPath& values, const MovedValue& value) const {
+        const std::string_view effect = std::string_view(value.entry).substr(0, value.entry.find('#'));
+        for (const std::string_view name : {value.row.name, value.row.formerly}) {
+            if (name.empty()) continue;
+            const std::string dotted = fmt::format("{}.{}", value.entry, name), flat = flat_key(effect, name);
+            for (const std::string& key : {dotted, flat})
+                if (has_key(values, key)) return {values, key};
+            TomlPath nested = values;
+            nested.push_back(value.entry);
+            if (has_key(nested, name)) return {nested, std::string(name)};
+        }
+        return {values, fmt::format("{}.{}", value.entry, value.row.name)};
     }
 
     // The flat tables.

@@ -70,24 +70,8 @@ void write_ui(std::string& out, const Look& look) {
     if (!look.ui) return;
     out += "\n[ui]\n";
     if (!look.ui->document.empty()) write_row(out, "document", toml_string(look.ui->document));
-    if (!look.ui->controllers.empty()) {
-        std::vector<std::string> names;
-        for (const std::string& name : look.ui->controllers) names.push_back(toml_string(name));
-        write_row(out, "controllers", fmt::format("[{}]", fmt::join(names, ", ")));
-    }
-    if (!look.ui->game.empty()) {
-        std::vector<std::string> values;
-        for (const auto& [name, value] : look.ui->game) {
-            const auto text = [](const auto& own) {
-                if constexpr (std::is_same_v<std::decay_t<decltype(own)>, std::string>)
-                    return toml_string(own);
-                else
-                    return fmt::format("{}", own);
-            };
-            values.push_back(fmt::format("{} = {}", toml_string(name), std::visit(text, value)));
-        }
-        write_row(out, "game", fmt::format("{{ {} }}", fmt::join(values, ", ")));
-    }
+    if (!look.ui->controllers.empty()) write_row(out, "controllers", list_text(look.ui->controllers));
+    if (!look.ui->game.empty()) write_row(out, "game", game_text(look.ui->game));
     for (const LookEntry* const entry : ordered(look))
         if (entry->is_of_ui) write_values(out, *entry);
 }

@@ -94,6 +94,28 @@ std::string toml_string(std::string_view text) {
     return out + '"';
 }
 
+std::string game_text(const GameValue& value) {
+    const auto* const text = std::get_if<std::string>(&value);
+    if (text != nullptr) return toml_string(*text);
+    const auto* const number = std::get_if<double>(&value);
+    return number != nullptr ? fmt::format("{}", *number) : fmt::format("{}", std::get<bool>(value));
+}
+
+std::string game_text(const GameTable& game) {
+    if (game.empty()) return {};
+    std::vector<std::string> values;
+    for (const auto& [name, value] : game)
+        values.push_back(fmt::format("{} = {}", toml_string(name), game_text(value)));
+    return fmt::format("{{ {} }}", fmt::join(values, ", "));
+}
+
+std::string list_text(std::span<const std::string> names) {
+    if (names.empty()) return {};
+    std::vector<std::string> texts;
+    for (const std::string& name : names) texts.push_back(toml_string(name));
+    return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
 std::string value_text(const LookEntry& entry, const ParamInfo& row) {
     if (row.kind != Kind::Resource) return format(row, entry.words);
     const LookResource* const resource = resource_of(entry, row);

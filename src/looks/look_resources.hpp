@@ -39,6 +39,10 @@ class ResourceFiles {
 [[nodiscard]] const LookResource* resource_of(const LookEntry& entry, const WireInfo& wire);
 /// As a string of TOML.
 [[nodiscard]] std::string toml_string(std::string_view text);
+/// What a table [ui] says of the game, as TOML; an empty list or table has no text.
+[[nodiscard]] std::string game_text(const GameValue& value);
+[[nodiscard]] std::string game_text(const GameTable& game);
+[[nodiscard]] std::string list_text(std::span<const std::string> names);
 /// A value as TOML: of a parameter of kind Resource the file's name.
 [[nodiscard]] std::string value_text(const LookEntry& entry, const ParamInfo& row);
 

@@ -38,27 +38,14 @@ std::string step_name(const std::string& name, const ParamInfo& row) {
 ValueEdit draw_file(PanelState& state, const LookEntry& entry, const std::string& name, const ParamInfo& row) {
     const LookResource* const present = resource_of(entry, row);
     const std::string file = present == nullptr ? std::string() : present->file;
-    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-    const float width = ImGui::GetContentRegionAvail().x - (file.empty() ? 0 : ImGui::GetFrameHeight() + gap);
-    const std::string shown = file.empty() ? "Choose..."
-                                           : fitting(printable(std::filesystem::path(file).filename().string()),
-                                                     width - 2 * ImGui::GetStyle().FramePadding.x, KeptPart::End);
-    ImGui::BeginGroup();
-    ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5f});
-    const bool is_chosen = ImGui::Button((shown + "##file").c_str(), {width, 0});
-    ImGui::PopStyleVar();
     const std::string parameter(row.name), what = step_name(name, row);
     edit::LookDocument* const document = state.document;
-    const auto put = [=, &state](const std::string& chosen) {
-        state.edit(what,
-                   [=](Look& look) { return edit::set_file(look, name, parameter, chosen, document->options()); });
-    };
-    if (is_chosen) state.browse(fmt::format("A file for {}", what), row.is_picture, file, put);
-    if (!file.empty()) {
-        ImGui::SameLine(0, gap);
-        if (icon_button("##clear", Icon::Remove, "No file")) put({});
-    }
-    ImGui::EndGroup();
+    draw_file_choice(state, what, file, row.is_picture ? FileKind::Picture : FileKind::Table,
+                     [=, &state](const std::string& chosen) {
+                         state.edit(what, [=](Look& look) {
+                             return edit::set_file(look, name, parameter, chosen, document->options());
+                         });
+                     });
     return {};
 }
 

@@ -112,7 +112,8 @@ class WireChoices {
         });
     }
     void browse() {
-        state_.browse(fmt::format("A picture for {}", what()), true, is_file_name(present_) ? present_ : std::string(),
+        state_.browse(fmt::format("A picture for {}", what()), FileKind::Picture,
+                      is_file_name(present_) ? present_ : std::string(),
                       [this_state = &state_, what = what(), name = name_, wire = wire_.key](const std::string& file) {
                           this_state->edit(what, [=, document = this_state->document](Look& look) {
                               return edit::set_wire(look, name, wire, file, document->options());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "edit/document.hpp"
+#include "edit/moved_values.hpp"
 #include "panels/file_browser.hpp"
 #include "panels/messages.hpp"
 #include "panels/widget_places.hpp"
@@ -18,13 +19,24 @@ namespace darkroom::panels {
 
 using LookChange = std::function<Result<>(Look&)>;
 
+/// What a file that is chosen is for.
+enum class FileKind : std::uint8_t { Table, Picture, Document, Script };
+
+/// A part of the look that is no entry: the interface's own table, a pulse or a layer.
+struct LookPart {
+    bool is_interface = false;
+    edit::Mover mover{};
+    bool operator==(const LookPart&) const = default;
+};
+
 struct PanelState {
     edit::LookDocument* document = nullptr;
     const Plan* plan = nullptr;
     bool is_compiling = false;
     Messages messages;
     FileBrowser files;
-    std::uint64_t selected = 0;  ///< LookEntry::id
+    std::uint64_t selected = 0;      ///< LookEntry::id
+    std::optional<LookPart> part{};  ///< is selected in place of an entry
     bool scrolls_to_selected = false;
     std::optional<WidgetPlaces> places{};
 
@@ -53,7 +65,7 @@ struct PanelState {
     /// Where the selected entry is; -1: none is selected.
     [[nodiscard]] int selected_index() const;
     /// Asks for a file, which `then` gets as the look would name it.
-    void browse(std::string title, bool is_picture, const std::string& present,
+    void browse(std::string title, FileKind kind, const std::string& present,
                 std::function<void(const std::string&)> then);
 };
 
@@ -63,6 +75,8 @@ struct PanelState {
 // Each panel, into the present window.
 void draw_stack_panel(PanelState& state);
 void draw_entry_panel(PanelState& state);
+/// In its place, where a part is selected that is no entry.
+void draw_part_panel(PanelState& state);
 void draw_plan_panel(const Plan* plan, bool is_compiling);
 /// The popup that lists what can be added, while it is open.
 void draw_add_menu(PanelState& state);

@@ -18,9 +18,20 @@ namespace darkroom::panels {
 namespace {
 
 const std::vector<std::string> look_files{".toml"};
-const std::vector<std::string> table_files{".cube", ".3dl", ".spi1d", ".spi3d", ".csp",
-                                           ".clf",  ".ctf", ".png",   ".tif",   ".exr"};
-const std::vector<std::string> picture_files{".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr"};
+
+std::vector<std::string> extensions_of(FileKind kind) {
+    switch (kind) {
+        case FileKind::Table:
+            return {".cube", ".3dl", ".spi1d", ".spi3d", ".csp", ".clf", ".ctf", ".png", ".tif", ".exr"};
+        case FileKind::Picture:
+            return {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr", ".hdr"};
+        case FileKind::Document:
+            return {".svg", ".png"};
+        case FileKind::Script:
+            return {".lua"};
+    }
+    return {};
+}
 
 /// A button that can be pressed, or not now.
 bool bar_button(PanelState& state, const char* name, Icon icon, const std::string& text, bool can_press) {
@@ -50,6 +61,7 @@ void PanelState::select(std::string_view entry) {
     const auto found = std::ranges::find(names, entry);
     selected = found == names.end() ? 0 : look().entries[static_cast<std::size_t>(found - names.begin())].id;
     scrolls_to_selected = true;
+    part.reset();
 }
 
 void PanelState::note(std::string_view name) {
@@ -61,12 +73,12 @@ int PanelState::selected_index() const {
     return selected == 0 || found == look().entries.end() ? -1 : static_cast<int>(found - look().entries.begin());
 }
 
-void PanelState::browse(std::string title, bool is_picture, const std::string& present,
+void PanelState::browse(std::string title, FileKind kind, const std::string& present,
                         std::function<void(const std::string&)> then) {
     const std::filesystem::path folder = document->options().folder;
     files.open({.title = std::move(title),
                 .start = present.empty() ? folder : folder / present,
-                .extensions = is_picture ? picture_files : table_files,
+                .extensions = extensions_of(kind),
                 .then = [folder, then = std::move(then)](const std::filesystem::path& file) {
                     std::error_code error;
                     const std::filesystem::path relative =
@@ -92,6 +104,7 @@ void LookPanels::show(edit::LookDocument& document) {
     state_->document = &document;
     state_->plan = nullptr;
     state_->selected = 0;
+    state_->part.reset();
     state_->renamed.clear();
 }
 
@@ -128,7 +141,7 @@ void LookPanels::draw_bar() {
 
 void LookPanels::draw_messages() { state_->messages.draw(); }
 void LookPanels::draw_stack() { draw_stack_panel(*state_); }
-void LookPanels::draw_entry() { draw_entry_panel(*state_); }
+void LookPanels::draw_entry() { state_->part ? draw_part_panel(*state_) : draw_entry_panel(*state_); }
 void LookPanels::draw_plan() { draw_plan_panel(state_->plan, state_->is_compiling); }
 void LookPanels::draw_popups() {
     state_->files.draw();

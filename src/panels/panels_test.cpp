@@ -34,6 +34,15 @@ class PanelDocument : public ::testing::Test {
         return out.str();
     }
 
+    /// Gives the panels a document of this text, in the file a.toml.
+    void open(TestPanels& own, const std::string& written) const {
+        std::ofstream(folder_ / "a.toml") << written;
+        auto opened = edit::LookDocument::open(folder_ / "a.toml", {});
+        ASSERT_TRUE(opened) << opened.error().text;
+        own.document = std::move(*opened);
+        own.panels.show(own.document);
+    }
+
     std::filesystem::path folder_ =
         std::filesystem::temp_directory_path() / ("darkroom_panel_document_" + std::to_string(::getpid()));
 };
@@ -42,12 +51,8 @@ TEST_F(PanelDocument, SavesWhatASliderChangedAndNothingElse) {
     const auto [effect, row] = find(Kind::Float);
     ASSERT_NE(effect, nullptr);
     const std::string before = "# A look.\n[post_process]   # flat\nenabled = true\n";
-    std::ofstream(folder_ / "a.toml") << before;
-    auto opened = edit::LookDocument::open(folder_ / "a.toml", {});
-    ASSERT_TRUE(opened) << opened.error().text;
     TestPanels own(default_look(), {1280, 4000});
-    own.document = std::move(*opened);
-    own.panels.show(own.document);
+    open(own, before);
     own.select(effect->name);
     const std::string widget = fmt::format("{}.{}", effect->name, row->name);
     const WidgetPlace place = own.place(widget);
@@ -91,12 +96,8 @@ TEST_F(PanelDocument, FilesAreChosenAndTakenAway) {
     if (effect == nullptr) GTEST_SKIP() << "no effect of this build names a file";
     std::ofstream(folder_ / "warm.cube") << "LUT_3D_SIZE 2\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n";
     std::ofstream(folder_ / "broken.cube") << "LUT_3D_SIZE 2\n0 0\n";
-    std::ofstream(folder_ / "a.toml") << "[post_process]\n";
-    auto opened = edit::LookDocument::open(folder_ / "a.toml", {});
-    ASSERT_TRUE(opened) << opened.error().text;
     TestPanels own(default_look(), {1280, 4000});
-    own.document = std::move(*opened);
-    own.panels.show(own.document);
+    open(own, "[post_process]\n");
     own.select(effect->name);
     const std::string widget = fmt::format("{}.{}", effect->name, row->name);
     const auto choose = [&](const char* name) {
@@ -119,6 +120,56 @@ TEST_F(PanelDocument, FilesAreChosenAndTakenAway) {
     EXPECT_EQ(own.entry(effect->name).words[row->word], 0u);
     own.panels.undo();
     EXPECT_NE(own.entry(effect->name).words[row->word], 0u);
+}
+
+TEST_F(PanelDocument, PulsesLayersAndTheInterfaceAreEditedAndSaved) {
+    const auto [effect, row] = find(Kind::Float);
+    ASSERT_NE(effect, nullptr);
+    const std::string moved = fmt::format("{}.{}", effect->name, row->name);
+    TestPanels own(default_look(), {1280, 4000});
+    open(own, fmt::format("[[pulse]]\nevent = \"hit\"\nparameter = \"{0}\"\namount = 0.0 # pulse\n\n"
+                          "[[layer]]\nname = \"night\"\nweight = 0.0 # layer\nvalues = {{ \"{0}\" = {1} }}\n\n"
+                          "[ui]\ngame = {{ health = 80, is_armed = false }} # game\n",
+                          moved, row->range.min));
+    own.gui.frame(2);
+    const auto slide = [&](const std::string& widget) {
+        const WidgetPlace place = own.place(widget);
+        own.gui.drag(place.center(), {place.least.x + 0.9F * (place.most.x - place.least.x), place.center().y});
+    };
+    own.click("stack/pulse/0");
+    own.gui.frame(2);
+    slide("pulse/0.amount");
+    EXPECT_GT(own.document.look().pulses[0].amount[0], 0);
+    own.click("stack/layer/night");
+    own.gui.frame(2);
+    slide("layer/night.weight");
+    slide("layer/night." + moved);
+    EXPECT_GT(own.document.look().layers[0].state.weight, 0.5F);
+    EXPECT_GT(std::bit_cast<float>(own.document.look().layers[0].values[0].words[0]), row->range.min);
+    own.gui.show("layer");
+    own.click("stack/interface");
+    own.gui.frame(2);
+    own.click("game/is_armed");
+    slide("game/health");
+    EXPECT_EQ(own.document.look().ui->game.at("is_armed"), GameValue(true));
+    EXPECT_NE(own.document.look().ui->game.at("health"), GameValue(80.0));
+    own.gui.show("interface");
+    own.click("bar/save");
+    EXPECT_TRUE(own.panels.messages().is_empty());
+    EXPECT_FALSE(own.document.is_changed());
+    for (const char* const comment : {"# pulse\n", "# layer\n", "# game\n"})
+        EXPECT_NE(text("a.toml").find(comment), std::string::npos) << text("a.toml");
+    const auto again = read_look(folder_ / "a.toml");
+    ASSERT_TRUE(again) << again.error().text;
+    EXPECT_EQ(write_look(*again), write_look(own.document.look()));
+    for (int i = 0; i < 5; ++i) own.panels.undo();
+    EXPECT_EQ(own.document.look().pulses[0].amount[0], 0);
+    EXPECT_FALSE(own.document.can_undo());
+    // What is selected may go.
+    own.click("stack/layer/night");
+    open(own, "[post_process]\n");
+    own.gui.frame(2);
+    EXPECT_FALSE(own.panels.places().empty());
 }
 
 }  // namespace

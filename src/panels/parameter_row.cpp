@@ -8,6 +8,7 @@
 #include <cfloat>
 
 #include "core/param_text.hpp"
+#include "panels/fitting_text.hpp"
 #include "panels/icons.hpp"
 #include "panels/theme.hpp"
 
@@ -65,7 +66,7 @@ bool draw_menu(const RowLine& line) {
     if (!ImGui::BeginPopup("menu")) return resets;
     resets = ImGui::MenuItem("Reset", "double-click");
     ImGui::Separator();
-    if (ImGui::MenuItem("Copy as flag")) ImGui::SetClipboardText(line.flag.c_str());
+    if (!line.flag.empty() && ImGui::MenuItem("Copy as flag")) ImGui::SetClipboardText(line.flag.c_str());
     if (ImGui::MenuItem("Copy as TOML")) ImGui::SetClipboardText(line.toml.c_str());
     ImGui::EndPopup();
     return resets;
@@ -90,6 +91,25 @@ void draw_line(const std::string& name, const char* sentence, const Columns& col
     ImGui::SetNextItemWidth(-FLT_MIN);
     body();
     ImGui::PopID();
+}
+
+void draw_file_choice(PanelState& state, const std::string& what, const std::string& file, FileKind kind,
+                      const std::function<void(const std::string&)>& put) {
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = ImGui::GetContentRegionAvail().x - (file.empty() ? 0 : ImGui::GetFrameHeight() + gap);
+    const std::string shown = file.empty() ? "Choose..."
+                                           : fitting(printable(std::filesystem::path(file).filename().string()),
+                                                     width - 2 * ImGui::GetStyle().FramePadding.x, KeptPart::End);
+    ImGui::BeginGroup();
+    ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, {0, 0.5f});
+    const bool is_chosen = ImGui::Button((shown + "##file").c_str(), {width, 0});
+    ImGui::PopStyleVar();
+    if (is_chosen) state.browse(fmt::format("A file for {}", what), kind, file, put);
+    if (!file.empty()) {
+        ImGui::SameLine(0, gap);
+        if (icon_button("##clear", Icon::Remove, "No file")) put({});
+    }
+    ImGui::EndGroup();
 }
 
 RowOutcome draw_row(PanelState& state, const RowLine& line, const Columns& columns,

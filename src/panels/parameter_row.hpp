@@ -32,7 +32,7 @@ struct RowLine {
     std::span<const std::uint32_t> words;     ///< of this row
     std::span<const std::uint32_t> defaults;  ///< of this row
     std::string place;                        ///< "bloom.intensity"
-    std::string flag, toml;                   ///< "--bloom-intensity 0.08", "bloom_intensity = 0.08"
+    std::string flag, toml;                   ///< "--bloom-intensity 0.08" or none, "bloom_intensity = 0.08"
 };
 enum class RowAct : std::uint8_t { None, Change, Reset };
 struct RowOutcome {
@@ -42,6 +42,10 @@ struct RowOutcome {
 /// `body` draws the widget over a copy of the words; by default draw_value.
 [[nodiscard]] RowOutcome draw_row(PanelState& state, const RowLine& line, const Columns& columns,
                                   const std::function<ValueEdit(std::span<std::uint32_t>)>& body = {});
+
+/// The file's name, and buttons to choose another and to go without: `put` gets it, empty for none. `what`: the step.
+void draw_file_choice(PanelState& state, const std::string& what, const std::string& file, FileKind kind,
+                      const std::function<void(const std::string&)>& put);
 
 /// Opacity, blend mode, scale, format and wires of an entry of a stack.
 void draw_entry_state(PanelState& state, const LookEntry& entry, const std::string& name, const Columns& columns);

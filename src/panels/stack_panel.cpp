@@ -44,11 +44,40 @@ class StackList {
         for (std::size_t i = 0; i < picture.size(); ++i)
             draw_entry(picture[i], i + 1 < picture.size() ? names_[picture[i + 1]] : std::string());
         if (picture.empty()) ImGui::TextDisabled("No effect: the picture stays as it is.");
-        if (ui.empty()) return;
+        draw_heading("Interface");
+        draw_part({.is_interface = true}, "document, scripts, game", "stack/interface");
+        for (const std::size_t index : ui) draw_entry(index, {});
+        if (!look_.pulses.empty()) draw_heading("Pulses");
+        for (std::size_t i = 0; i < look_.pulses.size(); ++i) draw_mover({false, i}, fmt::format("stack/pulse/{}", i));
+        if (!look_.layers.empty()) draw_heading("Layers");
+        for (std::size_t i = 0; i < look_.layers.size(); ++i)
+            draw_mover({true, i}, fmt::format("stack/layer/{}", look_.layers[i].name));
+    }
+
+    static void draw_heading(const char* text) {
         ImGui::Spacing();
         ImGui::Separator();
-        ImGui::TextDisabled("Interface");
-        for (const std::size_t index : ui) draw_entry(index, {});
+        ImGui::TextDisabled("%s", text);
+    }
+
+    void draw_mover(edit::Mover mover, const std::string& place) {
+        draw_part({.mover = mover}, edit::name_of(look_, mover), place);
+    }
+
+    void draw_part(const LookPart& part, const std::string& name, const std::string& place) {
+        const float indent = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
+        ImGui::PushID(place.c_str());
+        ImGui::PushStyleVar(ImGuiStyleVar_SelectableTextAlign, {0, 0.5F});
+        ImGui::Indent(indent);
+        const std::string shown = fitting(shown_name(name), ImGui::GetContentRegionAvail().x, KeptPart::Start);
+        if (ImGui::Selectable(shown.c_str(), state_.part == part, 0, {0, ImGui::GetFrameHeight()})) {
+            state_.selected = 0;
+            state_.part = part;
+        }
+        state_.note(place);
+        ImGui::Unindent(indent);
+        ImGui::PopStyleVar();
+        ImGui::PopID();
     }
 
     void draw_head() {
@@ -164,7 +193,10 @@ class StackList {
         const float width = ImGui::GetContentRegionAvail().x - controls_width(entry);
         const ImVec2 corner = ImGui::GetCursorScreenPos();
         const float height = ImGui::GetFrameHeight();
-        if (ImGui::InvisibleButton("##entry", {std::max(1.0f, width), height})) state_.selected = entry.id;
+        if (ImGui::InvisibleButton("##entry", {std::max(1.0f, width), height})) {
+            state_.selected = entry.id;
+            state_.part.reset();
+        }
         state_.note(fmt::format("stack/{}", name));
         const bool is_hovered = ImGui::IsItemHovered();
         if (is_hovered && has_controls(entry) && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
@@ -209,6 +241,7 @@ class StackList {
         for (std::size_t i = 0; i < names_.size(); ++i) {
             if (look_.entries[i].id != id || names_[i] == before) continue;
             state_.selected = id;
+            state_.part.reset();
             state_.edit(fmt::format("move {}", names_[i]),
                         [name = names_[i], before](Look& look) { return edit::move_entry(look, name, before); });
         }
