@@ -105,14 +105,15 @@ class ViewerFixture : public CliFixture {
         CliFixture::TearDown();
     }
 
-    /// Starts the program, and waits for its window.
-    void start(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), program);
-        arguments.push_back("--commands");
+    /// Starts the program, by another where one is named before it, and waits for its window.
+    void start(const std::vector<std::string>& arguments, std::vector<std::string> command = {}) {
+        command.emplace_back(program);
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        command.emplace_back("--commands");
         std::array<int, 2> ends{};
         ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
         close(std::exchange(commands_, ends[0]));
-        viewer_ = std::make_unique<Process>(arguments, path("out.txt"), path("err.txt"), path(""), -1, ends[1]);
+        viewer_ = std::make_unique<Process>(command, path("out.txt"), path("err.txt"), path(""), -1, ends[1]);
         close(ends[1]);
         const bool is_open = wait_until(
             [&] {
