@@ -143,7 +143,7 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
     expect_farm_refuses("task 'shot.####.exr' -o out/", 1, "farm task: --frames A-B is needed");
     write("scene.toml", "format = 1\n");
     expect_farm_refuses("slurm scene.toml --frames 0-1999 --chunk 1 -o 'out/a.##.png'", 1,
-                        "--chunk 1: 2000 chunks, an array job holds 1000: at least 2 is needed");
+                        "--chunk 1: 2000 chunks, an array job holds 1000: --chunk 2 is enough");
 }
 
 TEST_F(FarmFiles, EffectsOfFilesAreRefusedUnlessAllowed) {

@@ -190,7 +190,7 @@ Result<> run(const Options& options, std::span<const darkroom::LookEntry> named)
         return {};
     }
     if (chunks.size() > most_chunks)
-        return user_error(fmt::format("--chunk {}: {} chunks, an array job holds {}: at least {} is needed", chunk,
+        return user_error(fmt::format("--chunk {}: {} chunks, an array job holds {}: --chunk {} is enough", chunk,
                                       chunks.size(), most_chunks,
                                       (work->frames.size() + most_chunks - 1) / most_chunks));
     const Result<std::string> script = script_of(options, *work, chunks);

@@ -11,7 +11,6 @@
 #include "look_flags.hpp"
 #include "named_effects.hpp"
 #include "outputs.hpp"
-#include "run_flags.hpp"
 #include "scene/assets.hpp"
 
 namespace app {
@@ -98,43 +97,45 @@ Result<> FarmFlags::check_arguments() const {
     return {};
 }
 
+Result<std::vector<FarmFrame>> FarmFlags::frames_in(const FrameRange& range) const {
+    std::vector<FarmFrame> out;
+    if (is_scene()) {
+        for (std::uint64_t number = range.first; number <= range.last; ++number) {
+            const auto i = static_cast<long long>(number);
+            out.push_back({i, darkroom::numbered(out_, i)});
+        }
+        return out;
+    }
+    const Result<std::vector<fs::path>> inputs = darkroom::expand_inputs(std::span(&input_, 1));
+    if (!inputs) return failure(inputs.error());
+    const std::vector<long long> numbers = numbers_of(*inputs);
+    const bool is_folder = is_output_folder(out_);
+    for (std::size_t i = 0; i < inputs->size(); ++i)
+        if (range.contains(numbers[i]))
+            out.push_back({numbers[i], output_path((*inputs)[i], numbers[i], out_, is_folder)});
+    if (out.empty())
+        return user_error(
+            fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_), inputs->size()));
+    std::ranges::sort(out, {}, &FarmFrame::number);
+    return out;
+}
+
 Result<FarmWork> FarmFlags::work() const {
     if (Result<> done = check_arguments(); !done) return failure(std::move(done));
-    FrameRange range{.first = 0, .last = ~std::uint64_t{0}};
-    if (!frames_.empty()) {
-        const Result<FrameRange> parsed = parse_frames(frames_);
-        if (!parsed) return failure(parsed.error());
-        range = *parsed;
-    }
-    FarmWork work;
-    if (is_scene()) {
-        for (std::uint64_t i = range.first; i <= range.last; ++i) {
-            const auto number = static_cast<long long>(i);
-            work.frames.push_back({number, darkroom::numbered(out_, number)});
-        }
-    } else {
-        const Result<std::vector<fs::path>> inputs = darkroom::expand_inputs(std::span(&input_, 1));
-        if (!inputs) return failure(inputs.error());
-        const std::vector<long long> numbers = numbers_of(*inputs);
-        const bool is_folder = is_output_folder(out_);
-        for (std::size_t i = 0; i < inputs->size(); ++i)
-            if (range.contains(numbers[i]))
-                work.frames.push_back({numbers[i], output_path((*inputs)[i], numbers[i], out_, is_folder)});
-        if (work.frames.empty())
-            return user_error(fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_),
-                                          inputs->size()));
-    }
-    if (work.frames.size() > most_farm_frames)
+    const Result<FrameRange> range =
+        frames_.empty() ? Result<FrameRange>({.first = 0, .last = ~std::uint64_t{0}}) : parse_frames(frames_);
+    if (!range) return failure(range.error());
+    Result<std::vector<FarmFrame>> frames = frames_in(*range);
+    if (!frames) return failure(std::move(frames));
+    if (frames->size() > most_farm_frames)
         return user_error(fmt::format("{}: {} frames, a farm takes {} at once; --frames says which", printable(input_),
-                                      work.frames.size(), most_farm_frames));
-    std::ranges::sort(work.frames, {}, &FarmFrame::number);
-    const fs::path pictures = work.frames.front().picture.parent_path();
+                                      frames->size(), most_farm_frames));
+    const fs::path picture = frames->front().picture, folder = picture.parent_path();
     std::error_code error;
-    if (!pictures.empty() && !fs::is_directory(pictures, error))
+    if (!folder.empty() && !fs::is_directory(folder, error))
         return user_error(
-            fmt::format("{}: no such folder, the pictures cannot be written", printable(pictures.string())));
-    work.folder = farm_folder(work.frames.front().picture);
-    return work;
+            fmt::format("{}: no such folder, the pictures cannot be written", printable(folder.string())));
+    return FarmWork{.frames = std::move(*frames), .folder = farm_folder(picture)};
 }
 
 // The command itself reads the arguments: what it would refuse is refused here, once, instead of by every task.

@@ -7,12 +7,12 @@
 #include <darkroom/look.hpp>
 #include <darkroom/result.hpp>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "farm_record.hpp"
+#include "run_flags.hpp"
 
 namespace app {
 
@@ -42,6 +42,7 @@ class FarmFlags {
   private:
     [[nodiscard]] bool is_scene() const;
     [[nodiscard]] darkroom::Result<> check_arguments() const;
+    [[nodiscard]] darkroom::Result<std::vector<FarmFrame>> frames_in(const FrameRange& range) const;
     [[nodiscard]] darkroom::Result<> check_flags(std::span<const darkroom::LookEntry> named) const;
     [[nodiscard]] darkroom::Result<> check_look(std::span<const darkroom::LookEntry> named) const;
 
