@@ -18,8 +18,10 @@ namespace {
 constexpr std::size_t most_flat_vectors = 30;
 constexpr std::uint32_t components_of_vertices = 128;
 
+using Words = std::unordered_set<std::string_view>;
+
 struct Names {
-    std::unordered_set<std::string_view> words;
+    Words words;                      ///< of those asked for
     bool has_literal_indices = true;  ///< of custom, also by way of an entry's NAME_custom()
 };
 
@@ -38,14 +40,13 @@ bool is_literal(GlslScanner after_name) {
     return mark == "]" || mark == ")" || (mark == "+" && next().text == "index");
 }
 
-Names names_of(std::string_view body) {
+Names names_of(std::string_view body, const Words& asked) {
     Names out;
     GlslScanner scanner(body);
     for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
         if (token.kind != Token::Kind::Word) continue;
-        out.words.insert(token.text);
-        if (token.text == "custom" || token.text.find("_custom") != std::string_view::npos)
-            out.has_literal_indices &= is_literal(scanner);
+        if (asked.contains(token.text)) out.words.insert(token.text);
+        if (token.text.find("custom") != std::string_view::npos) out.has_literal_indices &= is_literal(scanner);
     }
     return out;
 }
@@ -117,7 +118,10 @@ std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
     if (stage != Stage::Raster || !spec.loads_are_cheap) return std::nullopt;
     if (std::ranges::any_of(spec.members, [](const BlockMember& member) { return member.count > 0; }))
         return std::nullopt;
-    const Names names = names_of(spec.body);
+    Words asked{"size", "load_clamped"};
+    for (const BlockMember& member : spec.frame) asked.insert(member.name);
+    for (const BlockMember& member : spec.members) asked.insert(member.name);
+    const Names names = names_of(spec.body, asked);
     FlatValues out;
     const auto add = [&](std::vector<std::uint32_t>& vectors, std::uint32_t vector) {
         const bool is_new = vectors.empty() || vectors.back() != vector;
