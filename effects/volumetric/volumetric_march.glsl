@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Light that the haze before the surface scatters toward the camera, of one light; alpha, of the first light: planar
-// distance. Everything that is linear in the texel and in the planar distance comes ready from the CPU: on the software
-// driver a number read from a uniform buffer costs as much as thirty operations. custom[0] = (samples, max distance, what a
-// step leaves, density times intensity), custom[1] = (x per texel, x at texel 0, y per texel, y at texel 0) of the ray where
-// its planar distance is 1, custom[2] = (cosine to the light times the ray's length: at texel 0, per texel x, y; is first),
-// custom[3] = (color, is perspective), and of cascade c custom[4 + 4c] = (its u, v and depth at distance 0; far distance),
-// custom[5 + 4c] = (the same per distance at texel 0; of the first cascade: how many there are), custom[6 + 4c] and
-// custom[7 + 4c]: per texel x and y, and distance where the camera is perspective.
+// distance. Everything that is linear in the texel and in the planar distance comes ready from the CPU. custom[0] = (samples,
+// max distance, what a step leaves, density times intensity), custom[1] = (x per texel, x at texel 0, y per texel, y at
+// texel 0) of the ray where its planar distance is 1, custom[2] = (cosine to the light times the ray's length: at texel 0, per
+// texel x, y; is first), custom[3] = (color, is perspective), and of cascade c custom[4 + 4c] = (its u, v and depth at
+// distance 0; far distance), custom[5 + 4c] = (the same per distance at texel 0; of the first cascade: how many there are),
+// custom[6 + 4c] and custom[7 + 4c]: per texel x and y, and distance where the camera is perspective.
 
 // Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941, g = 0.8: forward scattering.
 float volumetric_phase(float cosine) {
@@ -30,6 +29,7 @@ float volumetric_lit(float sum, float first, float end, vec3 place, vec3 slope, 
     return sum;
 }
 
+// The cascade's four vectors, and `at`: texel, length of a step, jitter.
 float volumetric_cascade(float sum, float first, float end, vec4 start, vec4 ray, vec4 per_x, vec4 per_y, vec4 at,
                          float cascade) {
     float perspective = custom[3].w;
