@@ -131,10 +131,13 @@ RowOutcome draw_row(PanelState& state, const RowLine& line, const Columns& colum
     explain(line);
     opens_menu |= ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right);
     // The second press of a double click would hold the slider where the mouse is.
-    bool& holds_still = *ImGui::GetStateStorage()->GetBoolRef(ImGui::GetID("still"));
+    ImGuiStorage& storage = *ImGui::GetStateStorage();
+    const ImGuiID still_id = ImGui::GetID("still");
+    bool holds_still = storage.GetBool(still_id);
     const bool is_double = !has_double_click_of_its_own(row.kind) && is_asked(ImGuiMouseButton_Left);
     if (is_double) holds_still = true;
     if (holds_still && !ImGui::IsMouseDown(ImGuiMouseButton_Left)) holds_still = false;
+    storage.SetBool(still_id, holds_still);
     resets |= is_double;
     if (edit.is_begun && !is_double) state.document->end_merge();
     if (opens_menu) ImGui::OpenPopup("menu");

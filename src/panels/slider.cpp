@@ -138,10 +138,13 @@ double SliderScale::value(double position) const {
 
 SliderEdit draw_slider(const char* id, const ParamInfo& row, double usual, double& number) {
     ImGui::PushID(id);
-    int& typing = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("typing"));
+    ImGuiStorage& storage = *ImGui::GetStateStorage();
+    const ImGuiID typing_id = ImGui::GetID("typing");
+    int typing = storage.GetInt(typing_id);
     SliderEdit edit;
     if (typing > 0) {
         edit = type_number(row, number, typing);
+        storage.SetInt(typing_id, typing);
         ImGui::PopID();
         return edit;
     }
@@ -156,6 +159,7 @@ SliderEdit draw_slider(const char* id, const ParamInfo& row, double usual, doubl
         ImGui::SetCursorScreenPos(corner);
         ImGui::SetNextItemWidth(width);
         edit = type_number(row, number, typing);
+        storage.SetInt(typing_id, typing);
     } else if (is_held) {
         double position = (io.MousePos.x - corner.x) / width;
         if (io.KeyShift) position = scale.position(number) + io.MouseDelta.x / width / 10;
