@@ -112,9 +112,20 @@ TEST_F(PanelTimings, ManyPassesAreNotTooMuchForSmallIndices) {
 }
 
 TEST_F(PanelTimings, SaysSoWhereThereIsNothing) {
-    gui.frame(2);
+    const auto said = [&] {
+        gui.draw = [&, drawn = gui.draw] {
+            ImGui::LogToClipboard();
+            drawn();
+            ImGui::LogFinish();
+        };
+        gui.frame(2);
+        return gui.clipboard;
+    };
+    EXPECT_NE(said().find("No times yet."), std::string::npos) << gui.clipboard;
+    history = chain(3);
+    EXPECT_NE(said().find("GPU"), std::string::npos) << gui.clipboard;
     history.clear();
-    gui.frame(2);
+    EXPECT_NE(said().find("No times yet."), std::string::npos) << gui.clipboard;
 }
 
 TEST_F(PanelTimings, TimesOfNothingAreNoTrouble) {
