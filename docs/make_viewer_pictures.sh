@@ -13,7 +13,8 @@ work=$(mktemp -d)
 processes=()
 trap 'kill "${processes[@]}" 2>/dev/null || true; wait; rm -rf "$work"' EXIT
 
-mkfifo "$work/number"
+mkfifo "$work/number" "$work/commands"
+exec 4<>"$work/commands"
 # With room for the window's frame.
 Xvfb -displayfd 3 -screen 0 "$((${size%x*} + 100))x$((${size#*x} + 100))x24" -nolisten tcp 3>"$work/number" 2>/dev/null &
 processes+=($!)
@@ -34,7 +35,7 @@ wait_for() {
     exit 1
 }
 start() {
-    (cd "$work" && exec "$darkroom" "$@" >"$work/said") &
+    (cd "$work" && exec "$darkroom" "$@" --commands >"$work/said" <"$work/commands") &
     viewer=$!
     processes+=("$viewer")
     until [[ -s $work/said ]] || ! kill -0 "$viewer" 2>/dev/null; do sleep 0.1; done
@@ -56,20 +57,15 @@ say() {
 }
 # A frame has seen what the mouse did: nothing is ever undone here.
 frame() { say ctrl+shift+z 'nothing to redo' && say ctrl+shift+z 'nothing to redo'; }
-console() {
-    xdotool key grave
-    frame
-    frame  # letters are keys until it has the keyboard
-    xdotool type "$1"
-    frame
-    xdotool keydown Return
-    frame
-    xdotool keyup Return key grave
-    frame
-}
 # Prints where a widget lies: the console knows.
 corners() {
-    console "places $1"
+    local before
+    before=$(count "^place $1 ")
+    for ((i = 0; i < 600; ++i)); do
+        echo "places $1" >&4
+        sleep 0.1
+        [[ $(count "^place $1 ") -le $before ]] || break
+    done
     grep "^place $1 " "$work/said" | tail -n 1 | cut -d ' ' -f 3-
 }
 point() { xdotool mousemove --window "$window" "$1" "$2" && frame; }
@@ -101,7 +97,6 @@ part() { echo $((${size%x*} * $1 / 100)) $((${size#*x} * $2 / 100)); }
 
 start edit "$scenes/showcase.scene.toml" --size "$size" --time 2.5
 say p 'P pause: on'
-console places  # from now on they are noted
 click stack/bloom
 point $(part 50 40)
 picture edit
