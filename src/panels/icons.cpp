@@ -119,11 +119,12 @@ bool icon_button(const char* id, Icon icon, const char* text, bool is_dim) {
 
 bool is_rested_on() {
     if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsAnyMouseDown()) return false;
-    float& still = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("still since"));
+    ImGuiStorage& storage = *ImGui::GetStateStorage();
+    const ImGuiID still_id = ImGui::GetID("still since");
     const auto now = static_cast<float>(ImGui::GetTime());
     const ImVec2 moved = ImGui::GetIO().MouseDelta;
-    if (moved.x != 0 || moved.y != 0 || ImGui::IsWindowAppearing()) still = now;
-    return now - still > 0.4f;
+    if (moved.x != 0 || moved.y != 0 || ImGui::IsWindowAppearing()) storage.SetFloat(still_id, now);
+    return now - storage.GetFloat(still_id) > 0.4f;
 }
 
 void tooltip(const char* text) {
