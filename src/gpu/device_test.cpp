@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <chrono>
 #include <darkroom/device.hpp>
 
 #include "core/files.hpp"
@@ -170,12 +171,22 @@ TEST(GpuTimers, MeasureWithoutWaiting) {
     gpu::test::must(
         gpu::submit_and_wait(context, "resetting", [&](VkCommandBuffer commands) { timers.begin(commands, 1); }));
     EXPECT_EQ(timers.read(1, 3, milliseconds), 0U);
+    const VkBufferCopy half{.dstOffset = VkDeviceSize{8} << 20, .size = VkDeviceSize{8} << 20};
+    const gpu::Buffer copied = gpu::test::must(
+        gpu::Buffer::create(context, 2 * half.size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                            gpu::Memory::Kind::Upload, "a test's time"));
+    const auto begin = std::chrono::steady_clock::now();
     gpu::test::must(gpu::submit_and_wait(context, "marking", [&](VkCommandBuffer commands) {
-        for (std::uint32_t index = 0; index < 3; ++index) timers.mark(commands, 1, index);
+        timers.mark(commands, 1, 0);
+        context.vk.CmdCopyBuffer(commands, copied.handle, copied.handle, 1, &half);
+        timers.mark(commands, 1, 1);
+        timers.mark(commands, 1, 2);
     }));
+    const std::chrono::duration<double, std::milli> passed = std::chrono::steady_clock::now() - begin;
     EXPECT_EQ(timers.read(1, 3, milliseconds), 2U);
-    EXPECT_GE(milliseconds[0], 0.0);
+    EXPECT_GT(milliseconds[0], milliseconds[1]) << "8 MiB are copied between the first two";
     EXPECT_GE(milliseconds[1], 0.0);
+    EXPECT_LT(milliseconds[0] + milliseconds[1], passed.count());
 }
 
 }  // namespace
