@@ -40,9 +40,11 @@ TEST_F(ComposeSmallestDevice, ShowsThePictureThatOthersShow) {
             if (find_effect(effect) != nullptr) test::add(composer, effect);
         test::add(composer, "vignette");
     };
+    // Three effects fetch between texels of noise, one after another along two axes; the last doubles what it finds.
+    const double filtered = (2 + 2 + 4) * 2 * gpu::test::filter_step();
     for (const KernelStage kernels : {KernelStage::Compute, KernelStage::Raster}) {
         for (const VkFormat format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT})
-            EXPECT_LE(difference(picture, format, kernels, fill), 1e-3) << format;
+            EXPECT_LE(difference(picture, format, kernels, fill), 1e-3 + filtered) << format;
     }
 }
 
