@@ -16,7 +16,7 @@ trap 'kill "${processes[@]}" 2>/dev/null || true; wait; rm -rf "$work"' EXIT
 mkfifo "$work/number" "$work/commands"
 exec 4<>"$work/commands"
 # With room for the window's frame.
-Xvfb -displayfd 3 -screen 0 "$((${size%x*} + 100))x$((${size#*x} + 100))x24" -nolisten tcp 3>"$work/number" 2>/dev/null &
+Xvfb -displayfd 3 -screen 0 "$((${size%x*} + 100))x$((${size#*x} + 100))x24" -nolisten tcp -noreset 3>"$work/number" 2>/dev/null &
 processes+=($!)
 read -r number <"$work/number"
 export DISPLAY=:$number

@@ -81,9 +81,10 @@ class ViewerFixture : public CliFixture {
             GTEST_SKIP() << "packages xvfb, openbox and xdotool are needed to open windows";
         std::array<int, 2> ends{};
         ASSERT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
+        // Without -noreset it begins anew, and loses who is just connecting, when the last of the others leaves.
         display_ =
             std::make_unique<Process>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen",
-                                                               "0", "1920x1080x24", "-nolisten", "tcp"},
+                                                               "0", "1920x1080x24", "-nolisten", "tcp", "-noreset"},
                                       path("xvfb.log"), path("xvfb.err"), path(""), ends[1]);
         close(ends[1]);
         std::string number;
