@@ -81,12 +81,12 @@ TEST_F(FarmFiles, AScriptIsAnArrayJobOfWhatIsMissing) {
                                       "chunks=(2-5 9-12)\n"
                                       "chunk=${{chunks[SLURM_ARRAY_TASK_ID]}}\n"
                                       "exec >>out/shot.farm/\"$chunk.log\" 2>&1\n"
-                                      "exec {} farm task --frames \"$chunk\" 'shot.####.exr' -o out/ -- --exposure 2\n",
+                                      "{} farm task --frames \"$chunk\" 'shot.####.exr' -o out/ -- --exposure 2\n",
                                       fs::canonical(path(".")).string(), fs::canonical(program).string()));
     EXPECT_FALSE(fs::exists(path("out/shot.farm"))) << "a dry run writes nothing";
     const std::string container = "apptainer exec --nv --bind /mnt/shots /mnt/shots/darkroom.sif darkroom";
     const Outcome inside = farm("slurm 'shot.####.exr' -o out/ --dry-run --program '" + container + "'");
-    EXPECT_NE(inside.out.find("\nexec " + container + " farm task "), std::string::npos) << inside.out;
+    EXPECT_NE(inside.out.find("\n" + container + " farm task "), std::string::npos) << inside.out;
 }
 
 TEST_F(FarmFiles, EveryPathOfAScriptReachesItsTask) {
@@ -236,6 +236,14 @@ TEST_F(FarmFiles, StatusIsToldFromRecordsAlone) {
     EXPECT_EQ(farm("status out").out.substr(0, 54), "out/shot.farm: 24 frames: 15 done, 0 failed, 9 missing");
 }
 
+TEST_F(FarmFiles, OtherDigitsOfNamesAreNoNumberOfAFrame) {
+    for (const char* const frames : {"1-2", "11-12"}) {
+        const Outcome outcome =
+            farm(std::string("slurm 'shot.####.exr' -o 'out/a2.####_1080p.png' --dry-run --frames ") + frames);
+        EXPECT_NE(outcome.out.find("mkdir -p -- out/a2.farm\n"), std::string::npos) << outcome.out << outcome.err;
+    }
+}
+
 TEST_F(FarmFiles, AFileThatIsNoRecordIsAWarning) {
     fs::create_directory(path("shot.farm"));
     const std::string rest = R"(,"made":2,"tries":4,"seconds":3,"begun":"","node":"","job":"","errors":[])";
@@ -247,10 +255,12 @@ TEST_F(FarmFiles, AFileThatIsNoRecordIsAWarning) {
         {R"({"format":1})", "chunk is missing"},
         {R"({"format":1,"chunk":3})", "chunk is of another kind"},
         {R"({"format":1,"chunk":"","frames":[[0,99999999]])" + rest + "}",
-         "frames: allowed are [first, last], 100000 frames at most"},
+         "frames: allowed are [first, last] in order, 100000 frames at most"},
         {R"({"format":1,"chunk":"","frames":[[-9,3]])" + rest + "}",
-         "frames: allowed are [first, last], 100000 frames at most"},
+         "frames: allowed are [first, last] in order, 100000 frames at most"},
         {R"({"format":1,"chunk":"","frames":[[1]])" + rest + "}", "frames are no pairs of frames"},
+        {R"({"format":1,"chunk":"","frames":[[0,5],[0,5]])" + rest + "}",
+         "frames: allowed are [first, last] in order, 100000 frames at most"},
         {R"({"format":1,"chunk":"","frames":[],"done":[],"state":"x")" + rest + "}",
          "state: allowed is begun, done or failed"}};
     for (const auto& [text, problem] : cases) {
@@ -264,6 +274,7 @@ TEST_F(FarmFiles, AFileThatIsNoRecordIsAWarning) {
     EXPECT_EQ(outcome.code, 1);
     EXPECT_EQ(outcome.err, "darkroom: shot.farm/job.json: is not JSON\n");
     expect_farm_refuses("status out", 1, "out: there is no NAME.farm in it, nothing was submitted");
+    expect_farm_refuses("status none.farm", 1, "none.farm: cannot be listed: No such file or directory");
     expect_farm_refuses("status none", 1, "none: cannot be listed: No such file or directory");
 }
 

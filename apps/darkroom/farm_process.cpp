@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -96,6 +97,11 @@ Result<ProcessOutcome> run_process(const std::vector<std::string>& arguments, Pr
     for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
     pointers.push_back(nullptr);
     Pipe out, errors;
+    const auto cannot_be_run = [&](int reason) {
+        return darkroom::machine_error(fmt::format("{}: cannot be run: {}", darkroom::printable(arguments[0]),
+                                                   std::generic_category().message(reason)));
+    };
+    if (out.read_end() < 0 || errors.read_end() < 0) return cannot_be_run(errno);
     posix_spawn_file_actions_t actions{};
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -104,9 +110,7 @@ Result<ProcessOutcome> run_process(const std::vector<std::string>& arguments, Pr
     pid_t process = -1;
     const int reason = posix_spawnp(&process, pointers[0], &actions, nullptr, pointers.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (reason != 0)
-        return darkroom::machine_error(
-            fmt::format("{}: cannot be run: {}", arguments[0], std::generic_category().message(reason)));
+    if (reason != 0) return cannot_be_run(reason);
     out.close_end(1);
     errors.close_end(1);
     ProcessOutcome outcome;

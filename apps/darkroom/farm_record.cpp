@@ -22,8 +22,8 @@ namespace {
 
 constexpr std::int64_t format = 1;
 constexpr const char* job_name = "job.json";
-// A hundred thousand frames, each a chunk of its own, are less.
-constexpr std::size_t most_bytes = std::size_t{4} << 20;
+// A hundred thousand frames with gaps, asked for and done, take 8 MB.
+constexpr std::size_t most_bytes = std::size_t{16} << 20;
 constexpr std::size_t most_files = 100'000;
 constexpr std::array<const char*, 3> state_names{"begun", "done", "failed"};
 
@@ -72,9 +72,12 @@ FrameNumbers numbers_of(const Json& json, const char* key) {
         if (!range.is_array() || range.size() != 2 || !range[0].is_number_integer() || !range[1].is_number_integer())
             throw Wrong{fmt::format("{} are no pairs of frames", key)};
         const auto first = range[0].get<std::int64_t>(), last = range[1].get<std::int64_t>();
-        if (first < 0 || last < first || static_cast<std::size_t>(last - first) >= most_farm_frames - out.size())
-            throw Wrong{fmt::format("{}: allowed are [first, last], {} frames at most", key, most_farm_frames)};
-        for (std::int64_t number = first; number <= last; ++number) out.insert(number);
+        const bool is_behind = out.empty() || first > *out.rbegin();
+        if (first < 0 || last < first || !is_behind ||
+            static_cast<std::size_t>(last - first) >= most_farm_frames - out.size())
+            throw Wrong{
+                fmt::format("{}: allowed are [first, last] in order, {} frames at most", key, most_farm_frames)};
+        for (std::int64_t number = first; number <= last; ++number) out.insert(out.end(), number);
     }
     return out;
 }
@@ -136,7 +139,7 @@ Result<std::vector<fs::path>> record_files(const fs::path& folder) {
                     fmt::format("{}: allowed are {} records", printable(folder.string()), most_files));
         }
     if (error)
-        return darkroom::machine_error(
+        return darkroom::user_error(
             fmt::format("{}: cannot be listed: {}", printable(folder.string()), error.message()));
     std::ranges::sort(out);
     return out;
@@ -189,7 +192,11 @@ Result<> write_record(const fs::path& folder, const ChunkRecord& record) {
 
 Result<std::optional<FarmJob>> read_job(const fs::path& folder) {
     std::error_code error;
-    if (!fs::exists(folder / job_name, error)) return std::optional<FarmJob>();
+    const bool is_there = fs::exists(folder / job_name, error);
+    if (error)
+        return darkroom::machine_error(
+            fmt::format("{}: cannot be opened: {}", printable((folder / job_name).string()), error.message()));
+    if (!is_there) return std::optional<FarmJob>();
     Result<FarmJob> job = read(folder / job_name, job_of);
     if (!job) return failure(std::move(job));
     return std::optional<FarmJob>(std::move(*job));

@@ -117,7 +117,7 @@ Result<std::string> script_of(const Options& options, const FarmWork& work, cons
     const std::string folder = shell_quoted(work.folder.string());
     return fmt::format(
         "#!/bin/bash\n{}set -e\ncd -- {}\nmkdir -p -- {}\nchunks=({})\nchunk=${{chunks[SLURM_ARRAY_TASK_ID]}}\n"
-        "exec >>{}/\"$chunk.log\" 2>&1\nexec {} farm task --frames \"$chunk\" {}\n",
+        "exec >>{}/\"$chunk.log\" 2>&1\n{} farm task --frames \"$chunk\" {}\n",
         *head, shell_quoted(here), folder, fmt::join(chunks, " "), folder, program, shell_quoted(options.work.task()));
 }
 
@@ -125,6 +125,8 @@ Result<std::string> script_of(const Options& options, const FarmWork& work, cons
 std::string comparable(const std::vector<std::string>& arguments) {
     return Json(arguments).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
+
+bool is_number(const std::string& id) { return !id.empty() && id.find_first_not_of("0123456789") == std::string::npos; }
 
 /// What was submitted before may not be under way, and must have been the same.
 Result<> check_last_job(const FarmWork& work, const std::vector<std::string>& arguments) {
@@ -137,7 +139,7 @@ Result<> check_last_job(const FarmWork& work, const std::vector<std::string>& ar
             fmt::format("{}: its pictures are of other arguments ({}); remove it, or write elsewhere with -o", folder,
                         printable(fmt::format("{}", fmt::join((*last)->arguments, " ")))));
     const std::string& id = (*last)->id;
-    if (id.empty() || id.find_first_not_of("0123456789") != std::string::npos) return {};
+    if (!is_number(id)) return {};
     const Result<ProcessOutcome> queue = run_process({"squeue", "-h", "-o", "%i", "-j", id}, ProcessOutput::Kept);
     if (!queue || queue->code != 0 || queue->out.empty()) return {};  // Slurm has forgotten it, or sbatch says why not
     return user_error(fmt::format("{}: job {} is not over; wait for it, or end it with `scancel {}`", folder, id, id));
@@ -152,7 +154,10 @@ Result<std::string> submit(const fs::path& script) {
     if (outcome->code != 0)
         return darkroom::machine_error(outcome->errors.empty() ? fmt::format("sbatch: ended with {}", outcome->code)
                                                                : outcome->errors.back());
-    return outcome->out.substr(0, outcome->out.find_first_of(";\n"));  // behind a semicolon: the cluster
+    std::string id = outcome->out.substr(0, outcome->out.find_first_of(";\n"));  // behind a semicolon: the cluster
+    if (!is_number(id))
+        return darkroom::machine_error(fmt::format("sbatch: '{}' is no number of a job", printable(id)));
+    return id;
 }
 
 /// With the script among the records, for who wants to read it; where it is not taken, nothing stays.
@@ -203,8 +208,9 @@ Result<> run(const Options& options, std::span<const darkroom::LookEntry> named)
     const Result<std::string> id = submit(work->folder, *script);
     if (!id) return failure(id.error());
     job.id = *id;
-    if (Result<> done = write_job(work->folder, job); !done) return done;
-    tell(fmt::format("job {}: {} of {} pictures in {} chunks; darkroom farm status {}", printable(job.id),
+    if (Result<> done = write_job(work->folder, job); !done)
+        return darkroom::machine_error(fmt::format("job {} was submitted, but {}", job.id, done.error().text));
+    tell(fmt::format("job {}: {} of {} pictures in {} chunks; darkroom farm status {}", job.id,
                      job.frames.size() - job.done.size(), job.frames.size(), chunks.size(),
                      printable(work->folder.string())));
     return {};

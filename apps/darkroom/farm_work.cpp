@@ -22,13 +22,14 @@ using darkroom::user_error;
 
 namespace {
 
-/// "out/shot.0001.png" -> "out/shot.farm"
-fs::path farm_folder(const fs::path& picture) {
-    std::string name = picture.stem().string();
-    const std::size_t last_digit = name.find_last_of("0123456789");
-    if (last_digit != std::string::npos) name.resize(name.find_last_not_of("0123456789", last_digit) + 1);
+/// "out/shot.0001.png" -> "out/shot.farm". Told by two frames: other digits of a name are no number of a frame.
+fs::path farm_folder(const fs::path& first, const fs::path& other) {
+    std::string name = first.stem().string();
+    const std::string beside = other.stem().string();
+    name.erase(std::ranges::mismatch(name, beside).in1, name.end());
+    name.resize(name.find_last_not_of("0123456789") + 1);
     name.resize(name.find_last_not_of("._- ") + 1);
-    return picture.parent_path() / ((name.empty() ? "frames" : name) + farm_suffix);
+    return first.parent_path() / ((name.empty() ? "frames" : name) + farm_suffix);
 }
 
 std::vector<std::string> names_of(const CLI::App& command) {
@@ -135,7 +136,10 @@ Result<FarmWork> FarmFlags::work() const {
     if (!folder.empty() && !fs::is_directory(folder, error))
         return user_error(
             fmt::format("{}: no such folder, the pictures cannot be written", printable(folder.string())));
-    return FarmWork{.frames = std::move(*frames), .folder = farm_folder(picture)};
+    const auto made = [&](std::int64_t number) {
+        return output_path(darkroom::numbered(input_, number), number, out_, is_output_folder(out_));
+    };
+    return FarmWork{.frames = std::move(*frames), .folder = farm_folder(made(0), made(9))};
 }
 
 // The command itself reads the arguments: what it would refuse is refused here, once, instead of by every task.
@@ -154,6 +158,10 @@ Result<> FarmFlags::check_flags(std::span<const darkroom::LookEntry> named) cons
     } catch (const CLI::ParseError& problem) {
         return user_error(fmt::format("{}: {}", command.app->get_name(), printable(problem.what())));
     }
+    const CLI::Option* const input = command.app->get_option_no_throw("INPUT");
+    if (input != nullptr && input->count() > 1)
+        return user_error(fmt::format("unexpected '{}': allowed behind -- are flags of {}",
+                                      printable(input->results().back()), command.app->get_name()));
     return {};
 }
 
