@@ -57,6 +57,7 @@ void Viewer::reload_source() {
     take_scene(std::move(*made));
     watch_source();
     screen_.clear_error("scene");
+    screen_.clear_error("source");
     tell(fmt::format("read {} again", job_.scene.filename().string()));
 }
 
