@@ -98,12 +98,14 @@ void write_storage_input(Text text, const KernelImage& image, std::uint32_t bind
 }
 
 /// Vulkan 1.3 specification, "Texel Filtering", with the address mode CLAMP_TO_EDGE.
+/// At the centre of a texel no other is looked at, which may be NaN.
 void write_filter(Text text, std::string_view name) {
     fmt::format_to(text,
                    "vec4 sample_linear_{0}(vec2 uv) {{\n"
                    "    ivec2 last = textureSize({0}, 0) - 1;\n"
                    "    vec2 place = clamp(darkroom_place_{0}(uv) * vec2(last + 1), vec2(0), vec2(last + 1)) - 0.5;\n"
-                   "    ivec2 low = max(ivec2(floor(place)), 0), high = min(ivec2(floor(place)) + 1, last);\n"
+                   "    place = round(place * 16384.0) / 16384.0;\n"
+                   "    ivec2 low = max(ivec2(floor(place)), 0), high = min(ivec2(ceil(place)), last);\n"
                    "    vec2 weight = place - floor(place);\n"
                    "    return mix(mix(texelFetch({0}, low, 0), texelFetch({0}, ivec2(high.x, low.y), 0), weight.x),\n"
                    "               mix(texelFetch({0}, ivec2(low.x, high.y), 0), texelFetch({0}, high, 0), weight.x),\n"
