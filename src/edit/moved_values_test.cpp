@@ -146,6 +146,9 @@ TEST_F(MovedValues, TheInterfaceIsWrittenWhereItStands) {
                                         own.game["health"] = 80.0;
                                     }));
     EXPECT_EQ(made, "[post_process]\n\n[ui]\ndocument = \"hud.svg\"\ngame = { \"health\" = 80 }\n");
+    EXPECT_EQ(edited(ui, change([](LookUi& own) { own.game.clear(); })).find("game"), std::string::npos);
+    EXPECT_EQ(edited("[ui]\n[ui.game]\nhealth = 80 # full\n", change([](LookUi& own) { own.game.clear(); })),
+              "[ui]\n[ui.game]\n");
     EXPECT_EQ(edited("[ui]\n[ui.game]\nhealth = 80 # full\n", change([](LookUi& own) { own.game["health"] = 81.0; })),
               "[ui]\n[ui.game]\nhealth = 81 # full\n");
 }

@@ -72,7 +72,9 @@ class Splicer {
             if (Result<> done = write_text(ui_path, "controllers", list_text(now.controllers)); !done) return done;
         if (now.game == before.game) return {};
         const TomlPath game{ui_path[0], "game"};
-        if (!editor_.contains(game) || now.game.empty()) return write_text(ui_path, "game", game_text(now.game));
+        const bool is_inline = editor_.find(game) != nullptr;
+        if (!editor_.contains(game) || (is_inline && now.game.empty()))
+            return write_text(ui_path, "game", game_text(now.game));
         for (const auto& [name, value] : before.game)
             if (!now.game.contains(name))
                 if (Result<> done = editor_.remove(game, name); !done) return done;
