@@ -130,6 +130,15 @@ int run(const Options& options, std::vector<std::string> command_line) {
     return 0;
 }
 
+/// Results are kept and shown: the folders of the program and of its files are no part of them.
+std::vector<std::string> without_folders(std::vector<std::string> command_line, const Options& options) {
+    for (const std::filesystem::path& path : {std::filesystem::path(command_line[0]), options.json, options.csv})
+        for (std::string& argument : command_line)
+            if (!path.empty() && argument.ends_with(path.string()))
+                argument.replace(argument.size() - path.string().size(), std::string::npos, path.filename().string());
+    return command_line;
+}
+
 int parse_and_run(int argc, char** argv) {
     Options options;
     CLI::App program("Measures what Darkroom costs on this device.", "darkroom_bench");
@@ -154,7 +163,7 @@ int parse_and_run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return error.get_exit_code() == 0 ? program.exit(error) : fail({Fault::User, error.what()});
     }
-    return run(options, {argv, argv + argc});
+    return run(options, without_folders({argv, argv + argc}, options));
 }
 
 }  // namespace
