@@ -11,6 +11,7 @@
 #include "core/files.hpp"
 #include "core/param_text.hpp"
 #include "report.hpp"
+#include "run_flags.hpp"
 
 namespace app {
 
@@ -74,9 +75,8 @@ FrameNumbers numbers_of(const Json& json, const char* key) {
         const auto first = range[0].get<std::int64_t>(), last = range[1].get<std::int64_t>();
         const bool is_behind = out.empty() || first > *out.rbegin();
         if (first < 0 || last < first || !is_behind ||
-            static_cast<std::size_t>(last - first) >= most_farm_frames - out.size())
-            throw Wrong{
-                fmt::format("{}: allowed are [first, last] in order, {} frames at most", key, most_farm_frames)};
+            static_cast<std::size_t>(last - first) >= most_frames - out.size())
+            throw Wrong{fmt::format("{}: allowed are [first, last] in order, {} frames at most", key, most_frames)};
         for (std::int64_t number = first; number <= last; ++number) out.insert(out.end(), number);
     }
     return out;

@@ -19,7 +19,6 @@ namespace app {
 using FrameNumbers = std::set<long long>;
 
 inline constexpr const char* farm_suffix = ".farm";
-inline constexpr std::size_t most_farm_frames = 100'000;
 
 /// "0-6, 9"; "none".
 [[nodiscard]] std::string shown(const FrameNumbers& numbers);

@@ -34,7 +34,7 @@ constexpr std::size_t usual_chunk = 10;
 
 struct Options {
     FarmFlags work;
-    NumberFlag chunk{"--chunk", {.least = 1, .most = 100'000, .is_whole = true}};
+    NumberFlag chunk{"--chunk", {.least = 1, .most = most_frames, .is_whole = true}};
     NumberFlag cpus{"--cpus", {.least = 1, .most = 4096, .is_whole = true}};
     std::string partition, time, gpus, account, program;
     bool is_dry_run = false;

@@ -128,9 +128,9 @@ Result<FarmWork> FarmFlags::work() const {
     if (!range) return failure(range.error());
     Result<std::vector<FarmFrame>> frames = frames_in(*range);
     if (!frames) return failure(std::move(frames));
-    if (frames->size() > most_farm_frames)
+    if (frames->size() > most_frames)
         return user_error(fmt::format("{}: {} frames, a farm takes {} at once; --frames says which", printable(input_),
-                                      frames->size(), most_farm_frames));
+                                      frames->size(), most_frames));
     const fs::path picture = frames->front().picture, folder = picture.parent_path();
     std::error_code error;
     if (!folder.empty() && !fs::is_directory(folder, error))

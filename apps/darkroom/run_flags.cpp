@@ -98,9 +98,8 @@ Result<FrameRange> parse_frames(const std::string& text) {
             fmt::format("--frames {}: expected A or A-B, whole numbers in [0, {}]", printable(text), most_number));
     if (range.last < range.first)
         return user_error(fmt::format("--frames {}: the last frame is before the first", printable(text)));
-    constexpr std::uint64_t most = 100'000;
-    if (range.last - range.first >= most)
-        return user_error(fmt::format("--frames {}: at most {} frames at once", printable(text), most));
+    if (range.last - range.first >= most_frames)
+        return user_error(fmt::format("--frames {}: at most {} frames at once", printable(text), most_frames));
     return range;
 }
 

@@ -40,6 +40,8 @@ struct FrameRange {
     }
 };
 
+inline constexpr std::size_t most_frames = 100'000;  ///< that are asked for at once
+
 /// "A-B" or "A", as --frames takes it.
 [[nodiscard]] darkroom::Result<FrameRange> parse_frames(const std::string& text);
 
