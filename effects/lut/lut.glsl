@@ -4,6 +4,7 @@
 // sampler3D, and a sampler2D where there is nothing to shape, or no second table: the overload then says at compile time
 // what a branch would say in every pixel, and some drivers pay for both sides of a branch around loads. That sampler2D is
 // as wide as the cube's edge.
+#include "shared/log_curves.glsl"
 #include "shared/sanitize.glsl"
 #include "shared/srgb.glsl"
 
@@ -72,23 +73,6 @@ vec3 lut_faded(sampler3D shaper, vec3 found, vec3 given, Lut parameters) {
     return mix(found, lut_between(true, edge, place, parameters.interpolation), parameters.fade);
 }
 
-// Rec. 709 to the primaries of each space and back, as lut_reference.hpp works them out: ACES AP1 with the adaptation of
-// Bradford, ARRI Wide Gamut 3, S-Gamut3.Cine.
-const mat3 lut_to_ap1 = mat3(0.613097402, 0.070193722, 0.020615593, 0.339523146, 0.916353879, 0.109569773,
-                             0.047379451, 0.013452398, 0.869814634);
-const mat3 lut_from_ap1 = mat3(1.705050993, -0.130256418, -0.024003357, -0.621792121, 1.140804737, -0.128968976,
-                               -0.083258872, -0.010548319, 1.152972333);
-const mat3 lut_to_awg3 = mat3(0.631321023, 0.036819934, 0.017369732, 0.270800727, 0.793036966, 0.148789185,
-                              0.097878250, 0.170143100, 0.833841083);
-const mat3 lut_from_awg3 = mat3(1.617523436, -0.070572741, -0.021101728, -0.537286622, 1.334613062, -0.226953875,
-                                -0.080236814, -0.264040321, 1.248055603);
-const mat3 lut_to_sgamut3_cine = mat3(0.645679478, 0.087529992, 0.036957420, 0.259114547, 0.759699563, 0.129280905,
-                                      0.095205975, 0.152770446, 0.833761675);
-const mat3 lut_from_sgamut3_cine = mat3(1.626947410, -0.178515527, -0.044436115, -0.540138539, 1.417940927,
-                                        -0.195919966, -0.086808871, -0.239425400, 1.240356081);
-const float lut_log2_10 = 3.321928095;
-const float lut_log10_2 = 0.301029996;
-
 // srgb_encode() to 2e-5 for one square root less: they are what it costs most. The fraction in t = 1 - sqrt(x) is fitted for
 // the smallest absolute error, with 1 kept exact.
 vec3 lut_display_code(vec3 light) {
@@ -109,45 +93,18 @@ vec3 lut_display_light(vec3 code) {
 vec3 lut_encode(vec3 light, uint space) {
     if (space == Lut_space_display) return lut_display_code(light);
     light = sanitize(vec4(light, 0.0)).rgb;
-    if (space == Lut_space_acescct) {
-        light = lut_to_ap1 * light;
-        return mix((log2(max(light, vec3(1e-7))) + 9.72) / 17.52, 10.5402377416545 * light + 0.0729055341958355,
-                   lessThanEqual(light, vec3(0.0078125)));
-    }
-    if (space == Lut_space_logc3) {
-        light = lut_to_awg3 * light;
-        return mix(5.367655 * light + 0.092809,
-                   0.247190 * lut_log10_2 * log2(max(5.555556 * light + 0.052272, vec3(1e-7))) + 0.385537,
-                   greaterThan(light, vec3(0.010591)));
-    }
-    if (space == Lut_space_slog3) {
-        light = lut_to_sgamut3_cine * light;
-        return mix((light * ((171.2102946929 - 95.0) / 0.01125) + 95.0) / 1023.0,
-                   (420.0 + lut_log10_2 * 261.5 * log2(max((light + 0.01) / 0.19, vec3(1e-7)))) / 1023.0,
-                   greaterThanEqual(light, vec3(0.01125)));
-    }
-    // LogShaper: stops above and below a grey of 0.18, from -10 to 6.5.
-    return (log2(max(light, vec3(0.18 / 1024.0)) / 0.18) + 10.0) / 16.5;
+    if (space == Lut_space_acescct) return acescct_encode(light);
+    if (space == Lut_space_logc3) return logc3_encode(light);
+    if (space == Lut_space_slog3) return slog3_encode(light);
+    return log_shaper_encode(light);
 }
 
 vec3 lut_decode(vec3 value, uint space) {
     if (space == Lut_space_display) return lut_display_light(value);
-    if (space == Lut_space_acescct)
-        return lut_from_ap1 * clamp(mix((value - 0.0729055341958355) / 10.5402377416545, exp2(value * 17.52 - 9.72),
-                                        greaterThan(value, vec3(0.155251141552511))),
-                                    -65504.0, 65504.0);
-    if (space == Lut_space_logc3)
-        return lut_from_awg3 * clamp(mix((value - 0.092809) / 5.367655,
-                                         (exp2(lut_log2_10 * (value - 0.385537) / 0.247190) - 0.052272) / 5.555556,
-                                         greaterThan(value, vec3(5.367655 * 0.010591 + 0.092809))),
-                                     -65504.0, 65504.0);
-    if (space == Lut_space_slog3)
-        return lut_from_sgamut3_cine *
-               clamp(mix((value * 1023.0 - 95.0) * (0.01125 / (171.2102946929 - 95.0)),
-                         exp2(lut_log2_10 * (value * 1023.0 - 420.0) / 261.5) * 0.19 - 0.01,
-                         greaterThanEqual(value, vec3(171.2102946929 / 1023.0))),
-                     -65504.0, 65504.0);
-    return mix(vec3(0.0), min(0.18 * exp2(value * 16.5 - 10.0), vec3(65504.0)), greaterThan(value, vec3(0.0)));
+    if (space == Lut_space_acescct) return acescct_decode(value);
+    if (space == Lut_space_logc3) return logc3_decode(value);
+    if (space == Lut_space_slog3) return slog3_decode(value);
+    return log_shaper_decode(value);
 }
 
 vec4 lut(vec4 color, Pixel pixel, Lut parameters) {
