@@ -146,6 +146,22 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
                         "--chunk 1: 2000 chunks, an array job holds 1000: --chunk 2 is enough");
 }
 
+TEST_F(FarmFiles, ValuesOfFlagsAreRefusedAsTheCommandRefusesThem) {
+    write("scene.toml", "format = 1\n");
+    const auto expect_alike = [&](const std::string& command, const std::string& work, const std::string& flags) {
+        const Outcome refused = run_lines("darkroom " + command + " " + work + " " + flags);
+        ASSERT_EQ(refused.code, 1) << flags;
+        ASSERT_TRUE(refused.err.starts_with("darkroom: --")) << refused.err;
+        expect_farm_refuses("slurm " + work + " -- " + flags, 1, refused.err.substr(10, refused.err.size() - 11));
+    };
+    for (const char* const flags : {"--size 0x4", "--bits 9", "--kernels gpu", "--jobs 0", "--time -1", "--quality 0",
+                                    "--keep-layers", "--format y4m", "--exposure 2000"})
+        expect_alike("develop", "'shot.####.exr' --frames 3-5 -o out/", flags);
+    for (const char* const flags : {"--size 0x4", "--bits 9", "--kernels gpu", "--jobs 0", "--fps 0", "--seed -1",
+                                    "--exposure 2000", "--no-postprocess --timings", "--save-frame a.exr"})
+        expect_alike("render", "scene.toml --frames 0-1 -o 'out/a.##.png'", flags);
+}
+
 TEST_F(FarmFiles, EffectsOfFilesAreRefusedUnlessAllowed) {
     ASSERT_EQ(run({"new", "effect", path("tinted")}).code, 0);
     write("my.toml", "[[stack]]\neffect = \"tinted.glsl\"\n");

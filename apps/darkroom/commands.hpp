@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <darkroom/look.hpp>
+#include <darkroom/result.hpp>
 #include <functional>
 #include <span>
 #include <vector>
@@ -16,6 +17,8 @@ using Run = std::function<int()>;
 struct Command {
     CLI::App* app = nullptr;
     Run run;
+    /// Of render and develop: what is wrong with flags and look, found before a scene or a frame is read.
+    std::function<darkroom::Result<>()> check = {};
 };
 
 // `named`: effects of files, whose parameters are flags, too.

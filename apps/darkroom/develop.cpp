@@ -398,7 +398,12 @@ Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> name
     options->run.add_to(*command);
     options->device.add_to(*command);
     options->look.add_to(*command, true, named);
-    return {command, [options] { return run(*options); }};
+    return {command, [options] { return run(*options); },
+            [options]() -> Result<> {
+                const Result<Job> job = job_of(*options);
+                if (!job) return failure(job.error());
+                return {};
+            }};
 }
 
 }  // namespace app

@@ -181,7 +181,7 @@ Result<std::string> submit(const fs::path& folder, const std::string& script) {
 Result<> run(const Options& options, std::span<const darkroom::LookEntry> named) {
     const Result<FarmWork> work = options.work.work();
     if (!work) return failure(work.error());
-    if (Result<> done = options.work.check(named); !done) return done;
+    if (Result<> done = options.work.check(*work, named); !done) return done;
     std::size_t chunk = usual_chunk;
     if (Result<> done = options.chunk.read_to(chunk); !done) return done;
     FarmJob job{.arguments = options.work.task()};

@@ -8,7 +8,6 @@
 #include "commands.hpp"
 #include "core/param_text.hpp"
 #include "image/sequence.hpp"
-#include "look_flags.hpp"
 #include "named_effects.hpp"
 #include "outputs.hpp"
 #include "scene/assets.hpp"
@@ -143,10 +142,12 @@ Result<FarmWork> FarmFlags::work() const {
 }
 
 // The command itself reads the arguments: what it would refuse is refused here, once, instead of by every task.
-Result<> FarmFlags::check_flags(std::span<const darkroom::LookEntry> named) const {
+// For two frames, because what is right for one may be wrong for several; of more, all names would be tried.
+Result<> FarmFlags::check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const {
     CLI::App program;
     const Command command = is_scene() ? add_render(program, named) : add_develop(program, named);
-    std::vector<std::string> arguments = this->command("0-0");
+    const long long first = work.frames.front().number, last = std::min(first + 1, work.frames.back().number);
+    std::vector<std::string> arguments = this->command(fmt::format("{}-{}", first, last));
     std::ranges::reverse(arguments);  // as CLI11 takes them
     try {
         program.parse(arguments);
@@ -162,34 +163,12 @@ Result<> FarmFlags::check_flags(std::span<const darkroom::LookEntry> named) cons
     if (input != nullptr && input->count() > 1)
         return user_error(fmt::format("unexpected '{}': allowed behind -- are flags of {}",
                                       printable(input->results().back()), command.app->get_name()));
-    return {};
-}
-
-Result<> FarmFlags::check_look(std::span<const darkroom::LookEntry> named) const {
     if (!allows_custom_effects_)
         for (const std::string& argument : more_)
             if (argument == "--effect" || argument.starts_with("--effect="))
                 return user_error(
                     fmt::format("{}: such a file is code, --allow-custom-effects lets it run", printable(argument)));
-    CLI::App program;
-    program.allow_extras();
-    LookFlags look;
-    look.add_to(program, true, named);
-    std::vector<std::string> arguments = command("0-0");
-    std::ranges::reverse(arguments);
-    try {
-        program.parse(arguments);
-    } catch (const CLI::ParseError& problem) {
-        return user_error(printable(problem.what()));
-    }
-    const Result<darkroom::Look> read = look.look(darkroom::scene::is_model_path(input_) || !is_scene() ? "" : input_);
-    if (!read) return failure(read.error());
-    return {};
-}
-
-Result<> FarmFlags::check(std::span<const darkroom::LookEntry> named) const {
-    if (Result<> done = check_flags(named); !done) return done;
-    return check_look(named);
+    return command.check();
 }
 
 }  // namespace app

@@ -31,8 +31,8 @@ class FarmFlags {
     void add_to(CLI::App& command, const std::string& frames_doc);
     /// Errors: no sequence and no scene, no frame, no such folder.
     [[nodiscard]] darkroom::Result<FarmWork> work() const;
-    /// All that `develop` or `render` would refuse before it reads a frame, of flags and look.
-    [[nodiscard]] darkroom::Result<> check(std::span<const darkroom::LookEntry> named) const;
+    /// All that `develop` or `render` would refuse before it reads a frame or a scene, of flags and look.
+    [[nodiscard]] darkroom::Result<> check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const;
     /// Of the command that makes these frames: "develop", and so on.
     [[nodiscard]] std::vector<std::string> command(const std::string& frames) const;
     /// Of `farm task`, without --frames and its value, which go before these.
@@ -43,8 +43,6 @@ class FarmFlags {
     [[nodiscard]] bool is_scene() const;
     [[nodiscard]] darkroom::Result<> check_arguments() const;
     [[nodiscard]] darkroom::Result<std::vector<FarmFrame>> frames_in(const FrameRange& range) const;
-    [[nodiscard]] darkroom::Result<> check_flags(std::span<const darkroom::LookEntry> named) const;
-    [[nodiscard]] darkroom::Result<> check_look(std::span<const darkroom::LookEntry> named) const;
 
     std::string input_, out_, look_, frames_;
     std::vector<std::string> more_;

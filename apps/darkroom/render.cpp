@@ -79,6 +79,11 @@ class Render {
         return done;
     }
 
+    Result<> check() {
+        if (Result<> done = read_flags(); !done) return done;
+        return read_look();
+    }
+
     [[nodiscard]] int exit_code(int code) const { return device_ ? finish(*device_, code) : code; }
 
   private:
@@ -91,8 +96,7 @@ class Render {
         std::optional<darkroom::FrameFile> frame;
     };
 
-    // Everything that needs no device: a slip is told before one is made.
-    Result<> read() {
+    Result<> read_flags() {
         Result<RenderJob> job = flags_.job();
         if (!job) return failure(std::move(job));
         job_ = std::move(*job);
@@ -100,17 +104,10 @@ class Render {
         const Result<darkroom::KernelStage> stage = flags_.device.stage();
         if (!stage) return failure(stage.error());
         develop_ = {.target = job_.target, .kernels = *stage, .fuse = flags_.device.is_fused()};
-        std::vector<std::string> warnings;
-        Result<scene::Scene> scene =
-            scene::read_scene(flags_.scene, {.is_strict = flags_.look.is_strict(), .warnings = &warnings});
-        for (const std::string& warning : warnings) warn(warning);
-        if (!scene) return failure(std::move(scene));
-        scene_ = std::move(*scene);
-        if (!flags_.has_time()) {
-            Shot& shot = job_.shots.front();
-            shot.time = scene_.time;
-            shot.previous_time = std::max(0.0, scene_.time - shot.delta_time);
-        }
+        return {};
+    }
+
+    Result<> read_look() {
         // Models hold no look.
         Result<darkroom::Look> look = flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene);
         if (!look) return failure(std::move(look));
@@ -124,6 +121,24 @@ class Render {
         choose_way();
         if (flags_.run.has_timings && way_ != Way::Developed)
             return darkroom::user_error("--timings: nothing is post-processed");
+        return {};
+    }
+
+    // Everything that needs no device: a slip is told before one is made.
+    Result<> read() {
+        if (Result<> done = read_flags(); !done) return done;
+        std::vector<std::string> warnings;
+        Result<scene::Scene> scene =
+            scene::read_scene(flags_.scene, {.is_strict = flags_.look.is_strict(), .warnings = &warnings});
+        for (const std::string& warning : warnings) warn(warning);
+        if (!scene) return failure(std::move(scene));
+        scene_ = std::move(*scene);
+        if (!flags_.has_time()) {
+            Shot& shot = job_.shots.front();
+            shot.time = scene_.time;
+            shot.previous_time = std::max(0.0, scene_.time - shot.delta_time);
+        }
+        if (Result<> done = read_look(); !done) return done;
         const bool is_orthographic = scene_.camera.projection == scene::Projection::Orthographic;
         if (job_.orbit.field_of_view && is_orthographic) warn("--fov: the scene's camera is orthographic, it has none");
         assets_ = scene::load_assets(scene_);
@@ -358,7 +373,7 @@ Command add_render(CLI::App& program, std::span<const darkroom::LookEntry> named
         "darkroom render scene.toml --size 64x36 --yaw 200 --save-frame frame.exr -o picture.png");
     const auto flags = std::make_shared<RenderFlags>();
     flags->add_to(*command, named);
-    return {command, [flags] { return run(*flags); }};
+    return {command, [flags] { return run(*flags); }, [flags] { return Render(*flags).check(); }};
 }
 
 }  // namespace app
