@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "core/files.hpp"
 #include "core/param_text.hpp"
@@ -31,14 +32,12 @@ std::optional<std::pair<std::uintmax_t, std::uintmax_t>> identity_of(const fs::p
 
 }  // namespace
 
-FileSet::FileSet(std::span<const fs::path> files) {
-    for (const fs::path& file : files)
-        if (const auto identity = identity_of(file)) files_.insert(*identity);
-}
-
 bool FileSet::contains(const fs::path& file) const {
     const auto identity = identity_of(file);
-    return identity && files_.contains(*identity);
+    if (!identity) return false;
+    for (const fs::path& name : std::exchange(names_, {}))
+        if (const auto known = identity_of(name)) files_.insert(*known);
+    return files_.contains(*identity);
 }
 
 std::vector<long long> numbers_of(std::span<const fs::path> inputs) {

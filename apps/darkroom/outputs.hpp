@@ -15,14 +15,16 @@
 
 namespace app {
 
-/// Files as the machine knows them, whatever their names.
+/// Files as the machine knows them, whatever their names. They are looked at when a file that is there is asked for:
+/// those of a long sequence are as many requests of a file server.
 class FileSet {
   public:
-    explicit FileSet(std::span<const std::filesystem::path> files);
+    explicit FileSet(std::span<const std::filesystem::path> files) : names_(files.begin(), files.end()) {}
     [[nodiscard]] bool contains(const std::filesystem::path& file) const;
 
   private:
-    std::set<std::pair<std::uintmax_t, std::uintmax_t>> files_;  ///< device and number
+    mutable std::vector<std::filesystem::path> names_;                   ///< of those not looked at yet
+    mutable std::set<std::pair<std::uintmax_t, std::uintmax_t>> files_;  ///< device and number
 };
 
 /// Is this picture made already? An empty file is none.
