@@ -68,10 +68,25 @@ TEST_F(Cli, TheReferenceAgreesWithTheDevice) {
 }
 
 TEST_F(Cli, ResamplesTheFrame) {
-    ASSERT_EQ(develop({"--size", "20x10"}).code, 0);
-    EXPECT_EQ(picture("out.png").width, 20u);
-    ASSERT_EQ(develop({"--size", "1x1"}).code, 0);
-    EXPECT_EQ(picture("out.png").height, 1u);
+    FrameFile halves;
+    halves.color = Picture(48, 32);
+    for (std::size_t i = 0; i < halves.color.pixels.size(); ++i)
+        halves.color.pixels[i] = i % 4 == 3 || i / 4 % 48 >= 24 ? 1.0f : 0.0f;
+    ASSERT_TRUE(write_frame(path("halves.exr"), halves));
+    write("my.toml", "[[stack]]\neffect = \"encode\"\n");
+    const auto at_size = [&](const std::string& size) {
+        const Outcome outcome =
+            run({"develop", path("halves.exr"), "--look", path("my.toml"), "-o", path("out.png"), "--size", size});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return picture("out.png");
+    };
+    for (const auto& [width, height] : {std::pair{20u, 10u}, {96u, 40u}}) {
+        const Picture sized = at_size(fmt::format("{}x{}", width, height));
+        ASSERT_TRUE(sized.width == width && sized.height == height) << sized.width << 'x' << sized.height;
+        EXPECT_EQ(*sized.at(width / 4, height / 2), 0.0f);
+        EXPECT_EQ(*sized.at(width - width / 4, height / 2), 1.0f);
+    }
+    EXPECT_NEAR(*at_size("1x1").at(0, 0), 0.735, 0.005) << "half of the light as a code value";
 }
 
 TEST_F(Cli, SeveralInputsGoToAFolderOrANumberedName) {
