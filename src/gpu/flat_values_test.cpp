@@ -119,6 +119,7 @@ TEST(GpuFlatValues, AreNoMoreThanVerticesMayWrite) {
         sum += " + number_" + std::to_string(i) + " * " + std::to_string(i % 7);
     }
     spec.body = "vec4 shade(Pixel pixel) { return custom[1]" + sum + "; }";
+    ASSERT_EQ(own_of(spec).size(), (128U - 7U) / 4U) << "components, less those of position, point size and distances";
     const std::vector<std::byte> flat = bits_of(spec, values);
     spec.loads_are_cheap = false;
     EXPECT_EQ(flat, bits_of(spec, values));
