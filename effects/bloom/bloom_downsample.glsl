@@ -57,6 +57,6 @@ vec3 bloom_by_loads(Pixel pixel) {
 }
 
 vec4 shade(Pixel pixel) {
-    if (loads_are_cheap && input_is_twice) return vec4(bloom_by_loads(pixel), 1.0);
+    if (is_software && input_is_twice) return vec4(bloom_by_loads(pixel), 1.0);
     return vec4(bloom_by_taps(pixel), 1.0);
 }

@@ -109,6 +109,6 @@ vec4 bloom_bright_part(vec3 color) {
 }
 
 vec4 shade(Pixel pixel) {
-    if (loads_are_cheap && input_is_twice) return bloom_bright_part(bloom_average(bloom_by_loads(pixel)));
+    if (is_software && input_is_twice) return bloom_bright_part(bloom_average(bloom_by_loads(pixel)));
     return bloom_bright_part(bloom_average(bloom_by_taps(pixel)));
 }

@@ -41,6 +41,6 @@ vec4 shade(Pixel pixel) {
     vec2 position = pixel.uv * custom[0].xy - 0.5;
     vec2 b = floor(position);
     vec2 f = position - b;
-    vec3 glow = loads_are_cheap ? bloom_by_loads(b, f) : bloom_by_taps(b, f);
+    vec3 glow = is_software ? bloom_by_loads(b, f) : bloom_by_taps(b, f);
     return vec4(glow * custom[1].x, 0.0);
 }

@@ -23,7 +23,7 @@ vec3 box_blur_mean(Pixel pixel, vec4 own, bool is_clean) {
     int radius = box_blur_parameters().radius;
     ivec2 direction = ivec2(custom[0].xy);
     vec3 sum = box_blur_clean(own, is_clean);
-    if (loads_are_cheap) {
+    if (is_software) {
         for (int i = 1; i <= radius; ++i) sum += box_blur_texels(pixel, direction * i, is_clean);
     } else {
         for (int i = 1; i < radius; i += 2) sum += 2.0 * box_blur_taps(pixel, float(i) + 0.5, is_clean);

@@ -22,7 +22,7 @@ vec3 gaussian_blur_texel(ivec2 texel, ivec2 offset, bool is_clean) {
 vec3 gaussian_blur_vector(Pixel pixel, int i, bool is_clean) {
     vec4 pairs = custom[i];
     int nearest = 4 * i - 3;
-    if (loads_are_cheap) {
+    if (is_software) {
         ivec2 direction = ivec2(custom[0].zw);
         vec2 far_weights = pairs.xz * pairs.yw;
         vec2 near_weights = pairs.yw - far_weights;

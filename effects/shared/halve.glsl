@@ -47,7 +47,7 @@ vec3 halve_by_loads(vec2 b, vec2 f, bool is_clean) {
 }
 
 vec3 halve_sum(vec2 b, vec2 f, bool is_clean) {
-    return loads_are_cheap ? halve_by_loads(b, f, is_clean) : halve_by_taps(b, f, is_clean);
+    return is_software ? halve_by_loads(b, f, is_clean) : halve_by_taps(b, f, is_clean);
 }
 
 vec4 shade(Pixel pixel) {

@@ -157,7 +157,7 @@ TEST_F(ComposeSchedule, KernelsKeepToTheStorageImagesOfTheDevice) {
                 stack, desc,
                 {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Compute; },
                  .can_load = [](VkFormat) { return true; },
-                 .loads_are_cheap = true,
+                 .is_software = true,
                  .max_storage_images = limit});
             EXPECT_TRUE(program);
             std::size_t worst = 0;
@@ -177,7 +177,7 @@ TEST_F(ComposeSchedule, KernelsKeepToTheStorageImagesOfTheDevice) {
 }
 
 TEST_F(ComposeSchedule, AWarpThatOnlyLoadsHasAStorageImageWhereLoadsAreCheap) {
-    for (const bool loads_are_cheap : {true, false}) {
+    for (const bool is_software : {true, false}) {
         const auto format_of = [&](std::string_view effect) {
             std::vector<Entry> stack;
             stack.push_back(entry_of(effect, stack));
@@ -187,12 +187,12 @@ TEST_F(ComposeSchedule, AWarpThatOnlyLoadsHasAStorageImageWhereLoadsAreCheap) {
                 stack, desc,
                 {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Compute; },
                  .can_load = [](VkFormat) { return true; },
-                 .loads_are_cheap = loads_are_cheap});
+                 .is_software = is_software});
             EXPECT_TRUE(program);
             return program->passes.front().spec.images.front().storage_format;
         };
         EXPECT_EQ(format_of("chromatic_aberration"), VK_FORMAT_UNDEFINED);
-        EXPECT_EQ(format_of("fxaa") != VK_FORMAT_UNDEFINED, loads_are_cheap);
+        EXPECT_EQ(format_of("fxaa") != VK_FORMAT_UNDEFINED, is_software);
     }
 }
 

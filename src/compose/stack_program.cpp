@@ -51,7 +51,7 @@ plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kern
     return {.stage_of = [&context, kernels](const gpu::KernelSpec& spec) { return stage_of(context, spec, kernels); },
             .can_load = [&context](VkFormat format) { return gpu::can_load(context, format); },
             .can_filter = [&context](VkFormat format) { return gpu::can_filter(context, format); },
-            .loads_are_cheap = context.traits.is_software && gpu::writes_flat_values(context),
+            .is_software = context.traits.is_software && gpu::writes_flat_values(context),
             .has_robust_images = context.traits.has_robust_images,
             .packing_pays = !context.traits.is_software,
             .max_storage_images = context.traits.max_storage_images,

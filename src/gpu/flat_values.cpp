@@ -115,7 +115,7 @@ std::uint32_t first_custom_vector(const KernelSpec& spec) {
 std::uint32_t first_member_vector(const KernelSpec& spec) { return first_custom_vector(spec) + spec.custom_vectors; }
 
 std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
-    if (stage != Stage::Raster || !spec.loads_are_cheap) return std::nullopt;
+    if (stage != Stage::Raster || !spec.is_software) return std::nullopt;
     if (std::ranges::any_of(spec.members, [](const BlockMember& member) { return member.count > 0; }))
         return std::nullopt;
     Words asked{"size", "load_clamped"};

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t vectors_per_image = 3;
 [[nodiscard]] std::uint32_t first_custom_vector(const KernelSpec& spec);
 [[nodiscard]] std::uint32_t first_member_vector(const KernelSpec& spec);
 
-/// Can its vertices write that much? Only then may KernelSpec::loads_are_cheap be set, which asks for it.
+/// Can its vertices write that much? Only then may KernelSpec::is_software be set, which asks for it.
 [[nodiscard]] bool writes_flat_values(const Context& context);
 
 /// Vectors of the two blocks, in the order of the inputs' locations: first the frame's.

@@ -21,7 +21,7 @@ KernelSpec spec_of(std::string body) {
             .images = {{.name = "scene"}},
             .outputs = {float4},
             .is_whole = true,
-            .loads_are_cheap = true,
+            .is_software = true,
             .members = {{Float, "gain"}, {Int, "shift"}, {Uint, "mask"}, {Float, "unused"}, {Vec4, "tint"}},
             .custom_vectors = 2,
             .body = std::move(body)};
@@ -52,7 +52,7 @@ TEST(GpuFlatValues, LeaveCustomVectorsWhereTheirIndexIsNoLiteral) {
 TEST(GpuFlatValues, AreNoneForComputeForGpusAndForArrays) {
     KernelSpec spec = spec_of("gain");
     EXPECT_FALSE(flat_values(spec, Stage::Compute));
-    spec.loads_are_cheap = false;
+    spec.is_software = false;
     EXPECT_FALSE(flat_values(spec, Stage::Raster));
     spec = spec_of("gain");
     spec.members.push_back({Float, "curve", 3});
@@ -97,10 +97,10 @@ TEST(GpuFlatValues, AreTheBitsOfTheBlock) {
                     "}\n");
         for (const bool is_whole : {true, false}) {
             spec.is_whole = is_whole;
-            spec.loads_are_cheap = true;
+            spec.is_software = true;
             ASSERT_TRUE(flat_values(spec, Stage::Raster));
             const std::vector<std::byte> flat = bits_of(spec, values);
-            spec.loads_are_cheap = false;
+            spec.is_software = false;
             EXPECT_EQ(flat, bits_of(spec, values)) << index << (is_whole ? ", whole" : ", regions");
         }
     }
@@ -121,7 +121,7 @@ TEST(GpuFlatValues, AreNoMoreThanVerticesMayWrite) {
     spec.body = "vec4 shade(Pixel pixel) { return custom[1]" + sum + "; }";
     ASSERT_EQ(own_of(spec).size(), (128U - 7U) / 4U) << "components, less those of position, point size and distances";
     const std::vector<std::byte> flat = bits_of(spec, values);
-    spec.loads_are_cheap = false;
+    spec.is_software = false;
     EXPECT_EQ(flat, bits_of(spec, values));
 }
 

@@ -23,7 +23,7 @@ VkShaderStageFlagBits stage_flag(Stage stage) {
 /// Vertices may read the blocks for the pixels: gpu/flat_values.hpp.
 VkShaderStageFlags block_stages(const KernelSpec& spec, Stage stage) {
     const VkShaderStageFlags own = stage_flag(stage);
-    return stage == Stage::Raster && spec.loads_are_cheap ? own | VK_SHADER_STAGE_VERTEX_BIT : own;
+    return stage == Stage::Raster && spec.is_software ? own | VK_SHADER_STAGE_VERTEX_BIT : own;
 }
 
 std::vector<VkDescriptorSetLayoutBinding> layout_bindings(const KernelSpec& spec, Stage stage) {

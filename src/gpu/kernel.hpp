@@ -13,7 +13,7 @@
 //     void shade(Pixel pixel, out vec4 result[N])   with N
 // It may read KernelSpec::frame and members by their names, custom[i], output_size(), which is pixel.size, and the
 // constants, for choices that must not cost a branch,
-//     bool loads_are_cheap                   this device loads an own texel for less than a linear tap
+//     bool is_software                       the device is a CPU: loads cost less than linear taps, and pow() a lot
 //     bool loads_outside_are_zero            a load outside any image gives zeros here, and may be made
 //     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
 //     bool rays_meet                         the frame's camera is perspective: all its rays come from one point
@@ -76,7 +76,7 @@ struct KernelSpec {
     bool is_whole = false;        ///< all regions are whole images: no region arithmetic
     bool input_is_twice = false;  ///< constants that the body may ask for, see the top of this file
     bool rays_meet = false;
-    bool loads_are_cheap = false;
+    bool is_software = false;
     bool has_robust_images = false;  ///< robustImageAccess: with whole images, loads outside are zero
     bool is_additive = false;        ///< output 0 += result instead of = result
     /// What all kernels of a frame read: laid out by its owner, who outlives the spec. Empty: no such block.

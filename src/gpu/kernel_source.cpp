@@ -279,9 +279,9 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
                        spec.workgroup[1]);
     }
     fmt::format_to(text,
-                   "const bool loads_are_cheap = {};\nconst bool loads_outside_are_zero = {};\n"
+                   "const bool is_software = {};\nconst bool loads_outside_are_zero = {};\n"
                    "const bool input_is_twice = {};\nconst bool rays_meet = {};\n",
-                   spec.loads_are_cheap, spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.rays_meet);
+                   spec.is_software, spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.rays_meet);
     const BlockSource own = block_source(spec.members, first_member_word(spec));
     write_blocks(text, spec, stage, own);
     source += pixel_functions;

@@ -198,7 +198,7 @@ PassImage Builder::add(const KernelPassDesc& desc) {
         const PassInput from = input_of(images_[input.image.index], input.mip_level);
         gpu::KernelImage image = planner_.kernel_image(input.name + place_suffix(0), from);
         const VkFormat format = from.table == no_table ? planner_.storage_format(from.version) : VK_FORMAT_UNDEFINED;
-        if (input.is_loaded && planner_.traits_.loads_are_cheap && format != VK_FORMAT_UNDEFINED) {
+        if (input.is_loaded && planner_.traits_.is_software && format != VK_FORMAT_UNDEFINED) {
             image.loads_by = image.name + "_texels";
             pass.inputs.push_back(from);
             pass.spec.images.push_back({.name = image.loads_by, .storage_format = format});

@@ -322,7 +322,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     });
     const bool is_warp = is_moved_here && kernel.steps.front().info->touch == Touch::Warp;
     if (!is_warp && !has_size(kernel.picture, kernel.size)) pass.resampling = kernel.resampling;
-    const bool loads_alone = is_warp && traits_.loads_are_cheap && kernel.steps.front().text->loads_picture_alone;
+    const bool loads_alone = is_warp && traits_.is_software && kernel.steps.front().text->loads_picture_alone;
     const bool is_filtered = is_moved_here && !loads_alone;
     const bool is_sampled = is_filtered || is_shared || pass.resampling != Resampling::None;
     pass.spec.images.push_back(
@@ -396,7 +396,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
         image.is_filtered_by_loads = image.storage_format == VK_FORMAT_UNDEFINED && image.sampler_type == "sampler2D" &&
                                      !can_filter(pass.inputs[i]);
     }
-    pass.spec.loads_are_cheap = traits_.loads_are_cheap;
+    pass.spec.is_software = traits_.is_software;
     pass.spec.has_robust_images = traits_.has_robust_images;
     pass.spec.workgroup = traits_.workgroup;
     lay_out_literals(pass);

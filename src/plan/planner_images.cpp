@@ -99,7 +99,7 @@ bool Planner::is_storage_side(const OpenKernel& kernel, const PassInput& side) c
     const auto can_load = [&](const PassInput& input) {
         return input.is_loaded && input.table == no_table && storage_format(input.version) != VK_FORMAT_UNDEFINED;
     };
-    if (!traits_.loads_are_cheap || !can_load(side) || may_share(kernel.picture, side.version)) return false;
+    if (!traits_.is_software || !can_load(side) || may_share(kernel.picture, side.version)) return false;
     return std::ranges::none_of(kernel.images, [&](const auto& image) {
         const PassInput& other = image.second;
         return other.table == no_table && !can_load(other) && may_share(other.version, side.version);

@@ -81,7 +81,7 @@ Result<std::size_t> Planner::at_target_size(std::uint32_t entry, std::size_t inp
 }
 
 bool Planner::is_loaded_beside(const OpenKernel& kernel, std::string_view image) const {
-    if (!traits_.loads_are_cheap || std::ranges::count(kernel.steps, image, &FusedStep::reads) == 0) return false;
+    if (!traits_.is_software || std::ranges::count(kernel.steps, image, &FusedStep::reads) == 0) return false;
     const auto own = std::ranges::find(kernel.images, image, [](const auto& named) { return named.first; });
     if (storage_format(own->second.version) == VK_FORMAT_UNDEFINED) return false;
     // One image is in one layout: nothing else may read it.

@@ -184,7 +184,7 @@ struct PlannerTraits {
     std::function<bool(VkFormat)> can_load{};
     /// Whether a linear sampler reads this format; null: every one. Else the kernels filter by loads.
     std::function<bool(VkFormat)> can_filter{};
-    bool loads_are_cheap = false;          ///< see gpu/kernel.hpp
+    bool is_software = false;              ///< see gpu/kernel.hpp
     bool has_robust_images = false;        ///< likewise
     bool packing_pays = true;              ///< smaller pixels take less time, which no software driver shows
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
