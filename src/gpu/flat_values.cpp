@@ -118,7 +118,7 @@ std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
     if (stage != Stage::Raster || !spec.is_software) return std::nullopt;
     if (std::ranges::any_of(spec.members, [](const BlockMember& member) { return member.count > 0; }))
         return std::nullopt;
-    Words asked{"size", "load_clamped"};
+    Words asked{"size", "load_clamped", "sample_linear"};
     for (const BlockMember& member : spec.frame) asked.insert(member.name);
     for (const BlockMember& member : spec.members) asked.insert(member.name);
     const Names names = names_of(spec.body, asked);
@@ -133,11 +133,16 @@ std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
             if (names.words.contains(member.name)) add(vectors, word / 4);
         });
     };
+    const auto is_read_by_size = [&](const KernelImage& image) {
+        const bool filters_loads = image.is_filtered_by_loads || image.storage_format != VK_FORMAT_UNDEFINED;
+        return image.is_depth || (filters_loads && names.words.contains("sample_linear"));
+    };
+    const bool asks_sizes = names.words.contains("size") || names.words.contains("load_clamped");
     for (std::uint32_t vector = 0; vector < first_custom_vector(spec); ++vector) {
         const bool is_size = (vector - vectors_of_output) % vectors_per_image + 1 == vectors_per_image;
         // Of whole images only the size is asked for, if that.
         if (vector < vectors_of_output || !spec.is_whole ||
-            (is_size && (names.words.contains("size") || names.words.contains("load_clamped"))))
+            (is_size && (asks_sizes || is_read_by_size(spec.images[(vector - vectors_of_output) / vectors_per_image]))))
             add(out.own, vector);
     }
     add_named(spec.frame, 0, out.frame);

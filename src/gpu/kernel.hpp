@@ -16,7 +16,12 @@
 //     bool is_software                       the device is a CPU: loads cost less than linear taps, and pow() a lot
 //     bool loads_outside_are_zero            a load outside any image gives zeros here, and may be made
 //     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
+//     bool output_is_twice                   the output's region is exactly twice the first image's
 //     bool rays_meet                         the frame's camera is perspective: all its rays come from one point
+//     bool has_quads                         pixels tell each other in 2x2 quads, whose first texels are even:
+//     vec3 from_beside(vec3), vec4 from_beside(vec4)   what the quad's pixel to the left or right has for the argument
+//     vec3 from_below(vec3), vec4 from_below(vec4)     the same of the one below or above; finite numbers only, and
+//                                                      rounded as their difference is
 // Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
 // The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where
 // a region ends inside its image, a gather does not leave it either, but gives the last whole 2x2 block there.
@@ -59,7 +64,8 @@ enum class Stage : std::uint8_t { Compute, Raster };
 struct KernelImage {
     std::string name;
     /// VK_FORMAT_UNDEFINED: sampled (any format). Else load() is an imageLoad of that format, the cheapest read of an
-    /// own pixel, and the image is bound in VK_IMAGE_LAYOUT_GENERAL; sampling functions are then not available.
+    /// own pixel, and the image is bound in VK_IMAGE_LAYOUT_GENERAL; sample_linear(), of floats, then mixes four loads,
+    /// and there are no gathers.
     VkFormat storage_format = VK_FORMAT_UNDEFINED;
     /// A sampled image may name a storage one before it that shows the same view: its load() then goes through that
     /// one.
@@ -67,6 +73,8 @@ struct KernelImage {
     std::string sampler_type = "sampler2D";  ///< or "sampler3D", "usampler2D", ...
     /// The device cannot filter its format: sample_linear() mixes four loads. Of "sampler2D" only.
     bool is_filtered_by_loads = false;
+    /// Its format is one of depth, so the sampler it is bound with takes the nearest texel.
+    bool is_depth = false;
 };
 
 struct KernelSpec {
@@ -75,6 +83,7 @@ struct KernelSpec {
     std::vector<VkFormat> outputs;
     bool is_whole = false;        ///< all regions are whole images: no region arithmetic
     bool input_is_twice = false;  ///< constants that the body may ask for, see the top of this file
+    bool output_is_twice = false;
     bool rays_meet = false;
     bool is_software = false;
     bool has_robust_images = false;  ///< robustImageAccess: with whole images, loads outside are zero

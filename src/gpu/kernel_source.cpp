@@ -34,6 +34,16 @@ Pixel darkroom_pixel(ivec2 texel) {
 }
 )";
 
+// The difference between both pixels takes a value over: there is no other way before subgroup operations of quads.
+constexpr std::string_view quad_function = R"({0} from_beside({0} value) {{
+    return value + dFdxFine(value) * float(1 - 2 * (int(gl_FragCoord.x) & 1));
+}}
+{0} from_below({0} value) {{ return value + dFdyFine(value) * float(1 - 2 * (int(gl_FragCoord.y) & 1)); }}
+)";
+constexpr std::string_view no_quad_function = R"({0} from_beside({0} value) {{ return value; }}
+{0} from_below({0} value) {{ return value; }}
+)";
+
 using Text = std::back_insert_iterator<std::string>;
 
 std::string_view prefix_of(Numeric numeric) {
@@ -55,6 +65,11 @@ std::string_view prefix_of_sampler(std::string_view type) {
 
 bool is_plain_2d(std::string_view sampler_type) {
     return sampler_type == "sampler2D" || sampler_type == "usampler2D" || sampler_type == "isampler2D";
+}
+
+/// Regions may begin at odd texels, whole images do not.
+bool has_quads(const KernelSpec& spec, Stage stage) {
+    return stage == Stage::Raster && spec.is_software && spec.is_whole;
 }
 
 void write_blocks(Text text, const KernelSpec& spec, Stage stage, const BlockSource& own) {
@@ -84,6 +99,22 @@ void write_blocks(Text text, const KernelSpec& spec, Stage stage, const BlockSou
     }
 }
 
+/// Vulkan 1.3 specification, "Texel Filtering", with the address mode CLAMP_TO_EDGE, by four loads.
+/// At the centre of a texel no other is looked at, which may be NaN.
+void write_filter(Text text, std::string_view name) {
+    fmt::format_to(text,
+                   "vec4 sample_linear_{0}(vec2 uv) {{\n"
+                   "    ivec2 last = size_{0}() - 1;\n"
+                   "    vec2 place = clamp(uv * vec2(last + 1), vec2(0), vec2(last + 1)) - 0.5;\n"
+                   "    place = round(place * 16384.0) / 16384.0;\n"
+                   "    ivec2 low = max(ivec2(floor(place)), 0), high = min(ivec2(ceil(place)), last);\n"
+                   "    vec2 weight = place - floor(place);\n"
+                   "    return mix(mix(load_{0}(low), load_{0}(ivec2(high.x, low.y)), weight.x),\n"
+                   "               mix(load_{0}(ivec2(low.x, high.y)), load_{0}(high), weight.x), weight.y);\n"
+                   "}}\n",
+                   name);
+}
+
 void write_storage_input(Text text, const KernelImage& image, std::uint32_t binding, bool is_whole) {
     const FormatTraits traits = format_traits(image.storage_format);
     const std::string_view prefix = prefix_of(traits.numeric);
@@ -95,32 +126,25 @@ void write_storage_input(Text text, const KernelImage& image, std::uint32_t bind
         "{1}vec4 load_{0}(ivec2 texel) {{ return imageLoad({0}, texel{2}); }}\n"
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n",
         image.name, prefix, is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name));
+    if (prefix.empty()) write_filter(text, image.name);
 }
 
-/// Vulkan 1.3 specification, "Texel Filtering", with the address mode CLAMP_TO_EDGE.
-/// At the centre of a texel no other is looked at, which may be NaN.
-void write_filter(Text text, std::string_view name) {
-    fmt::format_to(text,
-                   "vec4 sample_linear_{0}(vec2 uv) {{\n"
-                   "    ivec2 last = textureSize({0}, 0) - 1;\n"
-                   "    vec2 place = clamp(darkroom_place_{0}(uv) * vec2(last + 1), vec2(0), vec2(last + 1)) - 0.5;\n"
-                   "    place = round(place * 16384.0) / 16384.0;\n"
-                   "    ivec2 low = max(ivec2(floor(place)), 0), high = min(ivec2(ceil(place)), last);\n"
-                   "    vec2 weight = place - floor(place);\n"
-                   "    return mix(mix(texelFetch({0}, low, 0), texelFetch({0}, ivec2(high.x, low.y), 0), weight.x),\n"
-                   "               mix(texelFetch({0}, ivec2(low.x, high.y), 0), texelFetch({0}, high, 0), weight.x),\n"
-                   "               weight.y);\n"
-                   "}}\n",
-                   name);
+/// Software drivers look at the level of each texel that they fetch, and at none of a texture with one level.
+std::string texel_of(const KernelImage& image, bool has_quads, std::string_view offset) {
+    if (!image.loads_by.empty()) return fmt::format("load_{}(texel)", image.loads_by);
+    if (has_quads && image.is_depth)
+        return fmt::format("texture({0}, (vec2(texel) + 0.5) / vec2(size_{0}()))", image.name);
+    return fmt::format("texelFetch({}, texel{}, 0)", image.name, offset);
 }
 
-void write_sampled_input(Text text, const KernelImage& image, std::uint32_t binding, Stage stage, bool is_whole) {
+void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& image, std::uint32_t binding,
+                         Stage stage) {
+    const bool is_whole = spec.is_whole;
     fmt::format_to(text, "layout(set = 0, binding = {}) uniform {} {};\n", binding, image.sampler_type, image.name);
     if (!is_plain_2d(image.sampler_type)) return;
     const std::string_view prefix = prefix_of_sampler(image.sampler_type);
     const std::string offset = is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name);
-    const std::string load = image.loads_by.empty() ? fmt::format("texelFetch({}, texel{}, 0)", image.name, offset)
-                                                    : fmt::format("load_{}(texel)", image.loads_by);
+    const std::string load = texel_of(image, has_quads(spec, stage), offset);
     // The sampler clamps to the edge of the whole image.
     const std::string place = is_whole
                                   ? "    return uv;\n"
@@ -196,6 +220,12 @@ void write_outputs(Text text, const KernelSpec& spec, Stage stage) {
                            prefix_of(format_traits(spec.outputs[index]).numeric));
         }
     }
+}
+
+void write_quads(Text text, bool has_quads) {
+    fmt::format_to(text, "const bool has_quads = {};\n", has_quads);
+    for (const std::string_view type : {"vec3", "vec4"})
+        fmt::format_to(text, fmt::runtime(has_quads ? quad_function : no_quad_function), type);
 }
 
 /// Declares `vec4 result[N]` and fills it.
@@ -280,8 +310,10 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
     }
     fmt::format_to(text,
                    "const bool is_software = {};\nconst bool loads_outside_are_zero = {};\n"
-                   "const bool input_is_twice = {};\nconst bool rays_meet = {};\n",
-                   spec.is_software, spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.rays_meet);
+                   "const bool input_is_twice = {};\nconst bool output_is_twice = {};\nconst bool rays_meet = {};\n",
+                   spec.is_software, spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.output_is_twice,
+                   spec.rays_meet);
+    write_quads(text, has_quads(spec, stage));
     const BlockSource own = block_source(spec.members, first_member_word(spec));
     write_blocks(text, spec, stage, own);
     source += pixel_functions;
@@ -291,7 +323,7 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
         if (image.storage_format != VK_FORMAT_UNDEFINED) {
             write_storage_input(text, image, binding, spec.is_whole);
         } else {
-            write_sampled_input(text, image, binding, stage, spec.is_whole);
+            write_sampled_input(text, spec, image, binding, stage);
         }
         names.emplace_back(image.name);
     }

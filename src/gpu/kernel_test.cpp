@@ -100,24 +100,67 @@ INSTANTIATE_TEST_SUITE_P(Formats, GpuKernelStages,
                          ::testing::Values(VK_FORMAT_R32G32B32A32_SFLOAT, half4, VK_FORMAT_R8G8B8A8_UNORM));
 
 TEST(GpuKernel, FiltersByLoadsAsTheSamplerDoes) {
+    KernelSpec by_fetches = spec_of(bodies[1], VK_FORMAT_R32G32B32A32_SFLOAT), by_loads = by_fetches;
+    by_fetches.images.front().is_filtered_by_loads = true;
+    by_loads.images.front().storage_format = half4;
     for (const Stage stage : {Stage::Compute, Stage::Raster}) {
-        KernelSpec spec = spec_of(bodies[1], VK_FORMAT_R32G32B32A32_SFLOAT);
-        const auto sampled = bits_of(stage, spec);
-        spec.images.front().is_filtered_by_loads = true;
-        const auto loaded = bits_of(stage, spec);
-        for (std::size_t run = 0; run < sampled.size(); ++run) {
-            ASSERT_EQ(sampled[run].size(), loaded[run].size());
-            float worst = 0;
-            for (std::size_t at = 0; at < sampled[run].size(); at += sizeof(float)) {
-                float a = 0, b = 0;
-                std::memcpy(&a, &sampled[run][at], sizeof a);
-                std::memcpy(&b, &loaded[run][at], sizeof b);
-                worst = std::max(worst, std::abs(a - b));
+        const auto sampled = bits_of(stage, spec_of(bodies[1], VK_FORMAT_R32G32B32A32_SFLOAT));
+        for (const KernelSpec* const spec : {&by_fetches, &by_loads}) {
+            const auto loaded = bits_of(stage, *spec);
+            for (std::size_t run = 0; run < sampled.size(); ++run) {
+                ASSERT_EQ(sampled[run].size(), loaded[run].size());
+                float worst = 0;
+                for (std::size_t at = 0; at < sampled[run].size(); at += sizeof(float)) {
+                    float a = 0, b = 0;
+                    std::memcpy(&a, &sampled[run][at], sizeof a);
+                    std::memcpy(&b, &loaded[run][at], sizeof b);
+                    worst = std::max(worst, std::abs(a - b));
+                }
+                // The scene's neighbours are up to 4 apart.
+                EXPECT_LE(worst, 1e-4 + 2 * test::filter_step() * 4) << run;
             }
-            // The scene's neighbours are up to 4 apart.
-            EXPECT_LE(worst, 1e-4 + 2 * test::filter_step() * 4) << run;
         }
     }
+}
+
+// Odd sizes: the last pixels ask such as lie outside the picture.
+TEST(GpuKernel, PixelsOfAQuadTellEachOther) {
+    KernelSpec spec = spec_of(
+        "vec4 shade(Pixel pixel) {\n"
+        "    vec2 place = vec2(pixel.texel) * 100.0;\n"
+        "    vec4 beside = from_beside(vec4(place, 3.0, 4.0));\n"
+        "    return vec4(beside.x, from_below(place.yxy).x, from_below(beside).xy) * (has_quads ? 1.0 : 0.0);\n"
+        "}",
+        VK_FORMAT_R32G32B32A32_SFLOAT);
+    for (const bool has_quads : {true, false}) {
+        spec.is_software = spec.is_whole = has_quads;
+        const std::unique_ptr<Kernel> kernel = must(Kernel::create(context(), spec, Stage::Raster));
+        Picture in = test::upload(context(), scene(8, 8), half4);
+        Picture out = test::blank(context(), {7, 5}, VK_FORMAT_R32G32B32A32_SFLOAT);
+        test::run_kernel(context(), *kernel, {.inputs = {&in}, .outputs = {&out}});
+        const Pixels result = test::download(context(), out);
+        for (std::uint32_t y = 0; y < 5; ++y)
+            for (std::uint32_t x = 0; x < 7; ++x) {
+                const float beside = has_quads ? 100.0F * static_cast<float>(x ^ 1U) : 0;
+                const float below = has_quads ? 100.0F * static_cast<float>(y ^ 1U) : 0;
+                EXPECT_EQ(result.at(x, y), (std::array{beside, below, beside, below})) << x << "," << y;
+            }
+    }
+}
+
+TEST(GpuKernel, DepthIsReadAtItsTexels) {
+    KernelSpec spec =
+        spec_of("vec4 shade(Pixel pixel) { return load(scene, pixel.texel * 2 + 1); }", VK_FORMAT_R32G32B32A32_SFLOAT);
+    spec.images.front().is_depth = spec.is_software = spec.is_whole = true;
+    const Pixels pixels = scene(1366, 34);
+    Picture in = test::upload(context(), pixels, VK_FORMAT_R32G32B32A32_SFLOAT);
+    Picture out = test::blank(context(), {683, 17}, VK_FORMAT_R32G32B32A32_SFLOAT);
+    const std::unique_ptr<Kernel> kernel = must(Kernel::create(context(), spec, Stage::Raster));
+    test::run_kernel(context(), *kernel, {.inputs = {&in}, .outputs = {&out}});
+    const Pixels result = test::download(context(), out);
+    for (std::uint32_t y = 0; y < 17; ++y)
+        for (std::uint32_t x = 0; x < 683; ++x)
+            ASSERT_EQ(result.at(x, y), pixels.at(x * 2 + 1, y * 2 + 1)) << x << "," << y;
 }
 
 TEST(GpuKernel, LoadsTheRegionsOwnTexels) {

@@ -12,6 +12,10 @@ bool is_whole(const gpu::Region& region) {
            region.extent.height == region.image.height;
 }
 
+bool is_twice(VkExtent2D larger, VkExtent2D smaller) {
+    return larger.width == 2 * smaller.width && larger.height == 2 * smaller.height;
+}
+
 }  // namespace
 
 Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, const FrameValues& values,
@@ -20,9 +24,10 @@ Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, c
     if (!has_lean(pass)) return shape;
     if (is_whole(output) && std::ranges::all_of(inputs, [](const gpu::Binding& b) { return is_whole(b.region); }))
         shape.steps |= Shape::is_whole;
-    if (pass.asks_input_is_twice && !inputs.empty() && inputs[0].region.extent.width == 2 * output.extent.width &&
-        inputs[0].region.extent.height == 2 * output.extent.height)
-        shape.steps |= Shape::input_is_twice;
+    if (pass.asks_sizes && !inputs.empty()) {
+        if (is_twice(inputs[0].region.extent, output.extent)) shape.steps |= Shape::input_is_twice;
+        if (is_twice(output.extent, inputs[0].region.extent)) shape.steps |= Shape::output_is_twice;
+    }
     if (pass.asks_rays_meet && values.rays_meet()) shape.steps |= Shape::rays_meet;
     if (pass.is_fused) {
         if (pass.finish == Finish::OfFrame)

@@ -52,7 +52,7 @@ struct Baked {
 struct EffectText {
     std::string glsl;
     std::vector<const ParamInfo*> literal_rows;  ///< that it names and a lean kernel may hold as literals
-    bool asks_input_is_twice = false;
+    bool asks_sizes = false;
     bool asks_rays_meet = false;
     bool loads_picture_alone = true;  ///< names it in load(), load_clamped() and size(), and nowhere else
     bool asks_parameters = false;     ///< calls <effect>_parameters(); a pass that does not has none in its block

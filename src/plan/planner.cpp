@@ -395,13 +395,15 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
         gpu::KernelImage& image = pass.spec.images[i];
         image.is_filtered_by_loads = image.storage_format == VK_FORMAT_UNDEFINED && image.sampler_type == "sampler2D" &&
                                      !can_filter(pass.inputs[i]);
+        image.is_depth =
+            pass.inputs[i].table == no_table && gpu::is_depth(facts_.at(pass.inputs[i].version.index).format);
     }
     pass.spec.is_software = traits_.is_software;
     pass.spec.has_robust_images = traits_.has_robust_images;
     pass.spec.workgroup = traits_.workgroup;
     lay_out_literals(pass);
     for (const FusedStep& step : pass.steps) {
-        pass.asks_input_is_twice |= step.text && step.text->asks_input_is_twice;
+        pass.asks_sizes |= step.text && step.text->asks_sizes;
         pass.asks_rays_meet |= step.text && step.text->asks_rays_meet;
     }
     const auto stage = traits_.stage_of(pass.spec);

@@ -102,7 +102,7 @@ struct ProgramPass {
     std::vector<Literal> literals;
     bool is_alpha = false;  ///< makes a grey picture of the alpha before its steps
     bool is_fused = true;   ///< made by the planner from entries; else by an effect's build
-    bool asks_input_is_twice = false;
+    bool asks_sizes = false;
     bool asks_rays_meet = false;
     std::optional<std::uint32_t> watch;  ///< of CompileDesc::watches: copies part of its input for it
     // Of an effect's pass:

@@ -63,6 +63,7 @@ Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
     if (!spec) return spec;
     spec->is_whole = (shape.steps & Shape::is_whole) != 0;
     spec->input_is_twice = (shape.steps & Shape::input_is_twice) != 0;
+    spec->output_is_twice = (shape.steps & Shape::output_is_twice) != 0;
     spec->rays_meet = (shape.steps & Shape::rays_meet) != 0;
     return spec;
 }

@@ -19,7 +19,8 @@ struct ProgramPass;
 struct Shape {
     std::uint64_t steps = 0;
     std::uint64_t choices = 0;
-    static constexpr std::uint64_t rays_meet = std::uint64_t{1} << 59;  ///< in steps
+    static constexpr std::uint64_t output_is_twice = std::uint64_t{1} << 58;  ///< in steps
+    static constexpr std::uint64_t rays_meet = std::uint64_t{1} << 59;        ///< in steps
     static constexpr std::uint32_t finish_bit = 60;  ///< in steps, two bits: a Finish, for kernels of Finish::OfFrame
     static constexpr std::uint64_t is_whole = std::uint64_t{1} << 62;        ///< in steps: all regions are whole images
     static constexpr std::uint64_t input_is_twice = std::uint64_t{1} << 63;  ///< in steps
