@@ -99,7 +99,7 @@ void build(PassBuilder& builder) {
              .constants = upsample_constants,
              .condition = is_level_used,
              .argument = level + 1});
-    builder.side("bloom_pyramid", pyramid, neutral);
+    builder.loaded_side("bloom_pyramid", pyramid, neutral);
 }
 
 bool is_identity(const void* parameters) { return bloom_of(parameters).intensity == 0.0f; }

@@ -196,7 +196,8 @@ class PassBuilder {
     /// The pointwise end samples `image` under `name`. While the effect, or all that writes `image`, is off, a 1x1
     /// image of `neutral` stands in.
     virtual void side(std::string name, PassImage image, PassVector neutral) = 0;
-    /// The same for an image that the end reads by load() and load_clamped() alone, which is then cheaper.
+    /// The same for an image that the end mostly loads: where loads are cheap, sample_linear() is four of them, and the
+    /// other functions that sample are not there.
     virtual void loaded_side(std::string name, PassImage image, PassVector neutral) {
         side(std::move(name), image, neutral);
     }
