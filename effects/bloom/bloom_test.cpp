@@ -374,7 +374,7 @@ TEST(BloomGpu, ThePackedPyramidIsHardlySeen) {
 
 /// Where loads are cheap, lean kernels read the texels under the taps one by one if every level is exactly half the one
 /// above; the complete kernels, and lean ones of other sizes, filter.
-TEST(BloomGpu, LoadsAndTapsMatchTheReference) {
+TEST(BloomGpu, QuadsAndTapsMatchTheReference) {
     struct Case {
         std::uint32_t width, height;
         Bloom bloom;
@@ -405,6 +405,27 @@ TEST(BloomGpu, LightBelowZeroTakesFromItsNeighbours) {
         EXPECT_NEAR(out.at(33, 32).r - picture.at(33, 32).r, 2.0, 0.01);
         EXPECT_EQ(out.at(33, 32).g - picture.at(33, 32).g, 0.0);
     }
+}
+
+// At all places in a quad: what pixels tell each other must not make more of it than filtering does.
+TEST(BloomGpu, WhatIsNoNumberGlowsAsInTheReference) {
+    const Bloom bloom = everything_glows(1);
+    for (const double bad : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+        for (std::uint32_t i = 0; i < 16; ++i) {
+            const std::uint32_t bad_x = 30 + i % 4, bad_y = 30 + i / 4;
+            ReferenceImage picture = test::uniform(64, 64, {0.5, 2, 8, 1});
+            picture.at(bad_x, bad_y).r = picture.at(bad_x, bad_y).g = bad;
+            const ReferenceImage want = test::reference_of(bloom, picture);
+            const ReferenceImage out = test::develop([&](Composer& composer) { composer.add(bloom); }, picture,
+                                                     {.wait_for_lean_kernels = true});
+            ASSERT_EQ(out.pixels.size(), want.pixels.size());
+            for (std::uint32_t y = 0; y < 64; ++y)
+                for (std::uint32_t x = 0; x < 64; ++x) {
+                    if (x == bad_x && y == bad_y) continue;
+                    EXPECT_NEAR(out.at(x, y).r / want.at(x, y).r, 1, 2e-3) << bad << ": " << x << "," << y;
+                    EXPECT_NEAR(out.at(x, y).b / want.at(x, y).b, 1, 2e-3) << bad << ": " << x << "," << y;
+                }
+        }
 }
 
 TEST(BloomGpu, IntensityZeroChangesNothing) {

@@ -72,5 +72,16 @@ TEST(EffectVignette, GpuMatchesReference) {
     }
 }
 
+// The software driver's kernels take the power by polynomials: 2.2e-6 of the logarithm, times the exponent, and 2.7e-6.
+TEST(EffectVignette, GpuTakesThePowerToFiveDigits) {
+    const ReferenceImage white = test::uniform(131, 77, {1, 1, 1, 1});
+    for (const float smoothness : {0.1f, 0.7f, 2.0f, 5.3f, 16.0f}) {
+        const Vignette parameters{.intensity = 1.0f, .smoothness = smoothness};
+        const ReferenceImage out = test::develop([&](Composer& composer) { composer.add(parameters); }, white,
+                                                 {.wait_for_lean_kernels = true});
+        EXPECT_LE(test::worst_difference(out, test::reference_of(parameters, white)), 2e-5) << smoothness;
+    }
+}
+
 }  // namespace
 }  // namespace darkroom
