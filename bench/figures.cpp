@@ -4,11 +4,11 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "chains.hpp"
+#include "bench/chain/chains.hpp"
+#include "bench/chain/null_commands.hpp"
+#include "bench/program/scene.hpp"
 #include "core/test_support_allocations.hpp"
-#include "null_commands.hpp"
 #include "rows.hpp"
-#include "scene.hpp"
 
 namespace darkroom::bench {
 

@@ -9,12 +9,12 @@
 #include <cstdio>
 #include <exception>
 
+#include "bench/program/edits.hpp"
+#include "bench/program/sequence.hpp"
+#include "bench/program/start.hpp"
 #include "core/files.hpp"
-#include "core/param_text.hpp"
-#include "edits.hpp"
+#include "core/text/param_text.hpp"
 #include "report.hpp"
-#include "sequence.hpp"
-#include "start.hpp"
 
 namespace darkroom::bench {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/resources.hpp"
+#include "gpu/resource/resources.hpp"
 #include "world.hpp"
 
 namespace darkroom::bench {

@@ -7,12 +7,12 @@
 #include <array>
 #include <bit>
 
-#include "chains.hpp"
-#include "hand_written.hpp"
-#include "interface.hpp"
-#include "plain.hpp"
-#include "recipe.hpp"
-#include "scene.hpp"
+#include "bench/chain/chains.hpp"
+#include "bench/chain/hand_written.hpp"
+#include "bench/chain/interface.hpp"
+#include "bench/chain/plain.hpp"
+#include "bench/chain/recipe.hpp"
+#include "bench/program/scene.hpp"
 
 namespace darkroom::bench {
 

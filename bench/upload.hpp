@@ -5,7 +5,7 @@
 #include <darkroom/effect.hpp>
 #include <span>
 
-#include "gpu/resources.hpp"
+#include "gpu/resource/resources.hpp"
 
 namespace darkroom::bench {
 

@@ -7,7 +7,7 @@
 #include <darkroom/frame.hpp>
 #include <vector>
 
-#include "gpu/resources.hpp"
+#include "gpu/resource/resources.hpp"
 
 namespace darkroom::bench {
 

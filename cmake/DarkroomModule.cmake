@@ -1,6 +1,6 @@
-# One folder, one target: darkroom_module(NAME LIBRARIES...) builds every .cpp of the calling folder except its tests
-# into the static library darkroom_NAME, and links what it may depend on. Tests beside the code (*_test.cpp), and what
-# they share (test_support*.cpp), are collected in the property DARKROOM_TEST_SOURCES and built by tests/CMakeLists.txt.
+# One folder, one target: darkroom_module(NAME LIBRARIES...) builds every .cpp of the calling folder and its rooms except
+# tests into the static library darkroom_NAME, and links what it may depend on. Tests beside the code are collected in the
+# property DARKROOM_TEST_SOURCES and built by tests/CMakeLists.txt.
 
 enable_testing()
 set(CMAKE_CXX_STANDARD 20)
@@ -45,16 +45,37 @@ endif()
 
 set(DARKROOM_GENERATED ${CMAKE_BINARY_DIR}/generated)
 
-function(darkroom_module name)
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+# Sets `code` to the C++ files of the calling folder and of its rooms, and adds their tests to DARKROOM_TEST_SOURCES: what
+# ends with _test.cpp, test_support*.cpp, and rooms whose name begins with test_.
+function(darkroom_sources code)
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp */*.cpp)
   set(tests ${sources})
-  list(FILTER tests INCLUDE REGEX "(_test|/test_support[a-z_]*)\\.cpp$")
-  list(FILTER sources EXCLUDE REGEX "(_test|/test_support[a-z_]*)\\.cpp$")
+  set(is_test "(_test|/test_support[a-z_]*|/test_[a-z_]+/[a-z_]+)\\.cpp$")
+  list(FILTER tests INCLUDE REGEX ${is_test})
+  list(FILTER sources EXCLUDE REGEX ${is_test})
+  set_property(GLOBAL APPEND PROPERTY DARKROOM_TEST_SOURCES ${tests})
+  set(${code} ${sources} PARENT_SCOPE)
+endfunction()
+
+# The files of a room (a folder) are compiled as one: most of the time is in the headers, which they share. Sources are
+# all full paths. -DCMAKE_UNITY_BUILD=OFF compiles each by itself.
+function(darkroom_compile_by_room target)
+  foreach(source ${ARGN})
+    cmake_path(GET source PARENT_PATH room)
+    cmake_path(RELATIVE_PATH room BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+    string(MAKE_C_IDENTIFIER ${room} room)
+    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${room})
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()
+
+function(darkroom_module name)
+  darkroom_sources(sources)
   add_library(darkroom_${name} STATIC ${sources})
+  darkroom_compile_by_room(darkroom_${name} ${sources})
   target_include_directories(darkroom_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src
     ${DARKROOM_GENERATED}/include)
   target_link_libraries(darkroom_${name} PUBLIC ${ARGN} PRIVATE darkroom_options)
-  set_property(GLOBAL APPEND PROPERTY DARKROOM_TEST_SOURCES ${tests})
 endfunction()
 
 # Sets `out` to a C++ initialiser {"shown", R"(text of path)"}, and configures again when the file changes.

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "every_kernel.hpp"
-#include "gpu/shader.hpp"
+#include "gpu/shader/shader.hpp"
 
 int main() {
     using namespace darkroom;

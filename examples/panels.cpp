@@ -11,7 +11,7 @@
 
 #include "edit/document.hpp"
 #include "panels/panels.hpp"
-#include "panels/theme.hpp"
+#include "panels/widgets/theme.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "image/frame_file.hpp"
+#include "image/frame/frame_file.hpp"
 #include "room.hpp"
 
 namespace {

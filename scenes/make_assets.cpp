@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "image/write.hpp"
+#include "image/picture/write.hpp"
 #include "shapes.hpp"
 
 namespace {

@@ -8,9 +8,9 @@
 
 #include <chrono>
 
-#include "cli_support.hpp"
-#include "image/write.hpp"
-#include "scene/gltf_test_model.hpp"
+#include "image/picture/write.hpp"
+#include "scene/gltf/test_model.hpp"
+#include "tests/cli/cli_support.hpp"
 
 namespace darkroom::test {
 namespace {
@@ -47,7 +47,7 @@ class CliBombs : public CliFixture {
             ::setrlimit(RLIMIT_CPU, &time);
             ::dup2(::open("/dev/null", O_WRONLY), 1);
             ::dup2(::open(err.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 2);
-            ::execv(program, raw.data());
+            ::execv(program.c_str(), raw.data());
             ::_exit(127);
         }
         int status = 0;

@@ -9,15 +9,16 @@
 #include <regex>
 #include <set>
 
-#include "cli_support.hpp"
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
+#include "tests/cli/cli_support.hpp"
+#include "tests/places.hpp"
 
 namespace darkroom {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path source = DARKROOM_SOURCE_FOLDER;
+const fs::path source = test::source_folder;
 
 /// Of a page, with line ends as spaces.
 std::string one_line(const std::string& page) {

@@ -7,7 +7,7 @@
 
 #include <csignal>
 
-#include "cli_support.hpp"
+#include "tests/cli/cli_support.hpp"
 
 namespace darkroom::test {
 namespace {
@@ -27,7 +27,7 @@ TEST_F(CliSignal, TheProgramEndsByItAndLeavesNothing) {
     for (const int signal : {SIGINT, SIGTERM}) {
         const pid_t child = ::fork();
         if (child == 0) {
-            ::execl(program, program, "develop", pipe.c_str(), "-o", out.c_str(), nullptr);
+            ::execl(program.c_str(), program.c_str(), "develop", pipe.c_str(), "-o", out.c_str(), nullptr);
             ::_exit(127);
         }
         const std::uint64_t wanted = std::uint64_t{1} << (signal - 1);

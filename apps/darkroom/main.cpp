@@ -10,12 +10,12 @@
 #include <new>
 #include <optional>
 
+#include "apps/darkroom/effects/named_effects.hpp"
+#include "apps/darkroom/help/help.hpp"
+#include "apps/darkroom/run/report.hpp"
 #include "commands.hpp"
 #include "core/files.hpp"
-#include "core/param_text.hpp"
-#include "help.hpp"
-#include "named_effects.hpp"
-#include "report.hpp"
+#include "core/text/param_text.hpp"
 
 namespace {
 

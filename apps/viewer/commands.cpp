@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "commands.hpp"
+#include "apps/darkroom/commands.hpp"
 
 #include <fmt/format.h>
 
 #include <memory>
 
-#include "keys.hpp"
-#include "report.hpp"
-#include "view_flags.hpp"
+#include "apps/darkroom/run/report.hpp"
+#include "apps/viewer/input/keys.hpp"
+#include "apps/viewer/input/view_flags.hpp"
 
 namespace app {
 

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <array>
 
-#include "panels/plan_picture.hpp"
-#include "panels/slider.hpp"
-#include "panels/theme.hpp"
+#include "panels/show/plan_picture.hpp"
+#include "panels/widgets/slider.hpp"
+#include "panels/widgets/theme.hpp"
 
 namespace app {
 

@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
-#include "develop/inspector.hpp"
-#include "live_source.hpp"
+#include "apps/viewer/source/live_source.hpp"
+#include "apps/viewer/source/picture_view.hpp"
+#include "develop/inspect/inspector.hpp"
 #include "panels/panels.hpp"
-#include "panels/scopes.hpp"
-#include "panels/timings.hpp"
-#include "picture_view.hpp"
+#include "panels/show/scopes.hpp"
+#include "panels/show/timings.hpp"
 
 namespace app {
 

@@ -4,8 +4,8 @@
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
 
-#include "gpu/context.hpp"
-#include "panels/theme.hpp"
+#include "gpu/device/context.hpp"
+#include "panels/widgets/theme.hpp"
 
 namespace app {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "report.hpp"
+#include "apps/darkroom/run/report.hpp"
 
 namespace app {
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/viewer/source/look_view.hpp"
 #include "edit_panels.hpp"
-#include "look_view.hpp"
 
 namespace app {
 

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/param_text.hpp"
-#include "device_flags.hpp"
-#include "gpu/context.hpp"
-#include "look_flags.hpp"
-#include "report.hpp"
+#include "apps/darkroom/flags/device_flags.hpp"
+#include "apps/darkroom/flags/look_flags.hpp"
+#include "apps/darkroom/run/report.hpp"
+#include "core/text/param_text.hpp"
+#include "gpu/device/context.hpp"
 #include "viewer_state.hpp"
 
 namespace app {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/darkroom/run/timeline.hpp"
+#include "apps/viewer/source/frame_source.hpp"
+#include "apps/viewer/source/scene_source.hpp"
 #include "edit/document.hpp"
-#include "frame_source.hpp"
-#include "scene_source.hpp"
-#include "timeline.hpp"
 #include "window/presenter.hpp"
 #include "window/window.hpp"
 

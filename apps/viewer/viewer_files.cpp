@@ -4,10 +4,10 @@
 #include <functional>
 #include <utility>
 
-#include "core/param_text.hpp"
-#include "frames.hpp"
-#include "gpu/context.hpp"
-#include "image/write.hpp"
+#include "apps/darkroom/run/frames.hpp"
+#include "core/text/param_text.hpp"
+#include "gpu/device/context.hpp"
+#include "image/picture/write.hpp"
 #include "viewer_state.hpp"
 
 namespace app {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
-#include "gpu/context.hpp"
+#include "gpu/device/context.hpp"
 #include "viewer_state.hpp"
 
 namespace app {

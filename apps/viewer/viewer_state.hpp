@@ -7,15 +7,15 @@
 #include <deque>
 #include <future>
 
-#include "camera_rig.hpp"
-#include "develop/inspector.hpp"
+#include "apps/viewer/input/camera_rig.hpp"
+#include "apps/viewer/input/keys.hpp"
+#include "apps/viewer/input/line_input.hpp"
+#include "apps/viewer/source/live_interface.hpp"
+#include "apps/viewer/source/look_view.hpp"
+#include "develop/inspect/inspector.hpp"
 #include "develop/readback.hpp"
 #include "edit/document.hpp"
 #include "gui.hpp"
-#include "keys.hpp"
-#include "line_input.hpp"
-#include "live_interface.hpp"
-#include "look_view.hpp"
 #include "screen.hpp"
 #include "viewer.hpp"
 

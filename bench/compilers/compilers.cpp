@@ -13,13 +13,13 @@
 #include <span>
 #include <unordered_set>
 
-#include "compose/stack_program.hpp"
+#include "compose/stack/stack_program.hpp"
 #include "core/files.hpp"
-#include "core/parallel.hpp"
-#include "develop/kernel_cost.hpp"
-#include "develop/kernel_table.hpp"
+#include "core/thread/parallel.hpp"
+#include "develop/cost/kernel_cost.hpp"
+#include "develop/cost/kernel_table.hpp"
 #include "every_kernel.hpp"
-#include "gpu/context.hpp"
+#include "gpu/device/context.hpp"
 
 namespace {
 

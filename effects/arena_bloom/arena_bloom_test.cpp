@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "arena_bloom/arena_bloom_reference.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 
 namespace darkroom {
 namespace {

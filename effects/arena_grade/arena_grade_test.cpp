@@ -6,7 +6,7 @@
 #include <random>
 
 #include "arena_grade/arena_grade_reference.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "develop/developer.hpp"
 #include "gpu/test_support.hpp"
 

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "blend/blend_reference.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 
 namespace darkroom {
 namespace {

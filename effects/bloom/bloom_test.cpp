@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "bloom/bloom_reference.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
-#include "image/flip.hpp"
+#include "image/compare/flip.hpp"
 
 namespace darkroom {
 namespace {

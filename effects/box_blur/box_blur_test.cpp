@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "box_blur/box_blur_reference.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 
 namespace darkroom {
 namespace {

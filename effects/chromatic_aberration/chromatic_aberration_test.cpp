@@ -5,7 +5,7 @@
 #include <darkroom/composer.hpp>
 
 #include "chromatic_aberration/chromatic_aberration_reference.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 
 namespace darkroom {
 namespace {

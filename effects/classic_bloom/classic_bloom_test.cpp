@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "classic_bloom/classic_bloom_reference.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 
 namespace darkroom {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "color_grade/color_grade_reference.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 
 namespace darkroom {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <darkroom/effects/contrast_gamma.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "contrast_gamma/contrast_gamma_reference.hpp"
 
 namespace darkroom {

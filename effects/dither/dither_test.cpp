@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "dither/dither_reference.hpp"
 
 namespace darkroom {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "encode/encode_reference.hpp"
 
 namespace darkroom {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "exposure/exposure_reference.hpp"
 
 namespace darkroom {

@@ -5,7 +5,7 @@
 #include <array>
 #include <darkroom/composer.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "fog/fog_reference.hpp"
 
 namespace darkroom {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string_view>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "fxaa/fxaa_reference.hpp"
 #include "gpu/test_support.hpp"
 

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <vector>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "gaussian_blur/gaussian_blur_reference.hpp"
 #include "gpu/test_support.hpp"
 

@@ -6,7 +6,7 @@
 #include <darkroom/effects/god_rays.hpp>
 #include <limits>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "god_rays/god_rays_reference.hpp"
 
 namespace darkroom {

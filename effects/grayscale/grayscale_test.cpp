@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <darkroom/effects/grayscale.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "grayscale/grayscale_reference.hpp"
 
 namespace darkroom {

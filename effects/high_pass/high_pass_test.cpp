@@ -5,7 +5,7 @@
 #include <darkroom/effects/high_pass.hpp>
 #include <limits>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "high_pass/high_pass_reference.hpp"
 
 namespace darkroom {

@@ -7,7 +7,7 @@
 #include <darkroom/effects/hsv_adjust.hpp>
 #include <limits>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "hsv_adjust/hsv_adjust_reference.hpp"
 
 namespace darkroom {

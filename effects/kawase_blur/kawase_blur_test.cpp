@@ -6,7 +6,7 @@
 #include <darkroom/effects/kawase_blur.hpp>
 #include <limits>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "kawase_blur/kawase_blur_reference.hpp"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "compose/test_host.hpp"
+#include "compose/test_stacks/host.hpp"
 #include "lens_distortion/lens_distortion_reference.hpp"
 
 namespace darkroom {

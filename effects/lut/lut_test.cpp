@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "lut/lut_reference.hpp"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <darkroom/effects/negative.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "negative/negative_reference.hpp"
 
 namespace darkroom {

@@ -4,7 +4,7 @@
 
 #include <darkroom/composer.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "perturb/perturb_reference.hpp"
 

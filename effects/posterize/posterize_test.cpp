@@ -7,7 +7,7 @@
 #include <limits>
 #include <set>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "posterize/posterize_reference.hpp"
 
 namespace darkroom {

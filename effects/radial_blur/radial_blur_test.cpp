@@ -4,7 +4,7 @@
 
 #include <darkroom/composer.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "radial_blur/radial_blur_reference.hpp"
 
 namespace darkroom {

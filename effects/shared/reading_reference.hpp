@@ -8,7 +8,7 @@
 #include <ranges>
 #include <span>
 
-#include "sample_reference.hpp"
+#include "shared/sample_reference.hpp"
 
 namespace darkroom {
 

@@ -6,7 +6,7 @@
 
 #include <initializer_list>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 
 namespace darkroom::test {
 

@@ -14,11 +14,6 @@ namespace {
 using test::box;
 using test::BoxView;
 
-ReferenceImage visibility(const Ssao& ssao, const test::RunOptions& options) {
-    const ReferenceImage white = test::uniform(options.depth->width, options.depth->height, {1, 1, 1, 1});
-    return test::develop([&](Composer& composer) { composer.add(ssao); }, white, options);
-}
-
 /// Twice the integral of cos(t - n) sin t, from the view vector to t = h: equation 7 of Jimenez et al., one side.
 double equation_seven(double h, double n) { return (std::cos(n) + 2 * h * std::sin(n) - std::cos(2 * h - n)) / 2; }
 
@@ -54,10 +49,10 @@ TEST(EffectSsao, NoiseFollowsTheFrame) {
     const ReferenceImage picture = test::uniform(83, 47, {1, 1, 1, 1});
     const Ssao ssao{.radius = 1.5f, .method = SsaoMethod::GroundTruth, .resolution = SsaoResolution::Full};
     test::RunOptions options = view.options();
-    const ReferenceImage still = visibility(ssao, options);
+    const ReferenceImage still = test::visibility_of(ssao, options);
     options.time = 0.5;
     options.frame_index = 22;
-    const ReferenceImage made = visibility(ssao, options);
+    const ReferenceImage made = test::visibility_of(ssao, options);
     const ReferenceImage expected = test::scene_reference_of(ssao, picture, options);
     double sum = 0;
     for (std::size_t i = 0; i < made.pixels.size(); ++i) sum += std::abs(made.pixels[i].r - expected.pixels[i].r);
@@ -75,7 +70,7 @@ BoxView post_view() {
 }
 
 double darkest_of_the_wall(const BoxView& view, const Ssao& ssao) {
-    const ReferenceImage out = visibility(ssao, view.options());
+    const ReferenceImage out = test::visibility_of(ssao, view.options());
     double darkest = 1;
     for (std::size_t i = 0; i < out.pixels.size(); ++i)
         if (view.depth.pixels[i].r > 3.5) darkest = std::min(darkest, out.pixels[i].r);
@@ -106,7 +101,7 @@ TEST(EffectSsao, OcclusionOfAWallReachesTheRadius) {
                                         .target = {0, 0.5, -5}},
                                        64, 192);
     const Ssao ssao{.radius = 2, .samples = 64, .method = SsaoMethod::GroundTruth, .resolution = SsaoResolution::Full};
-    const ReferenceImage out = visibility(ssao, view.options());
+    const ReferenceImage out = test::visibility_of(ssao, view.options());
     int near = 0, far = 0;
     for (std::uint32_t y = 2; y < 190; ++y) {
         const Double3 at = view.point(32, y);

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <darkroom/effects/ssao.hpp>
 #include <limits>
 #include <string_view>
 #include <vector>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "shared/camera_reference.hpp"
 
 namespace darkroom::test {
@@ -132,6 +133,12 @@ inline BoxScene stairs_scene() {
     for (int i = 0; i < 5; ++i) scene.boxes.push_back(box(-0.6, 0.4 * i + 0.1, -2.5, 1.6, 0.03, 0.35));
     for (const double x : {-0.63, 1.0}) scene.boxes.push_back(box(x, 0, -2.5, 0.03, 1.9, 0.35));
     return scene;
+}
+
+/// What a picture of ones becomes.
+inline ReferenceImage visibility_of(const Ssao& ssao, const RunOptions& options) {
+    const ReferenceImage white = uniform(options.depth->width, options.depth->height, {1, 1, 1, 1});
+    return develop([&](Composer& composer) { composer.add(ssao); }, white, options);
 }
 
 }  // namespace darkroom::test

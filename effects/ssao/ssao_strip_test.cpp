@@ -8,7 +8,7 @@
 #include <darkroom/effects/ssao.hpp>
 #include <filesystem>
 
-#include "image/write.hpp"
+#include "image/picture/write.hpp"
 #include "ssao/ssao_truth.hpp"
 
 namespace darkroom {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "compose/test_host.hpp"
+#include "compose/test_stacks/host.hpp"
 #include "ssao/ssao_reference.hpp"
 #include "ssao/ssao_scenes.hpp"
 
@@ -19,12 +19,6 @@ using test::BoxView;
 
 constexpr std::array methods{SsaoMethod::Hemisphere, SsaoMethod::GroundTruth};
 constexpr std::array resolutions{SsaoResolution::Half, SsaoResolution::Full};
-
-/// What a picture of ones becomes.
-ReferenceImage visibility(const Ssao& ssao, const test::RunOptions& options) {
-    const ReferenceImage white = test::uniform(options.depth->width, options.depth->height, {1, 1, 1, 1});
-    return test::develop([&](Composer& composer) { composer.add(ssao); }, white, options);
-}
 
 /// A floor that a wall stands on, seen straight on: nothing changes along a row but the view.
 BoxScene step_scene() {
@@ -111,7 +105,7 @@ TEST(EffectSsao, APlaneAtAnyAngleIsNotOccluded) {
                 for (const bool has_normals : {true, false}) {
                     const Ssao ssao{.method = method, .resolution = resolution};
                     const ReferenceImage out =
-                        visibility(ssao, has_normals ? view.options() : view.options_without_normals());
+                        test::visibility_of(ssao, has_normals ? view.options() : view.options_without_normals());
                     double lowest = 1;
                     for (const Rgba& pixel : out.pixels) lowest = std::min(lowest, pixel.r);
                     EXPECT_GE(lowest, 0.98) << height << " m, method " << int(method) << ", resolution "
@@ -124,9 +118,10 @@ TEST(EffectSsao, ACornerIsDarkerThanThePlane) {
     const BoxView view = test::view_of(test::corner_scene(), 128, 96);
     for (const SsaoMethod method : methods)
         for (const SsaoResolution resolution : resolutions) {
-            const ReferenceImage out = visibility({.method = method, .resolution = resolution}, view.options());
+            const ReferenceImage out =
+                test::visibility_of({.method = method, .resolution = resolution}, view.options());
             const ReferenceImage stronger =
-                visibility({.intensity = 2, .method = method, .resolution = resolution}, view.options());
+                test::visibility_of({.intensity = 2, .method = method, .resolution = resolution}, view.options());
             double corner = 0, open = 0, stronger_corner = 0;
             int corners = 0, opens = 0;
             for (std::uint32_t y = 0; y < 96; ++y)
@@ -159,8 +154,8 @@ TEST(EffectSsao, APostBeforeAFarWallHasNoHalo) {
     const BoxView view = test::view_of(scene, 101, 63);
     for (const SsaoMethod method : methods)
         for (const SsaoResolution resolution : resolutions) {
-            const ReferenceImage out =
-                visibility({.intensity = 4, .samples = 32, .method = method, .resolution = resolution}, view.options());
+            const ReferenceImage out = test::visibility_of(
+                {.intensity = 4, .samples = 32, .method = method, .resolution = resolution}, view.options());
             double lowest = 1;
             for (const Rgba& pixel : out.pixels) lowest = std::min(lowest, pixel.r);
             EXPECT_GE(lowest, 0.98) << int(method) << int(resolution);
@@ -179,7 +174,7 @@ TEST(EffectSsao, OcclusionDoesNotLeakAcrossEdges) {
     for (const SsaoMethod method : methods)
         for (const SsaoResolution resolution : resolutions) {
             const ReferenceImage out =
-                visibility({.intensity = 8, .method = method, .resolution = resolution}, view.options());
+                test::visibility_of({.intensity = 8, .method = method, .resolution = resolution}, view.options());
             double near = 1, far = 1;
             for (std::uint32_t y = 0; y < 64; ++y)
                 for (std::uint32_t x = 0; x < 128; ++x) {
@@ -197,7 +192,7 @@ TEST(EffectSsao, TheBlurRemovesTheNoise) {
     for (const SsaoMethod method : methods)
         for (const SsaoResolution resolution : resolutions) {
             const ReferenceImage out =
-                visibility({.radius = 1.5f, .method = method, .resolution = resolution}, view.options());
+                test::visibility_of({.radius = 1.5f, .method = method, .resolution = resolution}, view.options());
             double worst = 0, lowest = 1;
             for (std::uint32_t y = 10; y < 86; ++y)
                 for (std::uint32_t x = 40; x < 88; ++x) {
@@ -214,8 +209,8 @@ TEST(EffectSsao, GivenAndReconstructedNormalsAgreeOnFlatBoxes) {
     for (const SsaoMethod method : methods)
         for (const SsaoResolution resolution : resolutions) {
             const Ssao ssao{.method = method, .resolution = resolution};
-            const ReferenceImage given = visibility(ssao, view.options());
-            const ReferenceImage made = visibility(ssao, view.options_without_normals());
+            const ReferenceImage given = test::visibility_of(ssao, view.options());
+            const ReferenceImage made = test::visibility_of(ssao, view.options_without_normals());
             double sum = 0;
             std::size_t off = 0;
             for (std::size_t i = 0; i < given.pixels.size(); ++i) {
@@ -235,7 +230,7 @@ TEST(EffectSsao, FadesWithDistance) {
             double out = 1;
             const Ssao ssao{
                 .intensity = 3, .radius = 1.5f, .resolution = resolution, .fade_start = start, .fade_end = end};
-            for (const Rgba& pixel : visibility(ssao, view.options()).pixels) out = std::min(out, pixel.r);
+            for (const Rgba& pixel : test::visibility_of(ssao, view.options()).pixels) out = std::min(out, pixel.r);
             return out;
         };
         EXPECT_LT(lowest(200, 400), 0.8);
@@ -379,7 +374,7 @@ TEST(EffectSsao, GpuMatchesReferenceForOtherCameras) {
 // Device depth becomes the same distances first.
 TEST(EffectSsao, GpuReadsDeviceDepth) {
     const BoxView view = test::view_of(test::corner_scene(), 64, 48);
-    const ReferenceImage expected = visibility({}, view.options());
+    const ReferenceImage expected = test::visibility_of({}, view.options());
     test::RunOptions options = view.options();
     options.is_depth_planar = false;
     options.camera.depth = DepthKind::Standard;
@@ -388,7 +383,7 @@ TEST(EffectSsao, GpuReadsDeviceDepth) {
     for (Rgba& pixel : device.pixels)
         pixel.r = double{static_cast<float>((-pixel.r * double{p[10]} + double{p[14]}) / pixel.r)};
     options.depth = &device;
-    const ReferenceImage out = visibility({}, options);
+    const ReferenceImage out = test::visibility_of({}, options);
     EXPECT_LT(test::worst_difference(out, expected), 0.03);
 }
 
@@ -414,7 +409,7 @@ TEST(EffectSsao, HostileValuesAreHarmless) {
                                     .resolution = resolution};
                     const test::RunOptions options =
                         extreme.has_normals ? view.options() : view.options_without_normals();
-                    for (const Rgba& pixel : visibility(ssao, options).pixels)
+                    for (const Rgba& pixel : test::visibility_of(ssao, options).pixels)
                         EXPECT_TRUE(pixel.r >= 0 && pixel.r <= 1)
                             << pixel.r << " at " << width << "x" << height << ", method " << int(method);
                 }

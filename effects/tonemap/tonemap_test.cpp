@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "tonemap/tonemap_reference.hpp"
 
 namespace darkroom {

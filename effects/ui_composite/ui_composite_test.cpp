@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <darkroom/effects/ui_composite.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "ui_composite/ui_composite_reference.hpp"
 
 namespace darkroom {

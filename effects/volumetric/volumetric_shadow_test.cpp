@@ -5,8 +5,8 @@
 #include <cmath>
 #include <darkroom/effects/volumetric.hpp>
 
-#include "compose/test_host.hpp"
-#include "compose/test_shadow_map.hpp"
+#include "compose/test_stacks/host.hpp"
+#include "compose/test_stacks/shadow_map.hpp"
 #include "volumetric/volumetric_reference.hpp"
 #include "volumetric/volumetric_test_world.hpp"
 
@@ -16,15 +16,15 @@ namespace {
 using test::Box;
 using test::traced_light;
 
-constexpr std::uint32_t width = 96, height = 54;
+constexpr std::uint32_t shadow_width = 96, shadow_height = 54;
 constexpr double aspect = 16.0 / 9;
 
 struct World {
     std::vector<Box> boxes;
     Camera camera;
     std::vector<ReferenceLight> lights{};
-    ReferenceImage picture{width, height, {0, 0, 0, 1}};
-    ReferenceImage depth = test::traced_depth(boxes, camera, width, height);
+    ReferenceImage picture{shadow_width, shadow_height, {0, 0, 0, 1}};
+    ReferenceImage depth = test::traced_depth(boxes, camera, shadow_width, shadow_height);
 
     [[nodiscard]] test::RunOptions options() const { return {.depth = &depth, .camera = camera, .lights = lights}; }
     [[nodiscard]] ReferenceImage developed(const Volumetric& volumetric, KernelStage stage = KernelStage::Auto) const {
@@ -54,14 +54,14 @@ TEST(EffectVolumetricShadow, GpuLitLaneIsBrightAndShadowIsDark) {
     const ReferenceImage out = world.developed({.density = 100});
     ASSERT_EQ(out.pixels.size(), world.picture.pixels.size());
     // Far to the side the march meets the lane nowhere; in the middle it never leaves it.
-    const double lit = out.at(width / 2, height / 2).r, dark = out.at(2, height / 2).r;
+    const double lit = out.at(shadow_width / 2, shadow_height / 2).r, dark = out.at(2, shadow_height / 2).r;
     EXPECT_GT(lit, 0.1);
     EXPECT_LT(dark, lit * 0.02);
 }
 
 TEST(EffectVolumetricShadow, GpuMatchesReference) {
     World world = lane_world();
-    world.picture = test::round_to_float(test::random_display(width, height, 7));
+    world.picture = test::round_to_float(test::random_display(shadow_width, shadow_height, 7));
     world.lights = {traced_light(lane, {0.2, 1, 0.1}, two_cascades, 128),
                     traced_light(lane, {-0.3, 1, 0.3}, {{{0, 0, -10}, 40, 50}}, 64)};
     world.lights[1].light.volumetric_color = {0.2f, 0.5f, 1};
@@ -100,9 +100,9 @@ TEST(EffectVolumetricShadow, GpuKnowsParallelRaysToo) {
     world.lights = {traced_light(lane, {0.2, 1, 0.1}, two_cascades, 128)};
     const Volumetric volumetric{.density = 100};
     const ReferenceImage expected = world.reference(volumetric), out = world.developed(volumetric);
-    EXPECT_GT(expected.at(width / 2, height / 2).r, 0.1);
-    EXPECT_LT(expected.at(2, height / 2).r, 0.01);
-    EXPECT_LT(test::worst_difference(out, expected), 0.01 * expected.at(width / 2, height / 2).r);
+    EXPECT_GT(expected.at(shadow_width / 2, shadow_height / 2).r, 0.1);
+    EXPECT_LT(expected.at(2, shadow_height / 2).r, 0.01);
+    EXPECT_LT(test::worst_difference(out, expected), 0.01 * expected.at(shadow_width / 2, shadow_height / 2).r);
 }
 
 TEST(EffectVolumetricShadow, GpuEachLightHasItsOwnShadows) {
@@ -111,14 +111,14 @@ TEST(EffectVolumetricShadow, GpuEachLightHasItsOwnShadows) {
     world.lights[0].light.volumetric_color = {1, 0, 0};
     world.lights[1].light.volumetric_color = {0, 1, 0};
     const ReferenceImage blocked = world.developed({.density = 100});
-    const Rgba middle = blocked.at(width / 2, height / 2);
+    const Rgba middle = blocked.at(shadow_width / 2, shadow_height / 2);
     EXPECT_GT(middle.r, 0.1);
     EXPECT_EQ(middle.g, 0) << "the second light is behind a roof of its own";
     std::swap(world.lights[0].cascades, world.lights[1].cascades);
     std::swap(world.lights[0].resolution, world.lights[1].resolution);
     std::swap(world.lights[0].light.splits, world.lights[1].light.splits);
     std::swap(world.lights[0].light.world_to_cascade, world.lights[1].light.world_to_cascade);
-    const Rgba swapped = world.developed({.density = 100}).at(width / 2, height / 2);
+    const Rgba swapped = world.developed({.density = 100}).at(shadow_width / 2, shadow_height / 2);
     EXPECT_EQ(swapped.r, 0);
     EXPECT_NEAR(swapped.g / middle.r, 1, 1e-3);
 }
@@ -126,7 +126,7 @@ TEST(EffectVolumetricShadow, GpuEachLightHasItsOwnShadows) {
 // Shadows switched off and on under a plan that runs: no frame shows the light of another one.
 TEST(EffectVolumetricShadow, GpuShadowsThatAreSwitchedOffTakeTheirLightWithThem) {
     World world = lane_world();
-    world.picture = test::round_to_float(test::random_display(width, height, 3));
+    world.picture = test::round_to_float(test::random_display(shadow_width, shadow_height, 3));
     const ReferenceLight traced = traced_light(lane, above, two_cascades, 128);
     const test::Host host(world.picture);
     gpu::Context& context = host.device.context();
@@ -183,13 +183,13 @@ TEST(EffectVolumetricShadow, GpuNoHaloAtAPost) {
         for (const std::uint32_t thickness : {2u, 3u, 6u}) {
             World world{.boxes = {}, .camera = test::look_at({0, 0, 0}, {0, 0, -1}, 0.1, aspect)};
             world.lights = {test::open_light(above)};
-            for (std::uint32_t y = 0; y < height; ++y)
-                for (std::uint32_t x = 0; x < width; ++x)
+            for (std::uint32_t y = 0; y < shadow_height; ++y)
+                for (std::uint32_t x = 0; x < shadow_width; ++x)
                     world.depth.at(x, y).r = x >= first && x < first + thickness ? 5 : 80;
             const ReferenceImage out = world.developed(volumetric);
             ASSERT_EQ(out.pixels.size(), world.picture.pixels.size());
             const double far = out.at(4, 30).r;
-            for (std::uint32_t x = 0; x < width; ++x) {
+            for (std::uint32_t x = 0; x < shadow_width; ++x) {
                 const double expected = x >= first && x < first + thickness ? far * 5 / 80 : far;
                 // The far pixels' weight at the post is 0.01 / 16 of the near ones', and their light 16 times as much;
                 // the phase changes by a hundredth across the picture.
@@ -202,8 +202,8 @@ TEST(EffectVolumetricShadow, GpuNoHaloAtAPost) {
 TEST(EffectVolumetricShadow, GpuAThinWireIsNotAsBrightAsTheWallBehind) {
     World world{.boxes = {}, .camera = test::look_at({0, 0, 0}, {0, 0, -1}, 0.1, aspect)};
     world.lights = {test::open_light(above)};
-    for (std::uint32_t y = 0; y < height; ++y)
-        for (std::uint32_t x = 0; x < width; ++x) world.depth.at(x, y).r = x == 41 ? 5 : 80;
+    for (std::uint32_t y = 0; y < shadow_height; ++y)
+        for (std::uint32_t x = 0; x < shadow_width; ++x) world.depth.at(x, y).r = x == 41 ? 5 : 80;
     const ReferenceImage out = world.developed({.density = 100, .decay = 1});
     ASSERT_EQ(out.pixels.size(), world.picture.pixels.size());
     EXPECT_NEAR(out.at(41, 20).r / out.at(30, 20).r, 5.0 / 80, 0.005);

@@ -6,7 +6,7 @@
 #include <darkroom/effects/volumetric.hpp>
 #include <limits>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "gpu/test_run.hpp"
 #include "shared/camera.hpp"
 #include "volumetric/volumetric_reference.hpp"

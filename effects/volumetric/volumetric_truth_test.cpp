@@ -6,7 +6,7 @@
 #include <cmath>
 #include <darkroom/effects/volumetric.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "volumetric/volumetric_reference.hpp"
 #include "volumetric/volumetric_test_world.hpp"
 
@@ -15,8 +15,8 @@ namespace {
 
 using test::Box;
 
-constexpr std::uint32_t width = 128, height = 72;
-constexpr double aspect = 16.0 / 9;
+constexpr std::uint32_t map_width = 128, map_height = 72;
+constexpr double map_aspect = 16.0 / 9;
 
 /// A room of 12 x 6 x 16 m, its left wall with four tall windows, and pillars.
 std::vector<Box> room() {
@@ -86,18 +86,18 @@ TEST(TruthGpuVolumetric, IsTheIntegralInThreeViews) {
     const Volumetric volumetric{.density = 100};
     for (const View& view : views) {
         SCOPED_TRACE(view.name);
-        const Camera camera = test::look_at(view.eye, view.target, 1.0, aspect);
-        const ReferenceImage depth = test::traced_depth(world, camera, width, height);
+        const Camera camera = test::look_at(view.eye, view.target, 1.0, map_aspect);
+        const ReferenceImage depth = test::traced_depth(world, camera, map_width, map_height);
         const std::vector<ReferenceLight> lights{test::traced_light(world, toward_light, {{{0, 3, 0}, 12, 1000}}, 512)};
-        ReferenceImage truth(width, height);
+        ReferenceImage truth(map_width, map_height);
         const ReferenceCamera eye(camera);
-        for (std::uint32_t y = 0; y < height; ++y)
-            for (std::uint32_t x = 0; x < width; ++x) {
-                const test::CameraRay ray(eye, (x + 0.5) / width, (y + 0.5) / height);
+        for (std::uint32_t y = 0; y < map_height; ++y)
+            for (std::uint32_t x = 0; x < map_width; ++x) {
+                const test::CameraRay ray(eye, (x + 0.5) / map_width, (y + 0.5) / map_height);
                 truth.at(x, y).r = integral(world, volumetric, ray, samples);
             }
         const ReferenceImage out =
-            test::develop([&](Composer& composer) { composer.add(volumetric); }, {width, height, {0, 0, 0, 1}},
+            test::develop([&](Composer& composer) { composer.add(volumetric); }, {map_width, map_height, {0, 0, 0, 1}},
                           {.depth = &depth, .camera = camera, .lights = lights});
         ASSERT_EQ(out.pixels.size(), truth.pixels.size());
         const Error error = error_of(out, truth);

@@ -42,7 +42,7 @@
 //                                 pixel, Duotone parameters). In a file without passes all code is the end's
 // Code above the first @pass and @end is everyone's. What a function may call: GLSL, `#include "shared/NAME.glsl"`
 // (effects/shared), and on images by their names sample_linear(image, uv), load(image, texel), load_clamped,
-// gather_red, gather_green and size (src/gpu/kernel.hpp). Of the frame it may read frame_time, frame_delta_time,
+// gather_red, gather_green and size (src/gpu/kernel/kernel.hpp). Of the frame it may read frame_time, frame_delta_time,
 // frame_index; with shared/camera.glsl its camera; and what @needs names: frame_depth (red: planar distance; 1e10 is
 // sky), frame_normals (view space), frame_velocity (red, green: previous minus current position, in pixels, y down),
 // frame_ui (sRGB-encoded, premultiplied), and of the first light that casts shadows duotone_lit(vec3 world, float

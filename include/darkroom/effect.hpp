@@ -5,7 +5,7 @@
 //
 // effects/<name>/<name>.glsl, where the effect has a pointwise end, defines
 //     vec4 <name>(vec4 color, Pixel pixel, <Struct> parameters)
-// and may call sample_linear, load, ... (src/gpu/kernel.hpp) on the side images it declared in `build`, and
+// and may call sample_linear, load, ... (src/gpu/kernel/kernel.hpp) on the side images it declared in `build`, and
 // `vec4 <name>_custom(int)` for its end_constants. Every name at file scope begins with the effect's name. Alpha passes
 // unchanged unless the effect is about alpha.
 // An effect of touch Map defines `Place <name>(Place place, <Struct> parameters)` (effects/shared/place.glsl), one of

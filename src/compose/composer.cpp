@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "compose/composer_state.hpp"
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 
 namespace darkroom {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "compose/chain/frame_check.hpp"
 #include "compose/composer_state.hpp"
-#include "compose/frame_check.hpp"
-#include "gpu/assumed_device.hpp"
+#include "gpu/device/assumed_device.hpp"
 
 namespace darkroom {
 

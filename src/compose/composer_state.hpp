@@ -8,7 +8,7 @@
 #include <mutex>
 #include <vector>
 
-#include "compose/chain.hpp"
+#include "compose/chain/chain.hpp"
 
 namespace darkroom {
 

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "compose/test_host.hpp"
-#include "gpu/kernel_store.hpp"
-#include "gpu/shader.hpp"
+#include "compose/test_stacks/host.hpp"
+#include "gpu/kernel/kernel_store.hpp"
+#include "gpu/shader/shader.hpp"
 
 namespace darkroom {
 namespace {

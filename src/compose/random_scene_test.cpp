@@ -3,7 +3,7 @@
 // ends of their ranges and with pixels that are no numbers. No message of the validation layer, no NaN, and the same
 // bytes every time. What fails here names its number, which makes the same stack and frame again.
 
-#include "compose/test_random_scene.hpp"
+#include "compose/test_stacks/random_scene.hpp"
 
 namespace darkroom {
 namespace {

@@ -2,7 +2,7 @@
 // Stacks on the smallest device that Vulkan 1.3 allows: their pictures are those of the test device, and no call is
 // refused. All suites of Composers and effects run on it with DARKROOM_TEST_DEVICE=smallest (tests/CMakeLists.txt).
 
-#include "compose/test_host.hpp"
+#include "compose/test_stacks/host.hpp"
 
 namespace darkroom {
 namespace {

@@ -2,7 +2,7 @@
 // Kernels of plans on a device that compiles only: RADV's null one, where RADV is there.
 #include <cstdlib>
 
-#include "compose/test_host.hpp"
+#include "compose/test_stacks/host.hpp"
 
 namespace darkroom {
 namespace {

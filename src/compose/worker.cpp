@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "core/parallel.hpp"
+#include "core/thread/parallel.hpp"
 
 namespace darkroom::compose {
 

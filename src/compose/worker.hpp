@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "compose/atomic_stack.hpp"
-#include "compose/pass_kernels.hpp"
-#include "gpu/context.hpp"
+#include "compose/chain/pass_kernels.hpp"
+#include "gpu/device/context.hpp"
 
 namespace darkroom::compose {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "core/files.hpp"
-#include "plan/glsl_names.hpp"
+#include "plan/text/glsl_names.hpp"
 
 namespace darkroom {
 namespace {

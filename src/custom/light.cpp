@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "plan/glsl_names.hpp"
+#include "plan/text/glsl_names.hpp"
 
 namespace darkroom::custom {
 

@@ -8,15 +8,16 @@
 #include <fstream>
 #include <string>
 
-#include "compose/test_host.hpp"
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/host.hpp"
+#include "compose/test_stacks/support.hpp"
+#include "tests/places.hpp"
 
 namespace darkroom {
 namespace {
 
 using gpu::test::must;
 
-const std::filesystem::path examples = std::filesystem::path(DARKROOM_SOURCE_FOLDER) / "examples";
+const std::filesystem::path examples = std::filesystem::path(test::source_folder) / "examples";
 
 CustomEffect parsed(std::string_view text) {
     auto effect = CustomEffect::parse(text, "my.glsl");
@@ -185,7 +186,7 @@ TEST(ComposeCustomPasses, NeedsBindTheImagesOfTheFrame) {
 }
 
 TEST(ComposeCustomPasses, TheExampleOfThePageIsRight) {
-    std::ifstream file(std::filesystem::path(DARKROOM_SOURCE_FOLDER) / "docs/custom_effects.md");
+    std::ifstream file(std::filesystem::path(test::source_folder) / "docs/custom_effects.md");
     const std::string page{std::istreambuf_iterator<char>(file), {}};
     const std::size_t begin = page.find("// @effect distance_tint");
     ASSERT_NE(begin, std::string::npos);

@@ -6,11 +6,11 @@
 #include <array>
 #include <set>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "custom/description.hpp"
 #include "custom/frame_images.hpp"
 #include "custom/words.hpp"
-#include "gpu/glsl_scan.hpp"
+#include "gpu/shader/glsl_scan.hpp"
 
 namespace darkroom::custom {
 

@@ -6,11 +6,11 @@
 #include <array>
 #include <darkroom/effects.hpp>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "custom/description.hpp"
 #include "custom/light.hpp"
 #include "custom/words.hpp"
-#include "plan/glsl_names.hpp"
+#include "plan/text/glsl_names.hpp"
 
 namespace darkroom::custom {
 

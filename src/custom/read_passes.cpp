@@ -9,10 +9,10 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "custom/description.hpp"
 #include "custom/words.hpp"
-#include "plan/glsl_names.hpp"
+#include "plan/text/glsl_names.hpp"
 
 namespace darkroom::custom {
 

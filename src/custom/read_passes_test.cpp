@@ -8,25 +8,26 @@
 #include <string>
 
 #include "gpu/test_run.hpp"
+#include "tests/places.hpp"
 
 namespace darkroom {
 namespace {
 
 using gpu::test::must;
 
-const std::filesystem::path examples = std::filesystem::path(DARKROOM_SOURCE_FOLDER) / "examples";
+const std::filesystem::path example_files = std::filesystem::path(test::source_folder) / "examples";
 
-std::string error_of(const std::string& text) {
+std::string error_of_file(const std::string& text) {
     const auto effect = CustomEffect::parse(text, "my.glsl");
     return effect ? "" : effect.error().text;
 }
 /// The error of a file of these lines and of the functions that they ask for.
 std::string error_of_lines(const std::string& lines) {
-    return error_of("// @effect mine: Mine.\n" + lines + "\nmine( mine_one( mine_two(\n");
+    return error_of_file("// @effect mine: Mine.\n" + lines + "\nmine( mine_one( mine_two(\n");
 }
 
 TEST(CustomPasses, AreReadWithTheirImagesAndTheirCode) {
-    const CustomEffect effect = must(CustomEffect::load(examples / "two_pass_blur.glsl"));
+    const CustomEffect effect = must(CustomEffect::load(example_files / "two_pass_blur.glsl"));
     const EffectInfo& info = effect.info();
     EXPECT_EQ(info.touch, Touch::Neighbourhood);
     ASSERT_EQ(info.files.size(), 2u);
@@ -35,7 +36,7 @@ TEST(CustomPasses, AreReadWithTheirImagesAndTheirCode) {
     EXPECT_EQ(info.files[0].text.find("two_pass_blur_down("), std::string_view::npos);
     EXPECT_FALSE(info.pre_roll);
 
-    const CustomEffect trail = must(CustomEffect::load(examples / "feedback_trail.glsl"));
+    const CustomEffect trail = must(CustomEffect::load(example_files / "feedback_trail.glsl"));
     EXPECT_EQ(trail.info().touch, Touch::Pointwise);
     ASSERT_TRUE(trail.info().pre_roll);
     EXPECT_EQ(trail.info().pre_roll(trail.info().parameters.defaults.data(), 1.0 / 60), 110u);
@@ -72,7 +73,7 @@ TEST(CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of_lines(image + "// @result one\n" + pass + "// @end one"),
               "my.glsl:5: @end: the effect's picture is @result one, it has no end");
     EXPECT_EQ(error_of_lines(image), "my.glsl:1: image one: no pass writes it");
-    EXPECT_EQ(error_of("// @effect mine: Mine.\n// @image one: 1 r8\n// @result one\n// @pass one: -> one\nmine("),
+    EXPECT_EQ(error_of_file("// @effect mine: Mine.\n// @image one: 1 r8\n// @result one\n// @pass one: -> one\nmine("),
               "my.glsl:4: no function mine_one: expected `vec4 mine_one(Pixel pixel, Mine parameters)`");
     EXPECT_EQ(error_of_lines("// @image one: 1/2 rgba17f"),
               "my.glsl:2: one: format rgba17f: allowed is rgba16f, rgba32f, rgba8, rg16f, rg32f, rg8, r16f, r32f, r8, "
@@ -96,7 +97,7 @@ TEST(CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
               "my.glsl:2: @pre_roll 9999: expected a number of frames in [0, 1000]");
     EXPECT_EQ(error_of_lines("// @result one"),
               "my.glsl:2: @result one: expected an image or a history that a line before it declares");
-    EXPECT_EQ(error_of("// @effect mine: Mine.\nvec4 mine(vec4 color) { return load(frame_depth, x); }"),
+    EXPECT_EQ(error_of_file("// @effect mine: Mine.\nvec4 mine(vec4 color) { return load(frame_depth, x); }"),
               "my.glsl:1: frame_depth: read without `@needs depth`");
     EXPECT_EQ(error_of_lines(image + pass + "// @param toggle a = on: A."),
               "my.glsl:4: @param: stands above the code, the passes and the end");
@@ -135,21 +136,21 @@ TEST(CustomPasses, CountsHaveBounds) {
     std::string some = images.substr(0, images.find("// @image a9")),
                 writers = passes.substr(0, passes.find("// @pass a9"));
     EXPECT_EQ(error_of_lines(some + writers + reads), "my.glsl:20: @end reads more than 8 images");
-    EXPECT_EQ(error_of(std::string(CustomEffect::most_bytes + 1, ' ')),
+    EXPECT_EQ(error_of_file(std::string(CustomEffect::most_bytes + 1, ' ')),
               "my.glsl: 65537 bytes, the file of an effect has at most 65536");
 }
 
 TEST(CustomPasses, DamagedTextIsRefusedOrReadAndNeverTrusted) {
     for (const char* const name : {"two_pass_blur.glsl", "feedback_trail.glsl"}) {
-        std::ifstream file(examples / name);
+        std::ifstream file(example_files / name);
         const std::string whole{std::istreambuf_iterator<char>(file), {}};
-        ASSERT_EQ(error_of(whole), "");
+        ASSERT_EQ(error_of_file(whole), "");
         for (std::size_t i = 0; i < whole.size(); ++i) {
-            static_cast<void>(error_of(whole.substr(0, i)));
+            static_cast<void>(error_of_file(whole.substr(0, i)));
             std::string other = whole;
             for (const char c : {'\n', '@', ':', '\0', '\xff'}) {
                 other[i] = c;
-                static_cast<void>(error_of(other));
+                static_cast<void>(error_of_file(other));
             }
         }
     }
@@ -157,7 +158,7 @@ TEST(CustomPasses, DamagedTextIsRefusedOrReadAndNeverTrusted) {
 
 TEST(CustomPasses, CodeDeclaresNothingOfTheKernel) {
     const auto says = [](const std::string& code, const std::string& part) {
-        const std::string text = error_of("// @effect mine: Mine.\n" + code + "\nmine(");
+        const std::string text = error_of_file("// @effect mine: Mine.\n" + code + "\nmine(");
         EXPECT_TRUE(text.starts_with("my.glsl:2: " + part)) << code << " -> " << text;
     };
     says("layout(binding = 9) buffer Mine { float a; };", "layout: the kernel around");
@@ -173,10 +174,10 @@ TEST(CustomPasses, CodeDeclaresNothingOfTheKernel) {
     std::string sum = "float mine_sum(float x) { return x";
     for (int i = 0; i < 1000; ++i) sum += "+x";
     says(sum + "; }", "a statement of more than 2000 words and marks");
-    EXPECT_EQ(error_of("// @effect mine: Mine.\n#define A 1\n#define B A A\nmine("),
+    EXPECT_EQ(error_of_file("// @effect mine: Mine.\n#define A 1\n#define B A A\nmine("),
               "my.glsl:3: #define B: its value names A, another one");
-    EXPECT_EQ(error_of("// @effect mine: Mine.\n#define TAU (2.0 * 3.14159)\nmine("), "");
-    EXPECT_EQ(error_of("// @effect bloom: Mine.\nbloom("),
+    EXPECT_EQ(error_of_file("// @effect mine: Mine.\n#define TAU (2.0 * 3.14159)\nmine("), "");
+    EXPECT_EQ(error_of_file("// @effect bloom: Mine.\nbloom("),
               "my.glsl:1: bloom: the name of an effect that is built in; choose another");
 }
 

@@ -5,10 +5,10 @@
 
 #include <darkroom/effects.hpp>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "develop/developer.hpp"
 #include "develop/reference_chain.hpp"
-#include "gpu/assumed_device.hpp"
+#include "gpu/device/assumed_device.hpp"
 #include "gpu/test_run.hpp"
 
 namespace darkroom {

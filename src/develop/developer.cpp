@@ -8,8 +8,8 @@
 
 #include "core/assert.hpp"
 #include "develop/upload.hpp"
-#include "gpu/context.hpp"
-#include "gpu/resources.hpp"
+#include "gpu/device/context.hpp"
+#include "gpu/resource/resources.hpp"
 
 namespace darkroom {
 

@@ -6,8 +6,8 @@
 
 #include <darkroom/effects.hpp>
 
-#include "compose/test_host.hpp"
-#include "compose/test_shadow_map.hpp"
+#include "compose/test_stacks/host.hpp"
+#include "compose/test_stacks/shadow_map.hpp"
 #include "develop/developer.hpp"
 #include "develop/reference_chain.hpp"
 

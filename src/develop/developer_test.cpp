@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "gpu/test_run.hpp"
-#include "plan/half.hpp"
+#include "plan/text/half.hpp"
 
 namespace darkroom {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/assert.hpp"
-#include "gpu/formats.hpp"
-#include "plan/half.hpp"
+#include "gpu/resource/formats.hpp"
+#include "plan/text/half.hpp"
 
 namespace darkroom {
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "gpu/resources.hpp"
+#include "gpu/resource/resources.hpp"
 
 namespace darkroom {
 

@@ -10,7 +10,7 @@
 
 #include "../effects/shared/blend_modes_reference.hpp"
 #include "../effects/shared/reading_reference.hpp"
-#include "compose/camera_jump.hpp"
+#include "compose/chain/camera_jump.hpp"
 
 namespace darkroom {
 

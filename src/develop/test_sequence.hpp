@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "compose/test_support.hpp"
+#include "compose/test_stacks/support.hpp"
 #include "develop/developer.hpp"
 #include "develop/reference_chain.hpp"
 #include "gpu/test_run.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "gpu/context.hpp"
-#include "plan/half.hpp"
+#include "gpu/device/context.hpp"
+#include "plan/text/half.hpp"
 
 namespace darkroom {
 

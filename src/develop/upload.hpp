@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "develop/developer.hpp"
-#include "gpu/resources.hpp"
+#include "gpu/resource/resources.hpp"
 
 namespace darkroom {
 

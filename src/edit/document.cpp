@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
-#include "core/param_text.hpp"
-#include "edit/compare.hpp"
-#include "looks/look_stack.hpp"
+#include "core/text/param_text.hpp"
+#include "edit/follow/compare.hpp"
+#include "looks/apply/look_stack.hpp"
 
 namespace darkroom::edit {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "core/files.hpp"
-#include "core/param_text.hpp"
-#include "edit/compare.hpp"
+#include "core/text/param_text.hpp"
 #include "edit/document.hpp"
-#include "edit/splice.hpp"
-#include "looks/look_resources.hpp"
-#include "looks/look_stack.hpp"
+#include "edit/follow/compare.hpp"
+#include "edit/splice/splice.hpp"
+#include "looks/apply/look_resources.hpp"
+#include "looks/apply/look_stack.hpp"
 
 namespace darkroom::edit {
 

@@ -6,9 +6,9 @@
 #include <darkroom/effects.hpp>
 #include <fstream>
 
-#include "edit/compare.hpp"
 #include "edit/document.hpp"
 #include "edit/edits.hpp"
+#include "edit/follow/compare.hpp"
 #include "edit/test_random_edits.hpp"
 
 namespace darkroom::edit {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "edit/edits.hpp"
-#include "edit/restructure.hpp"
+#include "edit/splice/restructure.hpp"
 
 namespace darkroom::edit {
 

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "core/param_text.hpp"
-#include "edit/restructure.hpp"
-#include "looks/look_resources.hpp"
+#include "core/text/param_text.hpp"
+#include "edit/splice/restructure.hpp"
+#include "looks/apply/look_resources.hpp"
 
 namespace darkroom::edit {
 

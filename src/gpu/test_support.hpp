@@ -17,10 +17,10 @@
 #include <span>
 #include <vector>
 
-#include "gpu/formats.hpp"
-#include "gpu/kernel.hpp"
-#include "gpu/resources.hpp"
-#include "gpu/test_support_smallest.hpp"
+#include "gpu/kernel/kernel.hpp"
+#include "gpu/resource/formats.hpp"
+#include "gpu/resource/resources.hpp"
+#include "gpu/test_smallest/device.hpp"
 
 namespace darkroom::gpu::test {
 

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "core/files.hpp"
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 
 namespace darkroom {
 

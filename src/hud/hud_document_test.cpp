@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "hud/hud_document.hpp"
+#include "tests/places.hpp"
 
 #include <gtest/gtest.h>
 
@@ -231,7 +232,7 @@ TEST(HudProcess, ADrawingCanBeCancelled) {
 }
 
 TEST(HudVisor, ShowsItsValues) {
-    auto visor = HudDocument::load(DARKROOM_SOURCE_FOLDER "/hud/visor.svg", {.is_headless = true});
+    auto visor = HudDocument::load(std::string(test::source_folder) + "/hud/visor.svg", {.is_headless = true});
     ASSERT_TRUE(visor) << visor.error().text;
     const auto with = [&](double health, double heading) {
         for (const auto& [name, value] :

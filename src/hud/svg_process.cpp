@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "hud/svg_messages.hpp"
 
 namespace darkroom {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 
 namespace darkroom {
 

@@ -9,7 +9,7 @@
 #include <csignal>
 #include <thread>
 
-#include "image/sequence.hpp"
+#include "image/frame/sequence.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {

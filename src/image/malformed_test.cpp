@@ -5,12 +5,12 @@
 #include <chrono>
 #include <cmath>
 
-#include "image/exr_check.hpp"
-#include "image/frame_file.hpp"
-#include "image/jpeg_check.hpp"
-#include "image/png_check.hpp"
+#include "image/codec/jpeg_check.hpp"
+#include "image/codec/png_check.hpp"
+#include "image/exr/check.hpp"
+#include "image/frame/frame_file.hpp"
+#include "image/picture/write.hpp"
 #include "image/test_files.hpp"
-#include "image/write.hpp"
 
 namespace darkroom {
 namespace {

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "looks/look_parts.hpp"
 
 namespace darkroom {

@@ -8,9 +8,9 @@
 #include <functional>
 #include <map>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
+#include "looks/apply/look_resources.hpp"
 #include "looks/look_parts.hpp"
-#include "looks/look_resources.hpp"
 
 namespace darkroom {
 

@@ -11,7 +11,8 @@
 #include <set>
 #include <sstream>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
+#include "tests/places.hpp"
 
 namespace darkroom {
 namespace {
@@ -351,7 +352,7 @@ TEST(Look, ShippedLooksAreStrict) {
     if (lacks({"bloom", "vignette", "dither", "exposure", "tonemap", "encode", "gaussian_blur", "negative", "blend"}))
         GTEST_SKIP() << "an effect that this test names is not in this build";
     std::size_t count = 0;
-    for (const auto& file : std::filesystem::directory_iterator(DARKROOM_SOURCE_FOLDER "/looks")) {
+    for (const auto& file : std::filesystem::directory_iterator(std::string(test::source_folder) + "/looks")) {
         if (file.path().extension() != ".toml") continue;
         std::vector<std::string> warnings;
         const Result<Look> look = read_look(file.path(), {.is_strict = true, .warnings = &warnings});

@@ -8,7 +8,7 @@
 #include <darkroom/look.hpp>
 #include <limits>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 
 namespace darkroom {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/param_text.hpp"
-#include "image/color_chain.hpp"
+#include "core/text/param_text.hpp"
+#include "image/table/color_chain.hpp"
 
 namespace darkroom {
 namespace {

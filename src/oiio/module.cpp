@@ -11,7 +11,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "image/codecs.hpp"
+#include "image/codec/codecs.hpp"
 
 namespace darkroom {
 namespace {

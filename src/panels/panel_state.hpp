@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "edit/document.hpp"
-#include "edit/moved_values.hpp"
-#include "panels/file_browser.hpp"
-#include "panels/messages.hpp"
-#include "panels/widget_places.hpp"
+#include "edit/follow/moved_values.hpp"
+#include "panels/widgets/file_browser.hpp"
+#include "panels/widgets/messages.hpp"
+#include "panels/widgets/widget_places.hpp"
 
 namespace darkroom::panels {
 

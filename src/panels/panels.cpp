@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/param_text.hpp"
-#include "panels/fitting_text.hpp"
-#include "panels/icons.hpp"
+#include "core/text/param_text.hpp"
 #include "panels/panel_state.hpp"
-#include "panels/theme.hpp"
+#include "panels/widgets/fitting_text.hpp"
+#include "panels/widgets/icons.hpp"
+#include "panels/widgets/theme.hpp"
 
 namespace darkroom::panels {
 

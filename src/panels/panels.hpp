@@ -14,7 +14,7 @@
 //     if (document.version() != seen) ...                                        // follow, compile_later
 //
 // Each draws into the host's present window, at its cursor and as wide as the window, of 18 times the font's size at
-// least. A host that wants the same look applies panels/theme.hpp.
+// least. A host that wants the same look applies panels/widgets/theme.hpp.
 
 #include <darkroom/plan.hpp>
 #include <memory>
@@ -22,9 +22,9 @@
 #include <string_view>
 
 #include "edit/document.hpp"
-#include "panels/file_browser.hpp"
-#include "panels/messages.hpp"
-#include "panels/widget_places.hpp"
+#include "panels/widgets/file_browser.hpp"
+#include "panels/widgets/messages.hpp"
+#include "panels/widgets/widget_places.hpp"
 
 namespace darkroom::panels {
 

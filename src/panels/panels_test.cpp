@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "panels/test_look_panels.hpp"
+#include "panels/look/test_look_panels.hpp"
 
 namespace darkroom::panels {
 namespace {

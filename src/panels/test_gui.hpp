@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
-#include "image/write.hpp"
+#include "image/picture/write.hpp"
 #include "panels/test_rasteriser.hpp"
-#include "panels/theme.hpp"
+#include "panels/widgets/theme.hpp"
 
 namespace darkroom::panels {
 

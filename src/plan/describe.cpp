@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "gpu/formats.hpp"
-#include "plan/frame_values.hpp"
+#include "gpu/resource/formats.hpp"
+#include "plan/frame/frame_values.hpp"
 
 namespace darkroom::plan {
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <darkroom/plan.hpp>
 
-#include "gpu/formats.hpp"
+#include "gpu/resource/formats.hpp"
 
 namespace darkroom {
 
@@ -10,7 +10,7 @@ namespace {
 
 double mebibytes(std::uint64_t bytes) { return static_cast<double>(bytes) / (1024.0 * 1024.0); }
 
-std::string quoted(std::string_view text) {
+std::string json_string(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') out += '\\';
@@ -24,7 +24,7 @@ std::string quoted(std::string_view text) {
 
 std::string list(const std::vector<std::string>& texts) {
     std::string out;
-    for (const std::string& text : texts) out += (out.empty() ? "" : ", ") + quoted(text);
+    for (const std::string& text : texts) out += (out.empty() ? "" : ", ") + json_string(text);
     return "[" + out + "]";
 }
 
@@ -62,8 +62,8 @@ std::string json_of(const PlanPass& pass) {
     return fmt::format(
         "{{\"name\": {}, \"stage\": {}, \"entries\": {}, \"boundary\": {}, \"width\": {}, \"height\": {}, "
         "\"bytes_read\": {}, \"bytes_written\": {}, \"reads\": [{}], \"writes\": {}}}",
-        quoted(pass.name), quoted(pass.stage), list(pass.entries), quoted(pass.boundary), pass.extent.width,
-        pass.extent.height, pass.bytes_read, pass.bytes_written, reads, json_of(pass.writes));
+        json_string(pass.name), json_string(pass.stage), list(pass.entries), json_string(pass.boundary),
+        pass.extent.width, pass.extent.height, pass.bytes_read, pass.bytes_written, reads, json_of(pass.writes));
 }
 
 std::string json_of(const PlanImage& image) {
@@ -73,7 +73,7 @@ std::string json_of(const PlanImage& image) {
     return fmt::format(
         "{{\"name\": {}, \"kind\": \"{}\", \"format\": \"{}\", \"width\": {}, \"height\": {}, \"mip_levels\": {}, "
         "\"bytes\": {}, \"offset\": {}, \"first_pass\": {}, \"last_pass\": {}}}",
-        quoted(image.name), name_of(image.kind), gpu::format_name(image.format), image.extent.width,
+        json_string(image.name), name_of(image.kind), gpu::format_name(image.format), image.extent.width,
         image.extent.height, image.mip_levels, image.bytes, image.offset, pass(image.first_pass),
         pass(image.last_pass));
 }

@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "compose/test_host.hpp"
+#include "compose/test_stacks/host.hpp"
 
 namespace darkroom {
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "gpu/kernel.hpp"
+#include "gpu/kernel/kernel.hpp"
 #include "graph/graph.hpp"
-#include "plan/glsl.hpp"
-#include "plan/modulation.hpp"
-#include "plan/shape.hpp"
+#include "plan/frame/modulation.hpp"
+#include "plan/frame/shape.hpp"
+#include "plan/text/glsl.hpp"
 
 namespace darkroom::plan {
 
@@ -91,7 +91,7 @@ struct PassInput {
 
 struct ProgramPass {
     std::string name;
-    gpu::KernelSpec spec;  ///< without its body: see plan/shape.hpp
+    gpu::KernelSpec spec;  ///< without its body: see plan/frame/shape.hpp
     gpu::Stage stage = gpu::Stage::Compute;
     std::vector<PassInput> inputs;  ///< one per spec.images
     graph::Version output;          ///< the version that this pass makes
@@ -184,7 +184,7 @@ struct PlannerTraits {
     std::function<bool(VkFormat)> can_load{};
     /// Whether a linear sampler reads this format; null: every one. Else the kernels filter by loads.
     std::function<bool(VkFormat)> can_filter{};
-    bool is_software = false;              ///< see gpu/kernel.hpp
+    bool is_software = false;              ///< see gpu/kernel/kernel.hpp
     bool has_robust_images = false;        ///< likewise
     bool packing_pays = true;              ///< smaller pixels take less time, which no software driver shows
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them

@@ -5,10 +5,10 @@
 
 #include <array>
 
-#include "render/environment.hpp"
-#include "render/gpu_scene.hpp"
-#include "render/gpu_scene_sets.hpp"
-#include "render/shadow_pass.hpp"
+#include "render/light/environment.hpp"
+#include "render/shadow/shadow_pass.hpp"
+#include "render/upload/gpu_scene.hpp"
+#include "render/upload/gpu_scene_sets.hpp"
 
 namespace darkroom::render {
 

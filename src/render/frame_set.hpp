@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "gpu/pipeline.hpp"
+#include "gpu/kernel/pipeline.hpp"
 #include "scene/math.hpp"
 
 namespace darkroom::render {
@@ -41,6 +41,10 @@ inline constexpr std::uint32_t frame_bindings = 12;
 /// Where the picture goes: linear HDR for effects, or the finished display picture by the scene's own shaders.
 enum class Output : std::uint32_t { Hdr, Display };
 enum class DebugView : std::uint32_t { None, Wireframe, Normals, Depth, Uv, Unlit, MetalRough };
+
+/// What draws leave of a colour target whose alpha is a layer of its own.
+inline constexpr VkColorComponentFlags color_without_alpha =
+    VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT;
 
 /// Normals: world space, -1..1, 0 where there is no surface. Velocity: previous minus current, pixels, y down.
 struct TargetFormats {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "render/shading_test_support.hpp"
+#include "render/light/shading_test_support.hpp"
 
 namespace darkroom::render {
 namespace {

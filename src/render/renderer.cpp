@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "core/assert.hpp"
-#include "render/billboard_pass.hpp"
 #include "render/frame_buffers.hpp"
-#include "render/mesh_pass.hpp"
+#include "render/pass/billboard_pass.hpp"
+#include "render/pass/mesh_pass.hpp"
+#include "render/pass/resolve.hpp"
+#include "render/pass/sky_pass.hpp"
 #include "render/renderer_blocks.hpp"
-#include "render/resolve.hpp"
-#include "render/scene_on_device.hpp"
-#include "render/shadow_pass.hpp"
-#include "render/sky_pass.hpp"
+#include "render/shadow/shadow_pass.hpp"
 #include "render/targets.hpp"
+#include "render/upload/scene_on_device.hpp"
 
 namespace darkroom::render {
 

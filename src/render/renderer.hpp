@@ -16,10 +16,10 @@
 #include <memory>
 #include <string>
 
-#include "render/cascades.hpp"
 #include "render/frame_set.hpp"
+#include "render/shadow/cascades.hpp"
 #include "scene/assets.hpp"
-#include "scene/snapshot.hpp"
+#include "scene/pose/snapshot.hpp"
 
 namespace darkroom::render {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "render/draw_list.hpp"
 #include "render/frame_set.hpp"
-#include "render/gpu_scene.hpp"
+#include "render/pass/draw_list.hpp"
+#include "render/upload/gpu_scene.hpp"
 
 namespace darkroom::render {
 

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-constexpr VkExtent2D small{64, 48};
+constexpr VkExtent2D small_frame{64, 48};
 
 void expect_color(const Pixels& pixels, std::uint32_t x, std::uint32_t y, const std::array<float, 4>& wanted,
                   float tolerance = 0) {
@@ -23,10 +23,10 @@ void expect_color(const Pixels& pixels, std::uint32_t x, std::uint32_t y, const 
 TEST(RenderGpuRenderer, AnEmptyScenePictureIsItsBackground) {
     scene::Scene scene;
     scene.environment.background = {0.25F, 0.5F, 2};
-    Renderer renderer = renderer_for({.extent = small}, {}, scene);
-    const Shot shot = shoot(renderer, snapshot_of(small));
-    for (std::uint32_t y = 0; y < small.height; y += 7) {
-        for (std::uint32_t x = 0; x < small.width; x += 7) {
+    Renderer renderer = renderer_for({.extent = small_frame}, {}, scene);
+    const Shot shot = shoot(renderer, snapshot_of(small_frame));
+    for (std::uint32_t y = 0; y < small_frame.height; y += 7) {
+        for (std::uint32_t x = 0; x < small_frame.width; x += 7) {
             expect_color(shot.color, x, y, {0.25F, 0.5F, 2, 1});
             EXPECT_EQ(shot.depth.at(x, y)[0], 1e10F);
             EXPECT_EQ(shot.normals.at(x, y)[0], 0);
@@ -37,13 +37,13 @@ TEST(RenderGpuRenderer, AnEmptyScenePictureIsItsBackground) {
 }
 
 TEST(RenderGpuRenderer, ABoxIsWhereArithmeticPutsItAndKeepsHdr) {
-    Renderer renderer = renderer_for({.extent = small});
-    scene::Snapshot snapshot = snapshot_of(small);
+    Renderer renderer = renderer_for({.extent = small_frame});
+    scene::Snapshot snapshot = snapshot_of(small_frame);
     // At distance 4 the picture is 8 m high: 6 pixels a metre. x from 0 to 2, y from 1 to 3 (upwards).
     add_box(snapshot, {0, 1, -5}, {2, 3, -4}, plain({4, 0.5F, 0, 1}));
     const Shot shot = shoot(renderer, snapshot);
-    for (std::uint32_t y = 0; y < small.height; ++y) {
-        for (std::uint32_t x = 0; x < small.width; ++x) {
+    for (std::uint32_t y = 0; y < small_frame.height; ++y) {
+        for (std::uint32_t x = 0; x < small_frame.width; ++x) {
             const bool is_inside = x >= 32 && x < 44 && y >= 6 && y < 18;
             // The bottom and left sides of a box right of and above the middle are seen, too.
             const bool is_clear = x < 30 || x >= 46 || y < 4 || y >= 20;
@@ -62,8 +62,8 @@ TEST(RenderGpuRenderer, ABoxIsWhereArithmeticPutsItAndKeepsHdr) {
 TEST(RenderGpuRenderer, WhatShadersCannotReachIsToldBeforeItIsBound) {
     gpu::Context& context = gpu::test::context();
     const VkDeviceSize before = std::exchange(context.traits.max_storage_range, 4096);
-    Renderer renderer = renderer_for({.extent = small});
-    scene::Snapshot snapshot = snapshot_of(small);
+    Renderer renderer = renderer_for({.extent = small_frame});
+    scene::Snapshot snapshot = snapshot_of(small_frame);
     add_box(snapshot, {0, 1, -5}, {2, 3, -4}, plain({4, 0.5F, 0, 1}));
     EXPECT_TRUE(renderer.prepare(snapshot));
     snapshot.joints.resize(33, scene::mat4(1));
@@ -76,15 +76,15 @@ TEST(RenderGpuRenderer, WhatShadersCannotReachIsToldBeforeItIsBound) {
 }
 
 TEST(RenderGpuRenderer, DepthIsPlanarDistanceOfASlantedFloor) {
-    Renderer renderer = renderer_for({.extent = small});
-    scene::Snapshot snapshot = snapshot_of(small);
+    Renderer renderer = renderer_for({.extent = small_frame});
+    scene::Snapshot snapshot = snapshot_of(small_frame);
     add_box(snapshot, {-100, -3, -99}, {100, -2, -0.2F}, plain(vec4(1)));
     const Shot shot = shoot(renderer, snapshot);
     // Rasterisers of hardware put vertices on a grid (VkPhysicalDeviceLimits::subPixelPrecisionBits): half a step of it
     // moves the floor that far up or down the picture.
     const int grid = static_cast<int>(gpu::test::limits().subPixelPrecisionBits);
     const float snapped = gpu::test::context().traits.is_software ? 0 : std::ldexp(0.5F, -grid) / 24;
-    for (std::uint32_t y = 26; y < small.height; ++y) {
+    for (std::uint32_t y = 26; y < small_frame.height; ++y) {
         // The ray through a pixel's centre meets y = -2 where -2 = -distance * slope.
         const float slope = (static_cast<float>(y) + 0.5F) / 24 - 1;
         const float distance = 2 / slope;
@@ -97,9 +97,9 @@ TEST(RenderGpuRenderer, DepthIsPlanarDistanceOfASlantedFloor) {
 }
 
 TEST(RenderGpuRenderer, OrthographicDepthIsPlanarDistance) {
-    Renderer renderer = renderer_for({.extent = small});
-    scene::Snapshot snapshot = snapshot_of(small);
-    snapshot.camera = front_camera(small, 8);
+    Renderer renderer = renderer_for({.extent = small_frame});
+    scene::Snapshot snapshot = snapshot_of(small_frame);
+    snapshot.camera = front_camera(small_frame, 8);
     add_wall(snapshot, 37, 2, plain(vec4(1)));
     const Shot shot = shoot(renderer, snapshot);
     EXPECT_NEAR(shot.depth.at(32, 24)[0], 37, 1e-3F);
@@ -108,8 +108,8 @@ TEST(RenderGpuRenderer, OrthographicDepthIsPlanarDistance) {
 }
 
 TEST(RenderGpuRenderer, VelocityIsThePreviousPlaceMinusTheOneOfNow) {
-    Renderer renderer = renderer_for({.extent = small});
-    scene::Snapshot snapshot = snapshot_of(small);
+    Renderer renderer = renderer_for({.extent = small_frame});
+    scene::Snapshot snapshot = snapshot_of(small_frame);
     // 6 pixels a metre at distance 4: it came from 0.5 m left and 0.25 m below.
     scene::Instance& box = add_wall(snapshot, 4, 1, plain(vec4(1)));
     box.previous_world = glm::translate(mat4(1), {-0.5F, -0.25F, 0}) * box.world;
@@ -122,18 +122,18 @@ TEST(RenderGpuRenderer, VelocityIsThePreviousPlaceMinusTheOneOfNow) {
 }
 
 TEST(RenderGpuRenderer, VelocityOfAMovingCameraIsTheProjectedDifference) {
-    Renderer renderer = renderer_for({.extent = small});
-    scene::Snapshot snapshot = snapshot_of(small);
+    Renderer renderer = renderer_for({.extent = small_frame});
+    scene::Snapshot snapshot = snapshot_of(small_frame);
     add_wall(snapshot, 4, 6, plain(vec4(1)));
     const mat4 turn = glm::rotate(mat4(1), glm::radians(2.0F), vec3(0.3F, 1, 0.2F));
     snapshot.camera.previous_view = turn * glm::translate(mat4(1), vec3(0.1F, 0.05F, 0.2F));
     const Shot shot = shoot(renderer, snapshot);
-    for (std::uint32_t y = 3; y < small.height; y += 10) {
-        for (std::uint32_t x = 3; x < small.width; x += 10) {
+    for (std::uint32_t y = 3; y < small_frame.height; y += 10) {
+        for (std::uint32_t x = 3; x < small_frame.width; x += 10) {
             const vec2 pixel(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
             const vec4 point((pixel.x - 32) / 24 * 4, -(pixel.y - 24) / 24 * 4, -4, 1);
             const vec4 clip = snapshot.camera.projection * snapshot.camera.previous_view * point;
-            const vec2 before = (vec2(clip) / clip.w * 0.5F + 0.5F) * vec2(small.width, small.height);
+            const vec2 before = (vec2(clip) / clip.w * 0.5F + 0.5F) * vec2(small_frame.width, small_frame.height);
             EXPECT_NEAR(shot.velocity.at(x, y)[0], before.x - pixel.x, 0.01F);
             EXPECT_NEAR(shot.velocity.at(x, y)[1], before.y - pixel.y, 0.01F);
         }
@@ -141,9 +141,9 @@ TEST(RenderGpuRenderer, VelocityOfAMovingCameraIsTheProjectedDifference) {
 }
 
 TEST(RenderGpuRenderer, NearerSurfacesHideOthersWhateverTheOrder) {
-    Renderer renderer = renderer_for({.extent = small});
+    Renderer renderer = renderer_for({.extent = small_frame});
     for (const bool is_far_first : {false, true}) {
-        scene::Snapshot snapshot = snapshot_of(small);
+        scene::Snapshot snapshot = snapshot_of(small_frame);
         const float first = is_far_first ? 8.0F : 4.0F, second = is_far_first ? 4.0F : 8.0F;
         add_wall(snapshot, first, 6, plain(is_far_first ? vec4(0, 1, 0, 1) : vec4(1, 0, 0, 1)));
         add_wall(snapshot, second, 6, plain(is_far_first ? vec4(1, 0, 0, 1) : vec4(0, 1, 0, 1)));
@@ -153,8 +153,8 @@ TEST(RenderGpuRenderer, NearerSurfacesHideOthersWhateverTheOrder) {
 }
 
 TEST(RenderGpuRenderer, AThousandBoxesAreOneCall) {
-    Renderer renderer = renderer_for({.extent = small});
-    scene::Snapshot snapshot = snapshot_of(small);
+    Renderer renderer = renderer_for({.extent = small_frame});
+    scene::Snapshot snapshot = snapshot_of(small_frame);
     for (int i = 0; i < 1000; ++i) {
         const vec3 low(-2 + 0.1F * static_cast<float>(i % 40), -1 + 0.08F * static_cast<float>(i / 40), -4);
         add_box(snapshot, low, low + 0.05F, plain(vec4(vec3(static_cast<float>(i) / 1000), 1)));
@@ -167,8 +167,8 @@ TEST(RenderGpuRenderer, AThousandBoxesAreOneCall) {
 }
 
 TEST(RenderGpuRenderer, InstancesOfOneCallHaveTheirOwnFactorsAndPlaces) {
-    Renderer renderer = renderer_for({.extent = small});
-    scene::Snapshot snapshot = snapshot_of(small);
+    Renderer renderer = renderer_for({.extent = small_frame});
+    scene::Snapshot snapshot = snapshot_of(small_frame);
     add_box(snapshot, {-3, -1, -5}, {-1, 1, -4}, plain({1, 0, 0, 1}));
     add_box(snapshot, {1, -1, -5}, {3, 1, -4}, plain({0, 0, 1, 1}));
     const Shot shot = shoot(renderer, snapshot);
@@ -201,15 +201,16 @@ TEST(RenderGpuRenderer, WhatTheDeviceLacksIsRefusedInOneLine) {
     const std::string limit = std::to_string(gpu::test::context().traits.max_image_dimension);
     EXPECT_EQ(refusal({.extent = {0, 3}}), "size 0x3: " + name + " allows 1x1 to " + limit + "x" + limit);
     EXPECT_NE(refusal({.extent = {1, 1U << 30U}}).find("allows 1x1 to"), std::string::npos);
-    EXPECT_EQ(refusal({.extent = small, .samples = 3}),
+    EXPECT_EQ(refusal({.extent = small_frame, .samples = 3}),
               "samples 3: " + name + " has " + sample_counts(gpu::test::device()));
-    EXPECT_NE(refusal({.extent = small, .draw = {.debug = DebugView::Depth}}).find("debug view"), std::string::npos);
+    EXPECT_NE(refusal({.extent = small_frame, .draw = {.debug = DebugView::Depth}}).find("debug view"),
+              std::string::npos);
     EXPECT_EQ(sample_counts(gpu::test::device()).substr(0, 1), "1");
 }
 
 TEST(RenderGpuRenderer, SlotsOfFramesInFlightDoNotDisturbEachOther) {
-    Renderer renderer = renderer_for({.extent = small, .frames_in_flight = 2});
-    scene::Snapshot left = snapshot_of(small), right = snapshot_of(small);
+    Renderer renderer = renderer_for({.extent = small_frame, .frames_in_flight = 2});
+    scene::Snapshot left = snapshot_of(small_frame), right = snapshot_of(small_frame);
     add_box(left, {-3, -1, -5}, {-1, 1, -4}, plain({1, 0, 0, 1}));
     add_box(right, {1, -1, -5}, {3, 1, -4}, plain({0, 0, 1, 1}));
     for (int i = 0; i < 9; ++i) add_box(right, {-9, -9, -20}, {-8, -8, -19}, plain(vec4(1)));
@@ -225,8 +226,9 @@ TEST(RenderGpuRenderer, TheFrameNamesCameraAndLights) {
     scene.entities.push_back({.name = "sun", .light = scene::Light{}});
     scene::Assets assets;
     assets.entities.resize(1);
-    Renderer renderer = renderer_for({.extent = small, .cascades = {.count = 2, .resolution = 64}}, assets, scene);
-    scene::Snapshot snapshot = snapshot_of(small);
+    Renderer renderer =
+        renderer_for({.extent = small_frame, .cascades = {.count = 2, .resolution = 64}}, assets, scene);
+    scene::Snapshot snapshot = snapshot_of(small_frame);
     snapshot.time = 3;
     add_wall(snapshot, 4, 1, plain(vec4(1)));
     scene::LightState sun{.light = {.color = {1, 0.5F, 0.25F}, .intensity = 2, .volumetric_intensity = 4}};
@@ -248,7 +250,7 @@ TEST(RenderGpuRenderer, TheFrameNamesCameraAndLights) {
     EXPECT_TRUE(frame.lights[0].cascades.is_given());
     EXPECT_EQ(frame.lights[0].cascades.extent.width, 64U);
     EXPECT_GT(frame.lights[0].splits[1], frame.lights[0].splits[0]);
-    EXPECT_EQ(frame.color.extent.width, small.width);
+    EXPECT_EQ(frame.color.extent.width, small_frame.width);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "gpu/test_run.hpp"
 #include "render/renderer.hpp"
-#include "scene/snapshot.hpp"
+#include "scene/pose/snapshot.hpp"
 
 namespace darkroom::render::test {
 

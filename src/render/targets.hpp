@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The images that a scene is drawn into and those that it is handed on in, and the barriers around them. With one
-// sample colour, normals and velocity are the same ones; depth always becomes planar distance by render/resolve.hpp.
+// sample colour, normals and velocity are the same ones; depth always becomes planar distance by
+// render/pass/resolve.hpp.
 
 #include <darkroom/frame.hpp>
 
-#include "gpu/resources.hpp"
+#include "gpu/resource/resources.hpp"
 #include "render/frame_set.hpp"
 
 namespace darkroom::render {

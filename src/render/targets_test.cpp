@@ -10,10 +10,10 @@ namespace {
 
 using gpu::test::must;
 
-constexpr VkExtent2D small{5, 3};
+constexpr VkExtent2D small_target{5, 3};
 
 TEST(RenderGpuTargets, FinalImagesCanBeReadWrittenAndCopied) {
-    const Targets targets = must(Targets::create(gpu::test::context(), {.extent = small, .formats = {}}));
+    const Targets targets = must(Targets::create(gpu::test::context(), {.extent = small_target, .formats = {}}));
     EXPECT_FALSE(targets.is_multi_sampled());
     EXPECT_TRUE(targets.has_layers());
     constexpr VkImageUsageFlags least =
@@ -31,8 +31,8 @@ TEST(RenderGpuTargets, FinalImagesCanBeReadWrittenAndCopied) {
 TEST(RenderGpuTargets, SamplesAreKeptApartFromWhatIsHandedOn) {
     if ((gpu::test::context().traits.sample_counts & VK_SAMPLE_COUNT_4_BIT) == 0)
         GTEST_SKIP() << "the device has no 4 samples";
-    const Targets targets =
-        must(Targets::create(gpu::test::context(), {.extent = small, .formats = {.samples = VK_SAMPLE_COUNT_4_BIT}}));
+    const Targets targets = must(
+        Targets::create(gpu::test::context(), {.extent = small_target, .formats = {.samples = VK_SAMPLE_COUNT_4_BIT}}));
     EXPECT_TRUE(targets.is_multi_sampled());
     for (const gpu::Image* image : {&targets.many_color, &targets.many_normals, &targets.many_velocity, &targets.depth})
         EXPECT_EQ(image->info.samples, VK_SAMPLE_COUNT_4_BIT) << image->info.name;
@@ -41,7 +41,7 @@ TEST(RenderGpuTargets, SamplesAreKeptApartFromWhatIsHandedOn) {
 
 TEST(RenderGpuTargets, DisplayPicturesHaveNoLayers) {
     const TargetFormats formats{.color = VK_FORMAT_B8G8R8A8_UNORM, .has_layers = false};
-    const Targets targets = must(Targets::create(gpu::test::context(), {.extent = small, .formats = formats}));
+    const Targets targets = must(Targets::create(gpu::test::context(), {.extent = small_target, .formats = formats}));
     EXPECT_FALSE(targets.has_layers());
     EXPECT_EQ(targets.planar_depth.handle, VK_NULL_HANDLE);
     const ImageRef picture = targets.copied_picture();
@@ -50,7 +50,7 @@ TEST(RenderGpuTargets, DisplayPicturesHaveNoLayers) {
 }
 
 TEST(RenderGpuTargets, ReferencesSayHowImagesWereLeft) {
-    const Targets targets = must(Targets::create(gpu::test::context(), {.extent = small, .formats = {}}));
+    const Targets targets = must(Targets::create(gpu::test::context(), {.extent = small_target, .formats = {}}));
     const ResolveUse compute{.stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                              .write_stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                              .write_access = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,

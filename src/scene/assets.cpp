@@ -6,9 +6,9 @@
 #include <array>
 #include <map>
 
-#include "core/parallel.hpp"
-#include "image/decoder.hpp"
-#include "image/frame_file.hpp"
+#include "core/thread/parallel.hpp"
+#include "image/codec/decoder.hpp"
+#include "image/frame/frame_file.hpp"
 #include "scene/image_batch.hpp"
 
 namespace darkroom::scene {

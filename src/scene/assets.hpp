@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "image/picture.hpp"
+#include "image/picture/picture.hpp"
 #include "scene/model.hpp"
 #include "scene/scene.hpp"
 

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "image/frame_file.hpp"
+#include "image/frame/frame_file.hpp"
 #include "image/test_files.hpp"
-#include "scene/gltf_test_model.hpp"
+#include "scene/gltf/test_model.hpp"
 
 namespace darkroom::scene {
 namespace {

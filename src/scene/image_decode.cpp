@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
-#include "core/parallel.hpp"
-#include "image/picture_source.hpp"
+#include "core/thread/parallel.hpp"
+#include "image/picture/picture_source.hpp"
 #include "scene/assets.hpp"
 #include "scene/image_batch.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/files.hpp"
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "script/command_reader.hpp"
 #include "script/console_state.hpp"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/files.hpp"
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "script/controllers_state.hpp"
 
 namespace darkroom {

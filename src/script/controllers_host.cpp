@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 #include "script/controllers_state.hpp"
 
 namespace darkroom {

@@ -5,13 +5,14 @@
 #include <cmath>
 
 #include "script/test_controllers.hpp"
+#include "tests/places.hpp"
 
 namespace darkroom {
 namespace {
 
 using test::ControllersBed;
 
-const std::string folder = std::string(DARKROOM_SOURCE_FOLDER) + "/controllers/";
+const std::string folder = std::string(test::source_folder) + "/controllers/";
 
 /// What the game is like at a time.
 struct Moment {

@@ -7,7 +7,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 
 namespace darkroom::script {
 

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/files.hpp"
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 
 namespace darkroom {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The edge to toml++: text to a tree, nodes to the values of core/param_text.hpp. Public headers name nothing of
+// The edge to toml++: text to a tree, nodes to the values of core/text/param_text.hpp. Public headers name nothing of
 // toml++.
 
 #include <toml++/toml.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/param_text.hpp"
+#include "core/text/param_text.hpp"
 
 namespace darkroom {
 

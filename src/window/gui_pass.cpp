@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "core/assert.hpp"
-#include "gpu/context.hpp"
-#include "gpu/formats.hpp"
-#include "gpu/pipeline.hpp"
-#include "gpu/resources.hpp"
+#include "gpu/device/context.hpp"
+#include "gpu/kernel/pipeline.hpp"
+#include "gpu/resource/formats.hpp"
+#include "gpu/resource/resources.hpp"
 #include "window/gui_shaders.hpp"
 
 namespace darkroom::window {
@@ -85,7 +85,7 @@ struct GrowingBuffer {
     }
 };
 
-struct Slot {
+struct DrawSlot {
     GrowingBuffer vertices, indices;
     gpu::DescriptorSets sets;        ///< most_panes
     std::vector<const Pane*> panes;  ///< of the recording that is made; sets in the same order
@@ -154,13 +154,13 @@ struct GuiPass::State {
     gpu::Image font;
     gpu::DescriptorSets font_set;
     void* font_texture = nullptr;
-    std::vector<Slot> slots;
+    std::vector<DrawSlot> slots;
 
-    Result<> write_vertices(const ImDrawData& data, Slot& slot) const;
-    Result<VkDescriptorSet> pane_set(const Pane& pane, Slot& slot) const;
-    void bind(VkCommandBuffer commands, const ImDrawData& data, const Slot& slot) const;
-    Result<> draw(VkCommandBuffer commands, const ImDrawData& data, const ImDrawCmd& command, Block& block, Slot& slot,
-                  std::int32_t first_vertex, std::uint32_t first_index) const;
+    Result<> write_vertices(const ImDrawData& data, DrawSlot& slot) const;
+    Result<VkDescriptorSet> pane_set(const Pane& pane, DrawSlot& slot) const;
+    void bind(VkCommandBuffer commands, const ImDrawData& data, const DrawSlot& slot) const;
+    Result<> draw(VkCommandBuffer commands, const ImDrawData& data, const ImDrawCmd& command, Block& block,
+                  DrawSlot& slot, std::int32_t first_vertex, std::uint32_t first_index) const;
 };
 
 Result<GuiPass> GuiPass::create(gpu::Context& context, const Desc& desc, ImFontAtlas& atlas) {
@@ -181,7 +181,7 @@ Result<GuiPass> GuiPass::create(gpu::Context& context, const Desc& desc, ImFontA
     state.panes = std::move(*panes);
     state.slots.resize(desc.slots);
     const std::vector<VkDescriptorSetLayout> layouts(most_panes, state.layout.handle);
-    for (Slot& slot : state.slots) {
+    for (DrawSlot& slot : state.slots) {
         Result<gpu::DescriptorSets> sets = gpu::DescriptorSets::create(context, layouts);
         if (!sets) return failure(std::move(sets));
         slot.sets = std::move(*sets);
@@ -228,7 +228,7 @@ Result<> GuiPass::upload_fonts(ImFontAtlas& atlas) {
     return {};
 }
 
-Result<> GuiPass::State::write_vertices(const ImDrawData& data, Slot& slot) const {
+Result<> GuiPass::State::write_vertices(const ImDrawData& data, DrawSlot& slot) const {
     if (Result<> made = slot.vertices.reserve(*context, sizeof(ImDrawVert) * data.TotalVtxCount,
                                               VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, "vertices of the interface");
         !made)
@@ -249,7 +249,7 @@ Result<> GuiPass::State::write_vertices(const ImDrawData& data, Slot& slot) cons
     return {};
 }
 
-Result<VkDescriptorSet> GuiPass::State::pane_set(const Pane& pane, Slot& slot) const {
+Result<VkDescriptorSet> GuiPass::State::pane_set(const Pane& pane, DrawSlot& slot) const {
     const auto known = std::ranges::find(slot.panes, &pane);
     const auto index = static_cast<std::size_t>(known - slot.panes.begin());
     if (known != slot.panes.end()) return slot.sets.sets[index];
@@ -262,7 +262,7 @@ Result<VkDescriptorSet> GuiPass::State::pane_set(const Pane& pane, Slot& slot) c
     return slot.sets.sets[index];
 }
 
-void GuiPass::State::bind(VkCommandBuffer commands, const ImDrawData& data, const Slot& slot) const {
+void GuiPass::State::bind(VkCommandBuffer commands, const ImDrawData& data, const DrawSlot& slot) const {
     constexpr VkDeviceSize offset = 0;
     const VkViewport viewport{
         0, 0, data.DisplaySize.x * data.FramebufferScale.x, data.DisplaySize.y * data.FramebufferScale.y, 0, 1};
@@ -273,7 +273,7 @@ void GuiPass::State::bind(VkCommandBuffer commands, const ImDrawData& data, cons
 }
 
 Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, const ImDrawCmd& command, Block& block,
-                              Slot& slot, std::int32_t first_vertex, std::uint32_t first_index) const {
+                              DrawSlot& slot, std::int32_t first_vertex, std::uint32_t first_index) const {
     const VkRect2D scissor = scissor_of(command, data);
     if (scissor.extent.width == 0 || scissor.extent.height == 0) return {};
     void* const texture = command.GetTexID();
@@ -300,7 +300,7 @@ Result<> GuiPass::State::draw(VkCommandBuffer commands, const ImDrawData& data, 
 
 Result<> GuiPass::record(VkCommandBuffer commands, const ImDrawData& data, std::uint32_t slot) {
     DARKROOM_ASSERT(slot < state_->slots.size());
-    Slot& own = state_->slots[slot];
+    DrawSlot& own = state_->slots[slot];
     own.panes.clear();
     if (data.TotalVtxCount == 0 || data.DisplaySize.x <= 0 || data.DisplaySize.y <= 0) return {};
     if (Result<> written = state_->write_vertices(data, own); !written) return written;

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "core/assert.hpp"
-#include "panels/false_color.hpp"
+#include "panels/show/false_color.hpp"
 
 namespace darkroom::window {
 

@@ -34,7 +34,7 @@ struct Pane {
     float divider = 0.5f;            ///< in texture coordinates, from the left
     float exposure = 0;              ///< stops; of light, so Raw and alpha do not have it
     PaneChannels channels = PaneChannels::Rgb;
-    bool is_false_color = false;      ///< panels/false_color.hpp; not of Raw and alpha
+    bool is_false_color = false;      ///< panels/show/false_color.hpp; not of Raw and alpha
     bool is_clipping_marked = false;  ///< stripes under 0 (blue) and from 1 up (red), NaN and infinities in magenta
     bool is_nearest = false;          ///< texels as squares
 

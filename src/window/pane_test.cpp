@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "panels/false_color.hpp"
+#include "panels/show/false_color.hpp"
 #include "window/test_gui_pass.hpp"
 
 namespace darkroom::window {

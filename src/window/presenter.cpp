@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "gpu/context.hpp"
+#include "gpu/device/context.hpp"
 
 namespace darkroom::window {
 
@@ -100,7 +100,7 @@ struct Swapchain {
     std::vector<Image> images;
 };
 
-struct Slot {
+struct FrameSlot {
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VkSemaphore is_acquired = VK_NULL_HANDLE;
@@ -148,7 +148,7 @@ struct Presenter::State {
         std::uint64_t last_frame = 0;  ///< that may use it
     };
     std::deque<Retired> retired;
-    std::vector<Slot> slots;
+    std::vector<FrameSlot> slots;
     VkSemaphore finished = VK_NULL_HANDLE;  ///< counts the frames that have finished
     std::uint64_t next = 0;                 ///< number of the frame that comes
     PresentFrame frame;
@@ -160,7 +160,7 @@ Presenter::State::~State() {
     if (context->device != VK_NULL_HANDLE && finished != VK_NULL_HANDLE) context->vk.DeviceWaitIdle(context->device);
     for (Retired& old : retired) destroy(old.swapchain);
     destroy(swapchain);
-    for (const Slot& slot : slots) {
+    for (const FrameSlot& slot : slots) {
         context->vk.DestroyCommandPool(context->device, slot.pool, context->allocator);
         vk.DestroySemaphore(context->device, slot.is_acquired, context->allocator);
     }
@@ -175,7 +175,7 @@ Result<> Presenter::State::create() {
                                          .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
     VkResult result = make_semaphore(finished, &type);
     for (std::uint32_t i = 0; i < desc.frames_in_flight && result == VK_SUCCESS; ++i) {
-        Slot& slot = slots.emplace_back();
+        FrameSlot& slot = slots.emplace_back();
         const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                            .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
                                            .queueFamilyIndex = context->queue_family};
@@ -354,7 +354,7 @@ Result<std::optional<PresentFrame>> Presenter::State::begin(VkExtent2D window) {
     const bool is_resized = window.width != asked.width || window.height != asked.height;
     VkResult result = is_lost ? VK_ERROR_SURFACE_LOST_KHR : VK_SUCCESS;
     if (!is_lost && (is_stale || is_resized)) result = make_swapchain(window);
-    const Slot& slot = slots[next % in_flight];
+    const FrameSlot& slot = slots[next % in_flight];
     if (result == VK_SUCCESS)
         result = vk.AcquireNextImageKHR(context->device, swapchain.handle, patience, slot.is_acquired, VK_NULL_HANDLE,
                                         &image);

@@ -1,6 +1,6 @@
 // How a surface reflects light: Lambert under a microfacet layer (Cook and Torrance, "A Reflectance Model for Computer
 // Graphics", 1982) with the choices of Karis, "Real Shading in Unreal Engine 4", 2013. Needs nothing else; in double
-// precision it is render/brdf_reference.hpp.
+// precision it is render/light/brdf_reference.hpp.
 const float pi = 3.14159265358979;
 const float dielectric_f0 = 0.04;    // of glass and most plastics: index of refraction 1.5
 const float least_roughness = 0.04;  // a smoother highlight of a light without size would fall between the pixels

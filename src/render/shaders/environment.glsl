@@ -1,4 +1,4 @@
-// Light from the skybox, made by render/environment.cpp; frame.glsl is included before. All of it is multiplied by the
+// Light from the skybox, made by render/light/environment.cpp; frame.glsl is included before. All of it is multiplied by the
 // environment's intensity.
 
 /// Where a normalised direction is in an equirectangular picture: -z in its middle, +x to the right of it.

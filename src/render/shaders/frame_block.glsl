@@ -15,4 +15,4 @@ vec4 ambient_sky;      // hemisphere from above; used where there is no environm
 vec4 ambient_ground;
 vec4 background;            // linear, where there is no skybox
 vec4 environment_settings;  // intensity, last mip level of the prefiltered map, 0, 0
-vec4 irradiance[9];         // spherical harmonics of the skybox, cosine-convolved, over pi; see render/environment.hpp
+vec4 irradiance[9];         // spherical harmonics of the skybox, cosine-convolved, over pi; see render/light/environment.hpp

@@ -1,4 +1,4 @@
-// Body of the resolve kernel (render/resolve.cpp), which writes `const int samples = N;` and a shade() above main.
+// Body of the resolve kernel (render/pass/resolve.cpp), which writes `const int samples = N;` and a shade() above main.
 // custom[0]: near, far, 1 for a perspective.
 
 /// Distance along the view axis of a reversed depth, 1e10 where nothing is.

@@ -8,7 +8,7 @@
 layout(constant_id = 8) const uint shadow_lights = 0u;
 const uint shadow_map_count = shadow_lights == 0u ? 4u : shadow_lights;
 
-const float cascade_blend = 0.1;  // as render/cascades.hpp has it
+const float cascade_blend = 0.1;  // as render/shadow/cascades.hpp has it
 const float shadow_fade = 0.25;   // last part of the shadow distance
 // The rasteriser's bias of two texels of slope leaves a part of the receiver's slope to this filter. It takes no more,
 // and nothing of steep ones: normals that are interpolated over coarse meshes say too much where it matters most.

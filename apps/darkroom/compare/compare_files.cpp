@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "compare_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text/param_text.hpp"
+#include "image/frame/layer_file.hpp"
+
+namespace app {
+
+using darkroom::FileLayer;
+using darkroom::LayerFile;
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+
+namespace {
+
+darkroom::NonFinite sum(darkroom::NonFinite a, const std::optional<darkroom::NonFinite>& b) {
+    if (!b) return a;
+    return {a.nan + b->nan, a.infinite + b->infinite};
+}
+
+class FileComparison {
+  public:
+    FileComparison(const CompareRequest& request, LayerFile reference, LayerFile test)
+        : request_(request), files_{std::move(reference), std::move(test)} {}
+
+    Result<ComparedFiles> run(const std::filesystem::path& reference, const std::filesystem::path& test,
+                              std::optional<ComparedColor>* color) {
+        out_.reference = reference.string();
+        out_.test = test.string();
+        color_ = color;
+        for (const std::string& name : request_.has_all_layers ? all_layers() : request_.layers)
+            if (Result<> done = add(name); !done) return failure(std::move(done));
+        judge();
+        return std::move(out_);
+    }
+
+  private:
+    [[nodiscard]] std::string both() const {
+        return fmt::format("{} and {}", printable(out_.reference), printable(out_.test));
+    }
+
+    // Of both files; one that is in one of them alone is a difference, as a file of one folder alone is.
+    std::vector<std::string> all_layers() {
+        std::vector<std::string> common;
+        for (std::size_t i = 0; i < 2; ++i)
+            for (const FileLayer& layer : files_[i].layers()) {
+                const auto others = files_[1 - i].layers();
+                if (std::ranges::find(others, layer.name, &FileLayer::name) == others.end())
+                    out_.failures.push_back(fmt::format("{}: only the {} has it", shown(layer.name),
+                                                        i == 0 ? "reference" : "picture under test"));
+                else if (files_[i].has_wide_integers(layer) && i == 0)
+                    out_.not_compared.push_back(fmt::format("{}: has 32-bit integers", shown(layer.name)));
+                else if (i == 0)
+                    common.push_back(layer.name);
+            }
+        return common;
+    }
+
+    Result<> add(const std::string& name) {
+        std::array<FileLayer, 2> layers;
+        for (std::size_t i = 0; i < 2; ++i) {
+            Result<FileLayer> found = files_[i].find(name);
+            if (!found) return failure(std::move(found));
+            layers[i] = std::move(*found);
+        }
+        return layers[0].name == "color" && layers[1].name == "color" ? add_color(layers) : add_numbers(layers);
+    }
+
+    Result<> add_color(const std::array<FileLayer, 2>& layers) {
+        Result<darkroom::ComparablePicture> a = darkroom::read_comparable(files_[0]);
+        if (!a) return failure(std::move(a));
+        Result<darkroom::ComparablePicture> b = darkroom::read_comparable(files_[1]);
+        if (!b) return failure(std::move(b));
+        if (a->encoding != b->encoding)
+            return user_error(fmt::format(
+                "{}: one is encoded for a display and the other holds linear floats, they cannot be compared", both()));
+        Result<darkroom::Comparison> result = darkroom::compare(a->picture, b->picture, {.encoding = a->encoding});
+        if (!result)
+            return darkroom::failure({result.error().fault, fmt::format("{}: {}", both(), result.error().text)});
+        out_.layers.push_back(
+            {.name = layers[0].name,
+             .channels = {"red", "green", "blue"},
+             .errors = *result,
+             .alpha = result->alpha,
+             .flip = ComparedLayer::Flip{a->encoding == darkroom::PictureEncoding::SceneLinear, result->flip_mean,
+                                         result->flip_weighted_median, result->flip_max}});
+        if (color_ != nullptr) *color_ = ComparedColor{std::move(*a), std::move(*b), std::move(*result)};
+        return {};
+    }
+
+    Result<> add_numbers(const std::array<FileLayer, 2>& layers) {
+        Result<darkroom::LayerSamples> a = files_[0].read(layers[0]);
+        if (!a) return failure(std::move(a));
+        Result<darkroom::LayerSamples> b = files_[1].read(layers[1]);
+        if (!b) return failure(std::move(b));
+        if (a->width != b->width || a->height != b->height || a->channels != b->channels)
+            return user_error(fmt::format(
+                "{}: the layers {} differ in size: {}x{} with {} channels and {}x{} with {}; "
+                "they must be the same",
+                both(), shown(layers[0].name), a->width, a->height, a->channels, b->width, b->height, b->channels));
+        out_.layers.push_back(
+            {.name = layers[0].name,
+             .channels = files_[0].channel_names(layers[0]),
+             .errors = darkroom::measure(a->values, b->values,
+                                         {.width = a->width, .stride = a->channels, .count = a->channels})});
+        return {};
+    }
+
+    void judge() {
+        const auto say = [&](const ComparedLayer& layer, std::string text) {
+            const bool is_plain = out_.layers.size() == 1;
+            out_.failures.push_back(is_plain ? std::move(text) : fmt::format("{}: {}", shown(layer.name), text));
+        };
+        const Thresholds& most = request_.thresholds;
+        for (const ComparedLayer& layer : out_.layers) {
+            if (const std::uint64_t count = layer.non_finite_differences(); count > 0)
+                say(layer, fmt::format("NaN or infinity differs in {} sample{}", count, count == 1 ? "" : "s"));
+            if (most.max && layer.max_error() > *most.max)
+                say(layer, fmt::format("max error {:.6g} is above {:g}", layer.max_error(), *most.max));
+            if (most.psnr && layer.errors.psnr < *most.psnr)
+                say(layer, fmt::format("PSNR {:.3f} dB is below {:g} dB", layer.errors.psnr, *most.psnr));
+            if (most.flip && layer.flip && layer.flip->mean > *most.flip)
+                say(layer, fmt::format("mean FLIP {:.6f} is above {:g}", layer.flip->mean, *most.flip));
+        }
+    }
+
+    [[nodiscard]] static std::string shown(const std::string& name) { return darkroom::one_printable_line(name); }
+
+    const CompareRequest& request_;
+    std::array<LayerFile, 2> files_;
+    ComparedFiles out_;
+    std::optional<ComparedColor>* color_ = nullptr;
+};
+
+}  // namespace
+
+std::uint64_t ComparedLayer::non_finite_differences() const {
+    return errors.non_finite_differences + (alpha ? alpha->non_finite_differences : 0);
+}
+
+darkroom::NonFinite ComparedLayer::reference_counts() const {
+    return sum(errors.reference, alpha ? std::optional(alpha->reference) : std::nullopt);
+}
+
+darkroom::NonFinite ComparedLayer::test_counts() const {
+    return sum(errors.test, alpha ? std::optional(alpha->test) : std::nullopt);
+}
+
+double ComparedLayer::max_error() const { return std::max(errors.max_error, alpha ? alpha->max_error : 0.0); }
+
+Result<ComparedFiles> compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
+                                    const CompareRequest& request, std::optional<ComparedColor>* color) {
+    Result<LayerFile> a = LayerFile::open(reference);
+    if (!a) return failure(std::move(a));
+    Result<LayerFile> b = LayerFile::open(test);
+    if (!b) return failure(std::move(b));
+    return FileComparison(request, std::move(*a), std::move(*b)).run(reference, test, color);
+}
+
+}  // namespace app

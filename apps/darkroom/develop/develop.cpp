@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "apps/darkroom/commands.hpp"
+#include "apps/darkroom/flags/device_flags.hpp"
+#include "apps/darkroom/flags/frame_flags.hpp"
+#include "apps/darkroom/flags/look_flags.hpp"
+#include "apps/darkroom/flags/number_flag.hpp"
+#include "apps/darkroom/flags/run_flags.hpp"
+#include "apps/darkroom/run/frames.hpp"
+#include "apps/darkroom/run/outputs.hpp"
+#include "apps/darkroom/run/report.hpp"
+#include "apps/darkroom/run/sequence_run.hpp"
+#include "apps/darkroom/run/ui_source.hpp"
+#include "core/text/param_text.hpp"
+#include "develop/developer.hpp"
+#include "image/frame/sequence.hpp"
+#include "image/picture/resize.hpp"
+
+namespace app {
+
+namespace {
+
+using darkroom::Result;
+using darkroom::user_error;
+
+/// Of frames that say nothing else: as DevelopInput has it.
+constexpr double usual_frames_per_second = 60;
+/// Of a stream of pictures, where nothing says how fast they go.
+constexpr double stream_frames_per_second = 24;
+
+struct Options {
+    LookFlags look;
+    DeviceFlags device;
+    WriteFlags write;
+    RunFlags run;
+    FrameFlags frame;
+    std::vector<std::string> inputs;
+    std::string out, size;
+    std::optional<std::string> frames;
+    NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
+    NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
+    bool is_reference = false, keeps_layers = false;
+};
+
+/// One frame to go through the stack. What is read for the sake of effects with history alone makes no picture.
+struct Step {
+    std::size_t place = 0;  ///< among all inputs
+    std::filesystem::path input, output;
+    long long number = 0;
+    bool is_written = false;
+};
+
+/// Everything that can be known before a frame is read.
+struct Job {
+    std::vector<Step> steps;
+    std::size_t jobs = 0;
+    darkroom::Look look;
+    Timeline timeline;
+    darkroom::FrameOptions frame;
+    darkroom::WriteOptions write;
+    darkroom::DevelopDesc develop;
+    std::optional<VkExtent2D> size;
+    std::optional<double> time, frames_per_second;
+    std::optional<StreamDesc> stream;
+};
+
+darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
+    return user_error(
+        fmt::format("--keep-layers: {} has no place for them, .exr has", darkroom::printable(output.string())));
+}
+
+/// The frames that are asked for and are not there yet, each with those before it that histories need.
+Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
+    const Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
+    if (!inputs) return failure(inputs.error());
+    FrameRange range{.first = 0, .last = ~std::uint64_t{0}};
+    if (options.frames) {
+        const Result<FrameRange> parsed = parse_frames(*options.frames);
+        if (!parsed) return failure(parsed.error());
+        range = *parsed;
+    }
+    const auto is_in_range = [&](long long number) { return !options.frames || range.contains(number); };
+    using Paths = std::vector<std::filesystem::path>;
+    const Result<Paths> outputs = job.stream ? Result<Paths>(Paths(inputs->size(), stream_name))
+                                             : output_paths(*inputs, options.out, ui_files(job.look), is_in_range);
+    if (!outputs) return failure(outputs.error());
+    if (job.stream) job.develop.target = target_for(job.stream->format);
+    if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
+    for (const std::filesystem::path& output : job.stream ? Paths() : *outputs) {
+        const Result<darkroom::SampleKind> samples = darkroom::sample_kind(output, job.write);
+        if (!samples) return failure(samples.error());
+        if (options.keeps_layers && *darkroom::file_kind(output) != darkroom::FileKind::OpenExr)
+            return no_place_for_layers(output);
+        job.develop.target = target_for(*samples);
+    }
+    const std::vector<long long> numbers = numbers_of(*inputs);
+    bool is_any_asked_for = false;
+    std::size_t next_written = inputs->size();
+    for (std::size_t i = inputs->size(); i-- > 0;) {
+        const bool is_asked_for = is_in_range(numbers[i]);
+        is_any_asked_for |= is_asked_for;
+        const bool is_written = is_asked_for && !options.run.is_skipped((*outputs)[i]);
+        if (is_written) next_written = i;
+        if (next_written < inputs->size() && next_written - i <= pre_roll)
+            job.steps.push_back({i, (*inputs)[i], (*outputs)[i], numbers[i], is_written});
+    }
+    std::ranges::reverse(job.steps);
+    if (!is_any_asked_for)
+        return user_error(fmt::format("--frames {}: none of the {} inputs has such a number",
+                                      darkroom::printable(*options.frames), inputs->size()));
+    return {};
+}
+
+Result<Job> job_of(const Options& options) {
+    Job job;
+    if (options.is_reference && options.run.has_timings)
+        return user_error("--timings: the references do not run on the device");
+    if (options.time.is_given() && options.frames_per_second.is_given())
+        return user_error("--time: --fps says the time of every frame, leave out one of them");
+    if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
+    if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
+        return failure(std::move(done));
+    Result<darkroom::FrameOptions> frame = options.frame.options();
+    if (!frame) return failure(std::move(frame));
+    job.frame = std::move(*frame);
+    Result<darkroom::WriteOptions> write = options.write.options();
+    if (!write) return failure(std::move(write));
+    job.write = std::move(*write);
+    Result<std::optional<StreamDesc>> stream =
+        options.write.stream(options.out, job.frames_per_second.value_or(stream_frames_per_second));
+    if (!stream) return failure(std::move(stream));
+    job.stream = *stream;
+    if (job.stream)
+        if (Result<> done = options.run.check_stream(); !done) return failure(std::move(done));
+    const Result<std::size_t> jobs = options.run.jobs();
+    if (!jobs) return failure(jobs.error());
+    job.jobs = *jobs;
+    if (!options.size.empty()) {
+        const Result<VkExtent2D> size = parse_size(options.size);
+        if (!size) return failure(size.error());
+        job.size = *size;
+    }
+    const Result<darkroom::KernelStage> stage = options.device.stage();
+    if (!stage) return failure(stage.error());
+    job.develop.kernels = *stage;
+    job.develop.fuse = options.device.is_fused();
+    job.develop.frames_in_flight = 2;
+    Result<darkroom::Look> look = options.look.look();
+    if (!look) return failure(std::move(look));
+    job.look = std::move(*look);
+    if (!options.look.events.empty()) {
+        Result<Timeline> timeline = Timeline::read(options.look.events, job.look);
+        if (!timeline) return failure(std::move(timeline));
+        job.timeline = std::move(*timeline);
+    }
+    const double delta_time = 1 / job.frames_per_second.value_or(usual_frames_per_second);
+    const Result<std::uint32_t> pre_roll = add_needs(job.look, delta_time, job.timeline, job.frame);
+    if (!pre_roll) return failure(pre_roll.error());
+    job.frame.keeps_halves = !options.is_reference;
+    if (Result<> done = add_steps(options, *pre_roll, job); !done) return failure(std::move(done));
+    // One file is decoded by all threads, several by one each.
+    if (job.steps.size() > 1) job.frame.max_threads = job.write.max_threads = 1;
+    return job;
+}
+
+class Develop {
+  public:
+    Develop(const Options& options, Job job) : options_(options), job_(std::move(job)), items_(job_.steps.size()) {
+        if (job_.stream) stream_.emplace(*job_.stream);
+    }
+
+    Result<> run() {
+        const auto pictures = std::ranges::count(job_.steps, true, &Step::is_written);
+        const Result<> done = run_sequence({.steps = job_.steps.size(),
+                                            .pictures = static_cast<std::size_t>(pictures),
+                                            .jobs = job_.jobs,
+                                            .in_flight = options_.is_reference ? 1U : job_.develop.frames_in_flight,
+                                            .keeps_going = options_.run.keeps_going,
+                                            .has_timings = options_.run.has_timings},
+                                           {.decode = [this](std::size_t i) { return decode(i); },
+                                            .begin = [this](std::size_t i) { return begin(i); },
+                                            .finish = [this](std::size_t i) { return finish_step(i); },
+                                            .encode = [this](std::size_t i) { return encode(i); },
+                                            .deliver = [this](std::size_t i) { return deliver(i); },
+                                            .line = [this](std::size_t i) { return line(i); },
+                                            .release = [this](std::size_t i) { items_[i] = {}; }});
+        if (options_.run.has_timings && done) pass_times_.print();
+        return done;
+    }
+
+    [[nodiscard]] int exit_code(int code) const { return device_ ? app::finish(*device_, code) : code; }
+
+  private:
+    /// What a step has while it is under way.
+    struct Item {
+        darkroom::FrameFile frame;
+        std::vector<darkroom::ReferenceLight> lights;
+        std::shared_ptr<const std::vector<std::uint8_t>> ui;
+        darkroom::DevelopInput input;
+        darkroom::DevelopedPicture picture;
+        std::vector<std::byte> packed;  ///< of a stream: what goes out
+        VkExtent2D extent{};
+    };
+
+    // The device is made when the first frame has been read: an unreadable one is refused at once.
+    Result<> make_composer() {
+        const std::lock_guard lock(making_);
+        if (composer_) return {};
+        Result<darkroom::Device> device =
+            options_.is_reference ? options_.device.create_if_named() : options_.device.create();
+        if (!device) return failure(std::move(device));
+        auto made = std::make_unique<darkroom::Device>(std::move(*device));
+        auto composer = std::make_unique<darkroom::Composer>(
+            *made, darkroom::ComposerDesc{.frames_in_flight = job_.develop.frames_in_flight,
+                                          .has_timers = options_.run.has_timings});
+        if (Result<> done = darkroom::apply(job_.look, *composer, {.keeps = job_.timeline.entries()}); !done)
+            return done;
+        developer_ = std::make_unique<darkroom::Developer>(*made, job_.develop);
+        device_ = std::move(made);
+        composer_ = std::move(composer);
+        return {};
+    }
+
+    [[nodiscard]] std::string shown(std::size_t i) const { return darkroom::printable(job_.steps[i].input.string()); }
+
+    Result<> decode(std::size_t i) {
+        const Step& step = job_.steps[i];
+        Result<darkroom::FrameFile> frame = darkroom::read_frame(step.input, job_.frame);
+        if (!frame) return failure(std::move(frame));
+        if (Result<> done = make_composer(); !done) return done;
+        const VkExtent2D extent = job_.size.value_or(VkExtent2D{frame->color.width, frame->color.height});
+        if (Result<> done = darkroom::check_extent(*device_, extent); !done)
+            return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown(i), done.error().text)});
+        Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), extent.width, extent.height);
+        if (!sized) return failure(std::move(sized));
+        Item& item = items_[i];
+        item.frame = std::move(*sized);
+        item.lights = take_lights(item.frame);
+        item.input = develop_input(item.frame, item.lights);
+        set_time(step, item);
+        return {};
+    }
+
+    /// What the flags say goes before what the frame says, and that before what its name says.
+    void set_time(const Step& step, Item& item) const {
+        const auto number = static_cast<std::uint64_t>(std::max(0LL, step.number));
+        if (!item.frame.frame_index) item.input.frame_index = number;
+        if (job_.time) item.input.time = *job_.time;
+        if (!job_.frames_per_second) return;
+        item.input.time = static_cast<double>(number) / *job_.frames_per_second;
+        item.input.delta_time = 1 / *job_.frames_per_second;
+    }
+
+    Result<> begin(std::size_t i) {
+        Item& item = items_[i];
+        for (const std::string& warning : item.frame.warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        item.input.camera.is_cut = job_.steps[i].place != next_place_;
+        next_place_ = job_.steps[i].place + 1;
+        if (Result<> done = job_.timeline.advance(*composer_, item.input.time); !done) return done;
+        if (Result<> done = ui_.advance(*composer_, item.input.time); !done) return done;
+        const auto ui = ui_.picture(item.input.extent);
+        if (!ui) return failure(ui.error());
+        item.ui = *ui;
+        item.input.ui = *item.ui;
+        if (options_.is_reference) {
+            std::vector<std::string> left_out;
+            Result<darkroom::DevelopedPicture> picture =
+                develop_by_reference(*composer_, item.input, job_.develop.target, histories_, left_out);
+            if (!picture) return failure(std::move(picture));
+            item.picture = std::move(*picture);
+            tell_of_what_is_left_out(i, left_out);
+            return {};
+        }
+        if (Result<> done = developer_->submit(*composer_, item.input); !done) return done;
+        tell_of_what_is_left_out(i, developer_->plan().left_out);
+        return {};
+    }
+
+    /// Where it is not what was left out of the frame before.
+    void tell_of_what_is_left_out(std::size_t i, const std::vector<std::string>& left_out) {
+        if (last_left_out_ && *last_left_out_ == left_out) return;
+        const std::string frame = job_.steps.size() > 1 ? shown(i) + ": " : "";
+        const std::size_t told = warn_of_what_is_left_out(job_.look, *composer_, left_out, frame);
+        if (told == 0 && last_left_out_) warn(fmt::format("{}nothing is left out any more", frame));
+        last_left_out_ = left_out;
+    }
+
+    Result<> finish_step(std::size_t i) {
+        Item& item = items_[i];
+        if (!options_.is_reference) {
+            Result<darkroom::DevelopedPicture> picture = developer_->finish();
+            if (!picture) return failure(std::move(picture));
+            item.picture = std::move(*picture);
+            if (options_.run.has_timings) pass_times_.add(composer_->times().passes);
+        }
+        item.extent = item.picture.extent;
+        item.lights = {};
+        item.frame = {.attributes = std::move(item.frame.attributes)};
+        return {};
+    }
+
+    Result<> encode(std::size_t i) {
+        if (!job_.steps[i].is_written) return {};
+        if (stream_) {
+            items_[i].packed = stream_->pack(std::exchange(items_[i].picture, {}));
+            return {};
+        }
+        darkroom::WriteOptions options = job_.write;
+        options.attributes = items_[i].frame.attributes;
+        if (options_.keeps_layers)
+            if (Result<> done = keep_layers(i, options); !done) return done;
+        return write(job_.steps[i].output, std::move(items_[i].picture), options);
+    }
+
+    /// Read again, so that only those that are being encoded are in memory.
+    Result<> keep_layers(std::size_t i, darkroom::WriteOptions& options) const {
+        Result<darkroom::KeptLayers> layers =
+            darkroom::read_kept_layers(job_.steps[i].input, job_.frame.names, job_.frame.max_threads);
+        if (!layers) return failure(std::move(layers));
+        for (const std::string& warning : layers->warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        options.layers = std::make_shared<const darkroom::KeptLayers>(std::move(*layers));
+        return {};
+    }
+
+    Result<> deliver(std::size_t i) {
+        if (!stream_ || !job_.steps[i].is_written) return {};
+        return stream_->write(items_[i].packed, items_[i].extent, shown(i));
+    }
+
+    [[nodiscard]] std::string line(std::size_t i) const {
+        const Step& step = job_.steps[i];
+        if (!step.is_written) return {};
+        return fmt::format("{} -> {} ({}x{})", shown(i), darkroom::printable(step.output.string()),
+                           items_[i].extent.width, items_[i].extent.height);
+    }
+
+    const Options& options_;
+    Job job_;
+    std::vector<Item> items_;
+    std::optional<PictureStream> stream_;
+    std::mutex making_;
+    std::unique_ptr<darkroom::Device> device_;
+    std::unique_ptr<darkroom::Composer> composer_;
+    UiSource ui_{job_.look, job_.timeline};  ///< moves the composer, so it goes first
+    std::unique_ptr<darkroom::Developer> developer_;
+    std::optional<std::vector<std::string>> last_left_out_;
+    std::size_t next_place_ = 0;
+    darkroom::ReferenceHistories histories_;
+    PassTimes pass_times_;
+};
+
+int run(const Options& options) {
+    Result<Job> job = job_of(options);
+    if (!job) return fail(job.error());
+    Develop develop(options, std::move(*job));
+    const Result<> done = develop.run();
+    return develop.exit_code(done ? exit_ok : fail(done.error()));
+}
+
+}  // namespace
+
+Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> named) {
+    CLI::App* const command = program.add_subcommand("develop", "Develops HDR frames into finished pictures");
+    const auto options = std::make_shared<Options>();
+    command->footer(
+        "darkroom develop frame.exr --look my.toml --exposure 2 -o picture.png\n"
+        "darkroom develop 'shot.####.exr' --frames 1-2 -o 'out.####.png'\n"
+        "darkroom develop frame.exr --ssao --no-bloom --tonemap-curve agx -o picture.exr");
+    command
+        ->add_option("INPUT", options->inputs,
+                     "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.%04d.exr or shot.####.exr stands for all that match")
+        ->required();
+    command
+        ->add_option("-o,--output,--out", options->out,
+                     "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d, #### or "
+                     "{name}; - is standard output, with --format")
+        ->type_name("OUT")
+        ->required();
+    command->add_option("--size", options->size, "Develops at this size; the frame is resampled first")
+        ->type_name("WxH");
+    command->add_flag("--keep-layers", options->keeps_layers,
+                      "Puts the frame's other layers, as they are, beside the picture in an .exr file");
+    command->add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
+    command->add_option("--frames", options->frames, "Of the inputs those with these numbers")->type_name("A-B");
+    options->time.add_to(*command, "For effects that move; default: what the frame says, or 0")->type_name("S");
+    options->frames_per_second
+        .add_to(*command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")
+        ->type_name("N");
+    options->frame.add_to(*command);
+    options->write.add_to(*command);
+    options->run.add_to(*command);
+    options->device.add_to(*command);
+    options->look.add_to(*command, true, named);
+    return {command, [options] { return run(*options); },
+            [options]() -> Result<> {
+                const Result<Job> job = job_of(*options);
+                if (!job) return failure(job.error());
+                return {};
+            }};
+}
+
+}  // namespace app

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "farm_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "apps/darkroom/flags/run_flags.hpp"
+#include "apps/darkroom/run/report.hpp"
+#include "core/files.hpp"
+#include "core/text/param_text.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+using darkroom::printable;
+using darkroom::Result;
+
+namespace {
+
+constexpr std::int64_t format = 1;
+constexpr const char* job_file = "job.json";
+// A hundred thousand frames with gaps, asked for and done, take 8 MB.
+constexpr std::size_t most_bytes = std::size_t{16} << 20;
+constexpr std::size_t most_files = 100'000;
+constexpr std::array<const char*, 3> state_names{"begun", "done", "failed"};
+
+using Ranges = std::vector<std::array<long long, 2>>;
+
+Ranges ranges_of(const FrameNumbers& numbers) {
+    Ranges out;
+    for (const long long number : numbers)
+        if (!out.empty() && out.back()[1] + 1 == number)
+            out.back()[1] = number;
+        else
+            out.push_back({number, number});
+    return out;
+}
+
+/// What is wrong with a file, thrown and caught in this one, as the parser's own errors are.
+struct Wrong {
+    std::string text;
+};
+
+const Json& member(const Json& json, const char* key, Json::value_t kind) {
+    const auto found = json.find(key);
+    if (found == json.end()) throw Wrong{fmt::format("{} is missing", key)};
+    const bool is_number = kind == Json::value_t::number_float && found->is_number();
+    const bool is_whole = kind == Json::value_t::number_integer && found->is_number_integer();
+    if (!is_number && !is_whole && found->type() != kind) throw Wrong{fmt::format("{} is of another kind", key)};
+    return *found;
+}
+
+std::string text_of(const Json& json, const char* key) {
+    return member(json, key, Json::value_t::string).get<std::string>();
+}
+
+std::vector<std::string> texts_of(const Json& json, const char* key) {
+    std::vector<std::string> out;
+    for (const Json& text : member(json, key, Json::value_t::array)) {
+        if (!text.is_string()) throw Wrong{fmt::format("{} are no texts", key)};
+        out.push_back(text.get<std::string>());
+    }
+    return out;
+}
+
+FrameNumbers numbers_of(const Json& json, const char* key) {
+    FrameNumbers out;
+    for (const Json& range : member(json, key, Json::value_t::array)) {
+        if (!range.is_array() || range.size() != 2 || !range[0].is_number_integer() || !range[1].is_number_integer())
+            throw Wrong{fmt::format("{} are no pairs of frames", key)};
+        const auto first = range[0].get<std::int64_t>(), last = range[1].get<std::int64_t>();
+        const bool is_behind = out.empty() || first > *out.rbegin();
+        if (first < 0 || last < first || !is_behind ||
+            static_cast<std::size_t>(last - first) >= most_frames - out.size())
+            throw Wrong{fmt::format("{}: allowed are [first, last] in order, {} frames at most", key, most_frames)};
+        for (std::int64_t number = first; number <= last; ++number) out.insert(out.end(), number);
+    }
+    return out;
+}
+
+ChunkRecord record_of(const Json& json) {
+    ChunkRecord out{.name = text_of(json, "chunk"),
+                    .frames = numbers_of(json, "frames"),
+                    .done = numbers_of(json, "done"),
+                    .tries = member(json, "tries", Json::value_t::number_integer).get<std::int64_t>(),
+                    .made = member(json, "made", Json::value_t::number_integer).get<std::int64_t>(),
+                    .seconds = member(json, "seconds", Json::value_t::number_float).get<double>(),
+                    .node = text_of(json, "node"),
+                    .job = text_of(json, "job"),
+                    .begun = text_of(json, "begun"),
+                    .errors = texts_of(json, "errors")};
+    const auto state = std::ranges::find(state_names, text_of(json, "state"));
+    if (state == state_names.end()) throw Wrong{"state: allowed is begun, done or failed"};
+    out.state = static_cast<ChunkState>(state - state_names.begin());
+    return out;
+}
+
+FarmJob job_of(const Json& json) {
+    return {.arguments = texts_of(json, "arguments"),
+            .id = text_of(json, "job"),
+            .frames = numbers_of(json, "frames"),
+            .done = numbers_of(json, "done")};
+}
+
+template <typename Read>
+auto read(const fs::path& path, Read read_from) -> Result<decltype(read_from(Json()))> {
+    const auto bytes = darkroom::read_file(path, {.max_size = most_bytes});
+    if (!bytes) return failure(bytes.error());
+    std::string problem = "is not JSON";
+    const Json json = Json::parse(bytes->begin(), bytes->end(), nullptr, false);
+    if (!json.is_discarded()) try {
+            const auto found = json.find("format");
+            if (found == json.end() || *found != format) throw Wrong{fmt::format("allowed is format = {}", format)};
+            return read_from(json);
+        } catch (const Wrong& wrong) {
+            problem = wrong.text;
+        }
+    return darkroom::user_error(fmt::format("{}: {}", printable(path.string()), problem));
+}
+
+// Text that is no UTF-8, as names of files may be, is written with a sign in its place.
+Result<> write(const fs::path& path, const Json& json) {
+    const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return darkroom::write_file(path, std::as_bytes(std::span(text)));
+}
+
+Result<std::vector<fs::path>> record_files(const fs::path& folder) {
+    std::vector<fs::path> out;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (entry->path().extension() == ".json" && entry->path().filename() != job_file) {
+            out.push_back(entry->path());
+            if (out.size() > most_files)
+                return darkroom::user_error(
+                    fmt::format("{}: allowed are {} records", printable(folder.string()), most_files));
+        }
+    if (error)
+        return darkroom::user_error(
+            fmt::format("{}: cannot be listed: {}", printable(folder.string()), error.message()));
+    std::ranges::sort(out);
+    return out;
+}
+
+}  // namespace
+
+std::string shown(const FrameNumbers& numbers) {
+    std::string out;
+    for (const auto& [first, last] : ranges_of(numbers))
+        out += fmt::format("{}{}", out.empty() ? "" : ", ",
+                           first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last));
+    return out.empty() ? "none" : out;
+}
+
+Json json_of(const FrameNumbers& numbers) { return ranges_of(numbers); }
+
+FrameNumbers without(const FrameNumbers& numbers, const FrameNumbers& others) {
+    FrameNumbers out;
+    std::ranges::set_difference(numbers, others, std::inserter(out, out.end()));
+    return out;
+}
+
+Json json_of(const ChunkRecord& record) {
+    return {{"format", format},
+            {"chunk", record.name},
+            {"state", state_names[static_cast<std::size_t>(record.state)]},
+            {"frames", json_of(record.frames)},
+            {"done", json_of(record.done)},
+            {"made", record.made},
+            {"tries", record.tries},
+            {"seconds", record.seconds},
+            {"begun", record.begun},
+            {"node", record.node},
+            {"job", record.job},
+            {"errors", record.errors}};
+}
+
+Result<> write_job(const fs::path& folder, const FarmJob& job) {
+    return write(folder / job_file, {{"format", format},
+                                     {"job", job.id},
+                                     {"frames", json_of(job.frames)},
+                                     {"done", json_of(job.done)},
+                                     {"arguments", job.arguments}});
+}
+
+Result<> write_record(const fs::path& folder, const ChunkRecord& record) {
+    return write(folder / (record.name + ".json"), json_of(record));
+}
+
+Result<std::optional<FarmJob>> read_job(const fs::path& folder) {
+    std::error_code error;
+    const bool is_there = fs::exists(folder / job_file, error);
+    if (error)
+        return darkroom::machine_error(
+            fmt::format("{}: cannot be opened: {}", printable((folder / job_file).string()), error.message()));
+    if (!is_there) return std::optional<FarmJob>();
+    Result<FarmJob> job = read(folder / job_file, job_of);
+    if (!job) return failure(std::move(job));
+    return std::optional<FarmJob>(std::move(*job));
+}
+
+Result<std::vector<ChunkRecord>> read_records(const fs::path& folder) {
+    const Result<std::vector<fs::path>> files = record_files(folder);
+    if (!files) return failure(files.error());
+    std::vector<ChunkRecord> out;
+    for (const fs::path& file : *files) {
+        Result<ChunkRecord> record = read(file, record_of);
+        if (record)
+            out.push_back(std::move(*record));
+        else
+            warn(record.error().text);
+    }
+    return out;
+}
+
+}  // namespace app

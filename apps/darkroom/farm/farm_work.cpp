@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "farm_work.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/darkroom/commands.hpp"
+#include "apps/darkroom/effects/named_effects.hpp"
+#include "apps/darkroom/run/outputs.hpp"
+#include "core/text/param_text.hpp"
+#include "image/frame/sequence.hpp"
+#include "scene/assets.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+
+namespace {
+
+/// "out/shot.0001.png" -> "out/shot.farm". Told by two frames: other digits of a name are no number of a frame.
+fs::path farm_folder(const fs::path& first, const fs::path& other) {
+    std::string name = first.stem().string();
+    const std::string beside = other.stem().string();
+    name.erase(std::ranges::mismatch(name, beside).in1, name.end());
+    name.resize(name.find_last_not_of("0123456789") + 1);
+    name.resize(name.find_last_not_of("._- ") + 1);
+    return first.parent_path() / ((name.empty() ? "frames" : name) + farm_suffix);
+}
+
+std::vector<std::string> names_of(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* const option : command.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
+}
+
+}  // namespace
+
+void FarmFlags::add_to(CLI::App& command, const std::string& frames_doc) {
+    command.add_option("INPUT", input_, "A sequence (shot.%04d.exr or shot.####.exr), or a scene or a model")
+        ->required();
+    command.add_option("MORE", more_, "Behind --: flags of develop for a sequence, of render for a scene");
+    command
+        .add_option("-o,--output,--out", out_,
+                    "The pictures: a folder for those of a sequence, or a name with %04d, #### or {name}")
+        ->type_name("OUT")
+        ->required();
+    command.add_option("--look", look_, "As for develop and render")->type_name("FILE");
+    command.add_option("--frames", frames_, frames_doc)->type_name("A-B");
+    command.add_flag("--allow-custom-effects", allows_custom_effects_,
+                     "Lets the look name files of effects, which are code, and --effect bring some");
+}
+
+bool FarmFlags::is_scene() const {
+    return fs::path(input_).extension() == ".toml" || darkroom::scene::is_model_path(input_);
+}
+
+std::vector<std::string> FarmFlags::command(const std::string& frames) const {
+    std::vector<std::string> out{is_scene() ? "render" : "develop", input_, "-o", out_, "--frames", frames};
+    if (!look_.empty()) out.insert(out.end(), {"--look", look_});
+    if (!allows_custom_effects_) out.emplace_back(no_custom_effects);
+    out.insert(out.end(), {"--skip-existing", "--keep-going"});
+    out.insert(out.end(), more_.begin(), more_.end());
+    return out;
+}
+
+std::vector<std::string> FarmFlags::task() const {
+    std::vector<std::string> out{input_, "-o", out_};
+    if (!look_.empty()) out.insert(out.end(), {"--look", look_});
+    if (allows_custom_effects_) out.emplace_back("--allow-custom-effects");
+    if (!more_.empty()) out.emplace_back("--");
+    out.insert(out.end(), more_.begin(), more_.end());
+    return out;
+}
+
+Result<> FarmFlags::check_arguments() const {
+    if (!more_.empty() && !more_.front().starts_with('-'))
+        return user_error(fmt::format("unexpected '{}': allowed is one INPUT, and flags of {} behind --",
+                                      printable(more_.front()), is_scene() ? "render" : "develop"));
+    if (out_ == stream_name) return user_error("-o -: a farm writes files");
+    // Its end is where `develop` reads which frames are meant.
+    if (input_.ends_with(']')) return user_error(fmt::format("{}: --frames says which", printable(input_)));
+    if (!is_scene() && !darkroom::has_number_pattern(input_))
+        return user_error(
+            fmt::format("{}: expected a sequence, shot.%04d.exr or shot.####.exr, or a scene (.toml) "
+                        "or a model (.glb, .gltf)",
+                        printable(input_)));
+    if (is_scene() && frames_.empty()) return user_error(fmt::format("{}: --frames A-B is needed", printable(input_)));
+    const bool is_pattern = darkroom::has_number_pattern(out_);
+    if (is_scene() ? !is_pattern : !is_output_folder(out_) && !is_pattern && out_.find("{name}") == std::string::npos)
+        return user_error(fmt::format("-o {}: expected {}a name with %04d or ####", printable(out_),
+                                      is_scene() ? "" : "a folder, or "));
+    return {};
+}
+
+Result<std::vector<FarmFrame>> FarmFlags::frames_in(const FrameRange& range) const {
+    std::vector<FarmFrame> out;
+    if (is_scene()) {
+        for (std::uint64_t number = range.first; number <= range.last; ++number) {
+            const auto i = static_cast<long long>(number);
+            out.push_back({i, darkroom::numbered(out_, i)});
+        }
+        return out;
+    }
+    const Result<std::vector<fs::path>> inputs = darkroom::expand_inputs(std::span(&input_, 1));
+    if (!inputs) return failure(inputs.error());
+    const std::vector<long long> numbers = numbers_of(*inputs);
+    const bool is_folder = is_output_folder(out_);
+    for (std::size_t i = 0; i < inputs->size(); ++i)
+        if (range.contains(numbers[i]))
+            out.push_back({numbers[i], output_path((*inputs)[i], numbers[i], out_, is_folder)});
+    if (out.empty())
+        return user_error(
+            fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_), inputs->size()));
+    std::ranges::sort(out, {}, &FarmFrame::number);
+    return out;
+}
+
+Result<FarmWork> FarmFlags::work() const {
+    if (Result<> done = check_arguments(); !done) return failure(std::move(done));
+    const Result<FrameRange> range =
+        frames_.empty() ? Result<FrameRange>({.first = 0, .last = ~std::uint64_t{0}}) : parse_frames(frames_);
+    if (!range) return failure(range.error());
+    Result<std::vector<FarmFrame>> frames = frames_in(*range);
+    if (!frames) return failure(std::move(frames));
+    if (frames->size() > most_frames)
+        return user_error(fmt::format("{}: {} frames, a farm takes {} at once; --frames says which", printable(input_),
+                                      frames->size(), most_frames));
+    const fs::path picture = frames->front().picture, folder = picture.parent_path();
+    std::error_code error;
+    if (!folder.empty() && !fs::is_directory(folder, error))
+        return user_error(
+            fmt::format("{}: no such folder, the pictures cannot be written", printable(folder.string())));
+    const auto made = [&](std::int64_t number) {
+        return output_path(darkroom::numbered(input_, number), number, out_, is_output_folder(out_));
+    };
+    return FarmWork{.frames = std::move(*frames), .folder = farm_folder(made(0), made(9))};
+}
+
+// The command itself reads the arguments: what it would refuse is refused here, once, instead of by every task.
+// For two frames, because what is right for one may be wrong for several; of more, all names would be tried.
+Result<> FarmFlags::check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const {
+    CLI::App program;
+    const Command command = is_scene() ? add_render(program, named) : add_develop(program, named);
+    const long long first = work.frames.front().number, last = std::min(first + 1, work.frames.back().number);
+    std::vector<std::string> arguments = this->command(fmt::format("{}-{}", first, last));
+    std::ranges::reverse(arguments);  // as CLI11 takes them
+    try {
+        program.parse(arguments);
+    } catch (const CLI::ExtrasError&) {
+        const CLI::App& checked = *command.app;
+        const std::string argument = checked.remaining().empty() ? std::string() : checked.remaining().front();
+        return user_error(fmt::format("{}: unknown argument '{}'{}", checked.get_name(), printable(argument),
+                                      darkroom::suggestion(argument.substr(0, argument.find('=')), names_of(checked))));
+    } catch (const CLI::ParseError& problem) {
+        return user_error(fmt::format("{}: {}", command.app->get_name(), printable(problem.what())));
+    }
+    const CLI::Option* const input = command.app->get_option_no_throw("INPUT");
+    if (input != nullptr && input->count() > 1)
+        return user_error(fmt::format("unexpected '{}': allowed behind -- are flags of {}",
+                                      printable(input->results().back()), command.app->get_name()));
+    if (!allows_custom_effects_)
+        for (const std::string& argument : more_)
+            if (argument == "--effect" || argument.starts_with("--effect="))
+                return user_error(
+                    fmt::format("{}: such a file is code, --allow-custom-effects lets it run", printable(argument)));
+    return command.check();
+}
+
+}  // namespace app

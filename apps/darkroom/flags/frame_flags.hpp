@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The flags that say what is in the file of a frame where the file does not: names of layers, the camera.
+
+#include <CLI/CLI.hpp>
+#include <darkroom/result.hpp>
+#include <string>
+#include <vector>
+
+#include "image/frame/frame_file.hpp"
+#include "number_flag.hpp"
+
+namespace app {
+
+/// --map, --fov, --camera.
+class FrameFlags {
+  public:
+    void add_to(CLI::App& command);
+    [[nodiscard]] darkroom::Result<darkroom::FrameOptions> options() const;
+
+  private:
+    std::vector<std::string> maps_;
+    std::string camera_;
+    NumberFlag fov_{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
+};
+
+}  // namespace app

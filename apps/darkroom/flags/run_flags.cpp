@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "run_flags.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <system_error>
+
+#include "apps/darkroom/run/outputs.hpp"
+#include "core/text/param_text.hpp"
+#include "device_flags.hpp"
+
+namespace app {
+
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+
+namespace {
+
+/// Those of VideoFormat, in its order.
+constexpr std::array<std::string_view, 3> format_names{"y4m", "rgb24", "rgba64le"};
+
+}  // namespace
+
+void WriteFlags::add_to(CLI::App& command) {
+    const std::string group = "The files";
+    command.add_option("--bits", bits_, "Samples of the file")->type_name("8|16|half|float")->group(group);
+    command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque")->group(group);
+    command
+        .add_option("--compression", compression_,
+                    "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab; TIFF: none, packbits, lzw or zip; "
+                    "PNG: [0, 12]")
+        ->type_name("NAME")
+        ->group(group);
+    command
+        .add_option(
+            "--format", format_,
+            "Of -o -, which sends the pictures to another program: 8 bits, BT.709 in limited range; 8 bits; 16 bits")
+        ->type_name(fmt::format("{}", fmt::join(format_names, "|")))
+        ->group(group);
+    quality_.add_to(command, "Of JPEG files")->type_name("N")->default_str("95")->group(group);
+}
+
+Result<darkroom::WriteOptions> WriteFlags::options() const {
+    darkroom::WriteOptions out{.alpha = has_alpha_, .compression = compression_};
+    if (bits_) {
+        const Result<darkroom::SampleKind> bits = parse_bits(*bits_);
+        if (!bits) return failure(bits.error());
+        out.samples = *bits;
+    }
+    if (Result<> done = quality_.read_to(out.quality); !done) return failure(std::move(done));
+    return out;
+}
+
+Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, double frames_per_second) const {
+    if (!format_) {
+        if (out != stream_name) return std::optional<StreamDesc>();
+        return user_error(fmt::format("-o -: --format {} is needed", fmt::join(format_names, "|")));
+    }
+    const auto name = std::ranges::find(format_names, *format_);
+    if (name == format_names.end())
+        return user_error(
+            fmt::format("--format {}: allowed is {}", printable(*format_), fmt::join(format_names, ", ")));
+    if (out != stream_name) return user_error(fmt::format("--format {}: is of -o -, not of files", *format_));
+    const StreamDesc desc{.format = static_cast<darkroom::VideoFormat>(name - format_names.begin()),
+                          .rate = darkroom::frame_rate(frames_per_second),
+                          .has_alpha = has_alpha_};
+    for (const auto& [is_given, flag] :
+         {std::pair(bits_.has_value(), "--bits"), std::pair(!compression_.empty(), "--compression"),
+          std::pair(quality_.is_given(), "--quality")})
+        if (is_given) return user_error(fmt::format("{}: is of files, and not of --format {}", flag, *format_));
+    if (has_alpha_ && desc.format != darkroom::VideoFormat::Rgba64le)
+        return user_error(fmt::format("--alpha: --format {} has none; rgba64le has", *format_));
+    if (isatty(STDOUT_FILENO) != 0) return user_error("-o -: standard output is a terminal, which shows no pictures");
+    return desc;
+}
+
+Result<FrameRange> parse_frames(const std::string& text) {
+    FrameRange range;
+    const char* const end = text.data() + text.size();
+    const auto [dash, first_error] = std::from_chars(text.data(), end, range.first);
+    std::errc error = first_error;
+    const char* last = dash;
+    range.last = range.first;
+    if (error == std::errc() && dash != end && *dash == '-') {
+        const auto parsed = std::from_chars(dash + 1, end, range.last);
+        last = parsed.ptr;
+        error = parsed.ec;
+    }
+    constexpr std::uint64_t most_number = 1'000'000'000;  // what fits a file name and a float file's attributes
+    if (error != std::errc() || last != end || range.first > most_number || range.last > most_number)
+        return user_error(
+            fmt::format("--frames {}: expected A or A-B, whole numbers in [0, {}]", printable(text), most_number));
+    if (range.last < range.first)
+        return user_error(fmt::format("--frames {}: the last frame is before the first", printable(text)));
+    if (range.last - range.first >= most_frames)
+        return user_error(fmt::format("--frames {}: at most {} frames at once", printable(text), most_frames));
+    return range;
+}
+
+void RunFlags::add_to(CLI::App& command) {
+    const std::string group = "The work";
+    jobs_.add_to(command, "Threads that decode and encode files; the pictures are the same whatever it is")
+        ->type_name("N")
+        ->default_str("processors")
+        ->group(group);
+    command.add_flag("--skip-existing", skips_existing_, "Pictures that are there already stay as they are")
+        ->group(group);
+    command
+        .add_flag("--keep-going", keeps_going, "A frame that fails does not stop the others; all are listed at the end")
+        ->group(group);
+    command
+        .add_flag(
+            "--timings", has_timings,
+            "Prints the GPU milliseconds of every pass, and of several frames what each stage took and waited for")
+        ->group(group);
+}
+
+Result<std::size_t> RunFlags::jobs() const {
+    std::size_t out = 0;
+    if (Result<> done = jobs_.read_to(out); !done) return failure(std::move(done));
+    return out;
+}
+
+Result<> RunFlags::check_stream() const {
+    for (const auto& [is_given, flag] :
+         {std::pair(skips_existing_, "--skip-existing"), std::pair(keeps_going, "--keep-going")})
+        if (is_given) return user_error(fmt::format("{}: a stream has no gaps, leave it out with -o -", flag));
+    return {};
+}
+
+bool RunFlags::is_skipped(const std::filesystem::path& output) const { return skips_existing_ && is_there(output); }
+
+}  // namespace app

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The flags of commands that make many pictures: what kind of files they are, and how the work is spread.
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "apps/darkroom/run/picture_stream.hpp"
+#include "image/picture/write.hpp"
+#include "number_flag.hpp"
+
+namespace app {
+
+/// --bits, --alpha, --compression, --quality, --format.
+class WriteFlags {
+  public:
+    void add_to(CLI::App& command);
+    [[nodiscard]] darkroom::Result<darkroom::WriteOptions> options() const;
+    /// What `out` asks for if it is standard output, else nothing. Errors: it and --format must go together, other
+    /// flags of files say nothing of a stream, and a terminal shows no pictures.
+    [[nodiscard]] darkroom::Result<std::optional<StreamDesc>> stream(const std::string& out,
+                                                                     double frames_per_second) const;
+
+  private:
+    std::optional<std::string> bits_, format_;
+    std::string compression_;
+    NumberFlag quality_{"--quality", {.least = 1, .most = 100, .is_whole = true}};
+    bool has_alpha_ = false;
+};
+
+struct FrameRange {
+    std::uint64_t first = 0, last = 0;
+    [[nodiscard]] bool contains(long long number) const {
+        return number >= 0 && static_cast<std::uint64_t>(number) >= first && static_cast<std::uint64_t>(number) <= last;
+    }
+};
+
+inline constexpr std::size_t most_frames = 100'000;  ///< that are asked for at once
+
+/// "A-B" or "A", as --frames takes it.
+[[nodiscard]] darkroom::Result<FrameRange> parse_frames(const std::string& text);
+
+/// --jobs, --skip-existing, --keep-going, --timings.
+class RunFlags {
+  public:
+    void add_to(CLI::App& command);
+    /// 0: as many as there are processors.
+    [[nodiscard]] darkroom::Result<std::size_t> jobs() const;
+    /// Is this file there and not empty, and should it stay?
+    [[nodiscard]] bool is_skipped(const std::filesystem::path& output) const;
+    /// Standard output has no pictures that are there already, and no place for one that is missing.
+    [[nodiscard]] darkroom::Result<> check_stream() const;
+
+    bool keeps_going = false, has_timings = false;
+
+  private:
+    NumberFlag jobs_{"--jobs", {.least = 1, .most = 256, .is_whole = true}};
+    bool skips_existing_ = false;
+};
+
+}  // namespace app

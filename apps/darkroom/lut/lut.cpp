@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+// darkroom lut: colour tables in files.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/darkroom/commands.hpp"
+#include "apps/darkroom/flags/look_flags.hpp"
+#include "apps/darkroom/run/report.hpp"
+#include "core/files.hpp"
+#include "core/text/param_text.hpp"
+#include "image/table/table_file.hpp"
+#include "lut_export.hpp"
+
+namespace app {
+
+namespace {
+
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+
+Result<> check_output(const std::string& path) {
+    if (std::filesystem::path(path).extension() == ".cube") return {};
+    return user_error(fmt::format("-o {}: tables are written as .cube", printable(path)));
+}
+
+Result<> write(const std::string& path, const darkroom::TableFile& file) {
+    const Result<std::string> text = write_cube(file);
+    if (!text)
+        return failure(darkroom::Error{text.error().fault, fmt::format("{}: {}", printable(path), text.error().text)});
+    return darkroom::write_file(path, std::as_bytes(std::span(*text)));
+}
+
+CLI::App* add(CLI::App& lut, const char* name, const char* help, std::string& out) {
+    CLI::App* const command = lut.add_subcommand(name, help);
+    command->add_option("-o,--output,--out", out, "The table: .cube")->type_name("OUT")->required();
+    return command;
+}
+
+Result<> convert(const std::string& from, const std::string& to) {
+    if (Result<> done = check_output(to); !done) return done;
+    Result<darkroom::FoundTable> found = darkroom::read_table_file(from);
+    if (!found) return failure(std::move(found));
+    darkroom::TableFile& file = found->file;
+    if (file.title.empty()) file.title = std::filesystem::path(from).stem().string();
+    if (found->error)
+        file.comments.push_back(
+            fmt::format("Sampled from {}; largest difference on random colours: {:.6g}", found->format, *found->error));
+    return write(to, file);
+}
+
+Command add_convert(CLI::App& lut) {
+    struct Options {
+        std::string from, to;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App* const command = add(lut, "convert", "Writes a table of any kind as .cube", options->to);
+    command->add_option("FILE", options->from, "A table: .cube .3dl .spi1d .spi3d .csp .clf, a strip or a HaldCLUT")
+        ->required();
+    return {command, [options] {
+                const Result<> done = convert(options->from, options->to);
+                return done ? exit_ok : fail(done.error());
+            }};
+}
+
+Result<> export_to(const std::string& to, const LookFlags& flags) {
+    if (Result<> done = check_output(to); !done) return done;
+    const Result<darkroom::Look> look = flags.look();
+    if (!look) return failure(look.error());
+    const Result<ExportedLook> exported = export_look(*look);
+    if (!exported) return failure(exported.error());
+    for (const std::string& line : exported->left_out) warn(fmt::format("left out: {}", line));
+    return write(to, exported->file);
+}
+
+Command add_export(CLI::App& lut, std::span<const darkroom::LookEntry> named) {
+    struct Options {
+        std::string to;
+        LookFlags look;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App* const command =
+        add(lut, "export", "Writes what a look does to colours as a table of 65 steps over 16.5 stops", options->to);
+    command->add_option("LOOK", options->look.file, "A look file (TOML), or a scene; default: the flat table");
+    options->look.add_to(*command, false, named);
+    return {command, [options] {
+                const Result<> done = export_to(options->to, options->look);
+                return done ? exit_ok : fail(done.error());
+            }};
+}
+
+}  // namespace
+
+std::vector<Command> add_lut(CLI::App& program, std::span<const darkroom::LookEntry> named) {
+    CLI::App* const lut = program.add_subcommand("lut", "Colour tables: tells of them, converts them, makes them");
+    lut->require_subcommand(1);
+    lut->footer(
+        "darkroom lut info film.cube\n"
+        "darkroom lut convert film.cube -o copy.cube\n"
+        "darkroom lut export my.toml -o my.cube");
+    const Command info = add_info(*lut), convert = add_convert(*lut), exported = add_export(*lut, named);
+    info.app->footer(
+        "darkroom lut info film.cube\n"
+        "darkroom lut info film.cube bright.cube\n"
+        "darkroom lut info film.cube --json");
+    convert.app->footer(
+        "darkroom lut convert film.cube -o copy.cube\n"
+        "darkroom lut convert strip.png -o film.cube\n"
+        "darkroom lut convert film.spi1d -o film.cube");
+    exported.app->footer(
+        "darkroom lut export my.toml -o my.cube\n"
+        "darkroom lut export --exposure 2 -o bright.cube\n"
+        "darkroom lut export my.toml --no-tonemap -o linear.cube");
+    return {info, convert, exported};
+}
+
+}  // namespace app

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "apps/darkroom/commands.hpp"
+#include "apps/darkroom/flags/device_flags.hpp"
+#include "apps/darkroom/flags/look_flags.hpp"
+#include "apps/darkroom/run/frames.hpp"
+#include "apps/darkroom/run/report.hpp"
+#include "develop/developer.hpp"
+#include "plan_statistics.hpp"
+
+namespace app {
+
+namespace {
+
+using darkroom::Result;
+
+struct Options {
+    LookFlags look;
+    DeviceFlags device;
+    std::string size, frame, bits = "8", chip;
+    std::vector<std::string> loops;
+    bool is_json = false, wants_statistics = false;
+};
+
+Result<std::string> statistics_of(const Options& options, const darkroom::Device& device,
+                                  const darkroom::Composer& composer, const darkroom::Plan& plan,
+                                  const darkroom::CompileDesc& compile) {
+    const Result<const darkroom::Chip*> chip = chip_named(options.chip, device.info());
+    if (!chip) return failure(chip.error());
+    std::vector<GivenLoops> loops;
+    for (const std::string& text : options.loops) {
+        Result<GivenLoops> parsed = parse_loops(text);
+        if (!parsed) return failure(std::move(parsed));
+        loops.push_back(std::move(*parsed));
+    }
+    const auto kernels = composer.statistics(compile);
+    if (!kernels) return failure(kernels.error());
+    const StatisticsReport report{
+        .device = device.info(), .plan = plan, .kernels = *kernels, .chip = *chip, .loops = loops};
+    return options.is_json ? json_of(report) : text_of(report);
+}
+
+Result<std::string> text_of(const Options& options) {
+    const Result<darkroom::Look> look = options.look.look();
+    if (!look) return failure(look.error());
+    const Result<darkroom::SampleKind> samples = parse_bits(options.bits);
+    if (!samples) return failure(samples.error());
+    const Result<darkroom::KernelStage> stage = options.device.stage();
+    if (!stage) return failure(stage.error());
+    darkroom::FrameFile frame;
+    darkroom::DevelopInput input{.extent = {1920, 1080}};
+    if (!options.frame.empty()) {
+        Result<darkroom::FrameFile> read = darkroom::read_frame(options.frame, {.has_shadow_depths = false});
+        if (!read) return failure(std::move(read));
+        frame = std::move(*read);
+        input = develop_input(frame, {});
+    }
+    if (!options.size.empty()) {
+        const Result<VkExtent2D> size = parse_size(options.size);
+        if (!size) return failure(size.error());
+        input.extent = *size;
+    }
+    Result<darkroom::Device> device =
+        options.wants_statistics ? options.device.create_compiler() : options.device.create_if_named();
+    if (!device) return failure(std::move(device));
+    if (Result<> done = darkroom::check_extent(*device, input.extent); !done) return failure(std::move(done));
+    darkroom::Composer composer(*device);
+    if (Result<> done = darkroom::apply(*look, composer); !done) return failure(std::move(done));
+    const darkroom::DevelopDesc desc{
+        .target = target_for(*samples), .kernels = *stage, .fuse = options.device.is_fused()};
+    darkroom::CompileDesc compile = darkroom::compile_desc_for(*device, input, desc);
+    if (options.frame.empty()) compile.color.format = VK_FORMAT_R16G16B16A16_SFLOAT;  // what engines hand over
+    if (look->ui) compile.ui = {VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT};
+    compile.has_shadows =
+        std::ranges::any_of(frame.lights, [](const darkroom::FrameLight& light) { return !light.cascades.empty(); });
+    const Result<darkroom::Plan> plan = composer.plan(compile);
+    if (!plan) return failure(plan.error());
+    if (options.wants_statistics) return statistics_of(options, *device, composer, *plan, compile);
+    return options.is_json ? plan->json() : plan->text();
+}
+
+int run(const Options& options) {
+    const Result<std::string> text = text_of(options);
+    if (!text) return fail(text.error());
+    fmt::print("{}{}", *text, text->ends_with('\n') ? "" : "\n");
+    return exit_ok;
+}
+
+}  // namespace
+
+Command add_plan(CLI::App& program, std::span<const darkroom::LookEntry> named) {
+    CLI::App* const command = program.add_subcommand(
+        "plan", "Shows what the planner makes of a look: kernels, what fused and why not, bytes, memory");
+    command->footer(
+        "darkroom plan my.toml\n"
+        "darkroom plan my.toml --input frame.exr --size 3840x2160\n"
+        "darkroom plan --bloom-intensity 0.2 --json");
+    const auto options = std::make_shared<Options>();
+    command->add_option("LOOK", options->look.file, "A look file (TOML). Default: the flat table at its defaults");
+    command->add_flag("--json", options->is_json, "For programs");
+    command->add_option("--size", options->size, "Size of the picture, default 1920x1080 or that of --input")
+        ->type_name("WxH");
+    command->add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")
+        ->type_name("FRAME");
+    command->add_option("--bits", options->bits, "Samples of the target")->type_name("8|16|half|float");
+    CLI::Option* const statistics =
+        command->add_flag("--statistics", options->wants_statistics,
+                          "What the device's compiler makes of each kernel: registers, waves, instructions, cycles");
+    command->add_option("--chip", options->chip, "With --statistics: the graphics card that milliseconds are of")
+        ->type_name("NAME")
+        ->needs(statistics);
+    command->add_option("--loops", options->loops, "With --statistics: how often the loops of a kernel run")
+        ->type_name("KERNEL=N,...")
+        ->allow_extra_args(false)
+        ->needs(statistics);
+    options->device.add_to(*command);
+    options->look.add_to(*command, false, named);
+    return {command, [options] { return run(*options); }};
+}
+
+}  // namespace app

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "render_flags.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "apps/darkroom/run/outputs.hpp"
+#include "apps/darkroom/run/report.hpp"
+#include "core/text/param_text.hpp"
+#include "image/frame/sequence.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+
+namespace {
+
+constexpr VkExtent2D default_extent{1920, 1080};
+constexpr double default_frames_per_second = 24;
+constexpr const char* moment_group = "The moment";
+
+}  // namespace
+
+void RenderFlags::add_to(CLI::App& command, std::span<const darkroom::LookEntry> named) {
+    command.add_option("SCENE", scene, "A scene (.toml) or a model (.glb, .gltf)")->required();
+    command
+        .add_option("-o,--output,--out", out_,
+                    "The picture: .png .jpg .tif .exr .hdr; for several frames a name with %04d; - is standard output, "
+                    "with --format")
+        ->type_name("OUT")
+        ->capture_default_str();
+    command
+        .add_option("--save-frame,--frame", frame_,
+                    "The raw frame, too: linear light, depth, normals, motion and camera (.exr)")
+        ->type_name("OUT.exr");
+    add_moments(command);
+    drawn.add_to(command, default_extent, moment_group);
+    write.add_to(command);
+    run.add_to(command);
+    device.add_to(command);
+    look.add_to(command, true, named);
+}
+
+void RenderFlags::add_moments(CLI::App& command) {
+    const std::string group = moment_group;
+    time_.add_to(command, "Since the scene's beginning, default: what the scene says, or 0")
+        ->type_name("S")
+        ->group(group);
+    command.add_option("--frames", frames_, "Several frames; the time of a frame is its number / fps")
+        ->type_name("A-B")
+        ->group(group);
+    frames_per_second_.add_to(command, "Frames a second, for --frames and for motion")
+        ->type_name("N")
+        ->default_str(fmt::format("{}", default_frames_per_second))
+        ->group(group);
+}
+
+Result<std::vector<Shot>> RenderFlags::shots() const {
+    double frames_per_second = default_frames_per_second, time = 0;
+    if (Result<> done = frames_per_second_.read_to(frames_per_second); !done) return failure(std::move(done));
+    if (Result<> done = time_.read_to(time); !done) return failure(std::move(done));
+    if (time_.is_given() && frames_)
+        return user_error("--time: --frames says the time of every frame, leave out one of them");
+    const double step = 1 / frames_per_second;
+    const auto shot = [&](std::uint64_t number, double at) {
+        return Shot{.number = number,
+                    .time = at,
+                    .previous_time = std::max(0.0, at - step),
+                    .delta_time = step,
+                    .picture = darkroom::numbered(out_, static_cast<long long>(number)),
+                    .frame = darkroom::numbered(frame_.value_or(""), static_cast<long long>(number))};
+    };
+    if (!frames_) return std::vector{shot(0, time)};
+    const Result<FrameRange> range = parse_frames(*frames_);
+    if (!range) return failure(range.error());
+    std::vector<Shot> out;
+    for (std::uint64_t number = range->first; number <= range->last; ++number)
+        out.push_back(shot(number, static_cast<double>(number) / frames_per_second));
+    return out;
+}
+
+Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
+    const bool is_many = shots.size() > 1;
+    if (out_.empty()) return user_error("-o: an output file is needed");
+    if (is_many && !darkroom::has_number_pattern(out_) && out_ != stream_name)
+        return user_error(fmt::format("-o {}: {} frames need a name with %04d", printable(out_), shots.size()));
+    if (frame_) {
+        const Result<darkroom::FileKind> kind = darkroom::file_kind(*frame_);
+        if (!kind || *kind != darkroom::FileKind::OpenExr)
+            return user_error(fmt::format("--save-frame {}: a frame is an .exr file", printable(*frame_)));
+        if (is_many && !darkroom::has_number_pattern(*frame_))
+            return user_error(
+                fmt::format("--save-frame {}: {} frames need a name with %04d", printable(*frame_), shots.size()));
+    }
+    const FileSet inputs(std::array<fs::path, 1>{scene});
+    std::set<fs::path> outputs;
+    for (const Shot& shot : shots)
+        for (const fs::path& path : {shot.picture, shot.frame}) {
+            if (path.empty() || path == stream_name) continue;
+            if (!outputs.insert(path.lexically_normal()).second)
+                return user_error(fmt::format("{}: would be picture and frame", printable(path.string())));
+            if (Result<> done = check_output(path, inputs); !done) return done;
+        }
+    return {};
+}
+
+Result<> RenderFlags::set_target(RenderJob& job) const {
+    double frames_per_second = default_frames_per_second;
+    if (Result<> done = frames_per_second_.read_to(frames_per_second); !done) return done;
+    Result<std::optional<StreamDesc>> stream = write.stream(out_, frames_per_second);
+    if (!stream) return failure(std::move(stream));
+    job.stream = *stream;
+    if (job.stream) {
+        job.target = target_for(job.stream->format);
+        return run.check_stream();
+    }
+    const Result<darkroom::SampleKind> samples = darkroom::sample_kind(out_, job.write);
+    if (!samples) return failure(samples.error());
+    job.target = target_for(*samples);
+    return {};
+}
+
+Result<RenderJob> RenderFlags::job() const {
+    RenderJob job;
+    const Result<std::uint64_t> seed = drawn.seed();
+    if (!seed) return failure(seed.error());
+    job.seed = *seed;
+    Result<darkroom::render::RenderDesc> desc = drawn.desc();
+    if (!desc) return failure(std::move(desc));
+    job.desc = *desc;
+    const Result<darkroom::scene::OrbitOverride> orbit = drawn.orbit();
+    if (!orbit) return failure(orbit.error());
+    job.orbit = *orbit;
+    Result<darkroom::WriteOptions> options = write.options();
+    if (!options) return failure(std::move(options));
+    job.write = std::move(*options);
+    const Result<std::size_t> jobs = run.jobs();
+    if (!jobs) return failure(jobs.error());
+    job.jobs = *jobs;
+    if (Result<> done = set_target(job); !done) return failure(std::move(done));
+    Result<std::vector<Shot>> shots = this->shots();
+    if (!shots) return failure(std::move(shots));
+    job.shots = std::move(*shots);
+    if (job.shots.size() > 1) job.write.max_threads = 1;  // several files are encoded at once
+    if (Result<> done = check_files(job.shots); !done) return failure(std::move(done));
+    drawn.warn_of_what_is_ignored();
+    return job;
+}
+
+}  // namespace app

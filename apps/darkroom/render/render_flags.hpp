@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The flags of `render` and what they ask for: moments, files, and what all that draw scenes have. Everything that can
+// be known without the scene and without a device is checked here.
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/darkroom/flags/device_flags.hpp"
+#include "apps/darkroom/flags/look_flags.hpp"
+#include "apps/darkroom/flags/number_flag.hpp"
+#include "apps/darkroom/flags/run_flags.hpp"
+#include "image/picture/write.hpp"
+#include "scene_flags.hpp"
+
+namespace app {
+
+/// One picture: a moment of the scene and the files it becomes.
+struct Shot {
+    std::uint64_t number = 0;  ///< of the frame
+    double time = 0;           ///< seconds
+    double previous_time = 0;  ///< one frame before, but not before 0
+    double delta_time = 0;
+    std::filesystem::path picture;
+    std::filesystem::path frame;  ///< empty: not asked for
+    bool is_written = true;       ///< false: for the sake of effects with history alone
+};
+
+struct RenderJob {
+    darkroom::render::RenderDesc desc;  ///< without `output`: that is for the look to say
+    darkroom::scene::OrbitOverride orbit;
+    std::vector<Shot> shots;
+    darkroom::WriteOptions write;
+    std::size_t jobs = 0;
+    darkroom::DevelopTarget target = darkroom::DevelopTarget::Encoded8;
+    std::optional<StreamDesc> stream;
+    std::uint64_t seed = 0;
+};
+
+class RenderFlags {
+  public:
+    void add_to(CLI::App& command, std::span<const darkroom::LookEntry> named);
+    [[nodiscard]] darkroom::Result<RenderJob> job() const;
+
+    SceneFlags drawn;
+    LookFlags look;
+    DeviceFlags device;
+    WriteFlags write;
+    RunFlags run;
+    std::string scene;
+    /// Do the flags say a time? Else it is the scene's.
+    bool has_time() const { return time_.is_given() || frames_; }
+
+  private:
+    void add_moments(CLI::App& command);
+    [[nodiscard]] darkroom::Result<std::vector<Shot>> shots() const;
+    /// What becomes of the pictures: files or a stream.
+    [[nodiscard]] darkroom::Result<> set_target(RenderJob& job) const;
+    [[nodiscard]] darkroom::Result<> check_files(const std::vector<Shot>& shots) const;
+
+    // Optional, so that an empty text is a wrong value, not a missing one.
+    std::string out_ = "render.png";
+    std::optional<std::string> frame_, frames_;
+    NumberFlag time_{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
+    NumberFlag frames_per_second_{"--fps", {.least = 0.001, .most = 1e6}};
+};
+
+}  // namespace app

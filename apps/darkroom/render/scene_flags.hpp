@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The flags of commands that draw scenes: size, camera, what is drawn. Everything that can be known without the scene
+// and without a device is checked here.
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/darkroom/flags/number_flag.hpp"
+#include "render/renderer.hpp"
+#include "scene/pose/snapshot.hpp"
+
+namespace app {
+
+class SceneFlags {
+  public:
+    /// `default_extent`: of the picture, where the flags say none.
+    void add_to(CLI::App& command, VkExtent2D default_extent, const std::string& seed_group);
+    [[nodiscard]] darkroom::Result<darkroom::scene::OrbitOverride> orbit() const;
+    /// Without `output`: that is for the look to say.
+    [[nodiscard]] darkroom::Result<darkroom::render::RenderDesc> desc() const;
+    [[nodiscard]] darkroom::Result<std::uint64_t> seed() const;
+    [[nodiscard]] bool is_tone_mapped() const { return !has_no_tone_mapping_; }
+    /// Says what is taken and changes nothing.
+    void warn_of_what_is_ignored() const;
+
+  private:
+    void add_camera(CLI::App& command);
+    void add_drawing(CLI::App& command);
+    [[nodiscard]] darkroom::Result<VkExtent2D> extent() const;
+
+    VkExtent2D default_extent_{};
+    // Optional, so that an empty text is a wrong value, not a missing one.
+    std::optional<std::string> size_, target_, debug_mode_;
+    std::vector<std::string> schemas_;
+    // More pixels than any device takes. Its own limit is said once it is known.
+    NumberFlag width_{"--width", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
+    NumberFlag height_{"--height", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};
+    // The whole numbers that a double holds.
+    NumberFlag seed_{"--seed", {.least = 0, .most = 9007199254740991, .is_whole = true}};
+    NumberFlag distance_{"--distance", {.least = 0, .most = 1e9, .is_open = true, .unit = "m"}};
+    NumberFlag yaw_{"--yaw", {.least = -1e6, .most = 1e6, .unit = "deg"}};
+    NumberFlag pitch_{"--pitch", {.least = -90, .most = 90, .unit = "deg"}};
+    NumberFlag field_of_view_{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
+    NumberFlag shadow_resolution_{"--shadow-resolution",
+                                  {.least = 16, .most = 16384, .is_whole = true, .unit = "texels"}};
+    NumberFlag samples_{"--msaa", {.least = 1, .most = 64, .is_whole = true}};
+    bool has_no_grid_ = false, has_wireframe_overlay_ = false, has_normal_arrows_ = false;
+    bool has_no_tone_mapping_ = false, has_no_shadows_ = false;
+};
+
+}  // namespace app

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Frames of files as the library's develop functions take them, and frames of a renderer as files.
+
+#include <darkroom/look.hpp>
+
+#include "develop/developer.hpp"
+#include "develop/reference_chain.hpp"
+#include "image/frame/frame_file.hpp"
+#include "image/picture/picture.hpp"
+#include "image/picture/write.hpp"
+#include "timeline.hpp"
+
+namespace app {
+
+/// Of frames that do not say theirs: vertical, degrees.
+inline constexpr double assumed_field_of_view = 45;
+/// The frame's lights, with the depths of their cascades moved out of it. Where those stayed in the file, a light casts
+/// no shadow.
+[[nodiscard]] std::vector<darkroom::ReferenceLight> take_lights(darkroom::FrameFile& frame);
+/// Refers to the memory of both.
+[[nodiscard]] darkroom::DevelopInput develop_input(const darkroom::FrameFile& frame,
+                                                   std::span<const darkroom::ReferenceLight> lights);
+/// What a file that is written from `layers` and read again gives take_lights and develop_input. `frame` says camera
+/// and time.
+[[nodiscard]] darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLayers layers);
+/// The camera as develop_input would have it of a file with this one: what a file does not store is left behind.
+[[nodiscard]] darkroom::Camera as_stored(const darkroom::Camera& camera);
+/// Says of `frame` which layers a stack of this look reads. Gives how many frames before one its histories need, where
+/// frames are `delta_time` seconds apart, at the worst of the moments of a timeline.
+[[nodiscard]] darkroom::Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time,
+                                                        Timeline timeline, darkroom::FrameOptions& frame);
+/// One warning, `frame` first, for each entry that is on and has no place in the plan, but for those that are on by
+/// default. Gives how many that were.
+std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
+                                     std::span<const std::string> left_out, std::string_view frame = {});
+/// By the CPU references alone, in the form that the target asks for. `histories`: of the frame before, then of this
+/// one. `left_out`: as in Plan.
+[[nodiscard]] darkroom::Result<darkroom::DevelopedPicture> develop_by_reference(const darkroom::Composer& composer,
+                                                                                const darkroom::DevelopInput& input,
+                                                                                darkroom::DevelopTarget target,
+                                                                                darkroom::ReferenceHistories& histories,
+                                                                                std::vector<std::string>& left_out);
+[[nodiscard]] darkroom::Result<> write(const std::filesystem::path& path, darkroom::DevelopedPicture picture,
+                                       const darkroom::WriteOptions& options);
+
+}  // namespace app

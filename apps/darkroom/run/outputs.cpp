@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "outputs.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <map>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "core/files.hpp"
+#include "core/text/param_text.hpp"
+#include "image/frame/sequence.hpp"
+
+namespace app {
+
+namespace fs = std::filesystem;
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::user_error;
+
+namespace {
+
+constexpr std::string_view name_pattern = "{name}";
+
+std::optional<std::pair<std::uintmax_t, std::uintmax_t>> identity_of(const fs::path& file) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) return std::nullopt;
+    return std::pair<std::uintmax_t, std::uintmax_t>{status.st_dev, status.st_ino};
+}
+
+}  // namespace
+
+bool FileSet::contains(const fs::path& file) const {
+    const auto identity = identity_of(file);
+    if (!identity) return false;
+    for (const fs::path& name : std::exchange(names_, {}))
+        if (const auto known = identity_of(name)) files_.insert(*known);
+    return files_.contains(*identity);
+}
+
+std::vector<long long> numbers_of(std::span<const fs::path> inputs) {
+    std::vector<long long> numbers;
+    std::set<long long> seen;
+    for (const fs::path& input : inputs)
+        if (const std::optional<long long> number = darkroom::frame_number(input))
+            if (seen.insert(*number).second) numbers.push_back(*number);
+    if (numbers.size() == inputs.size()) return numbers;
+    numbers.clear();
+    for (std::size_t i = 0; i < inputs.size(); ++i) numbers.push_back(static_cast<long long>(i) + 1);
+    return numbers;
+}
+
+bool is_there(const fs::path& picture) {
+    std::error_code error;
+    return fs::is_regular_file(picture, error) && fs::file_size(picture, error) > 0 && !error;
+}
+
+Result<> check_output(const fs::path& output, const FileSet& inputs) {
+    std::error_code error;
+    if (inputs.contains(output))
+        return user_error(fmt::format("{}: is an input, and would be overwritten", printable(output.string())));
+    if (const fs::path folder = output.parent_path(); !folder.empty() && !fs::is_directory(folder, error))
+        return user_error(fmt::format("{}: no such folder, the picture cannot be written", printable(folder.string())));
+    // Reserving the file tells now, before any work, whether it can be written.
+    const Result<darkroom::AtomicPath> reserved = darkroom::AtomicPath::beside(output);
+    if (!reserved) return failure(reserved.error());
+    return {};
+}
+
+bool is_output_folder(const std::string& out) {
+    std::error_code error;
+    return fs::is_directory(out, error) || out.ends_with('/');
+}
+
+fs::path output_path(const fs::path& input, long long number, const std::string& out, bool is_folder) {
+    if (is_folder) return fs::path(out) / fs::path(input.filename()).replace_extension(".png");
+    std::string text = out;
+    if (const std::size_t name_at = out.find(name_pattern); name_at != std::string::npos)
+        text.replace(name_at, name_pattern.size(), input.stem().string());
+    return darkroom::has_number_pattern(out) ? darkroom::numbered(text, number) : fs::path(text);
+}
+
+Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, const std::string& out,
+                                           std::span<const fs::path> also_read,
+                                           const std::function<bool(long long)>& is_asked_for) {
+    std::error_code error;
+    if (out.empty()) return user_error("-o: an output file is needed");
+    const bool is_folder = is_output_folder(out);
+    const bool has_name = darkroom::has_number_pattern(out) || out.find(name_pattern) != std::string::npos;
+    if (is_folder && !fs::is_directory(out, error))
+        return user_error(fmt::format("{}: no such folder", printable(out)));
+    if (inputs.size() > 1 && !is_folder && !has_name)
+        return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d, #### or {{name}}",
+                                      printable(out), inputs.size()));
+    const std::vector<long long> numbers = numbers_of(inputs);
+    std::vector<fs::path> outputs;
+    std::map<fs::path, fs::path> makers;
+    std::vector<fs::path> read(inputs.begin(), inputs.end());
+    read.insert(read.end(), also_read.begin(), also_read.end());
+    const FileSet files(read);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        fs::path path = output_path(inputs[i], numbers[i], out, is_folder);
+        const auto [maker, is_new] = makers.try_emplace(path, inputs[i]);
+        if (!is_new)
+            return user_error(fmt::format("{}: would be made of {} and of {}", printable(path.string()),
+                                          printable(maker->second.string()), printable(inputs[i].string())));
+        if (is_asked_for(numbers[i]))
+            if (Result<> done = check_output(path, files); !done) return failure(std::move(done));
+        outputs.push_back(std::move(path));
+    }
+    return outputs;
+}
+
+}  // namespace app

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+#include "timeline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/files.hpp"
+#include "core/text/param_text.hpp"
+#include "looks/look_parts.hpp"
+#include "looks/read/look_reader.hpp"
+#include "toml/toml_text.hpp"
+
+namespace app {
+
+using darkroom::Composer;
+using darkroom::Look;
+using darkroom::LookTarget;
+using darkroom::ParamInfo;
+using darkroom::printable;
+using darkroom::Result;
+using darkroom::show;
+using darkroom::user_error;
+
+namespace {
+
+constexpr std::size_t most_events = 65536;
+constexpr std::string_view owner = "timeline";
+const ParamInfo time_row{.name = "time", .unit = darkroom::unit::seconds, .range = {0, 1e9}};
+const ParamInfo over_row{.name = "over", .unit = darkroom::unit::seconds, .range = {0, 1e6}};
+const ParamInfo yaw_row{.name = "yaw", .unit = darkroom::unit::degrees, .range = {-3600, 3600}};
+const ParamInfo weight_row{.name = "weight", .range = {0, 1}};
+
+}  // namespace
+
+/// Stops at the first error: a file of events is written for one sequence, and nothing in it is a slip.
+class TimelineReader {
+  public:
+    TimelineReader(std::string shown, Look& look) : shown_(std::move(shown)), look_(look) {}
+
+    Result<Timeline> read(const toml::table& file) {
+        for (const auto& [key, node] : file)
+            if (key.str() != "event") return failure(unknown(key, {"event"}));
+        const toml::node* const events = file.get("event");
+        const toml::array* const array = events == nullptr ? nullptr : events->as_array();
+        if (array == nullptr) return user_error(fmt::format("{}: expected [[event]] entries", shown_));
+        if (array->size() > most_events)
+            return failure(at(*array, fmt::format("{} events: allowed are {}", array->size(), most_events)));
+        for (const toml::node& node : *array) {
+            const toml::table* const table = node.as_table();
+            if (table == nullptr) return failure(at(node, fmt::format("an event is {}: expected a table", show(node))));
+            if (Result<> done = read_event(*table); !done) return failure(done.error());
+        }
+        std::ranges::stable_sort(out_.events_, {}, &Timeline::Event::time);
+        return std::move(out_);
+    }
+
+  private:
+    [[nodiscard]] darkroom::Error at(const toml::source_position& place, const std::string& text) const {
+        return {darkroom::Fault::User, fmt::format("{}:{}:{}: {}", shown_, place.line, place.column, text)};
+    }
+    [[nodiscard]] darkroom::Error at(const toml::node& node, const std::string& text) const {
+        return at(node.source().begin, text);
+    }
+    [[nodiscard]] darkroom::Error unknown(const toml::key& key, const std::vector<std::string>& known) const {
+        return at(key.source().begin, fmt::format("unknown key '{}': allowed are {}{}", printable(key.str()),
+                                                  fmt::join(known, ", "), darkroom::suggestion(key.str(), known)));
+    }
+
+    Result<> read_event(const toml::table& table) {
+        Timeline::Event event;
+        const toml::node* const time = table.get("time");
+        if (time == nullptr) return failure(at(table, "an event has no key 'time'"));
+        if (table.size() == 1)
+            return failure(at(table, "at this time nothing happens: an event sets, fires or blends"));
+        for (const auto& [key, node] : table) {
+            const Result<> done = read_key(key, node, event);
+            if (!done) return done;
+        }
+        out_.events_.push_back(std::move(event));
+        return {};
+    }
+
+    Result<> read_key(const toml::key& key, const toml::node& node, Timeline::Event& event) {
+        if (key.str() == "time" || key.str() == "over") {
+            const bool is_time = key.str() == "time";
+            const Result<float> number = read_number(is_time ? time_row : over_row, node, key.str());
+            if (!number) return failure(number.error());
+            // Times are kept as they are written: a float has no milliseconds left after some hours.
+            (is_time ? event.time : event.over) = *node.value<double>();
+            return {};
+        }
+        if (key.str() == "fire") return read_fire(node, event);
+        if (key.str() == "set")
+            return read_table(node, "set", [&](std::string_view name, const toml::node& value) {
+                return read_value(std::string(name), value, event);
+            });
+        if (key.str() == "layer")
+            return read_table(node, "layer", [&](std::string_view name, const toml::node& value) {
+                return read_weight(std::string(name), value, event);
+            });
+        if (key.str() == "game" || key.str() == "jump" || key.str() == "yaw") return read_game(key, node, event.game);
+        return failure(unknown(key, {"time", "set", "fire", "layer", "over", "game", "jump", "yaw"}));
+    }
+
+    Result<float> read_number(const ParamInfo& row, const toml::node& node, std::string_view key) {
+        std::array<std::uint32_t, 1> words{};
+        if (Result<> done = read_words(row, words, node, key); !done) return failure(done.error());
+        return std::bit_cast<float>(words[0]);
+    }
+    Result<> read_words(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node,
+                        std::string_view key) {
+        const std::optional<darkroom::ParamValue> value = darkroom::value_of(node);
+        if (!value)
+            return failure(at(node, fmt::format("{} = {}: expected {}, allowed is {}", key, show(node),
+                                                darkroom::expected_kind(row.kind), darkroom::interval(row))));
+        const auto problem = darkroom::try_assign(row, words, *value, key);
+        return problem ? failure(at(node, problem->text)) : Result<>{};
+    }
+
+    Result<> read_game(const toml::key& key, const toml::node& node, GameEvent& event) {
+        if (key.str() == "game") {
+            Result<darkroom::GameTable> values = darkroom::game_values(node);
+            if (!values) return failure(at(node, values.error().text));
+            event.values = std::move(*values);
+            return {};
+        }
+        if (key.str() == "jump") {
+            const auto* const jumps = node.as_boolean();
+            if (jumps == nullptr) return failure(at(node, fmt::format("jump = {}: expected true", show(node))));
+            event.is_jump = jumps->get();
+            return {};
+        }
+        const Result<float> yaw = read_number(yaw_row, node, key.str());
+        if (!yaw) return failure(yaw.error());
+        event.yaw = double{*yaw};
+        return {};
+    }
+
+    template <class Read>
+    Result<> read_table(const toml::node& node, std::string_view key, const Read& read) {
+        const toml::table* const table = node.as_table();
+        if (table == nullptr || table->empty())
+            return failure(at(node, fmt::format("{} = {}: expected a table of values", key, show(node))));
+        for (const auto& [name, value] : *table)
+            if (Result<> done = read(name.str(), value); !done) return done;
+        return {};
+    }
+
+    Result<> read_fire(const toml::node& node, Timeline::Event& event) {
+        const toml::array* const array = node.as_array();
+        const std::size_t count = array == nullptr ? 1 : array->size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const toml::node& one = array == nullptr ? node : *array->get(i);
+            const auto* const name = one.as_string();
+            std::vector<std::string> known;
+            for (const darkroom::LookPulse& pulse : look_.pulses)
+                if (std::ranges::count(known, pulse.event) == 0) known.push_back(pulse.event);
+            if (name == nullptr || std::ranges::count(known, name->get()) == 0)
+                return failure(at(one, fmt::format("fire = {}: no pulse of {} has this event, known are {}{}",
+                                                   show(one), look_.shown_name, fmt::join(known, ", "),
+                                                   name == nullptr ? "" : darkroom::suggestion(name->get(), known))));
+            event.fired.push_back(name->get());
+        }
+        return {};
+    }
+
+    Result<> read_value(const std::string& key, const toml::node& node, Timeline::Event& event) {
+        const Result<LookTarget> target = darkroom::find_target(look_, key, printable(key));
+        if (!target) return failure(at(node, target.error().text));
+        const auto& [entry, row, is_state, wire] = *target;
+        const bool is_own = is_state && row->name != "enabled" && row->name != "opacity";
+        if (row == nullptr || is_own || row->kind == darkroom::Kind::Resource)
+            return failure(at(node, fmt::format("{}: it belongs to the plan; allowed are parameters, `enabled` and "
+                                                "`opacity`",
+                                                printable(key))));
+        std::vector<std::uint32_t> words = entry->words;
+        const darkroom::StateWords state = darkroom::state_words(entry->state);
+        if (is_state) words.assign(state.begin(), state.end());
+        const auto part = [&](std::span<const std::uint32_t> of) {
+            return std::vector<std::uint32_t>(of.begin() + row->word, of.begin() + row->word + row->words);
+        };
+        if (is_state) remember(*entry, row->name, part(state));
+        if (Result<> done = read_words(*row, words, node, printable(key)); !done) return done;
+        // As in a look and on the command line: an amount that is not 0 switches its effect on.
+        const bool is_float = row->kind == darkroom::Kind::Float;
+        if (row->is_amount && is_float && entry->state.enabled.on == 0) {
+            remember(*entry, "enabled", {0});
+            const std::uint32_t is_on = std::bit_cast<float>(words[row->word]) != 0 ? 1 : 0;
+            event.values.push_back({name_of(*entry), "enabled", {is_on}, true});
+        }
+        event.values.push_back({name_of(*entry), std::string(row->name), part(words), is_state});
+        if (std::ranges::count(out_.entries_, event.values.back().entry) == 0)
+            out_.entries_.push_back(event.values.back().entry);
+        return {};
+    }
+
+    /// What the look has, for a start from the beginning.
+    void remember(const darkroom::LookEntry& entry, std::string_view parameter, std::vector<std::uint32_t> words) {
+        const std::string name = name_of(entry);
+        const auto is_known = [&](const Timeline::Value& one) {
+            return one.entry == name && one.parameter == parameter;
+        };
+        if (std::ranges::none_of(out_.states_, is_known))
+            out_.states_.push_back({name, std::string(parameter), std::move(words), true});
+    }
+
+    Result<> read_weight(const std::string& name, const toml::node& node, Timeline::Event& event) {
+        const auto found = std::ranges::find(look_.layers, name, &darkroom::LookLayer::name);
+        std::vector<std::string> known;
+        for (const darkroom::LookLayer& layer : look_.layers) known.push_back(layer.name);
+        if (found == look_.layers.end())
+            return failure(
+                at(node, fmt::format("layer '{}': {} has none of this name, known are {}{}", printable(name),
+                                     look_.shown_name, fmt::join(known, ", "), darkroom::suggestion(name, known))));
+        const Result<float> weight = read_number(weight_row, node, printable(name));
+        if (!weight) return failure(weight.error());
+        if (std::ranges::count(out_.ways_, name, &Timeline::Way::layer) == 0)
+            out_.ways_.push_back({.layer = name, .first = found->state.weight});
+        event.weights.push_back({name, *weight});
+        return {};
+    }
+
+    std::string name_of(const darkroom::LookEntry& entry) const {
+        return darkroom::entry_names(look_)[static_cast<std::size_t>(&entry - look_.entries.data())];
+    }
+
+    std::string shown_;
+    Look& look_;
+    Timeline out_;
+};
+
+Result<Timeline> Timeline::read(const std::filesystem::path& path, Look& look) {
+    const std::string shown = printable(path.string());
+    const Result<std::vector<std::byte>> bytes = darkroom::read_file(path, {.max_size = darkroom::most_toml_bytes});
+    if (!bytes) return failure(bytes.error());
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    const Result<toml::table> file = darkroom::parse_toml(text, shown);
+    if (!file) return failure(file.error());
+    Result<Timeline> out = TimelineReader(shown, look).read(*file);
+    if (!out) return out;
+    for (Way& way : out->ways_) way.from = way.to = double{way.first};
+    return out;
+}
+
+std::vector<double> Timeline::times() const {
+    std::vector<double> out;
+    for (const Event& event : events_)
+        if (out.empty() || event.time > out.back()) out.push_back(event.time);
+    return out;
+}
+
+std::vector<GameEvent> Timeline::game() const {
+    std::vector<GameEvent> out;
+    for (const Event& event : events_) {
+        if (event.game.values.empty() && !event.game.is_jump && !event.game.yaw) continue;
+        out.push_back(event.game);
+        out.back().time = event.time;
+    }
+    return out;
+}
+
+double Timeline::Way::at(double time) const {
+    return over > 0 ? std::lerp(from, to, std::clamp((time - start) / over, 0.0, 1.0)) : to;
+}
+
+void Timeline::restart(Composer& composer) {
+    next_ = 0;
+    composer.drop_overrides(owner);
+    for (Way& way : ways_)
+        way = {.layer = way.layer, .first = way.first, .from = double{way.first}, .to = double{way.first}};
+}
+
+Result<> Timeline::advance(Composer& composer, double time) {
+    // A moment is that of its frame where they are the same but for rounding.
+    constexpr double rounding = 1e-9;
+    if (next_ == 0 || time < last_time_) {
+        restart(composer);
+        if (Result<> done = apply(composer, {.values = states_, .fired = {}, .weights = {}}); !done) return done;
+    }
+    last_time_ = time;
+    for (; next_ < events_.size() && events_[next_].time <= time + rounding; ++next_)
+        if (Result<> done = apply(composer, events_[next_]); !done) return done;
+    for (const Way& way : ways_)
+        if (Result<> done = composer.set_layer_weight(way.layer, static_cast<float>(way.at(time))); !done) return done;
+    return {};
+}
+
+Result<> Timeline::apply(Composer& composer, const Event& event) {
+    for (const Value& value : event.values) {
+        // What a look that is switched off leaves out is not there.
+        const auto entry = composer.find(value.entry);
+        if (!entry) continue;
+        Result<> done;
+        if (!value.is_state)
+            done = composer.set_override(*entry, value.parameter, owner, value.words);
+        else if (value.parameter == "enabled")
+            done = composer.set_enabled(*entry, value.words[0] != 0);
+        else
+            done = composer.set_opacity(*entry, std::bit_cast<float>(value.words[0]));
+        if (!done) return done;
+    }
+    for (const std::string& name : event.fired) composer.fire(name, event.time);
+    for (const Weight& weight : event.weights) {
+        Way& way = *std::ranges::find(ways_, weight.layer, &Way::layer);
+        way = {.layer = way.layer,
+               .first = way.first,
+               .start = event.time,
+               .over = event.over,
+               .from = way.at(event.time),
+               .to = double{weight.weight}};
+    }
+    return {};
+}
+
+}  // namespace app

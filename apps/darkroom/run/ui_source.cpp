@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "ui_source.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <darkroom/hud_inertia.hpp>
+
+#include "image/picture/ui_image.hpp"
+#include "report.hpp"
+
+namespace app {
+
+using darkroom::Composer;
+using darkroom::Result;
+
+namespace {
+
+/// The first entry of the interface's chain that can be moved.
+std::optional<darkroom::Handle> moved_entry(const Composer& composer) {
+    for (std::size_t i = 0; i < composer.size(); ++i) {
+        const darkroom::Handle entry = composer.entry(i);
+        const darkroom::ParamInfo* const row = composer.info(entry)->parameters.find("offset");
+        if (composer.desc(entry)->is_ui && row != nullptr && row->kind == darkroom::Kind::Vec2) return entry;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+darkroom::HudValue hud_value(const darkroom::GameValue& value) {
+    if (const bool* const toggle = std::get_if<bool>(&value)) return *toggle ? 1.0 : 0.0;
+    if (const double* const number = std::get_if<double>(&value)) return *number;
+    return std::get<std::string>(value);
+}
+
+Result<> move_interface(Composer& composer, darkroom::Vec2 offset) {
+    const std::optional<darkroom::Handle> entry = moved_entry(composer);
+    if (!entry) return {};
+    // On top of where the look has it.
+    const auto base = composer.words(*entry).subspan(composer.info(*entry)->parameters.find("offset")->word, 2);
+    const std::array words{
+        std::bit_cast<std::uint32_t>(std::clamp(std::bit_cast<float>(base[0]) + offset.x, -1.0f, 1.0f)),
+        std::bit_cast<std::uint32_t>(std::clamp(std::bit_cast<float>(base[1]) + offset.y, -1.0f, 1.0f))};
+    return composer.set_override(*entry, "offset", "inertia", words);
+}
+
+std::vector<std::filesystem::path> ui_files(const darkroom::Look& look) {
+    if (!look.ui) return {};
+    std::vector<std::filesystem::path> out(look.ui->controllers.begin(), look.ui->controllers.end());
+    if (!look.ui->document.empty()) out.emplace_back(look.ui->document);
+    return out;
+}
+
+Result<> UiSource::start(Composer& composer) {
+    composer_ = &composer;
+    controllers_.reset();
+    if (ui_.controllers.empty()) return {};
+    const darkroom::LogSink print = [](darkroom::Severity, std::string_view line) { warn(std::string(line)); };
+    console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print});
+    auto made = darkroom::Controllers::create(*console_, {.print = print});
+    if (!made) return failure(std::move(made));
+    controllers_.emplace(std::move(*made));
+    for (const std::string& file : ui_.controllers)
+        if (Result<> done = controllers_->load(file); !done) return done;
+    return {};
+}
+
+// The springs come to rest within seconds, so only what happened lately counts; the steps are exact, so their number
+// does not.
+darkroom::Vec2 UiSource::offset_at(double time) const {
+    constexpr double memory = 4, longest = darkroom::HudInertia::longest_step;
+    darkroom::HudInertia inertia;
+    double now = time - memory, yaw = 0;
+    bool jumps = false;
+    const auto move = [&](double to) {
+        while (now < to) {
+            const double step = std::min(longest, to - now);
+            (void)inertia.step(step, yaw, !jumps, jumps ? 1 : 0);
+            jumps = false;
+            now += step;
+        }
+    };
+    for (const GameEvent& event : events_) {
+        if (event.time >= time) break;
+        move(event.time);
+        jumps |= event.is_jump && event.time > time - memory;
+        yaw = event.yaw.value_or(yaw);
+    }
+    move(time);
+    return inertia.offset();
+}
+
+Result<> UiSource::advance(Composer& composer, double time) {
+    if (ui_.document.empty() && ui_.controllers.empty()) return {};
+    if (composer_ != &composer || time < last_time_)
+        if (Result<> done = start(composer); !done) return done;
+    last_time_ = time;
+    game_ = ui_.game;
+    for (const GameEvent& event : events_)
+        if (event.time <= time)
+            for (const auto& [name, value] : event.values) game_.insert_or_assign(name, value);
+    if (!events_.empty())
+        if (Result<> done = move_interface(composer, offset_at(time)); !done) return done;
+    if (controllers_) controllers_->frame({.time = time, .game = &game_});
+    return {};
+}
+
+Result<std::shared_ptr<const std::vector<std::uint8_t>>> UiSource::picture(VkExtent2D extent) {
+    if (ui_.document.empty()) return picture_;
+    if (std::filesystem::path(ui_.document).extension() == ".svg") {
+        if (!document_) {
+            auto loaded = darkroom::HudDocument::load(ui_.document, {.is_headless = true});
+            if (!loaded) return failure(std::move(loaded));
+            document_ = std::move(*loaded);
+        }
+        for (const auto& [name, value] : game_) document_->set(name, hud_value(value));
+        const auto drawn = document_->picture(extent.width, extent.height);
+        if (drawn == nullptr || !document_->error().empty()) return darkroom::user_error(document_->error());
+        picture_ = {drawn, &drawn->rgba};
+        return picture_;
+    }
+    if (extent.width == extent_.width && extent.height == extent_.height) return picture_;
+    auto made = darkroom::read_ui_image(ui_.document, extent.width, extent.height);
+    if (!made) return failure(std::move(made));
+    picture_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(*made));
+    extent_ = extent;
+    return picture_;
+}
+
+}  // namespace app

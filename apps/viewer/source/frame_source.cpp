@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include "frame_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text/param_text.hpp"
+#include "gpu/device/context.hpp"
+#include "image/frame/sequence.hpp"
+
+namespace app {
+
+using darkroom::Result;
+
+FrameSource::FrameSource(darkroom::Device& device, std::vector<std::filesystem::path> files, const Desc& desc)
+    : device_(device), files_(std::move(files)), desc_(desc) {}
+
+FrameSource::~FrameSource() {
+    {
+        const std::lock_guard lock(mutex_);
+        is_ending_ = true;
+    }
+    changed_.notify_all();
+}
+
+Result<std::unique_ptr<FrameSource>> FrameSource::create(darkroom::Device& device,
+                                                         std::vector<std::filesystem::path> files, const Desc& desc) {
+    std::unique_ptr<FrameSource> out(new FrameSource(device, std::move(files), desc));
+    Result<std::shared_ptr<Decoded>> first = out->decode(0);
+    if (!first) return failure(std::move(first));
+    out->shown_ = *first;
+    out->kept_.push_front(std::move(*first));
+    out->warnings_ = out->shown_->file.warnings;
+    if (out->files_.size() > 1) out->thread_ = std::jthread([self = out.get()] { self->work(); });
+    return out;
+}
+
+Result<std::shared_ptr<FrameSource::Decoded>> FrameSource::decode(std::size_t number) const {
+    Result<darkroom::FrameFile> file = darkroom::read_frame(files_[number], desc_.options);
+    if (!file) return failure(std::move(file));
+    auto out = std::make_shared<Decoded>();
+    out->number = number;
+    out->file = std::move(*file);
+    out->lights = take_lights(out->file);
+    out->input = develop_input(out->file, out->lights);
+    const long long told = darkroom::frame_number(files_[number]).value_or(static_cast<long long>(number));
+    if (!out->file.frame_index) out->input.frame_index = static_cast<std::uint64_t>(std::max(0LL, told));
+    if (desc_.frames_per_second) {
+        out->input.time = static_cast<double>(out->input.frame_index) / *desc_.frames_per_second;
+        out->input.delta_time = 1 / *desc_.frames_per_second;
+    }
+    return out;
+}
+
+std::shared_ptr<FrameSource::Decoded> FrameSource::find(std::size_t number) const {
+    const auto found = std::ranges::find(kept_, number, [](const auto& kept) { return kept->number; });
+    return found == kept_.end() ? nullptr : *found;
+}
+
+// What is wanted, then what comes after it while there is nothing else to do.
+void FrameSource::work() {
+    std::unique_lock lock(mutex_);
+    while (!is_ending_) {
+        const std::size_t after = (wanted_ + 1) % files_.size();
+        const bool is_missing = find(wanted_) == nullptr && failed_ != wanted_;
+        if (!is_missing && (find(after) != nullptr || failed_ == after)) {
+            changed_.wait(lock);
+            continue;
+        }
+        const std::size_t number = is_missing ? wanted_ : after;
+        lock.unlock();
+        Result<std::shared_ptr<Decoded>> made = decode(number);
+        lock.lock();
+        if (made) {
+            kept_.push_front(std::move(*made));
+            if (kept_.size() > most_kept) kept_.pop_back();
+        } else {
+            failed_ = number;
+            warnings_.push_back(made.error().text);
+        }
+        changed_.notify_all();
+    }
+}
+
+std::optional<VkExtent2D> FrameSource::extent() const { return shown_->input.extent; }
+
+std::vector<std::string> FrameSource::take_warnings() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(warnings_, {});
+}
+
+bool FrameSource::is_up_to_date() const {
+    const std::lock_guard lock(mutex_);
+    return shown_->number == wanted_ || failed_ == wanted_;
+}
+
+void FrameSource::wait() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return find(wanted_) != nullptr || failed_ == wanted_; });
+}
+
+bool FrameSource::must_wait(const LiveMoment& moment, VkExtent2D) const {
+    const std::lock_guard lock(mutex_);
+    return is_new_ || (moment.number != shown_->number && find(moment.number) != nullptr);
+}
+
+Result<> FrameSource::prepare(const LiveMoment& moment, VkExtent2D) {
+    bool is_another = is_new_;
+    {
+        const std::lock_guard lock(mutex_);
+        const std::size_t number = std::min(moment.number, files_.size() - 1);
+        if (wanted_ != number) {
+            wanted_ = number;
+            changed_.notify_all();
+        }
+        const std::shared_ptr<Decoded> found = find(wanted_);
+        if (found != nullptr && found != shown_) {
+            is_cut_ = found->number != shown_->number + 1;
+            const auto [width, height] = shown_->input.extent;
+            if (found->input.extent.width != width || found->input.extent.height != height) upload_.reset();
+            shown_ = found;
+            is_another = true;
+        }
+    }
+    if (!is_another) return {};
+    is_new_ = true;
+    const darkroom::UploadLayers layers = darkroom::layers_of(shown_->input);
+    upload_.reset();
+    return upload_.prepare(device_.context(), shown_->input, layers);
+}
+
+// Images are left where every recording may find them, and leave them.
+Result<> FrameSource::record(VkCommandBuffer commands) {
+    frame_.camera.is_cut = false;
+    if (!std::exchange(is_new_, false)) return {};
+    const darkroom::gpu::Context& context = device_.context();
+    upload_.record(context, commands);
+    frame_ = upload_.frame(shown_->input);
+    frame_.camera.is_cut = is_cut_;
+    lights_.assign(frame_.lights.begin(), frame_.lights.end());
+    std::vector<VkImageMemoryBarrier2> changes;
+    const auto settle = [&](darkroom::ImageRef& image, VkImageAspectFlags aspect) {
+        if (!image.is_given()) return;
+        changes.push_back({.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                           .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                           .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                           .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                           .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                           .oldLayout = image.layout,
+                           .newLayout = image.final_layout,
+                           .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                           .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                           .image = image.image,
+                           .subresourceRange = {aspect, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS}});
+        image.layout = image.final_layout;
+    };
+    for (darkroom::ImageRef* const image : {&frame_.color, &frame_.depth, &frame_.normals, &frame_.velocity})
+        settle(*image, VK_IMAGE_ASPECT_COLOR_BIT);
+    for (darkroom::Light& light : lights_) settle(light.cascades, VK_IMAGE_ASPECT_DEPTH_BIT);
+    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                      .imageMemoryBarrierCount = static_cast<std::uint32_t>(changes.size()),
+                                      .pImageMemoryBarriers = changes.data()};
+    context.vk.CmdPipelineBarrier2(commands, &dependency);
+    frame_.lights = lights_;
+    return {};
+}
+
+darkroom::Frame FrameSource::frame() const { return frame_; }
+
+darkroom::CompileDesc FrameSource::compile_desc(VkExtent2D most) const {
+    darkroom::CompileDesc desc = darkroom::compile_desc_for(device_, shown_->input, {});
+    desc.max_extent = most;
+    return desc;
+}
+
+std::string FrameSource::shown_frame(std::size_t number) const {
+    return number < files_.size() ? darkroom::printable(files_[number].filename().string()) : std::string();
+}
+
+}  // namespace app

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Frames of files for a viewer: one, or a sequence to scrub through. Files are read and decoded on a thread; until the
+// one that is asked for is there, the one before stays.
+
+#include <condition_variable>
+#include <list>
+#include <mutex>
+#include <thread>
+
+#include "apps/darkroom/run/frames.hpp"
+#include "develop/upload.hpp"
+#include "image/frame/frame_file.hpp"
+#include "live_source.hpp"
+
+namespace app {
+
+class FrameSource final : public LiveSource {
+  public:
+    struct Desc {
+        darkroom::FrameOptions options;
+        std::optional<double> frames_per_second;
+    };
+    /// Reads the first frame. Errors are those of the file.
+    [[nodiscard]] static darkroom::Result<std::unique_ptr<FrameSource>> create(darkroom::Device& device,
+                                                                               std::vector<std::filesystem::path> files,
+                                                                               const Desc& desc);
+    ~FrameSource() override;
+
+    [[nodiscard]] std::optional<VkExtent2D> extent() const override;
+    [[nodiscard]] bool must_wait(const LiveMoment& moment, VkExtent2D extent) const override;
+    [[nodiscard]] darkroom::Result<> prepare(const LiveMoment& moment, VkExtent2D extent) override;
+    [[nodiscard]] darkroom::Result<> record(VkCommandBuffer commands) override;
+    [[nodiscard]] darkroom::Frame frame() const override;
+    [[nodiscard]] darkroom::CompileDesc compile_desc(VkExtent2D most) const override;
+    [[nodiscard]] std::size_t frames() const override { return files_.size() > 1 ? files_.size() : 0; }
+    [[nodiscard]] std::string shown_frame(std::size_t number) const override;
+    [[nodiscard]] std::vector<std::filesystem::path> files() const override { return files_; }
+    [[nodiscard]] std::vector<std::string> take_warnings() override;
+    /// Is the frame that was asked for last the one that is shown? For who waits for it.
+    [[nodiscard]] bool is_up_to_date() const;
+    /// Waits until it can be.
+    void wait();
+
+  private:
+    /// A frame in main memory.
+    struct Decoded {
+        std::size_t number = 0;
+        darkroom::FrameFile file;
+        std::vector<darkroom::ReferenceLight> lights;
+        darkroom::DevelopInput input;  ///< refers to both
+    };
+    FrameSource(darkroom::Device& device, std::vector<std::filesystem::path> files, const Desc& desc);
+    [[nodiscard]] darkroom::Result<std::shared_ptr<Decoded>> decode(std::size_t number) const;
+    void work();
+    [[nodiscard]] std::shared_ptr<Decoded> find(std::size_t number) const;  ///< with the lock
+
+    darkroom::Device& device_;
+    std::vector<std::filesystem::path> files_;
+    Desc desc_;
+
+    /// Frames that are kept in main memory, the newest first.
+    static constexpr std::size_t most_kept = 4;
+    mutable std::mutex mutex_;  ///< guards the next six
+    std::condition_variable changed_;
+    std::list<std::shared_ptr<Decoded>> kept_;
+    std::size_t wanted_ = 0;
+    std::optional<std::size_t> failed_;
+    std::vector<std::string> warnings_;
+    bool is_ending_ = false;
+
+    std::shared_ptr<Decoded> shown_;
+    bool is_new_ = true;  ///< it is still to be uploaded
+    bool is_cut_ = true;
+    darkroom::FrameUpload upload_;
+    darkroom::Frame frame_;  ///< of what was uploaded last
+    std::vector<darkroom::Light> lights_;
+    std::jthread thread_;
+};
+
+}  // namespace app

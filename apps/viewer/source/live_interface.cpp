@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "live_interface.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "apps/darkroom/run/ui_source.hpp"
+#include "gpu/device/context.hpp"
+#include "image/picture/ui_image.hpp"
+
+namespace app {
+
+namespace gpu = darkroom::gpu;
+using darkroom::Result;
+
+LiveInterface::LiveInterface(darkroom::Device& device, bool is_headless, std::uint32_t slots, darkroom::LogSink print)
+    : device_(device), is_headless_(is_headless), print_(std::move(print)), staging_(slots) {}
+
+Result<> LiveInterface::start(const darkroom::Look& look, const Timeline& timeline, darkroom::Composer& composer) {
+    controllers_.reset();
+    document_.reset();
+    shown_.reset();
+    uploaded_.reset();
+    inertia_.reset();
+    failed_.clear();
+    ui_ = look.ui.value_or(darkroom::LookUi{});
+    events_ = timeline.game();
+    composer_ = &composer;
+    console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print_});
+    if (std::filesystem::path(ui_.document).extension() == ".svg") {
+        auto loaded = darkroom::HudDocument::load(ui_.document, {.is_headless = is_headless_});
+        if (!loaded) return failure(std::move(loaded));
+        document_ = std::move(*loaded);
+    }
+    if (ui_.controllers.empty()) return {};
+    auto made = darkroom::Controllers::create(*console_, {.print = print_});
+    if (!made) return failure(std::move(made));
+    controllers_.emplace(std::move(*made));
+    for (const std::string& file : ui_.controllers)
+        if (Result<> done = controllers_->load(file); !done) return done;
+    return {};
+}
+
+Result<> LiveInterface::advance(double time, const HeadMotion& motion) {
+    if (composer_ == nullptr || (!is_given() && !controllers_)) return {};
+    game_ = ui_.game;
+    for (const GameEvent& event : events_)
+        if (event.time <= time)
+            for (const auto& [name, value] : event.values) game_.insert_or_assign(name, value);
+    // Its degrees grow to the right, a camera's to the left.
+    const darkroom::Vec2 offset =
+        inertia_.step(motion.delta_time, -motion.yaw, motion.is_on_ground, motion.velocity_up);
+    if (Result<> done = move_interface(*composer_, offset); !done) return done;
+    if (controllers_) controllers_->frame({.time = time, .game = &game_});
+    if (document_ != nullptr) {
+        for (const auto& [name, value] : game_) document_->set(name, hud_value(value));
+        if (!document_->error().empty()) return darkroom::user_error(document_->error());
+    }
+    return failed_.empty() ? Result<>() : darkroom::user_error(failed_);
+}
+
+void LiveInterface::reload_changed() {
+    if (controllers_) controllers_->reload_changed();
+}
+
+bool LiveInterface::must_wait(VkExtent2D extent) const {
+    return image_.handle != VK_NULL_HANDLE &&
+           (image_.info.extent.width != extent.width || image_.info.extent.height != extent.height);
+}
+
+Result<LiveInterface::Bytes> LiveInterface::picture(VkExtent2D& extent) {
+    if (document_ != nullptr) {
+        const auto drawn = document_->picture(extent.width, extent.height);
+        if (drawn == nullptr) return Bytes();
+        extent = {drawn->width, drawn->height};
+        return Bytes(drawn, &drawn->rgba);
+    }
+    if (shown_ != nullptr && shown_extent_.width == extent.width && shown_extent_.height == extent.height)
+        return shown_;
+    auto made = darkroom::read_ui_image(ui_.document, extent.width, extent.height);
+    if (!made) return failure(std::move(made));
+    shown_extent_ = extent;
+    return shown_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(*made));
+}
+
+Result<> LiveInterface::resize(VkExtent2D extent) {
+    if (image_.handle != VK_NULL_HANDLE && !must_wait(extent)) return {};
+    Result<gpu::Image> made =
+        gpu::Image::create(device_.context(), {.name = "interface",
+                                               .format = image_format,
+                                               .extent = {extent.width, extent.height, 1},
+                                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+    if (!made) return failure(std::move(made));
+    image_ = std::move(*made);
+    for (gpu::Buffer& buffer : staging_) {
+        Result<gpu::Buffer> memory =
+            gpu::Buffer::create(device_.context(), VkDeviceSize{4} * extent.width * extent.height,
+                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "interface");
+        if (!memory) return failure(std::move(memory));
+        buffer = std::move(*memory);
+    }
+    layout_ = VK_IMAGE_LAYOUT_UNDEFINED;
+    uploaded_.reset();
+    return {};
+}
+
+Result<darkroom::ImageRef> LiveInterface::record(VkCommandBuffer commands, std::uint32_t slot, VkExtent2D extent) {
+    if (Result<> done = resize(extent); !done) return failure(std::move(done));
+    VkExtent2D drawn = extent;
+    const Result<Bytes> read = picture(drawn);
+    if (!read) failed_ = read.error().text;
+    const Bytes bytes = read ? *read : nullptr;
+    const gpu::Context& context = device_.context();
+    // A drawing of another size is of before a resize: the new one is under way.
+    const bool fits = bytes != nullptr && drawn.width == extent.width && drawn.height == extent.height;
+    const bool is_new = fits ? bytes != uploaded_ : layout_ == VK_IMAGE_LAYOUT_UNDEFINED;
+    if (is_new) {
+        gpu::transition(context, commands, image_, layout_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        if (fits) {
+            std::memcpy(staging_[slot].memory.mapped, bytes->data(), bytes->size());
+            const VkBufferImageCopy whole{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                          .imageExtent = {extent.width, extent.height, 1}};
+            context.vk.CmdCopyBufferToImage(commands, staging_[slot].handle, image_.handle,
+                                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole);
+            uploaded_ = bytes;
+        } else {
+            const VkClearColorValue nothing{};
+            const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+            context.vk.CmdClearColorImage(commands, image_.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &nothing, 1,
+                                          &whole);
+        }
+        layout_ = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        gpu::transition(context, commands, image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout_);
+    }
+    return darkroom::ImageRef{.image = image_.handle,
+                              .view = image_.mip_views[0],
+                              .format = image_format,
+                              .extent = extent,
+                              .layout = layout_,
+                              .final_layout = layout_};
+}
+
+}  // namespace app

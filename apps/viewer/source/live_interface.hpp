@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The interface over a viewer's picture: its document, the game that it shows, inertia and controllers, frame by frame.
+
+#include <darkroom/controllers.hpp>
+#include <darkroom/hud_inertia.hpp>
+#include <darkroom/look.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/darkroom/run/timeline.hpp"
+#include "gpu/resource/resources.hpp"
+#include "hud/hud_document.hpp"
+
+namespace app {
+
+/// Of who wears it.
+struct HeadMotion {
+    double delta_time = 0, yaw = 0, velocity_up = 0;
+    bool is_on_ground = true;
+};
+
+class LiveInterface {
+  public:
+    /// `is_headless`: the document is drawn before it is shown, so that frames can be repeated. `print`: of scripts.
+    LiveInterface(darkroom::Device& device, bool is_headless, std::uint32_t slots, darkroom::LogSink print);
+
+    /// The interface of this look, over this Composer, which outlives it. Errors are those of its files; what was there
+    /// before is gone.
+    [[nodiscard]] darkroom::Result<> start(const darkroom::Look& look, const Timeline& timeline,
+                                           darkroom::Composer& composer);
+    /// Before a frame: what the game says, one call of each controller, the offset. An error is why the picture is not
+    /// that of its files; what was there before stays.
+    [[nodiscard]] darkroom::Result<> advance(double time, const HeadMotion& motion);
+    /// What the game says at first, from now on.
+    void set_game(const darkroom::GameTable& game) { ui_.game = game; }
+    /// Reads scripts again that have changed. Documents do so by themselves.
+    void reload_changed();
+    /// Brings its image up to date. Where must_wait() says so, no frame is unfinished. What Frame::ui takes.
+    [[nodiscard]] darkroom::Result<darkroom::ImageRef> record(VkCommandBuffer commands, std::uint32_t slot,
+                                                              VkExtent2D extent);
+    [[nodiscard]] bool must_wait(VkExtent2D extent) const;
+    [[nodiscard]] bool is_given() const { return !ui_.document.empty(); }
+    /// UNDEFINED: there is none.
+    [[nodiscard]] VkFormat format() const { return is_given() ? image_format : VK_FORMAT_UNDEFINED; }
+    [[nodiscard]] darkroom::Console* console() { return console_.get(); }
+
+  private:
+    static constexpr VkFormat image_format = VK_FORMAT_R8G8B8A8_UNORM;
+    using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
+    [[nodiscard]] darkroom::Result<Bytes> picture(VkExtent2D& extent);
+    [[nodiscard]] darkroom::Result<> resize(VkExtent2D extent);
+
+    darkroom::Device& device_;
+    bool is_headless_;
+    darkroom::LogSink print_;
+    darkroom::LookUi ui_;
+    std::vector<GameEvent> events_;
+    darkroom::GameTable game_;
+    darkroom::Composer* composer_ = nullptr;
+    std::unique_ptr<darkroom::Console> console_;
+    std::optional<darkroom::Controllers> controllers_;
+    std::unique_ptr<darkroom::HudDocument> document_;
+    darkroom::HudInertia inertia_;
+    std::string failed_;  ///< why its picture could not be read
+
+    Bytes shown_, uploaded_;  ///< of a file; on the device
+    VkExtent2D shown_extent_{};
+    darkroom::gpu::Image image_;
+    std::vector<darkroom::gpu::Buffer> staging_;  ///< one a slot
+    VkImageLayout layout_ = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
+}  // namespace app

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "look_view.hpp"
+
+#include <algorithm>
+
+#include "gpu/device/context.hpp"
+
+namespace app {
+
+using darkroom::CompileDesc;
+using darkroom::Result;
+
+namespace {
+
+constexpr VkFormat picture_format = VK_FORMAT_R8G8B8A8_UNORM, watched_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr std::uint32_t watch_id = 1;
+
+VkExtent2D extent_of(const darkroom::PlanImage& image, std::uint32_t mip_level) {
+    return {std::max(image.extent.width >> mip_level, 1U), std::max(image.extent.height >> mip_level, 1U)};
+}
+
+/// After so many frames of one size the plan is made for it: it takes the least memory, and gives the same bits as a
+/// picture that is made once.
+constexpr std::uint32_t frames_to_settle = 20;
+
+VkExtent2D most_of(VkExtent2D a, VkExtent2D b) { return {std::max(a.width, b.width), std::max(a.height, b.height)}; }
+VkExtent2D least_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
+bool is_equal(VkExtent2D a, VkExtent2D b) { return a.width == b.width && a.height == b.height; }
+
+bool is_same(const CompileDesc& a, const CompileDesc& b) {
+    return a.color == b.color && a.depth == b.depth && a.is_depth_planar == b.is_depth_planar &&
+           a.is_velocity_plain == b.is_velocity_plain && a.normals == b.normals && a.velocity == b.velocity &&
+           a.ui == b.ui && a.has_shadows == b.has_shadows && a.watches == b.watches;
+}
+
+}  // namespace
+
+LookView::LookView(darkroom::Device& device, Desc desc)
+    : device_(device),
+      desc_(std::move(desc)),
+      composer_(device, {.frames_in_flight = desc_.frames_in_flight, .has_timers = true}) {
+    shown_.entries.clear();
+}
+
+Result<> LookView::show(const darkroom::Look& look) {
+    const Result<darkroom::Followed> followed =
+        darkroom::follow(shown_, look, composer_, {.keeps_what_is_off = true, .keeps = desc_.keeps});
+    if (!followed) return failure(followed.error());
+    shown_ = look;
+    return followed->needs_compile && is_compiled_ ? compile(compiled_) : Result<>();
+}
+
+Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui) {
+    CompileDesc wanted = source.compile_desc({});
+    // A source that was read again knows its formats when it is prepared.
+    if (wanted.color.format == VK_FORMAT_UNDEFINED) return {};
+    wanted.kernels = desc_.kernels;
+    wanted.fuse = desc_.fuse;
+    wanted.target.usage |=
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if (ui != VK_FORMAT_UNDEFINED) wanted.ui = {ui, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
+    wanted.watches = watches_;
+    const VkExtent2D had = compiled_.max_extent;
+    const bool fits = extent.width <= had.width && extent.height <= had.height;
+    frames_alike_ = is_equal(extent, last_extent_) ? frames_alike_ + 1 : 0;
+    last_extent_ = extent;
+    const bool is_settled = is_equal(extent, had) || (fits && frames_alike_ < frames_to_settle);
+    if (is_compiled_ && is_settled && is_same(wanted, compiled_)) return {};
+    // While sizes come and go a plan only grows.
+    wanted.max_extent = frames_alike_ < frames_to_settle ? most_of(extent, had) : extent;
+    return compile(wanted);
+}
+
+Result<> LookView::compile(const CompileDesc& desc) {
+    compiled_ = desc;
+    if (is_compiled_) {
+        const VkExtent2D asked = desc.max_extent;
+        least_pending_ = composer_.pending().is_pending ? least_of(least_pending_, asked) : asked;
+        return composer_.compile_later(desc);
+    }
+    const Result<darkroom::Plan> plan = composer_.compile(desc);
+    if (!plan) return failure(plan.error());
+    is_compiled_ = true;
+    return {};
+}
+
+// A plan that is on its way may be taken by the very next record.
+VkExtent2D LookView::most() const {
+    const darkroom::Plan* const plan = composer_.current_plan();
+    if (plan == nullptr) return {};
+    return composer_.pending().is_pending ? least_of(plan->extent, least_pending_) : plan->extent;
+}
+
+bool LookView::must_wait(VkExtent2D extent) const {
+    return picture_.handle != VK_NULL_HANDLE &&
+           (picture_.info.extent.width != extent.width || picture_.info.extent.height != extent.height);
+}
+
+Result<> LookView::resize(VkExtent2D extent) {
+    if (picture_.handle != VK_NULL_HANDLE && !must_wait(extent)) return {};
+    Result<darkroom::gpu::Image> made =
+        darkroom::gpu::Image::create(device_.context(), {.name = "picture",
+                                                         .format = picture_format,
+                                                         .extent = {extent.width, extent.height, 1},
+                                                         .usage = compiled_.target.usage});
+    if (!made) return failure(std::move(made));
+    picture_ = std::move(*made);
+    is_drawn_ = false;
+    return {};
+}
+
+Result<> LookView::record(VkCommandBuffer commands, darkroom::Frame frame) {
+    frame.target = reference();
+    frame.target.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    frame.target.final_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    frame.target.final_stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    frame.target.final_access = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+    darkroom::Watched watched{.id = watch_id, .target = frame.target};
+    if (watched_.handle != VK_NULL_HANDLE) {
+        watched.target.image = watched_.handle;
+        watched.target.view = watched_.mip_views[0];
+        watched.target.format = watched_format;
+        watched.target.extent = {watched_.info.extent.width, watched_.info.extent.height};
+        frame.watched = {&watched, 1};
+    }
+    Result<> done = composer_.record(commands, frame);
+    is_drawn_ = is_drawn_ || done;
+    return done;
+}
+
+bool LookView::must_wait_to_watch(const darkroom::PlanImage* image, std::uint32_t mip_level) const {
+    if (watched_.handle == VK_NULL_HANDLE) return false;
+    return image == nullptr ||
+           !is_equal(extent_of(*image, mip_level), {watched_.info.extent.width, watched_.info.extent.height});
+}
+
+Result<> LookView::watch(const darkroom::PlanImage* image, std::uint32_t mip_level) {
+    watches_.clear();
+    if (image == nullptr) {
+        watched_ = {};
+        return {};
+    }
+    const VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    watches_.push_back(
+        {.id = watch_id, .image = image->name, .mip_level = mip_level, .target = {watched_format, usage}});
+    if (watched_.handle != VK_NULL_HANDLE && !must_wait_to_watch(image, mip_level)) return {};
+    const VkExtent2D extent = extent_of(*image, mip_level);
+    Result<darkroom::gpu::Image> made = darkroom::gpu::Image::create(
+        device_.context(),
+        {.name = "watched", .format = watched_format, .extent = {extent.width, extent.height, 1}, .usage = usage});
+    if (!made) return failure(std::move(made));
+    watched_ = std::move(*made);
+    return {};
+}
+
+darkroom::WatchState LookView::watch_state() const { return composer_.watch_state(watch_id); }
+
+darkroom::ImageRef LookView::watched() const {
+    const darkroom::WatchState state = watch_state();
+    const bool is_shown = state == darkroom::WatchState::Shown || state == darkroom::WatchState::InputShown;
+    if (!is_shown || watched_.handle == VK_NULL_HANDLE) return {};
+    darkroom::ImageRef out = reference();
+    out.image = watched_.handle;
+    out.view = watched_.mip_views[0];
+    out.format = watched_format;
+    out.extent = {watched_.info.extent.width, watched_.info.extent.height};
+    return out;
+}
+
+void LookView::copy(VkCommandBuffer commands, const darkroom::ImageRef& from) {
+    change_layout(commands, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    const VkImageCopy whole{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                            .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                            .extent = {std::min(from.extent.width, picture_.info.extent.width),
+                                       std::min(from.extent.height, picture_.info.extent.height), 1}};
+    device_.context().vk.CmdCopyImage(commands, from.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture_.handle,
+                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole);
+    change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    is_drawn_ = true;
+}
+
+void LookView::copy_to(VkCommandBuffer commands, const darkroom::gpu::Image& image) const {
+    const darkroom::gpu::Context& context = device_.context();
+    const auto end_of = [](const darkroom::gpu::Image& of) {
+        return VkOffset3D{static_cast<std::int32_t>(of.info.extent.width),
+                          static_cast<std::int32_t>(of.info.extent.height), 1};
+    };
+    const VkImageBlit whole{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                            .srcOffsets = {{}, end_of(picture_)},
+                            .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                            .dstOffsets = {{}, end_of(image)}};
+    darkroom::gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_UNDEFINED,
+                              VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    change_layout(commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    context.vk.CmdBlitImage(commands, picture_.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image.handle,
+                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole, VK_FILTER_LINEAR);
+    change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+}
+
+void LookView::change_layout(VkCommandBuffer commands, VkImageLayout from, VkImageLayout to) const {
+    darkroom::gpu::transition(device_.context(), commands, picture_, from, to);
+}
+
+darkroom::ImageRef LookView::picture() const { return is_drawn_ ? reference() : darkroom::ImageRef{}; }
+
+darkroom::ImageRef LookView::reference() const {
+    return {.image = picture_.handle,
+            .view = picture_.mip_views.empty() ? VK_NULL_HANDLE : picture_.mip_views[0],
+            .format = picture_format,
+            .extent = {picture_.info.extent.width, picture_.info.extent.height},
+            .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+            .last_stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+            .last_access = VK_ACCESS_2_MEMORY_READ_BIT};
+}
+
+std::string LookView::error() const {
+    const darkroom::PendingCompile pending = composer_.pending();
+    return pending.error ? pending.error->text : std::string();
+}
+
+}  // namespace app

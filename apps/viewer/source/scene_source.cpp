@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "scene_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/darkroom/run/frames.hpp"
+#include "core/text/param_text.hpp"
+#include "develop/developer.hpp"
+
+namespace app {
+
+namespace render = darkroom::render;
+namespace scene = darkroom::scene;
+using darkroom::Result;
+
+darkroom::Frame as_reusable(darkroom::Frame frame) {
+    for (darkroom::ImageRef* const image : {&frame.color, &frame.depth, &frame.normals, &frame.velocity, &frame.ui})
+        image->final_layout = image->layout;
+    return frame;
+}
+
+SceneSource::SceneSource(darkroom::Device& device, std::filesystem::path file, const Desc& desc)
+    : device_(device), file_(std::move(file)), desc_(desc) {}
+
+Result<std::unique_ptr<SceneSource>> SceneSource::create(darkroom::Device& device, const std::filesystem::path& file,
+                                                         const Desc& desc) {
+    std::unique_ptr<SceneSource> out(new SceneSource(device, file, desc));
+    if (Result<> done = out->read(); !done) return failure(std::move(done));
+    return out;
+}
+
+Result<> SceneSource::read() {
+    Result<scene::Scene> read = scene::read_scene(file_, {.is_strict = desc_.is_strict, .warnings = &warnings_});
+    if (!read) return failure(std::move(read));
+    scene_ = std::move(*read);
+    assets_ = scene::load_assets(scene_);
+    if (scene::is_model_path(file_) && !assets_.model_errors.empty()) return failure(assets_.model_errors.front());
+    if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;
+    std::ranges::copy(assets_.warnings, std::back_inserter(warnings_));
+    render::RenderDesc desc = desc_.render;
+    desc.output = render::Output::Hdr;
+    desc.draw = {};  // switches come with every frame
+    Result<render::Renderer> made = render::Renderer::create(device_, scene_, assets_, desc);
+    if (!made) return failure(std::move(made));
+    linear_.emplace(std::move(*made));
+    return linear_->warm_up();
+}
+
+bool SceneSource::must_wait(const LiveMoment& moment, VkExtent2D extent) const {
+    const bool is_display = moment.is_post_off || moment.draw.debug != render::DebugView::None;
+    const std::optional<render::Renderer>& used = is_display ? display_ : linear_;
+    return used && (used->desc().extent.width != extent.width || used->desc().extent.height != extent.height);
+}
+
+Result<> SceneSource::prepare(const LiveMoment& moment, VkExtent2D extent) {
+    is_display_ = moment.is_post_off || moment.draw.debug != render::DebugView::None;
+    snapshot_ = scene::snapshot(scene_, assets_,
+                                {.time = moment.time,
+                                 .previous_time = moment.previous_time,
+                                 .aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height),
+                                 .seed = desc_.seed,
+                                 .orbit = moment.orbit,
+                                 .previous_orbit = moment.previous_orbit});
+    if (!is_prepared_) std::ranges::copy(snapshot_.warnings, std::back_inserter(warnings_));
+    // compile_desc() asks the linear one, even before it is shown.
+    if (!std::exchange(is_prepared_, true) && is_display_)
+        if (Result<> done = use(false, {.draw = {.has_shadows = moment.draw.has_shadows}}, extent); !done) return done;
+    return use(is_display_, moment, extent);
+}
+
+Result<> SceneSource::use(bool is_display, const LiveMoment& moment, VkExtent2D extent) {
+    if (is_display && !display_) {
+        render::RenderDesc desc = desc_.render;
+        desc.output = render::Output::Display;
+        desc.draw = {};
+        desc.extent = extent;
+        Result<render::Renderer> made = linear_->sharing(desc);
+        if (!made) return failure(std::move(made));
+        display_.emplace(std::move(*made));
+        if (Result<> done = display_->warm_up(); !done) return done;
+    }
+    render::Renderer& used = is_display ? *display_ : *linear_;
+    const auto [width, height] = used.desc().extent;
+    if (width != extent.width || height != extent.height)
+        if (Result<> done = used.resize(extent); !done) return done;
+    render::DrawOptions draw = moment.draw;
+    draw.has_grid = draw.has_grid && scene_.has_grid;
+    if (Result<> done = used.set(draw); !done) return done;
+    return used.prepare(snapshot_);
+}
+
+Result<> SceneSource::record(VkCommandBuffer commands) { return (is_display_ ? *display_ : *linear_).record(commands); }
+
+darkroom::Frame SceneSource::frame() const {
+    darkroom::Frame frame = as_reusable(linear_->frame());
+    frame.camera = as_stored(frame.camera);
+    return frame;
+}
+
+darkroom::CompileDesc SceneSource::compile_desc(VkExtent2D most) const {
+    darkroom::CompileDesc desc = darkroom::compile_desc_for(
+        device_,
+        darkroom::DeviceFrame{.frame = linear_->frame(),
+                              .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+                              .layer_usage = linear_->layer_usage()},
+        {});
+    desc.max_extent = most;
+    return desc;
+}
+
+std::optional<darkroom::ImageRef> SceneSource::display_picture() const {
+    return is_display_ ? std::optional(display_->picture()) : std::nullopt;
+}
+
+std::vector<std::filesystem::path> SceneSource::files() const {
+    std::vector<std::filesystem::path> out{file_};
+    std::ranges::copy(assets_.files, std::back_inserter(out));
+    return out;
+}
+
+}  // namespace app

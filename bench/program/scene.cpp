@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <darkroom/look.hpp>
+#include <filesystem>
+#include <optional>
+
+#include "develop/developer.hpp"
+#include "render/renderer.hpp"
+#include "scene/assets.hpp"
+#include "scene/pose/snapshot.hpp"
+#include "scene/scene.hpp"
+
+namespace darkroom::bench {
+
+namespace {
+
+constexpr VkExtent2D scene_extent{1280, 720};
+
+/// A scene that is ready to be drawn, at a moment.
+struct Drawing {
+    scene::Scene scene;
+    scene::Assets assets;
+    scene::Snapshot snapshot;
+    std::optional<render::Renderer> renderer;
+};
+
+Result<std::shared_ptr<Drawing>> draw(Bed& bed, scene::Scene scene) {
+    const auto out = std::make_shared<Drawing>();
+    out->scene = std::move(scene);
+    out->assets = scene::load_assets(out->scene);
+    constexpr float aspect = static_cast<float>(scene_extent.width) / static_cast<float>(scene_extent.height);
+    out->snapshot = scene::snapshot(out->scene, out->assets, {.aspect = aspect});
+    auto renderer = render::Renderer::create(bed.device, out->scene, out->assets,
+                                             {.extent = scene_extent, .draw = {.has_grid = out->scene.has_grid}});
+    if (!renderer) return failure(std::move(renderer));
+    out->renderer.emplace(std::move(*renderer));
+    if (auto done = out->renderer->prepare(out->snapshot); !done) return failure(std::move(done));
+    return out;
+}
+
+Row drawing_row(const std::string& name, const std::shared_ptr<Drawing>& drawing) {
+    return {.name = name,
+            .record = [drawing](VkCommandBuffer commands) { return drawing->renderer->record(commands); }};
+}
+
+std::filesystem::path dungeon_path() { return DARKROOM_SOURCE_FOLDER "/scenes/dungeon.scene.toml"; }
+
+/// Nothing where the file is not on this machine.
+Result<std::shared_ptr<Drawing>> draw_dungeon(Bed& bed, const std::string& row) {
+    std::error_code error;
+    if (!std::filesystem::exists(dungeon_path(), error)) {
+        fmt::print(stderr, "{}: left out, {} is not there\n", row, dungeon_path().string());
+        return std::shared_ptr<Drawing>();
+    }
+    auto scene = scene::read_scene(dungeon_path());
+    if (!scene) return failure(std::move(scene));
+    return draw(bed, std::move(*scene));
+}
+
+Result<Row> dungeon_scene_row(Bed& bed, const std::string& name) {
+    const auto drawing = draw_dungeon(bed, name);
+    if (!drawing) return failure(drawing.error());
+    return *drawing ? drawing_row(name, *drawing) : Row{.name = name};
+}
+
+/// The look of the scene on the frame of the scene, which is drawn once.
+struct Post {
+    std::shared_ptr<Drawing> drawing;
+    std::unique_ptr<Composer> composer;
+    gpu::Image target;
+    Frame frame;
+};
+
+Result<Row> dungeon_post_row(Bed& bed, const std::string& name) {
+    const auto drawing = draw_dungeon(bed, name);
+    if (!drawing) return failure(drawing.error());
+    if (!*drawing) return Row{.name = name};
+    auto look = read_look(dungeon_path(), {.is_scene = true});
+    if (!look) return failure(std::move(look));
+    const auto post = std::make_shared<Post>();
+    post->drawing = *drawing;
+    post->composer = std::make_unique<Composer>(bed.device, ComposerDesc{.frames_in_flight = 1});
+    if (auto done = apply(*look, *post->composer); !done) return failure(std::move(done));
+    post->frame = post->drawing->renderer->frame();
+    for (ImageRef* const image : {&post->frame.color, &post->frame.depth, &post->frame.normals, &post->frame.velocity})
+        image->final_layout = image->layout;
+    const CompileDesc desc =
+        compile_desc_for(bed.device,
+                         DeviceFrame{.frame = post->frame,
+                                     .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
+                                     .layer_usage = post->drawing->renderer->layer_usage()},
+                         {});
+    if (auto plan = post->composer->compile(desc); !plan) return failure(std::move(plan));
+    post->composer->wait_for_kernels();
+    auto target = gpu::Image::create(bed.context, {.name = "target",
+                                                   .format = desc.target.format,
+                                                   .extent = {scene_extent.width, scene_extent.height, 1},
+                                                   .usage = desc.target.usage});
+    if (!target) return failure(std::move(target));
+    post->target = std::move(*target);
+    post->frame.target = {.image = post->target.handle,
+                          .view = post->target.mip_views[0],
+                          .format = desc.target.format,
+                          .extent = scene_extent,
+                          .last_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+    Result<> recorded{};
+    const Result<> drawn = gpu::submit_and_wait(bed.context, "drawing the dungeon", [&](VkCommandBuffer commands) {
+        recorded = post->drawing->renderer->record(commands);
+    });
+    if (!recorded || !drawn) return failure(recorded ? drawn.error() : recorded.error());
+    return Row{.name = name,
+               .record = [post](VkCommandBuffer commands) { return post->composer->record(commands, post->frame); }};
+}
+
+/// A field of boxes of many sizes and colours, all of them before the camera.
+scene::Scene boxes() {
+    constexpr std::uint32_t side = 100;
+    scene::Scene out{.name = "10,000 boxes", .has_grid = false};
+    out.camera.is_given = true;
+    out.camera.position = {0, 30, 75};
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+        const auto x = static_cast<float>(i % side) - side / 2.0F, z = static_cast<float>(i / side) - side / 2.0F;
+        const float height = 0.3F + static_cast<float>(i * 7 % 13) / 6;
+        scene::Entity box{.name = fmt::format("box {}", i)};
+        box.bounds = scene::Box{.low = {x, 0, z}, .high = {x + 0.7F, height, z + 0.7F}};
+        box.material =
+            scene::Material{.color = scene::vec3(static_cast<float>(i % 5) / 5, static_cast<float>(i % 7) / 7, 0.5F),
+                            .roughness = 0.2F + static_cast<float>(i % 3) / 4};
+        out.entities.push_back(std::move(box));
+    }
+    return out;
+}
+
+Result<Row> boxes_row(Bed& bed, const std::string& name) {
+    const auto drawing = draw(bed, boxes());
+    if (!drawing) return failure(drawing.error());
+    return drawing_row(name, *drawing);
+}
+
+/// What a frame of them costs the CPU: the snapshot, culling, sorting, filling buffers.
+Result<Row> boxes_host_row(Bed& bed, const std::string& name) {
+    const auto drawing = draw(bed, boxes());
+    if (!drawing) return failure(drawing.error());
+    return Row{.name = name, .host = [drawing = *drawing] {
+                   const float aspect =
+                       static_cast<float>(scene_extent.width) / static_cast<float>(scene_extent.height);
+                   drawing->snapshot = scene::snapshot(drawing->scene, drawing->assets, {.aspect = aspect});
+                   // Succeeded before, with the same boxes.
+                   static_cast<void>(drawing->renderer->prepare(drawing->snapshot));
+               }};
+}
+
+}  // namespace
+
+std::vector<Recipe> scene_recipes() {
+    return {{std::string(dungeon_scene_name), dungeon_scene_row},
+            {std::string(dungeon_post_name), dungeon_post_row},
+            {"scene: 10,000 boxes", boxes_row},
+            {"scene: 10,000 boxes, snapshot and prepare", boxes_host_row}};
+}
+
+}  // namespace darkroom::bench

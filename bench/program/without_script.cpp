@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: MIT
+// In place of controllers.cpp where scripts are not built.
+#include "bench/chain/interface.hpp"
+
+namespace darkroom::bench {
+
+std::vector<Recipe> controller_recipes() { return {}; }
+
+}  // namespace darkroom::bench

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: MIT
+// Recording a chain. What it is made of is in chain_make.cpp.
+#include "compose/chain/chain.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "compose/chain/camera_jump.hpp"
+#include "compose/chain/frame_check.hpp"
+#include "core/assert.hpp"
+
+namespace darkroom::compose {
+
+using plan::FixedImage;
+using plan::HostImage;
+using plan::PassInput;
+using plan::ProgramPass;
+using plan::Shape;
+
+Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
+    if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
+    find_watched(frame);
+    const VkExtent2D extent = frame.color.used_region().extent;
+    const PassContext context{.frame_extent = extent,
+                              .output_extent = extent,
+                              .time = frame.time,
+                              .delta_time = frame.delta_time,
+                              .frame_index = frame.frame_index,
+                              .camera = &frame.camera,
+                              .lights = frame.lights};
+    slot_ = static_cast<std::uint32_t>(recordings_ % desc_.slots);
+    has_missing_kernel_ = false;
+    tables_.upload(commands, recordings_);
+    lit_.upload(commands, recordings_);
+    values_.evaluate(program_of(), desc_.compile, entries_, context, watched_);
+    note_watch_states();
+    write_frame_block(frame);
+    lend_images(frame);
+    prepare_histories(commands, frame);
+    schedule_->derive(values_.gates(), import_states_, physical_->histories(frame.view).recordings);
+
+    const bool is_timed = timers_.pool != VK_NULL_HANDLE;
+    if (is_timed) {
+        timed_[slot_].frame_index = frame.frame_index;
+        timed_[slot_].passes.clear();
+        timers_.begin(commands, slot_);
+        timers_.mark(commands, slot_, 0);
+    }
+    const std::span<const graph::Barrier> barriers = schedule_->barriers();
+    for (const graph::Schedule::Step& step : schedule_->steps()) {
+        physical_->record_barriers(commands, context_.vk, barriers.subspan(step.first_barrier, step.barrier_count),
+                                   frame.view);
+        record_pass(commands, declared_pass_[step.pass], frame, context);
+        if (is_timed) {
+            timed_[slot_].passes.push_back(declared_pass_[step.pass]);
+            timers_.mark(commands, slot_, static_cast<std::uint32_t>(timed_[slot_].passes.size()));
+        }
+    }
+    physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
+    physical_->end(frame.view);
+    ++recordings_;
+    is_abandonable_ = true;
+    if (has_missing_kernel_) worker_.wake();
+    return {};
+}
+
+bool Chain::abandon() {
+    if (!is_abandonable_) return false;
+    is_abandonable_ = false;
+    --recordings_;
+    tables_.take_back(recordings_);
+    lit_.take_back(recordings_);
+    physical_->histories(before_.view_index) = before_.view;
+    for (std::uint32_t i = 0; i < before_.states.size(); ++i)
+        if (graph::HistoryImages* const history = physical_->history(i, before_.view_index))
+            history->state = before_.states[i];
+    return true;
+}
+
+const ImageRef& Chain::image_of(const Frame& frame, HostImage which) const {
+    static const ImageRef none;
+    if (const std::int32_t watch = plan::watch_number(which); watch >= 0) {
+        const Watched* const watched = watched_[static_cast<std::size_t>(watch)];
+        return watched != nullptr ? watched->target : none;
+    }
+    if (plan::shadow_number(which) < 0) return host_image(frame, which);
+    const Light* const light = shadow_light(frame.lights, static_cast<std::uint32_t>(plan::shadow_number(which)));
+    return light != nullptr ? light->cascades : lit_.reference;
+}
+
+void Chain::write_frame_block(const Frame& frame) {
+    std::array<std::uint32_t, plan::frame_words> words;
+    // Shaders get time in a float, so it wraps after an hour of the 1/60 s steps that effects think in.
+    words[0] = std::bit_cast<std::uint32_t>(static_cast<float>(std::fmod(frame.time, 3600.0)));
+    words[1] = std::bit_cast<std::uint32_t>(static_cast<float>(frame.delta_time));
+    words[2] = static_cast<std::uint32_t>(frame.frame_index);
+    words[3] = frame.view;
+    const plan::CameraBlock camera = plan::camera_block(frame.camera);
+    std::memcpy(words.data() + 4, camera.data(), sizeof camera);
+    std::memcpy(blocks_.memory.mapped + slot_stride_ * slot_, words.data(), sizeof words);
+}
+
+void Chain::lend_images(const Frame& frame) {
+    for (std::size_t i = 0; i < program_of().imports.size(); ++i) {
+        if (!program_of().imports[i]) continue;
+        const ImageRef& image = image_of(frame, *program_of().imports[i]);
+        import_states_[i] = {.layout = image.layout,
+                             .stages = image.last_stages,
+                             .access = image.last_access,
+                             .final_layout = image.final_layout,
+                             .final_stages = image.final_stages,
+                             .final_access = image.final_access};
+        physical_->bind(static_cast<std::uint32_t>(i), {.handle = image.image,
+                                                        .view = image.view,
+                                                        .base_mip_level = image.mip_level,
+                                                        .base_array_layer = image.array_layer,
+                                                        .array_layers = image.layer_count});
+    }
+}
+
+void Chain::find_watched(const Frame& frame) {
+    std::ranges::fill(watched_, nullptr);
+    for (const Watched& watched : frame.watched)
+        if (const auto number = watch_with(desc_.compile, watched.id); number && watched.target.is_given())
+            watched_[*number] = &watched;
+}
+
+void Chain::note_watch_states() {
+    for (std::size_t i = 0; i < watched_.size(); ++i) {
+        const std::int32_t gate = program_of().watch_gates[i];
+        const auto entry = index_of(desc_.compile.watches[i].entry.id);
+        watch_states_[i] = gate < 0                                           ? WatchState::NotInPlan
+                           : watched_[i] == nullptr                           ? WatchState::NotGiven
+                           : !values_.gates()[static_cast<std::size_t>(gate)] ? WatchState::NotWritten
+                           : entry && !values_.is_on(*entry)                  ? WatchState::InputShown
+                                                                              : WatchState::Shown;
+    }
+}
+
+WatchState Chain::watch_state(std::uint32_t id) const {
+    const auto number = watch_with(desc_.compile, id);
+    return number ? watch_states_[*number] : WatchState::NotInPlan;
+}
+
+/// Of an image's region, the texels that lie where the part of the frame is that is wanted.
+gpu::Region Chain::watched_region(const gpu::Region& whole, const Watched& watched, VkExtent2D extent) const {
+    if (watched.region.extent.width == 0) return whole;
+    gpu::Region out = whole;
+    const auto cut = [](std::int32_t from, std::uint32_t length, std::uint32_t frame, std::uint32_t size,
+                        std::int32_t& offset, std::uint32_t& texels) {
+        const std::uint64_t first = std::uint64_t{static_cast<std::uint32_t>(from)} * size / frame;
+        const std::uint64_t last =
+            ((std::uint64_t{static_cast<std::uint32_t>(from)} + length) * size + frame - 1) / frame;
+        offset += static_cast<std::int32_t>(first);
+        texels = static_cast<std::uint32_t>(last - first);
+    };
+    const VkRect2D& region = watched.region;
+    cut(region.offset.x, region.extent.width, extent.width, whole.extent.width, out.offset.x, out.extent.width);
+    cut(region.offset.y, region.extent.height, extent.height, whole.extent.height, out.offset.y, out.extent.height);
+    return out;
+}
+
+/// Histories start from zero where nothing of the last frame of the view can be used, each by itself.
+void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
+    graph::HistoryView& view = physical_->histories(frame.view);
+    before_.view_index = frame.view;
+    before_.view = view;
+    const bool is_jump = view.recordings > 0 && is_camera_jump(view.camera, frame.camera.view);
+    const bool is_related = !frame.camera.is_cut && !is_jump && frame.delta_time > 0;
+    view.camera = frame.camera.view;
+    for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
+        graph::HistoryImages* const history = physical_->history(i, frame.view);
+        if (history == nullptr) continue;
+        before_.states[i] = history->state;
+        const std::uint32_t entry = program_of().history_entries[i];
+        const bool is_on = entry == plan::no_entry || values_.is_on(entry);
+        if (!is_related || (is_on && !history->state.was_on)) history->state.needs_reset = true;
+        history->state.was_on = is_on;
+    }
+    physical_->begin(commands, context_.vk, frame.color.used_region().extent, frame.view);
+    std::ranges::fill(has_history_, std::uint8_t{1});
+    for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
+        const std::uint32_t entry = program_of().history_entries[i];
+        const graph::HistoryImages* const history = physical_->history(i, frame.view);
+        if (entry != plan::no_entry && history != nullptr && history->state.was_reset) has_history_[entry] = 0;
+    }
+}
+
+gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
+                              VkExtent2D extent) const {
+    const graph::Slot& image = compiled_->slots()[slot];
+    if (image.kind == graph::Slot::Kind::Import) {
+        const HostImage which = *program_of().imports[image.import_index];
+        const ImageRef& host = image_of(frame, which);
+        const VkRect2D region = host.used_region();
+        return {.view = host.view,
+                .region = {region.offset, region.extent, host.extent},
+                .is_nearest = is_nearest_[slot] != 0,
+                .is_lent = true,
+                .sampler = plan::shadow_number(which) >= 0 ? context_.shadow_sampler : VK_NULL_HANDLE,
+                .layout = schedule_->read_layout(slot)};
+    }
+    if (image.kind == graph::Slot::Kind::Constant) {
+        const auto& fixed = program_of().fixed_images;
+        const auto found = std::ranges::find(fixed, image.import_index, &FixedImage::import_index);
+        return tables_.binding(static_cast<std::size_t>(found - fixed.begin()));
+    }
+    const std::uint32_t mip = std::min(mip_level, image.desc.mip_levels - 1);
+    return {.view = physical_->mip_view(slot, mip, frame.view),
+            .region = {{},
+                       graph::mip_extent(image.desc.size.of(extent), mip),
+                       graph::mip_extent(image.desc.size.of(desc_.compile.max_extent), mip)},
+            .is_nearest = is_nearest_[slot] != 0};
+}
+
+gpu::Binding Chain::bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const {
+    if (input.table != plan::no_table) return tables_.binding(input.table);
+    return bind_slot(schedule_->slot_of(input.version, input.instead), input.mip_level, frame, extent);
+}
+
+/// The values of the members of the pass's own block.
+std::span<const std::uint32_t> Chain::write_words(const ProgramPass& pass) {
+    std::size_t count = 0;
+    if (pass.is_fused && pass.finish == plan::Finish::OfFrame)
+        words_[count++] = static_cast<std::uint32_t>(values_.finish());
+    for (const plan::FusedStep& step : pass.steps) {
+        const plan::Entry& entry = *entries_[step.entry];
+        if (pass.is_fused) {
+            words_[count++] = values_.is_on(step.entry) ? 1 : 0;
+            words_[count++] = std::bit_cast<std::uint32_t>(values_.opacity(step.entry));
+            words_[count++] = static_cast<std::uint32_t>(entry.desc.blend);
+        } else if (!step.text->asks_parameters) {
+            continue;
+        }
+        const ParamTable& table = entry.info->parameters;
+        const std::uint32_t words = plan::parameter_words(table);
+        plan::write_parameters(table, {values_.words(step.entry), table.words()},
+                               std::span(words_).subspan(count, words));
+        count += words;
+    }
+    return std::span(words_).first(count);
+}
+
+const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& output,
+                                    std::span<const gpu::Binding> inputs) {
+    PassKernels& kernels = *desc_.program->kernels[pass];
+    last_shapes_[pass] = plan::shape_of(program_of().passes[pass], entries_, values_, output, inputs);
+    if (const gpu::Kernel* const kernel = kernels.find(last_shapes_[pass], recordings_, desc_.slots, worker_.garbage()))
+        return *kernel;
+    worker_.want(kernels, last_shapes_[pass]);
+    has_missing_kernel_ = true;
+    return kernels.complete();
+}
+
+/// The pass's set of this slot, written anew where a view changed. A host's view is always written: handles are given
+/// again, and one that is known may be another image now.
+VkDescriptorSet Chain::updated_set(std::uint32_t pass, const gpu::Kernel& kernel, std::span<const gpu::Binding> inputs,
+                                   const gpu::Binding& output) {
+    const Sets& sets = pass_sets_[pass];
+    const VkDescriptorSet set = sets_.sets[sets.first + slot_];
+    Written* const written = written_.data() + sets.first_written + std::size_t{slot_} * sets.images;
+    bool is_changed = false;
+    const auto note = [&](std::size_t at, const gpu::Binding& binding) {
+        const Written now{binding.view, binding.layout, binding.is_nearest};
+        is_changed |= binding.is_lent || written[at] != now;
+        written[at] = now;
+    };
+    for (std::size_t i = 0; i < inputs.size(); ++i) note(i, inputs[i]);
+    note(inputs.size(), output);
+    if (!is_changed) return set;
+    const VkDeviceSize start = slot_stride_ * slot_;
+    kernel.write_set({.set = set,
+                      .frame = {blocks_.handle, start, plan::frame_words * 4},
+                      .own = {blocks_.handle, start + block_at_[pass], gpu::own_block_size(kernel.spec())},
+                      .images = inputs,
+                      .outputs = {&output, 1}});
+    return set;
+}
+
+void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Frame& frame, const PassContext& context) {
+    const ProgramPass& pass = program_of().passes[index];
+    std::array<gpu::Binding, gpu::most_images> images;
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        images[i] = bind(pass.inputs[i], frame, context.frame_extent);
+        if (!pass.spec.images[i].loads_by.empty()) images[i].layout = VK_IMAGE_LAYOUT_GENERAL;
+    }
+    if (pass.watch) images[0].region = watched_region(images[0].region, *watched_[*pass.watch], context.frame_extent);
+    const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
+    const gpu::Binding output =
+        bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
+
+    const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
+    PassContext own = context;
+    own.output_extent = output.region.extent;
+    const auto fill = [&](ConstantsFunction constants, std::uint32_t entry, std::span<PassVector> out) {
+        if (constants == nullptr) return;
+        own.frame_extent = program_of().entry_sizes[entry].of(context.frame_extent);
+        own.has_history = has_history_[entry] != 0;
+        constants(values_.words(entry), own, out);
+    };
+    if (!pass.is_fused) fill(pass.constants, pass.entry(), custom);
+    for (const plan::FusedStep& step : pass.steps)
+        fill(step.constants, step.entry, custom.subspan(step.first_vector, step.custom_vectors));
+    gpu::write_own_block(
+        pass.spec, output.region, inputs, custom, write_words(pass),
+        {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index], gpu::own_block_size(pass.spec)});
+    const gpu::Kernel& kernel = kernel_of(index, output.region, inputs);
+    const VkDescriptorSet set = updated_set(index, kernel, inputs, output);
+    gpu::begin_label(context_, commands, pass.name.c_str());
+    kernel.record(commands, set, {&output, 1});
+    gpu::end_label(context_, commands);
+}
+
+RecordingTimes Chain::times() {
+    if (timers_.pool == VK_NULL_HANDLE) return {};
+    for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(desc_.slots, recordings_); ++back) {
+        const auto slot = static_cast<std::uint32_t>((recordings_ - back) % desc_.slots);
+        const Timed& timed = timed_[slot];
+        if (timers_.read(slot, static_cast<std::uint32_t>(timed.passes.size() + 1), milliseconds_) <
+            timed.passes.size())
+            continue;
+        times_.clear();
+        for (std::size_t i = 0; i < timed.passes.size(); ++i)
+            times_.push_back({program_of().passes[timed.passes[i]].name, milliseconds_[i]});
+        return {timed.frame_index, times_};
+    }
+    return {};
+}
+
+}  // namespace darkroom::compose

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// What a chain is made of, and the kernels made before frames ask for them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "compose/chain/chain.hpp"
+#include "core/thread/parallel.hpp"
+#include "gpu/resource/format_use.hpp"
+#include "gpu/resource/formats.hpp"
+
+namespace darkroom::compose {
+
+namespace {
+
+VkDeviceSize align(VkDeviceSize size, VkDeviceSize alignment) { return (size + alignment - 1) / alignment * alignment; }
+
+/// Calls `work(i)` for i in [0, count) on several threads; the first error wins.
+template <class Work>
+Result<> for_all(std::size_t count, std::size_t max_threads, const Work& work) {
+    std::mutex lock;
+    Result<> first{};
+    parallel_for(count, max_threads, [&](std::size_t i) {
+        auto ok = work(i);
+        const std::scoped_lock guard(lock);
+        if (!ok && first) first = failure(std::move(ok));
+    });
+    return first;
+}
+
+std::vector<const plan::Entry*> pointers_to(std::span<const plan::Entry> entries) {
+    std::vector<const plan::Entry*> out;
+    for (const plan::Entry& entry : entries) out.push_back(&entry);
+    return out;
+}
+
+}  // namespace
+
+Chain::Chain(gpu::Context& context, Worker& worker, ChainDesc desc)
+    : context_(context), worker_(worker), desc_(std::move(desc)) {
+    for (const auto& entry : desc_.entries) entries_.push_back(entry.get());
+}
+
+Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Worker& worker, graph::HistoryPool& histories,
+                                             ChainDesc desc, std::span<const plan::Entry> values) {
+    std::unique_ptr<Chain> chain(new Chain(context, worker, std::move(desc)));
+    const plan::Program& program = chain->program_of();
+    auto compiled = program.graph.compile(chain->desc_.compile.max_extent, graph::measure_on(context));
+    if (!compiled) return failure(std::move(compiled));
+    chain->compiled_.emplace(std::move(*compiled));
+    chain->schedule_.emplace(*chain->compiled_);
+    auto tables = Tables::create(context, program.fixed_images);
+    if (!tables) return failure(std::move(tables));
+    chain->tables_ = std::move(*tables);
+    const auto is_shadow_map = [](const auto& import) { return import && plan::shadow_number(*import) >= 0; };
+    if (std::ranges::any_of(program.imports, is_shadow_map)) {
+        auto lit = LitShadowMap::create(context);
+        if (!lit) return failure(std::move(lit));
+        chain->lit_ = std::move(*lit);
+    }
+    if (auto ok = chain->make_kernels(values); !ok) return failure(std::move(ok));
+    if (auto ok = chain->make_resources(histories); !ok) return failure(std::move(ok));
+    chain->plan_ = plan::describe_program(program, *chain->compiled_, chain->desc_.compile, pointers_to(values));
+    return chain;
+}
+
+void Chain::derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame) {
+    values_.evaluate(program_of(), desc_.compile, entries, context);
+    schedule_->derive(values_.gates(), import_states_, frame);
+}
+
+Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
+    const plan::Program& program = program_of();
+    const std::vector<const plan::Entry*> entries = pointers_to(values);
+    declared_pass_.assign(compiled_->passes().size(), 0);
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t i = 0; i < program.passes.size(); ++i) {
+        const std::uint32_t pass = compiled_->kept_pass_of({i});
+        if (pass == ~0u) continue;
+        declared_pass_[pass] = i;
+        kept.push_back(i);
+    }
+    values_ = plan::FrameValues(program, entries);
+    import_states_.resize(program.imports.size());
+    const VkExtent2D extent = desc_.compile.max_extent;
+    const Camera camera;
+    derive({.frame_extent = extent, .output_extent = extent, .camera = &camera}, entries, 0);
+    last_shapes_.resize(program.passes.size());
+    for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(i, entries);
+
+    // The complete kernel and the one of the expected shape, for every pass, unless this program has them.
+    std::vector<std::pair<std::uint32_t, bool>> missing;
+    for (const std::uint32_t i : kept) {
+        const PassKernels& kernels = *desc_.program->kernels[i];
+        if (!kernels.has_complete()) missing.emplace_back(i, true);
+        if (!kernels.was_built(last_shapes_[i])) missing.emplace_back(i, false);
+    }
+    return for_all(missing.size(), desc_.max_threads, [&](std::size_t i) -> Result<> {
+        const auto [pass, is_complete] = missing[i];
+        PassKernels& kernels = *desc_.program->kernels[pass];
+        return is_complete ? kernels.build_complete(*context_.kernels)
+                           : kernels.build(*context_.kernels, last_shapes_[pass]);
+    });
+}
+
+plan::Shape Chain::expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const {
+    const plan::Program& program = program_of();
+    return plan::expected_shape(program, *compiled_, *schedule_, values_, entries, program.passes[pass],
+                                desc_.compile.max_extent);
+}
+
+Result<> Chain::build_lean() {
+    const VkExtent2D extent = desc_.compile.max_extent;
+    const Camera camera;
+    derive({.frame_extent = extent, .output_extent = extent, .camera = &camera}, entries_, 0);
+    for (std::size_t i = 0; i < program_of().passes.size(); ++i) {
+        if (pass_sets_[i].first == ~0u) continue;
+        PassKernels& kernels = *desc_.program->kernels[i];
+        for (const plan::Shape& shape : {expected_shape(i, entries_), last_shapes_[i]}) {
+            if (kernels.find(shape, recordings_, desc_.slots, worker_.garbage()) != nullptr) continue;
+            if (auto ok = kernels.build(*context_.kernels, shape); !ok) return ok;
+        }
+    }
+    return {};
+}
+
+Result<> Chain::make_resources(graph::HistoryPool& histories) {
+    auto physical = graph::Physical::create(context_, *compiled_, desc_.compile.views, histories);
+    if (!physical) return failure(std::move(physical));
+    physical_.emplace(std::move(*physical));
+    before_.states.resize(program_of().history_entries.size());
+    has_history_.resize(entries_.size());
+    watched_.resize(desc_.compile.watches.size());
+    watch_states_.resize(watched_.size());
+    // Depth is never filtered: what lies between two surfaces is no surface.
+    for (const graph::Slot& slot : compiled_->slots())
+        is_nearest_.push_back(!gpu::can_filter(context_, slot.desc.format) || gpu::is_depth(slot.desc.format) ? 1 : 0);
+
+    const std::size_t most_bytes = context_.traits.max_uniform_range;
+    std::size_t most_words = 0;
+    VkDeviceSize at = align(plan::frame_words * 4, context_.traits.uniform_alignment);
+    for (const plan::ProgramPass& pass : program_of().passes) {
+        const std::size_t size = gpu::own_block_size(pass.spec);
+        if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > plan::most_custom_vectors)
+            return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
+                                          pass.name, pass.spec.images.size(), pass.spec.custom_vectors,
+                                          gpu::most_images, plan::most_custom_vectors));
+        if (size > most_bytes)
+            return user_error(
+                fmt::format("pass '{}': {} bytes of parameters; at most {} are allowed", pass.name, size, most_bytes));
+        block_at_.push_back(at);
+        at += align(size, context_.traits.uniform_alignment);
+        most_words = std::max<std::size_t>(most_words, gpu::word_count(pass.spec.members));
+    }
+    slot_stride_ = at;
+    words_.resize(most_words + 1);
+    custom_.resize(plan::most_custom_vectors);
+    auto blocks = gpu::Buffer::create(context_, slot_stride_ * desc_.slots, gpu::block_usage,
+                                      gpu::Memory::Kind::Constants, "blocks");
+    if (!blocks) return failure(std::move(blocks));
+    blocks_ = std::move(*blocks);
+    if (auto ok = make_sets(); !ok) return ok;
+    return make_timers();
+}
+
+Result<> Chain::make_sets() {
+    std::vector<VkDescriptorSetLayout> layouts;
+    pass_sets_.resize(program_of().passes.size());
+    std::uint32_t written = 0;
+    for (const std::uint32_t i : declared_pass_) {
+        const plan::ProgramPass& pass = program_of().passes[i];
+        Sets& sets = pass_sets_[i];
+        sets = {.first = static_cast<std::uint32_t>(layouts.size()),
+                .first_written = written,
+                .images = static_cast<std::uint32_t>(pass.inputs.size() + 1)};
+        written += sets.images * desc_.slots;
+        layouts.insert(layouts.end(), desc_.slots, desc_.program->kernels[i]->complete().set_layout());
+    }
+    written_.resize(written);
+    auto sets = gpu::DescriptorSets::create(context_, layouts);
+    if (!sets) return failure(std::move(sets));
+    sets_ = std::move(*sets);
+    return {};
+}
+
+Result<> Chain::make_timers() {
+    if (!desc_.has_timers || context_.traits.timestamp_period_ns <= 0) return {};
+    const auto marks = static_cast<std::uint32_t>(program_of().passes.size() + 1);
+    auto timers = gpu::Timers::create(context_, desc_.slots, marks);
+    if (!timers) return failure(std::move(timers));
+    timers_ = std::move(*timers);
+    timed_.resize(desc_.slots);
+    for (Timed& timed : timed_) timed.passes.reserve(marks);
+    milliseconds_.resize(marks);
+    times_.reserve(marks);
+    return {};
+}
+
+std::optional<std::uint32_t> Chain::index_of(std::uint32_t entry_id) const {
+    const auto found = std::ranges::find(entries_, entry_id, &plan::Entry::id);
+    if (found == entries_.end()) return std::nullopt;
+    return static_cast<std::uint32_t>(found - entries_.begin());
+}
+
+}  // namespace darkroom::compose

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "compose/stack/stack_program.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "gpu/device/context.hpp"
+#include "gpu/resource/format_use.hpp"
+#include "gpu/shader/flat_values.hpp"
+
+namespace darkroom::compose {
+
+namespace {
+
+/// Of an entry what the planner looks at; the rest are values of a frame.
+auto wiring_of(const plan::Entry& entry) {
+    const EntryDesc& desc = entry.desc;
+    const auto wire = [](Handle handle) { return std::pair(handle.id, handle.is_previous); };
+    return std::tuple(entry.id, entry.info, wire(desc.input), wire(desc.source), wire(desc.second), wire(desc.mask),
+                      desc.name, entry.is_plain(), desc.scale.numerator, desc.scale.denominator, desc.format);
+}
+
+/// The stage the user asked for where it can run the kernel, else the other one.
+Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& spec, KernelStage wanted) {
+    if (wanted == KernelStage::Auto) {
+        const gpu::Stage preferred = gpu::preferred_stage(context, spec);
+        if (auto ok = gpu::usable(context, spec, preferred); !ok) return failure(std::move(ok));
+        return preferred;
+    }
+    const gpu::Stage first = wanted == KernelStage::Compute ? gpu::Stage::Compute : gpu::Stage::Raster;
+    const gpu::Stage second = wanted == KernelStage::Compute ? gpu::Stage::Raster : gpu::Stage::Compute;
+    auto ok = gpu::usable(context, spec, first);
+    if (ok) return first;
+    if (gpu::usable(context, spec, second)) return second;
+    return failure(std::move(ok));
+}
+
+}  // namespace
+
+bool StackProgram::serves(std::span<const plan::Entry> other_stack, const CompileDesc& other_desc) const {
+    const auto is_same = [&](const plan::Entry& a, const plan::Entry& b) {
+        return wiring_of(a) == wiring_of(b) && a.values_at_compile() == b.values_at_compile();
+    };
+    return facts_of(desc) == facts_of(other_desc) && std::ranges::equal(stack, other_stack, is_same) &&
+           std::ranges::all_of(program.extent_answers, [&](const plan::Program::ExtentAnswer& asked) {
+               return asked.question(asked.size.of(other_desc.max_extent)) == asked.answer;
+           });
+}
+
+plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kernels) {
+    return {.stage_of = [&context, kernels](const gpu::KernelSpec& spec) { return stage_of(context, spec, kernels); },
+            .can_load = [&context](VkFormat format) { return gpu::can_load(context, format); },
+            .can_filter = [&context](VkFormat format) { return gpu::can_filter(context, format); },
+            .is_software = context.traits.is_software && gpu::writes_flat_values(context),
+            .has_robust_images = context.traits.has_robust_images,
+            .packing_pays = !context.traits.is_software,
+            .max_storage_images = context.traits.max_storage_images,
+            .workgroup = gpu::usual_workgroup(context)};
+}
+
+Result<std::shared_ptr<StackProgram>> plan_stack(const gpu::Context& context, std::span<const plan::Entry> stack,
+                                                 const CompileDesc& desc) {
+    auto program = plan::plan_program(stack, desc, planner_traits(context, desc.kernels));
+    if (!program) return failure(std::move(program));
+    auto out = std::make_shared<StackProgram>();
+    out->program = std::move(*program);
+    for (const plan::Entry& entry : stack) out->stack.push_back(entry);
+    out->desc = desc;
+    for (const plan::ProgramPass& pass : out->program.passes)
+        out->kernels.push_back(std::make_unique<PassKernels>(pass));
+    return out;
+}
+
+}  // namespace darkroom::compose

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A planned stack with its kernels, and what it was planned from: a resize, and a compile of what has not changed, take
+// the one that is there and make neither text nor graph.
+
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include "compose/chain/pass_kernels.hpp"
+
+namespace darkroom::compose {
+
+/// All but the largest extent and the views, which a program is independent of, as far as its answers are the same.
+[[nodiscard]] inline auto facts_of(const CompileDesc& desc) {
+    return std::tie(desc.color, desc.depth, desc.is_depth_planar, desc.normals, desc.velocity, desc.is_velocity_plain,
+                    desc.ui, desc.has_shadows, desc.target, desc.target_extent.width, desc.target_extent.height,
+                    desc.target_domain, desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate, desc.watches);
+}
+
+struct StackProgram {
+    plan::Program program;
+    std::vector<std::unique_ptr<PassKernels>> kernels;  ///< per pass
+    std::vector<plan::Entry> stack;
+    CompileDesc desc;
+
+    /// Would planning `other_stack` for `other_desc` give this program again?
+    [[nodiscard]] bool serves(std::span<const plan::Entry> other_stack, const CompileDesc& other_desc) const;
+};
+
+[[nodiscard]] plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kernels);
+[[nodiscard]] Result<std::shared_ptr<StackProgram>> plan_stack(const gpu::Context& context,
+                                                               std::span<const plan::Entry> stack,
+                                                               const CompileDesc& desc);
+
+}  // namespace darkroom::compose

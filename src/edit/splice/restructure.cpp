@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "edit/splice/restructure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/text/param_text.hpp"
+
+namespace darkroom::edit {
+
+Result<LookEntry*> entry_at(Look& look, std::string_view name) {
+    if (LookEntry* const entry = find_entry(look, name)) return entry;
+    const std::vector<std::string> names = entry_names(look);
+    return user_error(
+        fmt::format("{}: {} has no such entry, it has {}", printable(name), look.shown_name, fmt::join(names, ", ")));
+}
+
+Result<LookEntry*> restructured(Look& look, std::string_view name) {
+    Result<LookEntry*> entry = entry_at(look, name);
+    if (!entry) return entry;
+    if ((*entry)->is_of_ui)
+        return user_error(fmt::format("{}: an entry of the interface has its values and its switch", printable(name)));
+    if (!look.is_flat) return entry;
+    const EffectInfo* const effect = (*entry)->effect;
+    const Toggle was_enabled = std::exchange((*entry)->state.enabled, true);
+    make_stack(look);
+    const auto found = std::ranges::find(look.entries, effect, &LookEntry::effect);
+    if (found == look.entries.end())
+        return user_error(fmt::format("{}: the look is off, so that it has no place", printable(name)));
+    found->state.enabled = was_enabled;
+    return &*found;
+}
+
+}  // namespace darkroom::edit

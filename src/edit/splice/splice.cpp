@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+#include "edit/splice/splice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "core/text/param_text.hpp"
+#include "edit/follow/compare.hpp"
+#include "edit/follow/moved_values.hpp"
+#include "edit/splice/stack_blocks.hpp"
+#include "edit/splice/toml_editor.hpp"
+#include "looks/apply/look_resources.hpp"
+#include "looks/apply/look_stack.hpp"
+#include "toml/toml_text.hpp"
+
+namespace darkroom::edit {
+
+namespace {
+
+const TomlPath flat_path{"post_process"}, ui_path{"ui"};
+
+const std::vector<std::string> interface_keys{"document", "controllers", "game"};
+
+std::string bool_text(Toggle toggle) { return toggle.on != 0 ? "true" : "false"; }
+
+class Splicer {
+  public:
+    Splicer(TomlEditor editor, const Look& was, const Look& is) : editor_(std::move(editor)), was_(was), is_(is) {}
+
+    Result<std::string> run() {
+        if (!has_same_movers(was_, is_))
+            return user_error("there are other pulses or layers than before, which is not written back");
+        for (const auto step : {&Splicer::write_picture, &Splicer::write_ui, &Splicer::write_movers})
+            if (Result<> done = (this->*step)(); !done) return failure(std::move(done));
+        return editor_.text();
+    }
+
+  private:
+    Result<> write_picture() {
+        if (is_.is_flat) {
+            if (!was_.is_flat)
+                if (const auto removed = editor_.remove_table({"stack"}); !removed) return failure(removed.error());
+            return write_flat();
+        }
+        return was_.is_flat ? make_stack() : write_stack();
+    }
+
+    Result<> write_ui() {
+        if (!is_.ui) {
+            if (!was_.ui) return {};
+            const auto removed = editor_.remove_table(ui_path);
+            return removed ? Result<>{} : failure(removed.error());
+        }
+        if (!editor_.contains(ui_path))
+            if (Result<> done = editor_.add_table(ui_path[0]); !done) return done;
+        if (Result<> done = write_interface(was_.ui.value_or(LookUi{}), *is_.ui); !done) return done;
+        return write_table(ui_path, true);
+    }
+
+    /// Sets a key, or takes it out where there is no value.
+    Result<> write_text(const TomlPath& table, std::string_view key, const std::string& value) {
+        return value.empty() ? editor_.remove(table, key) : editor_.set(table, key, value, interface_keys);
+    }
+
+    Result<> write_interface(const LookUi& before, const LookUi& now) {
+        const auto text = [](const std::string& name) { return name.empty() ? name : toml_string(name); };
+        if (now.document != before.document)
+            if (Result<> done = write_text(ui_path, "document", text(now.document)); !done) return done;
+        if (now.controllers != before.controllers)
+            if (Result<> done = write_text(ui_path, "controllers", list_text(now.controllers)); !done) return done;
+        if (now.game == before.game) return {};
+        const TomlPath game{ui_path[0], "game"};
+        const bool is_inline = editor_.find(game) != nullptr;
+        if (!editor_.contains(game) || (is_inline && now.game.empty()))
+            return write_text(ui_path, "game", game_text(now.game));
+        for (const auto& [name, value] : before.game)
+            if (!now.game.contains(name))
+                if (Result<> done = editor_.remove(game, name); !done) return done;
+        for (const auto& [name, value] : now.game) {
+            const auto old = before.game.find(name);
+            if (old != before.game.end() && old->second == value) continue;
+            if (Result<> done = editor_.set(game, name, game_text(value)); !done) return done;
+        }
+        return {};
+    }
+
+    // Pulses and layers.
+
+    Result<> write_movers() {
+        for (std::size_t i = 0; i < is_.pulses.size(); ++i)
+            if (Result<> done = write_mover({"pulse", std::to_string(i)}, {false, i}); !done) return done;
+        for (std::size_t i = 0; i < is_.layers.size(); ++i)
+            if (Result<> done = write_mover({"layer", element_of(is_.layers[i].name)}, {true, i}); !done) return done;
+        return {};
+    }
+
+    Result<> write_mover(const TomlPath& table, Mover mover) {
+        const std::vector<MovedValue> before = values_of(was_, mover), now = values_of(is_, mover);
+        for (std::size_t i = 0; i < std::min(before.size(), now.size()); ++i) {
+            if (before[i].words == now[i].words) continue;
+            TomlPath place = table;
+            if (!now[i].table.empty()) place.push_back(now[i].table);
+            std::string key(now[i].row.name);
+            if (!now[i].entry.empty()) std::tie(place, key) = place_of(place, now[i]);
+            if (Result<> done = editor_.set(place, key, format(now[i].row, now[i].words)); !done) return done;
+        }
+        return {};
+    }
+
+    /// Which of the text's layers has this name: one that changes nothing is in no look.
+    std::string element_of(std::string_view name) const {
+        for (std::size_t i = 0;; ++i) {
+            const TomlItem* const item = editor_.find({"layer", std::to_string(i), "name"});
+            if (item == nullptr) return {};
+            const std::string value = editor_.text().substr(item->value_begin, item->end - item->value_begin);
+            const toml::parse_result read = toml::parse("name = " + value);
+            if (read && read.table()["name"].value_or(std::string_view()) == name) return std::to_string(i);
+        }
+    }
+
+    /// The table and the key of a layer's value, which may be written as "bloom.intensity", bloom_intensity or with
+    /// a table for the entry.
+    std::pair<TomlPath, std::string> place_of(const TomlPath& values, const MovedValue& value) const {
+        const std::string_view effect = std::string_view(value.entry).substr(0, value.entry.find('#'));
+        for (const std::string_view name : {value.row.name, value.row.formerly}) {
+            if (name.empty()) continue;
+            const std::string dotted = fmt::format("{}.{}", value.entry, name), flat = flat_key(effect, name);
+            for (const std::string& key : {dotted, flat})
+                if (has_key(values, key)) return {values, key};
+            TomlPath nested = values;
+            nested.push_back(value.entry);
+            if (has_key(nested, name)) return {nested, std::string(name)};
+        }
+        return {values, fmt::format("{}.{}", value.entry, value.row.name)};
+    }
+
+    // The flat tables.
+
+    Result<> write_flat() {
+        if (is_.is_enabled != (!was_.is_flat || was_.is_enabled))
+            if (Result<> done = editor_.set(flat_path, "enabled", bool_text(is_.is_enabled)); !done) return done;
+        if (is_.order != (was_.is_flat ? was_.order : LookOrder::Documented)) {
+            const std::string order = toml_string(order_names[static_cast<std::size_t>(is_.order)]);
+            if (Result<> done = editor_.set(flat_path, "order", order); !done) return done;
+        }
+        return write_table(flat_path, false);
+    }
+
+    Result<> write_table(const TomlPath& table, bool is_of_ui) {
+        const auto counterpart = [&](const LookEntry& entry, const Look& in) -> const LookEntry* {
+            const auto found = std::ranges::find_if(in.entries, [&](const LookEntry& other) {
+                return other.effect->name == entry.effect->name && other.is_of_ui == is_of_ui;
+            });
+            return found == in.entries.end() || !was_has(table) ? nullptr : &*found;
+        };
+        for (const LookEntry& entry : is_.entries) {
+            if (entry.is_of_ui != is_of_ui) continue;
+            if (Result<> done = write_flat_entry(table, counterpart(entry, was_), entry); !done) return done;
+        }
+        // What was off when a flat table became a stack is not in it.
+        for (const LookEntry& before : was_.entries) {
+            if (before.is_of_ui != is_of_ui || !was_has(table) || counterpart(before, is_) != nullptr) continue;
+            LookEntry off = before;
+            off.state.enabled = false;
+            if (Result<> done = write_flat_entry(table, &before, off); !done) return done;
+        }
+        return {};
+    }
+
+    /// `before` null: it was not there, so that nobody knows what the table says of it.
+    Result<> write_flat_entry(const TomlPath& table, const LookEntry* before, const LookEntry& entry) {
+        const std::string_view effect = entry.effect->name;
+        const LookEntry plain = entry_of(*entry.effect);
+        const bool is_on = entry.state.enabled.on != 0;
+        const bool is_switched = before == nullptr || is_on != (before->state.enabled.on != 0);
+        const auto is_same_row = [&](const ParamInfo& row) {
+            return has_same(before == nullptr ? plain : *before, entry, row);
+        };
+        if (!is_switched && std::ranges::all_of(entry.effect->parameters.rows, is_same_row)) return {};
+        const std::string switch_key = flat_key(effect, "enabled");
+        std::vector<std::string> own{switch_key};
+        for (const ParamInfo& row : entry.effect->parameters.rows) own.push_back(flat_key(effect, row.name));
+        bool is_amount_new = false;
+        for (const ParamInfo& row : entry.effect->parameters.rows) {
+            const std::string key = flat_key(effect, row.name);
+            const std::string former = row.formerly.empty() ? key : flat_key(effect, row.formerly);
+            const bool may_stand = before == nullptr && (has_key(table, key) || has_key(table, former));
+            if (is_same_row(row) && !may_stand) continue;
+            is_amount_new |= row.is_amount;
+            if (Result<> done = set_row(table, key, former, value_text(entry, row), own); !done) return done;
+        }
+        const bool is_said = has_key(table, switch_key);
+        const bool is_other =
+            is_said ? is_switched : (is_switched || is_amount_new) && is_on != is_on_unsaid(table, entry);
+        return is_other ? editor_.set(table, switch_key, bool_text(entry.state.enabled), own) : Result<>{};
+    }
+
+    /// Was the table there before?
+    bool was_has(const TomlPath& table) const { return table == ui_path ? was_.ui.has_value() : was_.is_flat; }
+
+    /// Is an entry on where the table says nothing of its switch? Of its amounts the last one of the table's counts,
+    /// in the order of the keys.
+    bool is_on_unsaid(const TomlPath& table, const LookEntry& entry) const {
+        if (entry.is_of_ui) return true;
+        bool out = entry.effect->flat.starts_on;
+        std::string last;
+        for (const ParamInfo& row : entry.effect->parameters.rows)
+            for (const std::string_view name : {row.name, row.formerly}) {
+                const std::string key = name.empty() ? std::string() : flat_key(entry.effect->name, name);
+                if (!row.is_amount || key <= last || !has_key(table, key)) continue;
+                last = key;
+                out = std::bit_cast<float>(entry.words[row.word]) != 0;
+            }
+        return out;
+    }
+
+    /// A key's former name stays where it stands.
+    Result<> set_row(const TomlPath& table, const std::string& key, const std::string& former, const std::string& text,
+                     std::span<const std::string> neighbours) {
+        const bool has_former = former != key && has_key(table, former);
+        if (has_former)
+            if (Result<> done = editor_.set(table, former, text); !done) return done;
+        return has_former && !has_key(table, key) ? Result<>{} : editor_.set(table, key, text, neighbours);
+    }
+
+    bool has_key(TomlPath table, std::string_view key) const {
+        table.emplace_back(key);
+        return editor_.contains(table);
+    }
+
+    // The stack.
+
+    static std::vector<const LookEntry*> stacked(const Look& look) {
+        std::vector<const LookEntry*> out;
+        for (const LookEntry& entry : look.entries)
+            if (!entry.is_of_ui) out.push_back(&entry);
+        return out;
+    }
+
+    Result<> make_stack() {
+        const auto place = editor_.remove_table(flat_path);
+        if (!place) return failure(place.error());
+        std::vector<StackElement> elements;
+        for (const LookEntry* const entry : stacked(is_)) elements.push_back({std::nullopt, pairs_of(*entry)});
+        if (elements.empty()) return editor_.set({}, "stack", "[]");
+        const std::string eol(editor_.line_end()), &text = editor_.text();
+        std::string blocks = blocks_of(elements, eol);
+        if (*place < text.size())
+            blocks += text[*place] == '\n' || text[*place] == '\r' ? std::string() : eol;
+        else if (!text.empty())
+            blocks = (text.ends_with('\n') ? eol : eol + eol) + blocks;
+        return editor_.replace(*place, *place, blocks);
+    }
+
+    Result<> write_stack() {
+        const std::vector<const LookEntry*> before = stacked(was_), now = stacked(is_);
+        if (stack_size(editor_) != before.size())
+            return user_error(fmt::format("the text has {} entries in its stack, where {} were read",
+                                          stack_size(editor_), before.size()));
+        const std::vector<const LookEntry*> others = counterparts(is_, was_);
+        std::vector<StackElement> elements;
+        bool is_arranged = now.size() == before.size();
+        for (const LookEntry* const entry : now) {
+            const LookEntry* const other = others[static_cast<std::size_t>(entry - is_.entries.data())];
+            if (other == nullptr) {
+                elements.push_back({std::nullopt, pairs_of(*entry)});
+                is_arranged = false;
+                continue;
+            }
+            const auto number = static_cast<std::size_t>(std::ranges::find(before, other) - before.begin());
+            is_arranged &= number == elements.size();
+            elements.push_back({number, {}});
+            if (Result<> done = write_entry({"stack", std::to_string(number)}, *other, *entry); !done) return done;
+        }
+        return is_arranged ? Result<>{} : arrange_stack(editor_, elements);
+    }
+
+    Result<> write_entry(const TomlPath& table, const LookEntry& before, const LookEntry& entry) {
+        if (entry.effect_file != before.effect_file)
+            if (Result<> done = editor_.set(table, "effect", toml_string(entry.effect_file)); !done) return done;
+        for (const WireInfo& wire : wires) {
+            const std::string& name = entry.*wire.member;
+            if (name == before.*wire.member) continue;
+            const Result<> done =
+                name.empty() ? editor_.remove(table, wire.key) : editor_.set(table, wire.key, toml_string(name));
+            if (!done) return done;
+        }
+        const StateWords state = state_words(entry.state), state_before = state_words(before.state);
+        for (const ParamInfo& row : entry_rows.rows) {
+            const std::string text = format(row, state);
+            if (text == format(row, state_before)) continue;
+            if (Result<> done = editor_.set(table, row.name, text); !done) return done;
+        }
+        for (const ParamInfo& row : entry.effect->parameters.rows) {
+            if (has_same(before, entry, row)) continue;
+            const std::string key(row.name), former(row.formerly.empty() ? row.name : row.formerly);
+            if (Result<> done = set_row(table, key, former, value_text(entry, row), {}); !done) return done;
+        }
+        return {};
+    }
+
+    /// What a new entry has to say.
+    static std::vector<std::string> pairs_of(const LookEntry& entry) {
+        std::vector<std::string> out;
+        const auto say = [&](std::string_view key, std::string_view value) {
+            out.push_back(fmt::format("{} = {}", key, value));
+        };
+        say("effect", toml_string(entry.effect_file.empty() ? entry.effect->name : entry.effect_file));
+        for (const WireInfo& wire : wires)
+            if (!(entry.*wire.member).empty()) say(wire.key, toml_string(entry.*wire.member));
+        const LookEntry plain = entry_of(*entry.effect);
+        const StateWords state = state_words(entry.state), state_plain = state_words(plain.state);
+        for (const ParamInfo& row : entry_rows.rows)
+            if (const std::string text = format(row, state); text != format(row, state_plain)) say(row.name, text);
+        for (const ParamInfo& row : entry.effect->parameters.rows)
+            if (!has_same(plain, entry, row)) say(row.name, value_text(entry, row));
+        return out;
+    }
+
+    TomlEditor editor_;
+    const Look& was_;
+    const Look& is_;
+};
+
+}  // namespace
+
+Result<std::string> splice_look(std::string_view text, const Look& was, const Look& is) {
+    if (const auto parsed = parse_toml(text, was.shown_name); !parsed) return failure(parsed.error());
+    Result<TomlEditor> editor = TomlEditor::of(std::string(text));
+    if (!editor) return failure(std::move(editor));
+    Result<std::string> out = Splicer(std::move(*editor), was, is).run();
+    if (!out) return failure(Error{out.error().fault, fmt::format("{}: {}", is.shown_name, out.error().text)});
+    return out;
+}
+
+}  // namespace darkroom::edit

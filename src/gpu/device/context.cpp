@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/device/context.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <system_error>
+#include <vector>
+
+#include "core/files.hpp"
+#include "core/hash.hpp"
+#include "gpu/device/assumed_device.hpp"
+#include "gpu/device/device_facts.hpp"
+#include "gpu/kernel/kernel_store.hpp"
+#include "gpu/shader/shader.hpp"
+
+namespace darkroom::gpu {
+
+std::string result_name(VkResult result) {
+    switch (result) {
+        case VK_SUCCESS:
+            return "VK_SUCCESS";
+        case VK_NOT_READY:
+            return "VK_NOT_READY";
+        case VK_TIMEOUT:
+            return "VK_TIMEOUT";
+        case VK_INCOMPLETE:
+            return "VK_INCOMPLETE";
+        case VK_SUBOPTIMAL_KHR:
+            return "VK_SUBOPTIMAL_KHR";
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+            return "VK_ERROR_OUT_OF_HOST_MEMORY";
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+            return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
+        case VK_ERROR_INITIALIZATION_FAILED:
+            return "VK_ERROR_INITIALIZATION_FAILED";
+        case VK_ERROR_DEVICE_LOST:
+            return "VK_ERROR_DEVICE_LOST";
+        case VK_ERROR_MEMORY_MAP_FAILED:
+            return "VK_ERROR_MEMORY_MAP_FAILED";
+        case VK_ERROR_LAYER_NOT_PRESENT:
+            return "VK_ERROR_LAYER_NOT_PRESENT";
+        case VK_ERROR_EXTENSION_NOT_PRESENT:
+            return "VK_ERROR_EXTENSION_NOT_PRESENT";
+        case VK_ERROR_FEATURE_NOT_PRESENT:
+            return "VK_ERROR_FEATURE_NOT_PRESENT";
+        case VK_ERROR_INCOMPATIBLE_DRIVER:
+            return "VK_ERROR_INCOMPATIBLE_DRIVER";
+        case VK_ERROR_TOO_MANY_OBJECTS:
+            return "VK_ERROR_TOO_MANY_OBJECTS";
+        case VK_ERROR_FORMAT_NOT_SUPPORTED:
+            return "VK_ERROR_FORMAT_NOT_SUPPORTED";
+        case VK_ERROR_FRAGMENTED_POOL:
+            return "VK_ERROR_FRAGMENTED_POOL";
+        case VK_ERROR_OUT_OF_POOL_MEMORY:
+            return "VK_ERROR_OUT_OF_POOL_MEMORY";
+        case VK_ERROR_FRAGMENTATION:
+            return "VK_ERROR_FRAGMENTATION";
+        case VK_ERROR_SURFACE_LOST_KHR:
+            return "VK_ERROR_SURFACE_LOST_KHR";
+        case VK_ERROR_OUT_OF_DATE_KHR:
+            return "VK_ERROR_OUT_OF_DATE_KHR";
+        case VK_ERROR_UNKNOWN:
+            return "VK_ERROR_UNKNOWN";
+        default:
+            return fmt::format("VkResult {}", static_cast<int>(result));
+    }
+}
+
+Context::Context() = default;
+
+Context::~Context() {
+    if (device != VK_NULL_HANDLE) {
+        // RADV's null device cannot even do this.
+        if (is_owner && !compiles_only) vk.DeviceWaitIdle(device);
+        kernels.reset();
+        save_pipeline_cache_if_grown();
+        if (owns_pipeline_cache_) vk.DestroyPipelineCache(device, pipeline_cache, allocator);
+        vk.DestroySampler(device, linear_sampler, allocator);
+        vk.DestroySampler(device, nearest_sampler, allocator);
+        vk.DestroySampler(device, shadow_sampler, allocator);
+        if (is_owner) vk.DestroyDevice(device, allocator);
+    }
+    if (!is_owner || instance == VK_NULL_HANDLE || vk.DestroyInstance == nullptr) return;
+    if (messenger != VK_NULL_HANDLE) vk.DestroyDebugUtilsMessengerEXT(instance, messenger, allocator);
+    vk.DestroyInstance(instance, allocator);
+}
+
+void Context::say(Severity severity, std::string_view text) const {
+    if (!log) return;
+    const std::lock_guard lock(log_mutex_);
+    log(severity, text);
+}
+
+Result<> Context::check(VkResult result, std::string_view what) const {
+    if (result == VK_SUCCESS) return {};
+    return machine_error(fmt::format("{} failed: {}", what, result_name(result)));
+}
+
+VkFormatFeatureFlags Context::features_of(VkFormat format) const {
+    if (is_assumed) return assumed_features(format);
+    {
+        const std::shared_lock lock(formats_mutex_);
+        if (const auto known = formats_.find(format); known != formats_.end()) return known->second;
+    }
+    VkFormatProperties properties{};
+    vk.GetPhysicalDeviceFormatProperties(physical_device, format, &properties);
+    const std::unique_lock lock(formats_mutex_);
+    formats_.emplace(format, properties.optimalTilingFeatures);
+    return properties.optimalTilingFeatures;
+}
+
+bool Context::supports(VkFormat format, VkFormatFeatureFlags features) const {
+    return (features_of(format) & features) == features;
+}
+
+bool Context::is_filterable(VkFormat format) const {
+    return supports(format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT);
+}
+
+Result<> Context::allocate_memory(const VkMemoryAllocateInfo& request, std::string_view what,
+                                  VkDeviceMemory& out) const {
+    const VkResult result = memory_hooks.allocate != nullptr
+                                ? memory_hooks.allocate(memory_hooks.user, device, &request, &out)
+                                : vk.AllocateMemory(device, &request, allocator, &out);
+    if (result == VK_SUCCESS) return {};
+    out = VK_NULL_HANDLE;
+    return check(result, fmt::format("allocating {} bytes of memory for {}", request.allocationSize, what));
+}
+
+void Context::free_memory(VkDeviceMemory handle) const {
+    if (memory_hooks.free != nullptr) return memory_hooks.free(memory_hooks.user, device, handle);
+    vk.FreeMemory(device, handle, allocator);
+}
+
+Result<> Context::finish() {
+    vk.GetPhysicalDeviceMemoryProperties(physical_device, &memory);
+    VkPhysicalDeviceProperties properties{};
+    vk.GetPhysicalDeviceProperties(physical_device, &properties);
+    const VkPhysicalDeviceLimits& limits = properties.limits;
+    traits.is_software = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    traits.max_image_dimension = limits.maxImageDimension2D;
+    traits.sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
+                           limits.sampledImageColorSampleCounts & limits.sampledImageDepthSampleCounts;
+    traits.storage_alignment = limits.minStorageBufferOffsetAlignment;
+    traits.uniform_alignment = limits.minUniformBufferOffsetAlignment;
+    traits.max_uniform_range = limits.maxUniformBufferRange;
+    traits.max_storage_range = limits.maxStorageBufferRange;
+    traits.max_workgroup_invocations = limits.maxComputeWorkGroupInvocations;
+    std::ranges::copy(limits.maxComputeWorkGroupSize, traits.max_workgroup_size.begin());
+    traits.max_storage_images =
+        std::min(limits.maxPerStageDescriptorStorageImages, limits.maxFragmentCombinedOutputResources);
+    traits.max_sampled_images =
+        std::min(limits.maxPerStageDescriptorSampledImages, limits.maxPerStageDescriptorSamplers);
+
+    const std::vector<VkQueueFamilyProperties> families = queue_families(vk, physical_device);
+    traits.timestamp_valid_bits = queue_family < families.size() ? families[queue_family].timestampValidBits : 0;
+    traits.timestamp_period_ns = traits.timestamp_valid_bits > 0 ? static_cast<double>(limits.timestampPeriod) : 0.0;
+
+    shaders = std::make_unique<ShaderCompiler>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");
+    kernels = std::make_unique<KernelStore>(*this);
+    if (Result<> samplers = create_samplers(); !samplers) return samplers;
+    // A pipeline out of a cache may have no statistics.
+    return pipeline_cache == VK_NULL_HANDLE && !compiles_only ? create_pipeline_cache() : Result<>{};
+}
+
+Result<> Context::create_samplers() {
+    VkSamplerCreateInfo create_info{
+        .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+        .magFilter = VK_FILTER_LINEAR,
+        .minFilter = VK_FILTER_LINEAR,
+        .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+        .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .maxLod = VK_LOD_CLAMP_NONE,
+    };
+    const VkResult linear = vk.CreateSampler(device, &create_info, allocator, &linear_sampler);
+    if (Result<> checked = check(linear, "creating the linear sampler"); !checked) return checked;
+    create_info.magFilter = VK_FILTER_NEAREST;
+    create_info.minFilter = VK_FILTER_NEAREST;
+    const VkResult nearest = vk.CreateSampler(device, &create_info, allocator, &nearest_sampler);
+    if (Result<> checked = check(nearest, "creating the nearest sampler"); !checked) return checked;
+    create_info.addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+    create_info.addressModeV = create_info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+    create_info.borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
+    create_info.compareEnable = VK_TRUE;
+    create_info.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
+    return check(vk.CreateSampler(device, &create_info, allocator, &shadow_sampler), "creating the shadow sampler");
+}
+
+std::filesystem::path Context::pipeline_cache_path() const {
+    if (cache_folder.empty()) return {};
+    VkPhysicalDeviceProperties properties{};
+    vk.GetPhysicalDeviceProperties(physical_device, &properties);
+    const Hash uuid = content_hash(std::as_bytes(std::span(properties.pipelineCacheUUID)));
+    return cache_folder /
+           fmt::format("pipelines_{:x}_{:x}_{:016x}.bin", properties.vendorID, properties.deviceID, uuid.low);
+}
+
+bool Context::is_own_pipeline_cache(std::span<const std::byte> data) const {
+    VkPipelineCacheHeaderVersionOne header{};
+    if (data.size() < sizeof header) return false;
+    std::memcpy(&header, data.data(), sizeof header);
+    VkPhysicalDeviceProperties properties{};
+    vk.GetPhysicalDeviceProperties(physical_device, &properties);
+    return header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE && header.vendorID == properties.vendorID &&
+           header.deviceID == properties.deviceID &&
+           std::memcmp(header.pipelineCacheUUID, properties.pipelineCacheUUID, VK_UUID_SIZE) == 0;
+}
+
+std::vector<std::byte> Context::read_pipeline_cache(const std::filesystem::path& path) const {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) return {};
+    // The file is the hash of the driver's data, then the data: drivers are known to crash on damaged data, so a file
+    // that does not match is ignored and written anew.
+    std::vector<std::byte> data;
+    if (size <= sizeof(Hash) + most_pipeline_cache_bytes) data = read_file(path).value_or(std::vector<std::byte>{});
+    if (data.size() > sizeof(Hash)) {
+        Hash expected;
+        std::memcpy(&expected, data.data(), sizeof expected);
+        data.erase(data.begin(), data.begin() + sizeof expected);
+        if (content_hash(data) == expected && is_own_pipeline_cache(data)) return data;
+    }
+    say(Severity::Info, fmt::format("{}: not usable, ignored", path.string()));
+    return {};
+}
+
+Result<> Context::create_pipeline_cache() {
+    pipeline_cache_path_ = pipeline_cache_path();
+    std::vector<std::byte> data;
+    if (!pipeline_cache_path_.empty()) data = read_pipeline_cache(pipeline_cache_path_);
+    pipeline_cache_size_ = data.size();
+    const VkPipelineCacheCreateInfo create_info{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+        .initialDataSize = data.size(),
+        .pInitialData = data.data(),
+    };
+    const VkResult created = vk.CreatePipelineCache(device, &create_info, allocator, &pipeline_cache);
+    owns_pipeline_cache_ = created == VK_SUCCESS;
+    return check(created, "creating the pipeline cache");
+}
+
+void Context::save_pipeline_cache_if_grown() {
+    if (!owns_pipeline_cache_ || pipeline_cache_path_.empty()) return;
+    if (pipelines_created == pipelines_saved_) return;
+    const std::lock_guard lock(saving_mutex_);
+    const std::uint64_t created = pipelines_created;
+    std::size_t size = 0;
+    if (vk.GetPipelineCacheData(device, pipeline_cache, &size, nullptr) != VK_SUCCESS || size == 0) return;
+    if (size == pipeline_cache_size_) {
+        pipelines_saved_ = created;
+        return;
+    }
+    std::error_code error;
+    if (size > most_pipeline_cache_bytes) {
+        // It holds what was used long ago and cannot be thinned out: the next start begins with an empty one.
+        std::filesystem::remove(pipeline_cache_path_, error);
+        pipelines_saved_ = created;
+        return;
+    }
+    std::vector<std::byte> bytes(sizeof(Hash) + size);
+    // Another thread may have made it larger since; then the next call saves it.
+    if (vk.GetPipelineCacheData(device, pipeline_cache, &size, bytes.data() + sizeof(Hash)) != VK_SUCCESS) return;
+    bytes.resize(sizeof(Hash) + size);
+    const Hash hash = content_hash(std::span(bytes).subspan(sizeof(Hash)));
+    std::memcpy(bytes.data(), &hash, sizeof hash);
+    std::filesystem::create_directories(cache_folder, error);
+    // Without the cache the next start is slower and nothing else, so a remark is enough.
+    if (const Result<> written = write_file(pipeline_cache_path_, bytes); !written) {
+        say(Severity::Info, written.error().text);
+    }
+    pipeline_cache_size_ = size;
+    pipelines_saved_ = created;
+}
+
+}  // namespace darkroom::gpu

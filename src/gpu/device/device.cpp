@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <darkroom/device.hpp>
+#include <iterator>
+#include <string_view>
+
+#include "gpu/device/assumed_device.hpp"
+#include "gpu/device/context.hpp"
+#include "gpu/device/device_facts.hpp"
+#include "gpu/device/loader.hpp"
+#include "gpu/device/select_device.hpp"
+
+namespace darkroom {
+
+namespace {
+
+using gpu::Context;
+using gpu::Dispatch;
+
+constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+
+bool wants_validation(const DeviceDesc& desc) {
+    const char* variable = std::getenv("DARKROOM_VALIDATE");
+    return desc.validate || (variable != nullptr && std::string_view(variable) == "1");
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                          VkDebugUtilsMessageTypeFlagsEXT,
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user_data) {
+    Context& context = *static_cast<Context*>(user_data);
+    ++context.validation_messages;
+    const bool is_error = (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0;
+    context.say(is_error ? Severity::Error : Severity::Warning, data->pMessage);
+    return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messenger_info(Context& context) {
+    return {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+        .pfnUserCallback = on_message,
+        .pUserData = &context,
+    };
+}
+
+bool has_layer(const Dispatch& vk, std::string_view name) {
+    std::uint32_t count = 0;
+    vk.EnumerateInstanceLayerProperties(&count, nullptr);
+    std::vector<VkLayerProperties> layers(count);
+    vk.EnumerateInstanceLayerProperties(&count, layers.data());
+    return std::ranges::any_of(layers, [&](const VkLayerProperties& layer) { return name == layer.layerName; });
+}
+
+bool has_instance_extension(const Dispatch& vk, const char* layer, std::string_view name) {
+    std::uint32_t count = 0;
+    vk.EnumerateInstanceExtensionProperties(layer, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vk.EnumerateInstanceExtensionProperties(layer, &count, extensions.data());
+    return std::ranges::any_of(extensions, [&](const VkExtensionProperties& e) { return name == e.extensionName; });
+}
+
+/// Refuses what is not there.
+Result<> check_extensions(std::span<const char* const> wanted, const auto& has, std::string_view who) {
+    std::vector<std::string_view> missing;
+    for (const char* const name : wanted)
+        if (!has(name)) missing.emplace_back(name);
+    if (missing.empty()) return {};
+    return machine_error(fmt::format("{} lacks {}", who, fmt::join(missing, ", ")));
+}
+
+Result<> create_instance(Context& context, bool validate, std::span<const char* const> wanted = {}) {
+    Dispatch& vk = context.vk;
+    const Result<PFN_vkGetInstanceProcAddr> loader = gpu::open_vulkan_loader();
+    if (!loader) return failure(loader.error());
+    if (Result<> loaded = vk.load_loader(*loader); !loaded) return loaded;
+    std::uint32_t loader_version = 0;
+    vk.EnumerateInstanceVersion(&loader_version);
+    if (loader_version < VK_API_VERSION_1_2) {
+        return machine_error(fmt::format("the Vulkan loader is of version {}; 1.2 or later is needed",
+                                         gpu::version_text(loader_version)));
+    }
+    if (validate && !has_layer(vk, validation_layer)) {
+        return machine_error(
+            fmt::format("validation was asked for, but the layer {} is not installed (package vulkan-validationlayers)",
+                        validation_layer));
+    }
+    // The layer brings the extension with it where the loader has none of its own.
+    context.traits.has_debug_labels =
+        has_instance_extension(vk, nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
+        (validate && has_instance_extension(vk, validation_layer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
+    const auto has = [&](std::string_view name) { return has_instance_extension(vk, nullptr, name); };
+    if (Result<> checked = check_extensions(wanted, has, "the Vulkan loader"); !checked) return checked;
+    std::vector<const char*> extensions(wanted.begin(), wanted.end());
+    if (context.traits.has_debug_labels) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    if (validate) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+
+    constexpr VkValidationFeatureEnableEXT synchronization =
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    const VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(context);
+    const VkValidationFeaturesEXT validation{
+        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+        .pNext = &messenger,
+        .enabledValidationFeatureCount = 1,
+        .pEnabledValidationFeatures = &synchronization,
+    };
+    const VkApplicationInfo application{
+        .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+        .pApplicationName = "darkroom",
+        .pEngineName = "darkroom",
+        .apiVersion = VK_API_VERSION_1_3,
+    };
+    const VkInstanceCreateInfo create_info{
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pNext = validate ? &validation : nullptr,
+        .pApplicationInfo = &application,
+        .enabledLayerCount = validate ? 1U : 0U,
+        .ppEnabledLayerNames = &validation_layer,
+        .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+        .ppEnabledExtensionNames = extensions.data(),
+    };
+    const VkResult created = vk.CreateInstance(&create_info, context.allocator, &context.instance);
+    if (Result<> checked = context.check(created, "creating a Vulkan instance"); !checked) return checked;
+    context.is_owner = true;
+    if (Result<> loaded = vk.load_instance(context.instance, context.traits.has_debug_labels); !loaded) return loaded;
+    if (!validate) return {};
+    return context.check(
+        vk.CreateDebugUtilsMessengerEXT(context.instance, &messenger, context.allocator, &context.messenger),
+        "listening to the validation layer");
+}
+
+struct Candidate {
+    VkPhysicalDevice device = VK_NULL_HANDLE;
+    DeviceInfo info;
+    std::ptrdiff_t rank = 0;  ///< lower is better
+};
+
+std::ptrdiff_t rank_of(const Context& context, VkPhysicalDevice device, const DeviceInfo& info) {
+    VkPhysicalDeviceProperties properties{};
+    context.vk.GetPhysicalDeviceProperties(device, &properties);
+    const std::array order{VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU,
+                           VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU, VK_PHYSICAL_DEVICE_TYPE_OTHER,
+                           VK_PHYSICAL_DEVICE_TYPE_CPU};
+    const std::ptrdiff_t rank = std::ranges::find(order, properties.deviceType) - order.begin();
+    return info.is_usable ? rank : rank + std::ssize(order) + 1;
+}
+
+/// Best first.
+Result<std::vector<Candidate>> find_devices(const Context& context, bool compiles_only = false) {
+    std::uint32_t count = 0;
+    VkResult result = context.vk.EnumeratePhysicalDevices(context.instance, &count, nullptr);
+    std::vector<VkPhysicalDevice> handles(count);
+    if (result == VK_SUCCESS) result = context.vk.EnumeratePhysicalDevices(context.instance, &count, handles.data());
+    if (Result<> checked = context.check(result, "listing the Vulkan devices"); !checked)
+        return failure(std::move(checked));
+    std::vector<Candidate> candidates;
+    for (std::uint32_t index = 0; index < count; ++index) {
+        Candidate candidate{.device = handles[index], .info = gpu::identify(context.vk, handles[index], index)};
+        candidate.info.reason = gpu::why_unusable(context.vk, candidate.device, candidate.info, compiles_only);
+        candidate.info.is_usable = candidate.info.reason.empty();
+        candidate.rank = rank_of(context, candidate.device, candidate.info);
+        candidates.push_back(std::move(candidate));
+    }
+    std::ranges::stable_sort(candidates, {}, &Candidate::rank);
+    return candidates;
+}
+
+std::vector<DeviceInfo> infos_of(std::span<const Candidate> candidates) {
+    std::vector<DeviceInfo> infos;
+    for (const Candidate& candidate : candidates) infos.push_back(candidate.info);
+    return infos;
+}
+
+Result<Candidate> choose(std::span<const Candidate> candidates, const std::string& select) {
+    const Result<std::size_t> place = gpu::select_device(infos_of(candidates), select);
+    if (!place) return failure(place.error());
+    const Candidate& chosen = candidates[*place];
+    if (!chosen.info.is_usable) {
+        return machine_error(
+            fmt::format("device {} \"{}\": {}", chosen.info.index, chosen.info.name, chosen.info.reason));
+    }
+    return chosen;
+}
+
+Result<> create_device(Context& context, std::span<const char* const> wanted) {
+    const Dispatch& vk = context.vk;
+    const auto there = gpu::device_extensions(vk, context.physical_device);
+    const auto has = [&](std::string_view name) { return gpu::has_extension(there, name); };
+    if (Result<> checked = check_extensions(wanted, has, fmt::format("device \"{}\"", context.info.name)); !checked)
+        return checked;
+    VkPhysicalDeviceFeatures2 queried{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+    vk.GetPhysicalDeviceFeatures2(context.physical_device, &queried);
+    const VkPhysicalDeviceFeatures& available = queried.features;
+    context.traits.has_extended_storage_formats = available.shaderStorageImageExtendedFormats == VK_TRUE;
+    context.traits.has_storage_write_without_format = available.shaderStorageImageWriteWithoutFormat == VK_TRUE;
+    context.traits.has_wireframe = available.fillModeNonSolid == VK_TRUE;
+    context.traits.has_depth_clamp = available.depthClamp == VK_TRUE;
+    // For who submits on a device of ours; the library itself needs none. Every device has it.
+    VkPhysicalDeviceVulkan12Features features12{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+        .timelineSemaphore = VK_TRUE,
+    };
+    VkPhysicalDeviceSynchronization2Features synchronization{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES,
+        .pNext = &features12,
+        .synchronization2 = VK_TRUE,
+    };
+    VkPhysicalDeviceDynamicRenderingFeatures rendering{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES,
+        .pNext = &synchronization,
+        .dynamicRendering = VK_TRUE,
+    };
+    void* first = &rendering;
+    // Every device of 1.3 has it.
+    const gpu::PromotedNames names = gpu::promoted_names(context.info.api_version);
+    context.traits.has_robust_images = names == gpu::PromotedNames::Core;
+    VkPhysicalDeviceImageRobustnessFeatures robustness{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_ROBUSTNESS_FEATURES,
+        .pNext = first,
+        .robustImageAccess = VK_TRUE,
+    };
+    if (context.traits.has_robust_images) first = &robustness;
+    VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
+        .pNext = first,
+        .pipelineExecutableInfo = VK_TRUE,
+    };
+    if (context.compiles_only) first = &statistics;
+    const VkPhysicalDeviceFeatures2 features{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+        .pNext = first,
+        .features = {.fullDrawIndexUint32 = available.fullDrawIndexUint32,
+                     .imageCubeArray = available.imageCubeArray,
+                     .independentBlend = available.independentBlend,
+                     .depthClamp = available.depthClamp,
+                     .depthBiasClamp = available.depthBiasClamp,
+                     .fillModeNonSolid = available.fillModeNonSolid,
+                     .samplerAnisotropy = available.samplerAnisotropy,
+                     .fragmentStoresAndAtomics = available.fragmentStoresAndAtomics,
+                     .shaderStorageImageExtendedFormats = available.shaderStorageImageExtendedFormats,
+                     .shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat},
+    };
+    std::vector<const char*> extensions(wanted.begin(), wanted.end());
+    if (names == gpu::PromotedNames::Khr) std::ranges::copy(gpu::promoted_extensions, std::back_inserter(extensions));
+    if (context.compiles_only) extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    constexpr float priority = 1.0F;
+    const VkDeviceQueueCreateInfo queue_info{
+        .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+        .queueFamilyIndex = context.queue_family,
+        .queueCount = 1,
+        .pQueuePriorities = &priority,
+    };
+    const VkDeviceCreateInfo create_info{
+        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+        .pNext = &features,
+        .queueCreateInfoCount = 1,
+        .pQueueCreateInfos = &queue_info,
+        .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+        .ppEnabledExtensionNames = extensions.data(),
+    };
+    VkDevice device = VK_NULL_HANDLE;
+    const VkResult created = vk.CreateDevice(context.physical_device, &create_info, context.allocator, &device);
+    if (Result<> checked = context.check(created, fmt::format("creating a device on \"{}\"", context.info.name));
+        !checked) {
+        return checked;
+    }
+    Result<> loaded = context.vk.load_device(device, context.traits.has_debug_labels, names);
+    if (loaded && context.compiles_only) loaded = context.vk.load_statistics(device);
+    if (!loaded) {
+        if (vk.DestroyDevice != nullptr) vk.DestroyDevice(device, context.allocator);
+        return loaded;
+    }
+    context.device = device;
+    vk.GetDeviceQueue(device, context.queue_family, 0, &context.queue);
+    return {};
+}
+
+}  // namespace
+
+Device::Device(std::shared_ptr<gpu::Context> context) : context_(std::move(context)) {}
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+Device::~Device() = default;
+
+const DeviceInfo& Device::info() const { return context_->info; }
+std::uint64_t Device::validation_messages() const { return context_->validation_messages; }
+
+Result<std::vector<DeviceInfo>> Device::list() {
+    Context context;
+    if (Result<> created = create_instance(context, false); !created) return failure(std::move(created));
+    const Result<std::vector<Candidate>> candidates = find_devices(context);
+    if (!candidates) return failure(candidates.error());
+    return infos_of(*candidates);
+}
+
+Device Device::assumed() { return Device(gpu::assumed_context()); }
+
+Result<Device> Device::create(const DeviceDesc& desc) {
+    auto context = std::make_shared<Context>();
+    context->log = desc.log;
+    context->compiles_only = desc.compiles_only;
+    context->cache_folder = gpu::cache_folder_of(desc.cache_folder, desc.caches_on_disk);
+    if (Result<> created = create_instance(*context, wants_validation(desc), desc.instance_extensions); !created)
+        return failure(std::move(created));
+    const Result<std::vector<Candidate>> candidates = find_devices(*context, desc.compiles_only);
+    if (!candidates) return failure(candidates.error());
+    Result<Candidate> chosen = choose(*candidates, desc.select);
+    if (!chosen) return failure(std::move(chosen));
+    context->physical_device = chosen->device;
+    context->info = std::move(chosen->info);
+    context->queue_family = gpu::find_queue_family(context->vk, context->physical_device).value_or(0);
+    if (Result<> created = create_device(*context, desc.device_extensions); !created)
+        return failure(std::move(created));
+    if (Result<> finished = context->finish(); !finished) return failure(std::move(finished));
+    return Device(std::move(context));
+}
+
+}  // namespace darkroom

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A kernel is a function of a pixel, written once in GLSL and run as a compute shader or as a fragment shader on a
+// full-screen triangle. The body calls
+//     vec4 sample_linear(IMAGE, vec2 uv)     bilinear, clamped to the image's region; uv (0,0)-(1,1) spans the region
+//     vec4 load(IMAGE, ivec2 texel)          one texel; the texel must lie inside the region
+//     vec4 load_clamped(IMAGE, ivec2 texel)  one texel, clamped to the region
+//     vec4 gather_red(IMAGE, vec2 uv)        textureGather of the red channel
+//     vec4 gather_green(IMAGE, vec2 uv)      textureGather of the green channel
+//     ivec2 size(IMAGE)                      extent of the image's region, in texels
+// where IMAGE is a name from KernelSpec::images, and defines
+//     vec4 shade(Pixel pixel)                with one output
+//     void shade(Pixel pixel, out vec4 result[N])   with N
+// It may read KernelSpec::frame and members by their names, custom[i], output_size(), which is pixel.size, and the
+// constants, for choices that must not cost a branch,
+//     bool is_software                       the device is a CPU: loads cost less than linear taps, and pow() a lot
+//     bool loads_outside_are_zero            a load outside any image gives zeros here, and may be made
+//     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
+//     bool output_is_twice                   the output's region is exactly twice the first image's
+//     bool rays_meet                         the frame's camera is perspective: all its rays come from one point
+//     bool has_quads                         pixels tell each other in 2x2 quads, whose first texels are even:
+//     vec3 from_beside(vec3), vec4 from_beside(vec4)   what the quad's pixel to the left or right has for the argument
+//     vec3 from_below(vec3), vec4 from_below(vec4)     the same of the one below or above; finite numbers only, and
+//                                                      rounded as their difference is
+// Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
+// The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where
+// a region ends inside its image, a gather does not leave it either, but gives the last whole 2x2 block there.
+// kernel_source() writes the rest: preamble, bindings, region arithmetic, and main() of the stage.
+//
+// Set 0: binding 0 the block of the frame, binding 1 the kernel's own block, both uniform buffers, then the images in
+// order, then, in compute, the outputs.
+//
+// The text depends on what the kernel does and on nothing else: names of passes and entries stay out of it, so that
+// equal kernels are one kernel (gpu/kernel/kernel_store.hpp).
+
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <cstdint>
+#include <darkroom/kernel_statistics.hpp>
+#include <darkroom/result.hpp>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gpu/kernel/block.hpp"
+
+namespace darkroom::gpu {
+
+class Context;
+
+/// Buffers of blocks are made with this usage, and bound at multiples of Traits::uniform_alignment. Measured on the
+/// software driver, 16 scalars from a storage buffer cost 35 to 90 % more than the same ones from a uniform buffer.
+inline constexpr VkBufferUsageFlags block_usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+
+/// Limits of one kernel: record() works in arrays of these sizes, on the stack. Vulkan promises 16 samplers a stage and
+/// 4 attachments.
+inline constexpr std::uint32_t most_images = 16;
+inline constexpr std::uint32_t most_outputs = 8;
+
+enum class Stage : std::uint8_t { Compute, Raster };
+
+struct KernelImage {
+    std::string name;
+    /// VK_FORMAT_UNDEFINED: sampled (any format). Else load() is an imageLoad of that format, the cheapest read of an
+    /// own pixel, and the image is bound in VK_IMAGE_LAYOUT_GENERAL; sample_linear(), of floats, then mixes four loads,
+    /// and there are no gathers.
+    VkFormat storage_format = VK_FORMAT_UNDEFINED;
+    /// A sampled image may name a storage one before it that shows the same view: its load() then goes through that
+    /// one.
+    std::string loads_by{};
+    std::string sampler_type = "sampler2D";  ///< or "sampler3D", "usampler2D", ...
+    /// The device cannot filter its format: sample_linear() mixes four loads. Of "sampler2D" only.
+    bool is_filtered_by_loads = false;
+    /// Its format is one of depth, so the sampler it is bound with takes the nearest texel.
+    bool is_depth = false;
+};
+
+struct KernelSpec {
+    std::string name;  ///< of the pipeline, and in errors; not part of the text
+    std::vector<KernelImage> images;
+    std::vector<VkFormat> outputs;
+    bool is_whole = false;        ///< all regions are whole images: no region arithmetic
+    bool input_is_twice = false;  ///< constants that the body may ask for, see the top of this file
+    bool output_is_twice = false;
+    bool rays_meet = false;
+    bool is_software = false;
+    bool has_robust_images = false;  ///< robustImageAccess: with whole images, loads outside are zero
+    bool is_additive = false;        ///< output 0 += result instead of = result
+    /// What all kernels of a frame read: laid out by its owner, who outlives the spec. Empty: no such block.
+    std::span<const BlockMember> frame;
+    std::vector<BlockMember> members;  ///< of the kernel's own block, behind what kernel_source() puts there
+    std::uint32_t custom_vectors = 0;  ///< vec4 custom[n] in the own block
+    std::string body;                  ///< GLSL: helpers and shade(); may hold #line directives
+    std::array<std::uint32_t, 2> workgroup{16, 8};  ///< 128 invocations are what every device allows
+};
+
+/// The whole shader for one stage. Pure text: tested without a device.
+[[nodiscard]] std::string kernel_source(const KernelSpec& spec, Stage stage);
+
+/// The part of an image that a frame uses. Layouts are the graph's matter.
+struct Region {
+    VkOffset2D offset{};
+    VkExtent2D extent{};
+    VkExtent2D image{};  ///< of the whole image (of the mip level the view shows)
+};
+struct Binding {
+    VkImageView view = VK_NULL_HANDLE;  ///< of one mip level where sample_linear() is called
+    Region region{};
+    bool is_nearest = false;             ///< formats that cannot be filtered
+    bool is_lent = false;                ///< the host's: its handle may stand for another view than last time
+    VkSampler sampler = VK_NULL_HANDLE;  ///< instead of the linear or nearest one, which clamp to the edge
+    VkImageLayout layout =
+        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;  ///< of a sampled image; storage images are GENERAL
+};
+
+/// Bytes of the own block of a spec, and its content for one invocation: output region, one region an input, custom
+/// vectors, and the words of the members.
+[[nodiscard]] std::size_t own_block_size(const KernelSpec& spec);
+void write_own_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
+                     std::span<const std::array<float, 4>> custom, std::span<const std::uint32_t> words,
+                     std::span<std::byte> out);
+
+/// Compiled for one stage: pipeline, layouts. Made when a stack is compiled or on a worker, never while recording.
+class Kernel {
+  public:
+    [[nodiscard]] static Result<std::unique_ptr<Kernel>> create(Context& context, const KernelSpec& spec, Stage stage);
+    /// The same from text that kernel_source(spec, stage) gave.
+    [[nodiscard]] static Result<std::unique_ptr<Kernel>> create(Context& context, const KernelSpec& spec, Stage stage,
+                                                                std::string source);
+    ~Kernel();
+    /// Without its body.
+    [[nodiscard]] const KernelSpec& spec() const;
+    [[nodiscard]] Stage stage() const;
+    /// The same for all kernels with the same images, outputs and stage.
+    [[nodiscard]] VkDescriptorSetLayout set_layout() const;
+    /// Of its stage's program; on a device that compiles only.
+    [[nodiscard]] Result<KernelStatistics> statistics() const;
+
+    struct Block {
+        VkBuffer buffer = VK_NULL_HANDLE;
+        VkDeviceSize offset = 0, size = 0;
+    };
+    struct Invocation {
+        VkDescriptorSet set = VK_NULL_HANDLE;  ///< of set_layout(), not in use by an unfinished frame
+        Block frame, own;                      ///< own: the caller wrote it with write_own_block
+        std::span<const Binding> images;
+        std::span<const Binding> outputs;  ///< all with the same region
+    };
+    /// Writes all of the set.
+    void write_set(const Invocation& invocation) const;
+    /// Binds and dispatches (or begins rendering, draws, ends), with a set that was written. No allocation, no wait.
+    void record(VkCommandBuffer commands, VkDescriptorSet set, std::span<const Binding> outputs) const;
+
+  private:
+    Kernel();
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// Whether `stage` can run `spec` on this device; the error names the output or image and its format.
+[[nodiscard]] Result<> usable(const Context& context, const KernelSpec& spec, Stage stage);
+
+/// Rows suit the software driver, squares the GPUs; never more invocations than the device allows.
+[[nodiscard]] std::array<std::uint32_t, 2> usual_workgroup(const Context& context);
+
+/// Which stage runs `spec` best on this device, from the measurements in docs/architecture.md: GPUs compute; the
+/// software driver rasterises. Formats that the stage cannot write force the other one.
+[[nodiscard]] Stage preferred_stage(const Context& context, const KernelSpec& spec);
+
+}  // namespace darkroom::gpu

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <utility>
+
+#include "core/assert.hpp"
+#include "gpu/resource/resources.hpp"
+
+namespace darkroom::gpu {
+
+std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, std::uint32_t valid_bits) {
+    const std::uint64_t mask = valid_bits < 64 ? (std::uint64_t{1} << valid_bits) - 1 : ~std::uint64_t{0};
+    return (end - begin) & mask;
+}
+
+Result<Timers> Timers::create(Context& context, std::uint32_t slots, std::uint32_t marks) {
+    DARKROOM_ASSERT(slots > 0 && marks > 0);
+    Timers timers;
+    timers.context = &context;
+    timers.marks = marks;
+    timers.ticks.resize(marks);
+    if (context.traits.timestamp_period_ns <= 0.0) return timers;
+    const VkQueryPoolCreateInfo create_info{
+        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+        .queryType = VK_QUERY_TYPE_TIMESTAMP,
+        .queryCount = slots * marks,
+    };
+    Result<> checked =
+        context.check(context.vk.CreateQueryPool(context.device, &create_info, context.allocator, &timers.pool),
+                      "creating the timestamp queries");
+    if (!checked) return failure(std::move(checked));
+    return timers;
+}
+
+Timers::Timers(Timers&& other) noexcept { *this = std::move(other); }
+Timers& Timers::operator=(Timers&& other) noexcept {
+    std::swap(pool, other.pool);
+    std::swap(marks, other.marks);
+    std::swap(ticks, other.ticks);
+    std::swap(context, other.context);
+    return *this;
+}
+Timers::~Timers() {
+    if (pool != VK_NULL_HANDLE) context->vk.DestroyQueryPool(context->device, pool, context->allocator);
+}
+
+void Timers::begin(VkCommandBuffer commands, std::uint32_t slot) {
+    if (pool != VK_NULL_HANDLE) context->vk.CmdResetQueryPool(commands, pool, slot * marks, marks);
+}
+
+void Timers::mark(VkCommandBuffer commands, std::uint32_t slot, std::uint32_t index) {
+    DARKROOM_ASSERT(index < marks);
+    if (pool == VK_NULL_HANDLE) return;
+    context->vk.CmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool, slot * marks + index);
+}
+
+std::size_t Timers::read(std::uint32_t slot, std::uint32_t count, std::span<double> milliseconds) {
+    DARKROOM_ASSERT(count <= marks);
+    if (pool == VK_NULL_HANDLE || count < 2) return 0;
+    const VkResult result =
+        context->vk.GetQueryPoolResults(context->device, pool, slot * marks, count, count * sizeof(std::uint64_t),
+                                        ticks.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
+    if (result != VK_SUCCESS) return 0;
+    constexpr double milliseconds_per_ns = 1e-6;
+    const std::size_t interval_count = std::min<std::size_t>(count - 1, milliseconds.size());
+    for (std::size_t index = 0; index < interval_count; ++index) {
+        const auto elapsed =
+            static_cast<double>(elapsed_ticks(ticks[index], ticks[index + 1], context->traits.timestamp_valid_bits));
+        milliseconds[index] = elapsed * context->traits.timestamp_period_ns * milliseconds_per_ns;
+    }
+    return interval_count;
+}
+
+}  // namespace darkroom::gpu

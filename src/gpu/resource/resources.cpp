@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+#include "gpu/resource/resources.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/assert.hpp"
+#include "gpu/device/assumed_device.hpp"
+#include "gpu/resource/formats.hpp"
+
+namespace darkroom::gpu {
+
+namespace {
+
+constexpr VkImageUsageFlags viewable_usage =
+    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+    VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
+VkImageViewType view_type(const ImageInfo& info) {
+    if (info.type == VK_IMAGE_TYPE_3D) return VK_IMAGE_VIEW_TYPE_3D;
+    if (info.type == VK_IMAGE_TYPE_1D) return VK_IMAGE_VIEW_TYPE_1D;
+    return info.array_layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+}
+
+Result<VkImage> create_image(Context& context, const ImageInfo& info) {
+    const VkImageCreateInfo create_info{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = info.type,
+        .format = info.format,
+        .extent = info.extent,
+        .mipLevels = info.mip_levels,
+        .arrayLayers = info.array_layers,
+        .samples = info.samples,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = info.usage,
+        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+        .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+    };
+    VkImage image = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateImage(context.device, &create_info, context.allocator, &image);
+    Result<> checked = context.check(
+        result, fmt::format("creating the image \"{}\", {} x {}", info.name, info.extent.width, info.extent.height));
+    if (!checked) return failure(std::move(checked));
+    name_object(context, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(image), info.name);
+    return image;
+}
+
+VkMemoryRequirements requirements_of(const Context& context, VkImage image) {
+    VkMemoryRequirements requirements{};
+    context.vk.GetImageMemoryRequirements(context.device, image, &requirements);
+    return requirements;
+}
+
+struct ViewPart {
+    std::uint32_t first_mip = 0, mip_count = 1;
+    std::uint32_t first_layer = 0, layer_count = 1;
+};
+
+Result<VkImageView> create_view(Context& context, const Image& image, VkImageViewType type, const ViewPart& part) {
+    const VkImageViewCreateInfo create_info{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = image.handle,
+        .viewType = type,
+        .format = image.info.format,
+        .subresourceRange = {.aspectMask = sampled_aspect(image.info.format),
+                             .baseMipLevel = part.first_mip,
+                             .levelCount = part.mip_count,
+                             .baseArrayLayer = part.first_layer,
+                             .layerCount = part.layer_count},
+    };
+    VkImageView view = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateImageView(context.device, &create_info, context.allocator, &view);
+    Result<> checked = context.check(result, fmt::format("creating a view of the image \"{}\"", image.info.name));
+    if (!checked) return failure(std::move(checked));
+    return view;
+}
+
+/// The image is bound to its memory already.
+Result<> create_views(Context& context, Image& image) {
+    if ((image.info.usage & viewable_usage) == 0) return {};
+    const VkImageViewType type = view_type(image.info);
+    const std::uint32_t mips = image.info.mip_levels, layers = image.info.array_layers;
+    Result<VkImageView> whole = create_view(context, image, type, {.mip_count = mips, .layer_count = layers});
+    if (!whole) return failure(std::move(whole));
+    image.view = *whole;
+    for (std::uint32_t mip = 0; mip < mips; ++mip) {
+        Result<VkImageView> view = create_view(context, image, type, {.first_mip = mip, .layer_count = layers});
+        if (!view) return failure(std::move(view));
+        image.mip_views.push_back(*view);
+    }
+    for (std::uint32_t layer = 0; layers > 1 && layer < layers; ++layer) {
+        Result<VkImageView> view = create_view(context, image, VK_IMAGE_VIEW_TYPE_2D, {.first_layer = layer});
+        if (!view) return failure(std::move(view));
+        image.layer_views.push_back(*view);
+    }
+    return {};
+}
+
+Result<Image> bind_image(Context& context, Image image, VkDeviceMemory memory, VkDeviceSize offset) {
+    const VkResult bound = context.vk.BindImageMemory(context.device, image.handle, memory, offset);
+    Result<> result = context.check(bound, fmt::format("binding memory to the image \"{}\"", image.info.name));
+    if (result) result = create_views(context, image);
+    if (!result) return failure(std::move(result));
+    return image;
+}
+
+}  // namespace
+
+Result<Memory> Memory::create(Context& context, VkDeviceSize size, std::uint32_t type_bits, Kind kind,
+                              std::string_view what) {
+    Memory memory;
+    Result<> allocated = machine_error(fmt::format("no type of the device's memory will do for {}", what));
+    // A full heap is no reason to fail while another type would do.
+    for (const std::uint32_t type : memory_types_for(context.memory, type_bits, kind)) {
+        const VkMemoryAllocateInfo allocate_info{
+            .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = size, .memoryTypeIndex = type};
+        allocated = context.allocate_memory(allocate_info, what, memory.handle);
+        if (allocated) break;
+    }
+    if (!allocated) return failure(std::move(allocated));
+    memory.context = &context;
+    memory.size = size;
+    if (kind == Kind::Device) return memory;
+    void* mapped = nullptr;
+    Result<> checked = context.check(context.vk.MapMemory(context.device, memory.handle, 0, VK_WHOLE_SIZE, 0, &mapped),
+                                     fmt::format("mapping the memory of {}", what));
+    if (!checked) return failure(std::move(checked));
+    memory.mapped = static_cast<std::byte*>(mapped);
+    return memory;
+}
+
+Memory::Memory(Memory&& other) noexcept { *this = std::move(other); }
+Memory& Memory::operator=(Memory&& other) noexcept {
+    std::swap(handle, other.handle);
+    std::swap(mapped, other.mapped);
+    std::swap(size, other.size);
+    std::swap(context, other.context);
+    return *this;
+}
+Memory::~Memory() {
+    if (handle != VK_NULL_HANDLE) context->free_memory(handle);
+}
+
+Result<Image> Image::create(Context& context, const ImageInfo& info) {
+    Result<VkImage> handle = create_image(context, info);
+    if (!handle) return failure(std::move(handle));
+    Image image;
+    image.context = &context;
+    image.handle = *handle;
+    image.info = info;
+    const VkMemoryRequirements needed = requirements_of(context, image.handle);
+    Result<Memory> memory = Memory::create(context, needed.size, needed.memoryTypeBits, Memory::Kind::Device,
+                                           fmt::format("the image \"{}\"", info.name));
+    if (!memory) return failure(std::move(memory));
+    image.memory = std::move(*memory);
+    const VkDeviceMemory bound_memory = image.memory.handle;
+    return bind_image(context, std::move(image), bound_memory, 0);
+}
+
+Result<Image> Image::place(Context& context, const ImageInfo& info, const Memory& memory, VkDeviceSize offset) {
+    Result<VkImage> handle = create_image(context, info);
+    if (!handle) return failure(std::move(handle));
+    Image image;
+    image.context = &context;
+    image.handle = *handle;
+    image.info = info;
+    return bind_image(context, std::move(image), memory.handle, offset);
+}
+
+Result<VkMemoryRequirements> Image::measure(Context& context, const ImageInfo& info) {
+    if (context.is_assumed || context.compiles_only) return assumed_requirements(info);
+    const Result<VkImage> handle = create_image(context, info);
+    if (!handle) return failure(handle.error());
+    const VkMemoryRequirements requirements = requirements_of(context, *handle);
+    context.vk.DestroyImage(context.device, *handle, context.allocator);
+    return requirements;
+}
+
+Image::Image(Image&& other) noexcept { *this = std::move(other); }
+Image& Image::operator=(Image&& other) noexcept {
+    std::swap(handle, other.handle);
+    std::swap(view, other.view);
+    std::swap(mip_views, other.mip_views);
+    std::swap(layer_views, other.layer_views);
+    std::swap(info, other.info);
+    std::swap(memory, other.memory);
+    std::swap(context, other.context);
+    return *this;
+}
+Image::~Image() {
+    if (handle == VK_NULL_HANDLE) return;
+    for (const VkImageView mip_view : mip_views)
+        context->vk.DestroyImageView(context->device, mip_view, context->allocator);
+    for (const VkImageView layer_view : layer_views)
+        context->vk.DestroyImageView(context->device, layer_view, context->allocator);
+    context->vk.DestroyImageView(context->device, view, context->allocator);
+    context->vk.DestroyImage(context->device, handle, context->allocator);
+}
+
+Result<Buffer> Buffer::create(Context& context, VkDeviceSize size, VkBufferUsageFlags usage, Memory::Kind kind,
+                              std::string_view name) {
+    const VkBufferCreateInfo create_info{
+        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+        .size = size,
+        .usage = usage,
+        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+    };
+    Buffer buffer;
+    Result<> checked =
+        context.check(context.vk.CreateBuffer(context.device, &create_info, context.allocator, &buffer.handle),
+                      fmt::format("creating the buffer \"{}\", {} bytes", name, size));
+    if (!checked) return failure(std::move(checked));
+    buffer.context = &context;
+    name_object(context, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.handle), std::string(name));
+    VkMemoryRequirements needed{};
+    context.vk.GetBufferMemoryRequirements(context.device, buffer.handle, &needed);
+    Result<Memory> memory =
+        Memory::create(context, needed.size, needed.memoryTypeBits, kind, fmt::format("the buffer \"{}\"", name));
+    if (!memory) return failure(std::move(memory));
+    buffer.memory = std::move(*memory);
+    const VkResult bound = context.vk.BindBufferMemory(context.device, buffer.handle, buffer.memory.handle, 0);
+    checked = context.check(bound, fmt::format("binding memory to the buffer \"{}\"", name));
+    if (!checked) return failure(std::move(checked));
+    return buffer;
+}
+
+Buffer::Buffer(Buffer&& other) noexcept { *this = std::move(other); }
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+    std::swap(handle, other.handle);
+    std::swap(memory, other.memory);
+    std::swap(context, other.context);
+    return *this;
+}
+Buffer::~Buffer() {
+    if (handle != VK_NULL_HANDLE) context->vk.DestroyBuffer(context->device, handle, context->allocator);
+}
+
+Result<DescriptorSets> DescriptorSets::create(Context& context, std::span<const VkDescriptorSetLayout> layouts) {
+    DescriptorSets result;
+    result.context = &context;
+    if (layouts.empty()) return result;
+    const auto count = static_cast<std::uint32_t>(layouts.size());
+    // Layouts cannot be asked for their sizes, so each set counts as the largest that a kernel may have.
+    const std::array sizes{
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * count},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * count},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16 * count},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 16 * count},
+    };
+    const VkDescriptorPoolCreateInfo pool_info{
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+        .maxSets = count,
+        .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
+        .pPoolSizes = sizes.data(),
+    };
+    Result<> checked =
+        context.check(context.vk.CreateDescriptorPool(context.device, &pool_info, context.allocator, &result.pool),
+                      fmt::format("creating a pool of {} descriptor sets", count));
+    if (!checked) return failure(std::move(checked));
+    const VkDescriptorSetAllocateInfo allocate_info{
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+        .descriptorPool = result.pool,
+        .descriptorSetCount = count,
+        .pSetLayouts = layouts.data(),
+    };
+    result.sets.resize(count);
+    checked = context.check(context.vk.AllocateDescriptorSets(context.device, &allocate_info, result.sets.data()),
+                            fmt::format("allocating {} descriptor sets", count));
+    if (!checked) return failure(std::move(checked));
+    return result;
+}
+
+DescriptorSets::DescriptorSets(DescriptorSets&& other) noexcept { *this = std::move(other); }
+DescriptorSets& DescriptorSets::operator=(DescriptorSets&& other) noexcept {
+    std::swap(sets, other.sets);
+    std::swap(pool, other.pool);
+    std::swap(context, other.context);
+    return *this;
+}
+DescriptorSets::~DescriptorSets() {
+    if (pool != VK_NULL_HANDLE) context->vk.DestroyDescriptorPool(context->device, pool, context->allocator);
+}
+
+void name_object(Context& context, VkObjectType type, std::uint64_t handle, const std::string& name) {
+    if (context.vk.SetDebugUtilsObjectNameEXT == nullptr) return;
+    const VkDebugUtilsObjectNameInfoEXT info{
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+        .objectType = type,
+        .objectHandle = handle,
+        .pObjectName = name.c_str(),
+    };
+    // A name that cannot be given is missed in a debugger and nowhere else.
+    static_cast<void>(context.vk.SetDebugUtilsObjectNameEXT(context.device, &info));
+}
+
+void begin_label(const Context& context, VkCommandBuffer commands, const char* name) {
+    if (context.vk.CmdBeginDebugUtilsLabelEXT == nullptr) return;
+    const VkDebugUtilsLabelEXT label{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = name};
+    context.vk.CmdBeginDebugUtilsLabelEXT(commands, &label);
+}
+
+void end_label(const Context& context, VkCommandBuffer commands) {
+    if (context.vk.CmdEndDebugUtilsLabelEXT != nullptr) context.vk.CmdEndDebugUtilsLabelEXT(commands);
+}
+
+}  // namespace darkroom::gpu

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "gpu/resource/formats.hpp"
+#include "gpu/resource/resources.hpp"
+
+namespace darkroom::gpu {
+
+/// Pool and fence.
+struct Submission::State {
+    explicit State(Context& owner, std::string_view doing) : context(owner), what(doing) {}
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    // What was begun is finished, whoever looks at it.
+    ~State() {
+        if (is_running) static_cast<void>(wait());
+        context.vk.DestroyFence(context.device, fence, context.allocator);
+        context.vk.DestroyCommandPool(context.device, pool, context.allocator);
+    }
+    VkResult run(const std::function<void(VkCommandBuffer)>& body);
+    VkResult wait() {
+        is_running = false;
+        return context.vk.WaitForFences(context.device, 1, &fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+    }
+
+    Context& context;
+    std::string what;
+    VkCommandPool pool = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+    bool is_running = false;
+};
+
+VkResult Submission::State::run(const std::function<void(VkCommandBuffer)>& body) {
+    const Dispatch& vk = context.vk;
+    const VkCommandPoolCreateInfo pool_info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+        .queueFamilyIndex = context.queue_family,
+    };
+    VkResult result = vk.CreateCommandPool(context.device, &pool_info, context.allocator, &pool);
+    if (result != VK_SUCCESS) return result;
+    const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+    result = vk.CreateFence(context.device, &fence_info, context.allocator, &fence);
+    if (result != VK_SUCCESS) return result;
+    const VkCommandBufferAllocateInfo allocate_info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .commandPool = pool,
+        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+        .commandBufferCount = 1,
+    };
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    result = vk.AllocateCommandBuffers(context.device, &allocate_info, &commands);
+    if (result != VK_SUCCESS) return result;
+    const VkCommandBufferBeginInfo begin_info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
+    };
+    result = vk.BeginCommandBuffer(commands, &begin_info);
+    if (result != VK_SUCCESS) return result;
+    body(commands);
+    result = vk.EndCommandBuffer(commands);
+    if (result != VK_SUCCESS) return result;
+    const VkCommandBufferSubmitInfo command_info{
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+        .commandBuffer = commands,
+    };
+    const VkSubmitInfo2 submit_info{
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+        .commandBufferInfoCount = 1,
+        .pCommandBufferInfos = &command_info,
+    };
+    const std::lock_guard lock(context.queue_mutex);
+    result = vk.QueueSubmit2(context.queue, 1, &submit_info, fence);
+    is_running = result == VK_SUCCESS;
+    return result;
+}
+
+Submission::Submission() = default;
+Submission::Submission(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Submission::Submission(Submission&&) noexcept = default;
+Submission& Submission::operator=(Submission&&) noexcept = default;
+Submission::~Submission() = default;
+
+Result<Submission> Submission::begin(Context& context, std::string_view what,
+                                     const std::function<void(VkCommandBuffer)>& body) {
+    if (context.queue == VK_NULL_HANDLE) {
+        return machine_error(fmt::format("{}: an adopted device has no queue of ours to submit to", what));
+    }
+    auto state = std::make_unique<State>(context, what);
+    if (Result<> done = context.check(state->run(body), what); !done) return failure(std::move(done));
+    return Submission(std::move(state));
+}
+
+Result<> Submission::wait() {
+    if (!state_) return {};
+    const std::unique_ptr<State> state = std::move(state_);
+    return state->context.check(state->wait(), state->what);
+}
+
+Result<> submit_and_wait(Context& context, std::string_view what, const std::function<void(VkCommandBuffer)>& body) {
+    Result<Submission> submission = Submission::begin(context, what, body);
+    return submission ? submission->wait() : failure(std::move(submission));
+}
+
+void transition(const Context& context, VkCommandBuffer commands, const Image& image, VkImageLayout from,
+                VkImageLayout to) {
+    const VkImageMemoryBarrier2 change{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                       .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                       .oldLayout = from,
+                                       .newLayout = to,
+                                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                       .image = image.handle,
+                                       .subresourceRange = {format_traits(image.info.format).aspects, 0,
+                                                            VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS}};
+    const VkMemoryBarrier2 to_host{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                   .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                   .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                   .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
+                                   .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
+    const bool was_read = from == VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                      .memoryBarrierCount = was_read ? 1u : 0u,
+                                      .pMemoryBarriers = &to_host,
+                                      .imageMemoryBarrierCount = 1,
+                                      .pImageMemoryBarriers = &change};
+    context.vk.CmdPipelineBarrier2(commands, &dependency);
+}
+
+}  // namespace darkroom::gpu

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// Histories on a real device: shared by plans that follow each other, reset one by one, resampled when the frame's
+// extent changes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "graph/physical/test_physical.hpp"
+
+namespace darkroom::graph::test {
+namespace {
+
+constexpr VkExtent2D small_extent{16, 8};
+constexpr HistoryKey key{.owner = 7};
+
+/// target = history = previous + value of the frame, after `delays` passes.
+struct Trail {
+    int delays = 0;
+    ImageDesc image = float_image("trail");
+    HistoryKey own_key = key;
+
+    void operator()(Graph& graph) const {
+        const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+        const Graph::History history = graph.history(image, own_key);
+        Version sum = graph.add({.name = "add",
+                                 .reads = {{history.previous, Use::SampledCompute}},
+                                 .writes = {{history.current, Use::StorageWrite}}})[0];
+        for (int i = 0; i < delays; ++i) {
+            sum = graph.add({.name = fmt::format("delay{}", i),
+                             .reads = {{sum, Use::SampledCompute}},
+                             .writes = {{graph.create(float_image(fmt::format("t{}", i))), Use::StorageWrite}}})[0];
+        }
+        graph.keep(graph.add(
+            {.name = "show", .reads = {{sum, Use::SampledCompute}}, .writes = {{target, Use::StorageWrite}}})[0]);
+    }
+};
+
+/// target = value of the frame.
+void without_history(Graph& graph) {
+    const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+    graph.keep(graph.add({.name = "fill", .writes = {{target, Use::StorageWrite}}})[0]);
+}
+
+class GraphPhysicalHistory : public ::testing::Test {
+  protected:
+    /// Records a frame and returns what the target holds then.
+    float frame(Runner& runner, std::uint32_t view, float value, VkExtent2D extent = small_extent) {
+        runner.frame(std::array{&target_}, view, extent, value);
+        return gpu::test::download(context_, target_).at(extent.width - 1, extent.height - 1)[0];
+    }
+
+    gpu::Context& context_ = gpu::test::context();
+    HistoryPool pool_;
+    gpu::test::Picture target_ = gpu::test::blank(context_, small_extent, float_format);
+};
+
+}  // namespace
+
+TEST_F(GraphPhysicalHistory, ANewerPlanGoesOnWhereTheOlderStopped) {
+    Runner older(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(frame(older, 0, 1), 1);
+    Runner newer(small_extent, 1, pool_, Trail{.delays = 2});
+    // The older plan goes on while the newer one is made.
+    EXPECT_EQ(frame(older, 0, 2), 3);
+    EXPECT_EQ(frame(newer, 0, 4), 7);
+    EXPECT_EQ(frame(newer, 0, 8), 15);
+    EXPECT_EQ(frame(newer, 0, 16), 31);
+    EXPECT_EQ(frame(older, 0, 32), 63);
+}
+
+TEST_F(GraphPhysicalHistory, AnotherOwnerSizeFormatOrNumberOfLevelsStartsFromZero) {
+    Runner first(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(frame(first, 0, 1), 1);
+    Runner other_owner(small_extent, 1, pool_, Trail{.own_key = {.owner = 8}});
+    Runner other_number(small_extent, 1, pool_, Trail{.own_key = {.owner = 7, .number = 1}});
+    EXPECT_EQ(frame(other_owner, 0, 2), 2);
+    EXPECT_EQ(frame(other_number, 0, 3), 3);
+    Runner other_size(small_extent, 1, pool_, Trail{.image = float_image("trail", {.width = 20, .height = 20})});
+    EXPECT_EQ(frame(other_size, 0, 4), 4);
+    const HistoryImages* const before = other_size.physical.history(0);
+    EXPECT_EQ(Runner(small_extent, 1, pool_, Trail{.image = other_size.compiled->slots()[1].desc}).physical.history(0),
+              before);
+    ImageDesc desc = other_size.compiled->slots()[1].desc;
+    desc.mip_levels = 2;
+    EXPECT_NE(Runner(small_extent, 1, pool_, Trail{.image = desc}).physical.history(0), before);
+    desc.mip_levels = 1;
+    desc.format = VK_FORMAT_R32_SFLOAT;
+    EXPECT_NE(Runner(small_extent, 1, pool_, Trail{.image = desc}).physical.history(0), before);
+}
+
+TEST_F(GraphPhysicalHistory, WithoutAnOwnerNothingIsShared) {
+    Runner first(small_extent, 1, pool_, Trail{.own_key = {}});
+    Runner second(small_extent, 1, pool_, Trail{.own_key = {}});
+    EXPECT_EQ(frame(first, 0, 1), 1);
+    EXPECT_EQ(frame(second, 0, 2), 2);
+    EXPECT_EQ(pool_.size(), 0u);
+}
+
+TEST_F(GraphPhysicalHistory, ViewsThatComeLaterLeaveTheOthersAlone) {
+    Runner one(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(frame(one, 0, 1), 1);
+    Runner two(small_extent, 2, pool_, Trail{});
+    EXPECT_EQ(frame(two, 1, 10), 10);
+    EXPECT_EQ(frame(two, 0, 2), 3);
+    EXPECT_EQ(frame(two, 1, 20), 30);
+}
+
+TEST_F(GraphPhysicalHistory, PausesStartFromZero) {
+    Runner trail(small_extent, 1, pool_, Trail{});
+    Runner pause(small_extent, 1, pool_, without_history);
+    EXPECT_EQ(frame(trail, 0, 1), 1);
+    EXPECT_EQ(frame(trail, 0, 2), 3);
+    EXPECT_EQ(frame(pause, 0, 5), 5);
+    EXPECT_EQ(frame(trail, 0, 4), 4);
+    EXPECT_EQ(frame(trail, 0, 8), 12);
+}
+
+TEST_F(GraphPhysicalHistory, ThePoolDropsWhatNobodyUses) {
+    auto older = std::make_unique<Runner>(small_extent, 2, pool_, Trail{});
+    const Runner newer(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(pool_.size(), 2u);
+    pool_.trim();
+    EXPECT_EQ(pool_.size(), 2u) << "the older plan uses the second view";
+    older.reset();
+    EXPECT_EQ(pool_.size(), 2u);
+    pool_.trim();
+    EXPECT_EQ(pool_.size(), 1u);
+}
+
+TEST_F(GraphPhysicalHistory, OneIsResetAloneTheOtherGoesOn) {
+    const auto declare = [](Graph& graph) {
+        const Version target = graph.import({.image = float_image("target"), .usage = any_usage});
+        std::array<Version, 2> sums;
+        for (std::uint32_t i = 0; i < 2; ++i) {
+            const Graph::History history = graph.history(float_image(fmt::format("trail{}", i)), {7, i});
+            sums[i] = graph.add({.name = fmt::format("add{}", i),
+                                 .reads = {{history.previous, Use::SampledCompute}},
+                                 .writes = {{history.current, Use::StorageWrite}}})[0];
+        }
+        graph.keep(graph.add({.name = "show",
+                              .reads = {{sums[0], Use::SampledCompute}, {sums[1], Use::SampledCompute}},
+                              .writes = {{target, Use::StorageWrite}}})[0]);
+    };
+    Runner runner(small_extent, 1, pool_, declare);
+    EXPECT_EQ(frame(runner, 0, 1), 2);
+    EXPECT_EQ(frame(runner, 0, 10), 22);
+    runner.physical.history(1)->state.needs_reset = true;
+    EXPECT_EQ(frame(runner, 0, 100), 111 + 100);
+    EXPECT_EQ(frame(runner, 0, 0), 111 + 100);
+}
+
+TEST_F(GraphPhysicalHistory, OnlyAnotherPlanIsWaitedForAsAWhole) {
+    static std::uint32_t memory_barriers;
+    memory_barriers = 0;
+    Runner older(small_extent, 1, pool_, Trail{});
+    Runner newer(small_extent, 1, pool_, Trail{});
+    EXPECT_EQ(frame(older, 0, 1), 1);
+    gpu::Dispatch counting = context_.vk;
+    counting.CmdPipelineBarrier2 = [](VkCommandBuffer, const VkDependencyInfo* dependency) {
+        memory_barriers += dependency->memoryBarrierCount;
+        if (dependency->memoryBarrierCount == 0) return;
+        EXPECT_EQ(dependency->pMemoryBarriers->srcStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+        EXPECT_EQ(dependency->pMemoryBarriers->dstStageMask, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+    };
+    older.physical.begin(VK_NULL_HANDLE, counting, small_extent);
+    EXPECT_EQ(memory_barriers, 0u);
+    newer.physical.begin(VK_NULL_HANDLE, counting, small_extent);
+    EXPECT_EQ(memory_barriers, 1u);
+    newer.physical.begin(VK_NULL_HANDLE, counting, small_extent);
+    EXPECT_EQ(memory_barriers, 1u);
+}
+
+TEST_F(GraphPhysicalHistory, TrailsGoOnThroughChangesOfTheExtent) {
+    Runner runner(small_extent, 1, pool_, Trail{});
+    float sum = 0;
+    constexpr std::array<VkExtent2D, 7> extents{{{16, 8}, {11, 5}, {7, 7}, {7, 7}, {16, 8}, {1, 1}, {13, 3}}};
+    for (std::size_t i = 0; i < extents.size(); ++i) {
+        sum += static_cast<float>(i + 1);
+        EXPECT_EQ(frame(runner, 0, static_cast<float>(i + 1), extents[i]), sum) << "frame " << i;
+    }
+}
+
+}  // namespace darkroom::graph::test

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT
+#include "graph/physical/physical.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/assert.hpp"
+#include "gpu/resource/formats.hpp"
+
+namespace darkroom::graph {
+namespace {
+
+gpu::ImageInfo info_of(const ImageDesc& desc, VkImageUsageFlags usage, VkExtent2D extent) {
+    return {.name = desc.name,
+            .format = desc.format,
+            .extent = {extent.width, extent.height, 1},
+            .mip_levels = desc.mip_levels,
+            .array_layers = desc.array_layers,
+            .usage = usage};
+}
+
+constexpr VkAccessFlags2 any_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+
+}  // namespace
+
+Measure measure_on(gpu::Context& context) {
+    return [&context](const ImageDesc& desc, VkImageUsageFlags usage, VkExtent2D frame) -> Result<Requirements> {
+        auto measured = gpu::Image::measure(context, info_of(desc, usage, desc.size.of(frame)));
+        if (!measured) return failure(std::move(measured));
+        return Requirements{measured->size, measured->alignment, measured->memoryTypeBits};
+    };
+}
+
+void Physical::adopt(Entry& entry, const gpu::Image& image) {
+    entry.handles.push_back(image.handle);
+    entry.views.push_back(image.view);
+    if (image.mip_views.empty()) {
+        entry.mip_views.insert(entry.mip_views.end(), entry.mip_levels, VK_NULL_HANDLE);
+    } else {
+        entry.mip_views.insert(entry.mip_views.end(), image.mip_views.begin(), image.mip_views.end());
+    }
+}
+
+Result<> Physical::adopt_history(gpu::Context& context, const Slot& slot, std::uint32_t index, HistoryPool& pool) {
+    Entry& entry = entries_[index];
+    if (histories_.size() <= slot.history_index) histories_.resize(slot.history_index + 1);
+    History& history = histories_[slot.history_index];
+    history.slots[slot.history_parity] = index;
+    for (std::uint32_t view_index = 0; view_index < views_.size(); ++view_index) {
+        // The slot of the other parity may have brought them already.
+        if (history.views.size() <= view_index) {
+            auto images = pool.acquire(context, slot, view_index);
+            if (!images) return failure(std::move(images));
+            history.views.push_back(std::move(*images));
+        }
+        adopt(entry, history.views[view_index]->images[slot.history_parity]);
+    }
+    return {};
+}
+
+Result<Physical> Physical::create(gpu::Context& context, const Compiled& compiled, std::uint32_t views) {
+    HistoryPool pool;
+    return create(context, compiled, views, pool);
+}
+
+Result<Physical> Physical::create(gpu::Context& context, const Compiled& compiled, std::uint32_t views,
+                                  HistoryPool& pool) {
+    Physical physical;
+    physical.recorder_ = pool.next_recorder();
+    for (std::uint32_t index = 0; index < std::max(views, 1u); ++index) physical.views_.push_back(pool.view(index));
+    if (compiled.transient_bytes() > 0) {
+        auto memory = gpu::Memory::create(context, compiled.transient_bytes(), compiled.memory_type_bits(),
+                                          gpu::Memory::Kind::Device, "transient images");
+        if (!memory) return failure(std::move(memory));
+        physical.memory_ = std::move(*memory);
+    }
+    for (const Slot& slot : compiled.slots()) {
+        Entry entry{.kind = slot.kind,
+                    .format = slot.desc.format,
+                    .extent = slot.extent,
+                    .size = slot.desc.size,
+                    .mip_levels = slot.desc.mip_levels,
+                    .array_layers = slot.desc.array_layers,
+                    .rest_layout = slot.rest_layout,
+                    .import_index = slot.import_index};
+        const auto index = static_cast<std::uint32_t>(physical.entries_.size());
+        physical.entries_.push_back(std::move(entry));
+        Entry& kept = physical.entries_.back();
+        if (slot.kind == Slot::Kind::Transient) {
+            const gpu::ImageInfo info = info_of(slot.desc, slot.usage, slot.extent);
+            auto image = gpu::Image::place(context, info, physical.memory_, slot.offset);
+            if (!image) return failure(std::move(image));
+            adopt(kept, *image);
+            physical.images_.push_back(std::move(*image));
+        } else if (slot.kind == Slot::Kind::History) {
+            if (auto ok = physical.adopt_history(context, slot, index, pool); !ok) return failure(std::move(ok));
+        } else {
+            kept.handles.assign(1, VK_NULL_HANDLE);
+            kept.views.assign(1, VK_NULL_HANDLE);
+            kept.mip_views.assign(slot.desc.mip_levels, VK_NULL_HANDLE);
+        }
+    }
+    return physical;
+}
+
+void Physical::bind(std::uint32_t import_index, const LentImage& image) {
+    // The imports are the first slots, in their order.
+    DARKROOM_ASSERT(import_index < entries_.size() && entries_[import_index].import_index == import_index);
+    Entry& entry = entries_[import_index];
+    DARKROOM_ASSERT(image.mip_views.size() == entry.mip_levels || image.mip_views.empty());
+    entry.handles[0] = image.handle;
+    entry.base_mip_level = image.base_mip_level;
+    entry.base_array_layer = image.base_array_layer;
+    entry.array_layers = image.array_layers;
+    entry.views[0] = image.view;
+    std::copy(image.mip_views.begin(), image.mip_views.end(), entry.mip_views.begin());
+    if (image.mip_views.empty() && entry.mip_levels == 1) entry.mip_views[0] = image.view;
+}
+
+VkImage Physical::handle(std::uint32_t slot, std::uint32_t view_index) const {
+    return entries_[slot].handles[instance(entries_[slot], view_index)];
+}
+VkImageView Physical::view(std::uint32_t slot, std::uint32_t view_index) const {
+    return entries_[slot].views[instance(entries_[slot], view_index)];
+}
+VkImageView Physical::mip_view(std::uint32_t slot, std::uint32_t mip_level, std::uint32_t view_index) const {
+    const Entry& entry = entries_[slot];
+    return entry.mip_views[instance(entry, view_index) * entry.mip_levels + mip_level];
+}
+
+void Physical::record_barriers(VkCommandBuffer commands, const gpu::Dispatch& vk, std::span<const Barrier> barriers,
+                               std::uint32_t view_index) const {
+    std::array<VkImageMemoryBarrier2, 32> batch;
+    while (!barriers.empty()) {
+        const std::size_t count = std::min(barriers.size(), batch.size());
+        // A barrier of one image makes writes through that image available. What lay in the same memory before was
+        // written through another one, so a transient that begins takes a barrier for all memory along.
+        VkMemoryBarrier2 memory{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+        for (std::size_t i = 0; i < count; ++i) {
+            const Barrier& barrier = barriers[i];
+            const Entry& entry = entries_[barrier.slot];
+            batch[i] = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                        .srcStageMask = barrier.source_stages,
+                        .srcAccessMask = barrier.source_access,
+                        .dstStageMask = barrier.target_stages,
+                        .dstAccessMask = barrier.target_access,
+                        .oldLayout = barrier.old_layout,
+                        .newLayout = barrier.new_layout,
+                        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                        .image = handle(barrier.slot, view_index),
+                        .subresourceRange = {.aspectMask = barrier.is_depth_alone
+                                                               ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                                                               : gpu::format_traits(entry.format).aspects,
+                                             .baseMipLevel = entry.base_mip_level + barrier.mips.first,
+                                             .levelCount = barrier.mips.count,
+                                             .baseArrayLayer = entry.base_array_layer,
+                                             .layerCount = entry.array_layers}};
+            DARKROOM_ASSERT(batch[i].image != VK_NULL_HANDLE);
+            if (entry.kind != Slot::Kind::Transient || barrier.old_layout != VK_IMAGE_LAYOUT_UNDEFINED) continue;
+            memory.srcStageMask |= barrier.source_stages;
+            memory.srcAccessMask |= barrier.source_access;
+            memory.dstStageMask |= barrier.target_stages;
+            memory.dstAccessMask |= barrier.target_access;
+        }
+        const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                          .memoryBarrierCount = memory.srcAccessMask != 0 ? 1u : 0u,
+                                          .pMemoryBarriers = &memory,
+                                          .imageMemoryBarrierCount = static_cast<std::uint32_t>(count),
+                                          .pImageMemoryBarriers = batch.data()};
+        vk.CmdPipelineBarrier2(commands, &dependency);
+        barriers = barriers.subspan(count);
+    }
+}
+
+HistoryImages* Physical::history(std::uint32_t history_index, std::uint32_t view_index) const {
+    const bool is_used = history_index < histories_.size() && !histories_[history_index].views.empty();
+    return is_used ? histories_[history_index].views[view_index].get() : nullptr;
+}
+
+void Physical::begin(VkCommandBuffer commands, const gpu::Dispatch& vk, VkExtent2D extent,
+                     std::uint32_t view_index) const {
+    HistoryView& view = histories(view_index);
+    const VkExtent2D last = std::exchange(view.extent, extent);
+    if (std::exchange(view.recorder, recorder_) != recorder_ && view.recordings > 0) {
+        // A schedule knows what its own plan does to a history, not what another one did.
+        const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                   .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                   .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                   .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                   .dstAccessMask = any_access};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
+        vk.CmdPipelineBarrier2(commands, &dependency);
+    }
+    bool goes_on = false;
+    for (std::uint32_t index = 0; index < history_count(); ++index) {
+        HistoryImages* const images = history(index, view_index);
+        if (images == nullptr) continue;
+        images->state.needs_reset |= images->state.recordings != view.recordings;
+        images->state.was_reset = false;
+        goes_on |= !images->state.needs_reset;
+    }
+    if (goes_on && (last.width != extent.width || last.height != extent.height))
+        return record_resample(commands, vk, view_index, last, extent);
+    for (std::uint32_t index = 0; index < history_count(); ++index) {
+        const HistoryImages* const images = history(index, view_index);
+        if (images != nullptr && images->state.needs_reset) record_reset(commands, vk, view_index, index);
+    }
+}
+
+void Physical::end(std::uint32_t view_index) const {
+    HistoryView& view = histories(view_index);
+    ++view.recordings;
+    for (std::uint32_t index = 0; index < history_count(); ++index) {
+        if (HistoryImages* const images = history(index, view_index)) images->state.recordings = view.recordings;
+    }
+}
+
+Barrier Physical::before_transfer(std::uint32_t slot, VkImageLayout from, VkImageLayout to) const {
+    return {.slot = slot,
+            .mips = {0, entries_[slot].mip_levels},
+            .source_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+            .target_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+            .source_access = VK_ACCESS_2_MEMORY_WRITE_BIT,
+            .target_access = VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
+            .old_layout = from,
+            .new_layout = to};
+}
+
+Barrier Physical::after_transfer(std::uint32_t slot, VkImageLayout from) const {
+    return {.slot = slot,
+            .mips = {0, entries_[slot].mip_levels},
+            .source_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+            .target_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+            .source_access = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+            .target_access = any_access,
+            .old_layout = from,
+            .new_layout = entries_[slot].rest_layout};
+}
+
+void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
+                            std::uint32_t history_index) const {
+    HistoryImages* const images = history(history_index, view_index);
+    if (images == nullptr) return;
+    const auto [even, odd] = histories_[history_index].slots;
+    constexpr VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    const std::array before{before_transfer(even, VK_IMAGE_LAYOUT_UNDEFINED, layout),
+                            before_transfer(odd, VK_IMAGE_LAYOUT_UNDEFINED, layout)};
+    record_barriers(commands, vk, before, view_index);
+    for (const std::uint32_t slot : {even, odd}) {
+        const Entry& entry = entries_[slot];
+        const VkImageAspectFlags aspects = gpu::format_traits(entry.format).aspects;
+        const VkImageSubresourceRange range{aspects, 0, entry.mip_levels, 0, entry.array_layers};
+        if ((aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
+            constexpr VkClearDepthStencilValue zero{};
+            vk.CmdClearDepthStencilImage(commands, handle(slot, view_index), layout, &zero, 1, &range);
+        } else {
+            constexpr VkClearColorValue zero{};
+            vk.CmdClearColorImage(commands, handle(slot, view_index), layout, &zero, 1, &range);
+        }
+    }
+    const std::array after{after_transfer(even, layout), after_transfer(odd, layout)};
+    record_barriers(commands, vk, after, view_index);
+    images->state.needs_reset = false;
+    images->state.was_reset = true;
+}
+
+void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index) const {
+    for (std::uint32_t index = 0; index < history_count(); ++index) record_reset(commands, vk, view_index, index);
+}
+
+/// Repeats the last column and row of the region beyond it. A blit clamps at the edge of the image for sure, at that of
+/// the region only if the driver likes ("Image Copies with Scaling" in the specification), and what lies beyond is the
+/// rest of some larger frame.
+void Physical::record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t slot,
+                              std::uint32_t view_index, VkExtent2D from, VkExtent2D to) const {
+    const Entry& entry = entries_[slot];
+    for (std::uint32_t mip = 0; mip < entry.mip_levels; ++mip) {
+        const VkExtent2D whole = mip_extent(entry.extent, mip);
+        const VkExtent2D region = mip_extent(entry.size.of(from), mip), target = mip_extent(entry.size.of(to), mip);
+        const bool is_wider = target.width > region.width && region.width < whole.width;
+        const bool is_higher = target.height > region.height && region.height < whole.height;
+        const VkImageSubresourceLayers layers{gpu::format_traits(entry.format).aspects, mip, 0, entry.array_layers};
+        const auto width = static_cast<std::int32_t>(region.width), height = static_cast<std::int32_t>(region.height);
+        std::array<VkImageCopy, 3> copies;
+        std::uint32_t count = 0;
+        const auto copy = [&](VkOffset3D source, VkOffset3D target_offset, VkExtent3D extent) {
+            copies[count++] = {layers, source, layers, target_offset, extent};
+        };
+        if (is_wider) copy({width - 1, 0, 0}, {width, 0, 0}, {1, region.height, 1});
+        if (is_higher) copy({0, height - 1, 0}, {0, height, 0}, {region.width, 1, 1});
+        if (is_wider && is_higher) copy({width - 1, height - 1, 0}, {width, height, 0}, {1, 1, 1});
+        const VkImage image = handle(slot, view_index);
+        if (count == 0) continue;
+        vk.CmdCopyImage(commands, image, VK_IMAGE_LAYOUT_GENERAL, image, VK_IMAGE_LAYOUT_GENERAL, count, copies.data());
+    }
+}
+
+/// From the image of the last frame to the other one.
+void Physical::record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t history_index,
+                           std::uint32_t view_index, VkExtent2D from, VkExtent2D to) const {
+    const History& history = histories_[history_index];
+    const std::size_t parity = histories(view_index).recordings & 1;
+    const std::uint32_t source = history.slots[1 - parity], target = history.slots[parity];
+    const bool is_linear = history.views[view_index]->resampling == HistoryImages::Resampling::Linear;
+    const Entry& entry = entries_[source];
+    constexpr VkImageLayout source_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    constexpr VkImageLayout target_layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    constexpr VkImageLayout padding_layout = VK_IMAGE_LAYOUT_GENERAL;
+    const std::array before{before_transfer(source, entry.rest_layout, is_linear ? padding_layout : source_layout),
+                            before_transfer(target, VK_IMAGE_LAYOUT_UNDEFINED, target_layout)};
+    record_barriers(commands, vk, before, view_index);
+    if (is_linear) {
+        record_padding(commands, vk, source, view_index, from, to);
+        const Barrier padded = before_transfer(source, padding_layout, source_layout);
+        record_barriers(commands, vk, {&padded, 1}, view_index);
+    }
+    for (std::uint32_t mip = 0; mip < entry.mip_levels; ++mip) {
+        const auto corner = [&](VkExtent2D frame) {
+            const VkExtent2D extent = mip_extent(entry.size.of(frame), mip);
+            return VkOffset3D{static_cast<std::int32_t>(extent.width), static_cast<std::int32_t>(extent.height), 1};
+        };
+        const VkImageSubresourceLayers layers{gpu::format_traits(entry.format).aspects, mip, 0, entry.array_layers};
+        const VkImageBlit blit{layers, {{}, corner(from)}, layers, {{}, corner(to)}};
+        vk.CmdBlitImage(commands, handle(source, view_index), source_layout, handle(target, view_index), target_layout,
+                        1, &blit, is_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
+    }
+    const std::array after{after_transfer(source, source_layout), after_transfer(target, target_layout)};
+    record_barriers(commands, vk, after, view_index);
+}
+
+void Physical::record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
+                               VkExtent2D from, VkExtent2D to) const {
+    HistoryView& view = histories(view_index);
+    for (std::uint32_t index = 0; index < history_count(); ++index) {
+        HistoryImages* const images = history(index, view_index);
+        if (images == nullptr) continue;
+        if (images->state.needs_reset || images->resampling == HistoryImages::Resampling::None) {
+            record_reset(commands, vk, view_index, index);
+        } else {
+            record_blit(commands, vk, index, view_index, from, to);
+        }
+        images->state.recordings = view.recordings + 1;
+    }
+    ++view.recordings;
+}
+
+}  // namespace darkroom::graph

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The Vulkan images behind the slots of a compiled graph: transients in one shared allocation, two images a history and
+// view, and the host's images, lent frame by frame. It records barriers, resets and resampling; it decides nothing.
+//
+// Per recording of a view, where there are histories:
+// 1. HistoryState::needs_reset = true where the last frame cannot be used: after a cut, or where a pass that writes the
+//    history was off and is on; then begin().
+// 2. Schedule::derive(..., histories(view).recordings), barriers, passes, final barriers.
+// 3. end().
+
+#include "gpu/resource/resources.hpp"
+#include "graph/graph.hpp"
+#include "graph/physical/history_pool.hpp"
+
+namespace darkroom::graph {
+
+/// Asks the device for the requirements of images. The context must outlive it.
+[[nodiscard]] Measure measure_on(gpu::Context& context);
+
+/// An image of the host, as it is lent for a frame.
+struct LentImage {
+    VkImage handle = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;       ///< of all mip levels
+    std::span<const VkImageView> mip_views;  ///< one a level; may be empty if there is only one
+    std::uint32_t base_mip_level = 0;        ///< of the host's image, that level 0 here is
+    std::uint32_t base_array_layer = 0;
+    std::uint32_t array_layers = 1;
+};
+
+/// Transients are shared by all views (the cameras that one graph is recorded for, one after the other); every view has
+/// its own histories, and goes on with those of `pool`. The context must outlive it, the pool need not.
+class Physical {
+  public:
+    Physical() = default;
+    [[nodiscard]] static Result<Physical> create(gpu::Context& context, const Compiled& compiled, std::uint32_t views,
+                                                 HistoryPool& pool);
+    /// With histories of its own.
+    [[nodiscard]] static Result<Physical> create(gpu::Context& context, const Compiled& compiled,
+                                                 std::uint32_t views = 1);
+
+    /// Lends a host's image until the next call. Copies the handles, allocates nothing.
+    void bind(std::uint32_t import_index, const LentImage& image);
+
+    [[nodiscard]] VkImage handle(std::uint32_t slot, std::uint32_t view_index = 0) const;
+    /// All mip levels.
+    [[nodiscard]] VkImageView view(std::uint32_t slot, std::uint32_t view_index = 0) const;
+    [[nodiscard]] VkImageView mip_view(std::uint32_t slot, std::uint32_t mip_level, std::uint32_t view_index = 0) const;
+    [[nodiscard]] VkFormat format(std::uint32_t slot) const { return entries_[slot].format; }
+    /// Of the whole image; a frame may use its top left part only.
+    [[nodiscard]] VkExtent2D extent(std::uint32_t slot) const { return entries_[slot].extent; }
+    [[nodiscard]] std::uint32_t mip_levels(std::uint32_t slot) const { return entries_[slot].mip_levels; }
+
+    /// Barriers of one step, or the final ones. No allocation.
+    void record_barriers(VkCommandBuffer commands, const gpu::Dispatch& vk, std::span<const Barrier> barriers,
+                         std::uint32_t view_index = 0) const;
+
+    [[nodiscard]] HistoryView& histories(std::uint32_t view_index = 0) const { return *views_[view_index]; }
+    /// By Slot::history_index; null if the graph does not use it.
+    [[nodiscard]] HistoryImages* history(std::uint32_t history_index, std::uint32_t view_index = 0) const;
+    [[nodiscard]] std::uint32_t history_count() const { return static_cast<std::uint32_t>(histories_.size()); }
+
+    /// Orders this recording after all that another Physical, an older or a newer one, did to the view's histories.
+    /// Resets those that need it, or were not part of the view's last recording; resamples the others if the frame's
+    /// extent is not the last one's.
+    void begin(VkCommandBuffer commands, const gpu::Dispatch& vk, VkExtent2D extent,
+               std::uint32_t view_index = 0) const;
+    /// The recording of the view is complete.
+    void end(std::uint32_t view_index = 0) const;
+    /// Clears a history to zero and brings it to its rest layout.
+    void record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
+                      std::uint32_t history_index) const;
+    /// All of a view.
+    void record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index = 0) const;
+    /// Resamples what the next frame of the view, of the extent `to`, gets as previous, from one of the extent `from`,
+    /// each the top left of its image. The parity of the view advances, so all its histories are resampled together:
+    /// linearly where their formats allow, by the nearest texel where they do not. What cannot be resampled, or needs a
+    /// reset, is reset.
+    void record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index, VkExtent2D from,
+                         VkExtent2D to) const;
+
+  private:
+    struct Entry {
+        Slot::Kind kind = Slot::Kind::Transient;
+        VkFormat format = VK_FORMAT_UNDEFINED;
+        VkExtent2D extent{};
+        Size size{};
+        std::uint32_t mip_levels = 1, array_layers = 1;
+        VkImageLayout rest_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        std::uint32_t import_index = ~0u;
+        std::uint32_t base_mip_level = 0, base_array_layer = 0;
+        std::vector<VkImage> handles;        ///< one, or one a view
+        std::vector<VkImageView> views;      ///< the same
+        std::vector<VkImageView> mip_views;  ///< view after view
+    };
+    /// Imports, constants and transients are the same in all views.
+    [[nodiscard]] static std::size_t instance(const Entry& entry, std::uint32_t view_index) {
+        return entry.handles.size() > 1 ? view_index : 0;
+    }
+    /// A history: its slots by parity, and its images in each view.
+    struct History {
+        std::array<std::uint32_t, 2> slots{~0u, ~0u};
+        std::vector<std::shared_ptr<HistoryImages>> views;
+    };
+    static void adopt(Entry& entry, const gpu::Image& image);
+    [[nodiscard]] Result<> adopt_history(gpu::Context& context, const Slot& slot, std::uint32_t index,
+                                         HistoryPool& pool);
+    /// A barrier of a whole image for transfers, after and before everything else.
+    [[nodiscard]] Barrier before_transfer(std::uint32_t slot, VkImageLayout from, VkImageLayout to) const;
+    [[nodiscard]] Barrier after_transfer(std::uint32_t slot, VkImageLayout from) const;
+    void record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t slot, std::uint32_t view_index,
+                        VkExtent2D from, VkExtent2D to) const;
+    void record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t history_index,
+                     std::uint32_t view_index, VkExtent2D from, VkExtent2D to) const;
+
+    gpu::Memory memory_;  ///< before the images, so that they are destroyed first
+    std::vector<gpu::Image> images_;
+    std::vector<Entry> entries_;
+    std::vector<History> histories_;  ///< by Slot::history_index
+    std::vector<std::shared_ptr<HistoryView>> views_;
+    std::uint64_t recorder_ = 0;
+};
+
+}  // namespace darkroom::graph

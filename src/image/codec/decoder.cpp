@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "image/codec/decoder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/files.hpp"
+#include "image/exr/source.hpp"
+
+namespace darkroom {
+
+struct Decoder::State {
+    std::string path;
+    std::vector<std::byte> bytes;
+    OpenedSource opened;  // after `bytes`
+
+    [[nodiscard]] Failure error(const Error& of) const {
+        return failure({of.fault, fmt::format("{}: {}", path, of.text)});
+    }
+};
+
+Decoder::Decoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Decoder::Decoder(Decoder&&) noexcept = default;
+Decoder& Decoder::operator=(Decoder&&) noexcept = default;
+Decoder::~Decoder() = default;
+
+Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max_threads) {
+    // A pipe ends, a device may not.
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
+        return user_error(fmt::format("{}: is a device, expected an image file", one_printable_line(path.string())));
+    auto state = std::make_unique<State>();
+    state->path = path.string();
+    auto bytes = read_image_file(path);
+    if (!bytes) return failure(std::move(bytes));
+    state->bytes = std::move(*bytes);
+    auto opened = open_source(state->bytes, max_threads);
+    if (!opened) return state->error(opened.error());
+    state->opened = std::move(*opened);
+    return Decoder(std::move(state));
+}
+
+FileKind Decoder::kind() const { return state_->opened.kind; }
+std::span<const FilePart> Decoder::parts() const { return state_->opened.source->parts(); }
+
+std::vector<float> Decoder::numbers(std::size_t part, const std::string& attribute) const {
+    std::vector<float> out;
+    for (const double value : state_->opened.source->numbers(part, attribute)) out.push_back(static_cast<float>(value));
+    return out;
+}
+
+std::optional<double> Decoder::number(std::size_t part, const std::string& attribute) const {
+    const std::vector<double> values = state_->opened.source->numbers(part, attribute);
+    return values.size() == 1 ? std::optional(values.front()) : std::nullopt;
+}
+
+bool Decoder::has_attribute_starting(std::size_t part, std::string_view start) const {
+    const std::vector<std::string> names = state_->opened.source->attributes(part);
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return name.starts_with(start); });
+}
+
+std::shared_ptr<const ExrAttributes> Decoder::attributes(std::size_t part) const {
+    const auto* const exr = dynamic_cast<const ExrSource*>(state_->opened.source.get());
+    return exr == nullptr ? nullptr : std::make_shared<const ExrAttributes>(exr->header(part));
+}
+
+std::uint32_t Decoder::band_rows(std::size_t part, std::size_t row_bytes) const {
+    constexpr std::size_t most_bytes = std::size_t{1} << 26;
+    const std::uint32_t unit = state_->opened.source->row_unit(part);
+    const auto fitting = static_cast<std::uint32_t>(std::clamp<std::size_t>(most_bytes / row_bytes, 1, 128));
+    return std::max(unit, fitting / unit * unit);
+}
+
+Result<> Decoder::read(std::size_t part, std::uint32_t first, std::uint32_t count, const Sink& sink) {
+    const FilePart& of = parts()[part];
+    const std::size_t row_values = std::size_t{count} * of.width;
+    const std::uint32_t band = band_rows(part, row_values * sizeof(float));
+    std::vector<float> samples;
+    for (std::uint32_t row = 0; row < of.height; row += band) {
+        const std::uint32_t rows = std::min(band, of.height - row);
+        samples.resize(row_values * rows);
+        std::vector<SamplePlace> places;
+        for (std::uint32_t c = 0; c < count; ++c)
+            places.push_back({.channel = first + c,
+                              .first = reinterpret_cast<std::byte*>(samples.data() + c),
+                              .pixel_bytes = static_cast<std::ptrdiff_t>(count * sizeof(float)),
+                              .row_bytes = static_cast<std::ptrdiff_t>(row_values * sizeof(float))});
+        if (auto done = read_rows(part, row, rows, places); !done) return done;
+        sink(row, rows, samples);
+    }
+    return {};
+}
+
+Result<> Decoder::read_rows(std::size_t part, std::uint32_t row, std::uint32_t rows,
+                            std::span<const SamplePlace> places) {
+    auto done = state_->opened.source->read_rows(part, row, rows, places);
+    return done ? done : state_->error(done.error());
+}
+
+}  // namespace darkroom

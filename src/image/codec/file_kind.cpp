@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "image/codec/file_kind.hpp"
+
+#include <algorithm>
+
+namespace darkroom {
+
+std::string_view name_of(FileKind kind) {
+    switch (kind) {
+        case FileKind::OpenExr:
+            return "OpenEXR";
+        case FileKind::Png:
+            return "PNG";
+        case FileKind::Jpeg:
+            return "JPEG";
+        case FileKind::Tiff:
+            return "TIFF";
+        case FileKind::Radiance:
+            return "Radiance HDR";
+    }
+    return "";
+}
+
+std::string_view name_of(SampleKind kind) {
+    switch (kind) {
+        case SampleKind::Integer8:
+            return "8-bit integer";
+        case SampleKind::Integer16:
+            return "16-bit integer";
+        case SampleKind::Integer32:
+            return "32-bit integer";
+        case SampleKind::Half:
+            return "half";
+        case SampleKind::Float:
+            return "float";
+    }
+    return "";
+}
+
+std::string one_printable_line(std::string_view text) {
+    while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
+    std::string result(text.substr(0, std::min<std::size_t>(text.find('\n'), 300)));
+    for (char& character : result)
+        if (character < ' ' || character > '~') character = '?';
+    return result;
+}
+
+std::size_t size_of(SampleKind kind) {
+    switch (kind) {
+        case SampleKind::Integer8:
+            return 1;
+        case SampleKind::Integer16:
+        case SampleKind::Half:
+            return 2;
+        case SampleKind::Integer32:
+        case SampleKind::Float:
+            return 4;
+    }
+    return 0;
+}
+
+}  // namespace darkroom

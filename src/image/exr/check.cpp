@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: MIT
+#include "image/exr/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/codec/file_kind.hpp"
+
+namespace darkroom {
+namespace {
+
+using Wide = long long;
+
+// The layout is that of "OpenEXR File Layout" (Academy Software Foundation): little-endian, attributes by name.
+constexpr std::uint32_t tiled_flag = 0x200;
+constexpr std::uint32_t deep_flag = 0x800;
+constexpr std::uint32_t multi_part_flag = 0x1000;
+
+class Reader {
+  public:
+    Reader(std::span<const std::byte> bytes, std::size_t position = 0) : bytes_(bytes), position_(position) {}
+
+    [[nodiscard]] std::size_t position() const { return position_; }
+    [[nodiscard]] std::size_t left() const { return bytes_.size() - position_; }
+    [[nodiscard]] bool is_past_end() const { return is_past_end_; }
+
+    template <class T>
+    T number() {
+        T value{};
+        if (left() < sizeof(T)) return fail<T>();
+        std::memcpy(&value, bytes_.data() + position_, sizeof(T));
+        position_ += sizeof(T);
+        return value;
+    }
+    std::string_view text() {
+        const auto* begin = reinterpret_cast<const char*>(bytes_.data()) + position_;
+        const auto* end = static_cast<const char*>(left() == 0 ? nullptr : std::memchr(begin, 0, left()));
+        if (end == nullptr) return fail<std::string_view>();
+        position_ += static_cast<std::size_t>(end - begin) + 1;
+        return {begin, static_cast<std::size_t>(end - begin)};
+    }
+    std::span<const std::byte> block(Wide size) {
+        if (size < 0 || static_cast<std::size_t>(size) > left()) return fail<std::span<const std::byte>>();
+        position_ += static_cast<std::size_t>(size);
+        return bytes_.subspan(position_ - static_cast<std::size_t>(size), static_cast<std::size_t>(size));
+    }
+
+  private:
+    template <class T>
+    T fail() {
+        is_past_end_ = true;
+        position_ = bytes_.size();
+        return T{};
+    }
+
+    std::span<const std::byte> bytes_;
+    std::size_t position_ = 0;
+    bool is_past_end_ = false;
+};
+
+struct Window {
+    Wide left = 0, top = 0, right = 0, bottom = 0;
+    [[nodiscard]] Wide width() const { return right - left + 1; }
+    [[nodiscard]] Wide height() const { return bottom - top + 1; }
+    [[nodiscard]] std::string text() const { return fmt::format("{}x{}", width(), height()); }
+};
+
+struct Tiles {
+    Wide width = 0, height = 0;
+    unsigned level_mode = 0;  // 0 one level, 1 mip-mapped, 2 rip-mapped
+    bool rounds_up = false;
+};
+
+struct CheckedPart {
+    std::optional<Window> data;
+    std::optional<Window> display;
+    std::optional<Tiles> tiles;
+    std::optional<unsigned> compression;
+    std::string type;
+    double bytes_per_pixel = 0;  // subsampled channels have fewer than one sample a pixel
+    Wide bytes = 0;              // of all pixels, at full resolution
+    Wide channel_count = 0;
+    Wide chunk_count = 0;
+};
+
+// By the number that the file stores: lines in a chunk, and how many bytes of pixels one byte of file can become at
+// most. Run lengths: 128 from 2. Deflate: 258 bytes from 2 bits. PIZ: a Huffman run of 255 words from 10 bits. B44A: 32
+// bytes from 3. DWA keeps one deflated coefficient of 64.
+struct Compression {
+    Wide lines;
+    Wide largest_ratio;
+};
+constexpr std::array<Compression, 10> compressions{
+    {{1, 1}, {1, 64}, {1, 1100}, {16, 1100}, {32, 512}, {16, 1100}, {32, 11}, {32, 11}, {32, 70000}, {256, 70000}}};
+
+// A chunk is unpacked in one piece, with its packed bytes and a copy beside it. 4096x4096 pixels of RGBA in floats.
+constexpr Wide largest_chunk = Wide{1} << 28;
+
+constexpr std::uint64_t always_decoded = std::uint64_t{1} << 30;
+constexpr std::uint64_t decoded_per_byte = 128;
+
+Result<> malformed(std::string_view what) { return user_error(fmt::format("malformed header: {}", what)); }
+Result<> cut_off() { return user_error("truncated: unexpected end of file in the header"); }
+
+Window read_window(Reader& reader) {
+    Window window;
+    window.left = reader.number<std::int32_t>();
+    window.top = reader.number<std::int32_t>();
+    window.right = reader.number<std::int32_t>();
+    window.bottom = reader.number<std::int32_t>();
+    return window;
+}
+
+Result<> read_channels(Reader reader, CheckedPart& part) {
+    for (;;) {
+        const std::string_view name = reader.text();
+        if (reader.is_past_end()) return malformed("the channel list has no end");
+        if (name.empty()) return {};
+        const auto type = reader.number<std::uint32_t>();
+        reader.number<std::uint32_t>();
+        const auto x_sampling = reader.number<std::int32_t>();
+        const auto y_sampling = reader.number<std::int32_t>();
+        if (reader.is_past_end()) return malformed("the channel list has no end");
+        if (type > 2) return malformed(fmt::format("a channel has pixel type {}, [0, 2] is allowed", type));
+        // Chroma at half the resolution is what there is.
+        constexpr std::int32_t coarsest = 64;
+        if (std::min(x_sampling, y_sampling) < 1 || std::max(x_sampling, y_sampling) > coarsest)
+            return malformed(fmt::format("channel {} is sampled {}x{}, [1, {}] is allowed", one_printable_line(name),
+                                         x_sampling, y_sampling, coarsest));
+        part.bytes_per_pixel += (type == 1 ? 2.0 : 4.0) / (x_sampling * y_sampling);
+        if (++part.channel_count > 1024) return malformed("more than 1024 channels");
+    }
+}
+
+Result<> read_attribute(std::string_view name, std::span<const std::byte> value, CheckedPart& part) {
+    Reader reader(value);
+    if (name == "channels") return read_channels(reader, part);
+    if (name == "dataWindow") part.data = read_window(reader);
+    if (name == "displayWindow") part.display = read_window(reader);
+    if (name == "compression") part.compression = reader.number<std::uint8_t>();
+    if (name == "type")
+        part.type.assign(reinterpret_cast<const char*>(value.data()), std::min<std::size_t>(value.size(), 32));
+    if (name == "tiles") {
+        Tiles tiles;
+        tiles.width = reader.number<std::uint32_t>();
+        tiles.height = reader.number<std::uint32_t>();
+        const auto mode = reader.number<std::uint8_t>();
+        tiles.level_mode = mode & 0xfu;
+        tiles.rounds_up = (mode >> 4) != 0;
+        part.tiles = tiles;
+    }
+    if (reader.is_past_end()) return malformed(fmt::format("attribute {} is too short", name));
+    return {};
+}
+
+Result<> read_part(Reader& reader, CheckedPart& part) {
+    for (;;) {
+        const std::string_view name = reader.text();
+        if (reader.is_past_end()) return cut_off();
+        if (name.empty()) return {};
+        reader.text();
+        const auto size = reader.number<std::int32_t>();
+        if (size < 0) return malformed(fmt::format("an attribute of {} bytes", size));
+        const auto value = reader.block(size);
+        if (reader.is_past_end()) return cut_off();
+        if (auto read = read_attribute(name, value, part); !read) return read;
+    }
+}
+
+Result<> check_window(const Window& window, const char* name) {
+    if (window.width() <= 0 || window.height() <= 0)
+        return user_error(fmt::format("the {} is empty ({}), at least 1x1 is needed", name, window.text()));
+    if (window.width() > max_picture_side || window.height() > max_picture_side)
+        return user_error(
+            fmt::format("the {} is {}, at most {} a side is allowed", name, window.text(), max_picture_side));
+    constexpr Wide farthest = 1 << 30;
+    if (std::min(window.left, window.top) < -farthest || std::max(window.right, window.bottom) > farthest)
+        return user_error(fmt::format("the {} lies too far from the origin", name));
+    return {};
+}
+
+Wide divide_up(Wide a, Wide b) { return (a + b - 1) / b; }
+
+std::vector<Wide> level_sizes(Wide size, Wide longest, bool rounds_up) {
+    std::vector<Wide> sizes;
+    for (Wide scale = 1;; scale *= 2) {
+        sizes.push_back(std::max<Wide>(1, rounds_up ? divide_up(size, scale) : size / scale));
+        const Wide reached = rounds_up ? divide_up(longest, scale) : longest / scale;
+        if (reached <= 1) return sizes;
+    }
+}
+
+Wide count_tiles(const Window& data, const Tiles& tiles) {
+    const auto count = [](Wide size, Wide tile) { return divide_up(size, tile); };
+    if (tiles.level_mode == 0) return count(data.width(), tiles.width) * count(data.height(), tiles.height);
+    const Wide longest = std::max(data.width(), data.height());
+    const bool is_mip = tiles.level_mode == 1;
+    const auto widths = level_sizes(data.width(), is_mip ? longest : data.width(), tiles.rounds_up);
+    const auto heights = level_sizes(data.height(), is_mip ? longest : data.height(), tiles.rounds_up);
+    Wide total = 0;
+    for (std::size_t y = 0; y < heights.size(); ++y)
+        for (std::size_t x = 0; x < widths.size(); ++x)
+            if (!is_mip || x == y) total += count(widths[x], tiles.width) * count(heights[y], tiles.height);
+    return total;
+}
+
+Result<> check_chunk(Wide width, Wide height, const CheckedPart& part) {
+    const auto bytes = static_cast<Wide>(static_cast<double>(width * height) * part.bytes_per_pixel);
+    if (bytes <= largest_chunk) return {};
+    return user_error(fmt::format("chunks of {}x{} pixels need {} bytes each, at most {} are allowed", width, height,
+                                  bytes, largest_chunk));
+}
+
+Result<> check_part(CheckedPart& part, bool is_tiled, std::size_t file_size) {
+    if (!part.data || !part.display || !part.compression) return malformed("a window or the compression is missing");
+    if (auto checked = check_window(*part.display, "display window"); !checked) return checked;
+    if (auto checked = check_window(*part.data, "data window"); !checked) return checked;
+    if (part.channel_count == 0) return user_error("has no channels");
+    if (*part.compression >= compressions.size())
+        return malformed(fmt::format("compression {}, [0, 9] is allowed", *part.compression));
+    const Compression compression = compressions[*part.compression];
+
+    const Wide bytes = part.bytes =
+        static_cast<Wide>(static_cast<double>(part.data->width() * part.data->height()) * part.bytes_per_pixel);
+    if (bytes / compression.largest_ratio > static_cast<Wide>(file_size))
+        return user_error(
+            fmt::format("the data window is {} and needs {} bytes of pixels, which a file of {} bytes "
+                        "cannot hold: truncated (unexpected end of file) or damaged",
+                        part.data->text(), bytes, file_size));
+    if (!is_tiled) {
+        part.chunk_count = divide_up(part.data->height(), compression.lines);
+        return check_chunk(part.data->width(), std::min(compression.lines, part.data->height()), part);
+    }
+    if (!part.tiles) return malformed("a tiled part without a tile description");
+    const Tiles& tiles = *part.tiles;
+    if (tiles.width < 1 || tiles.height < 1 || tiles.width > 8192 || tiles.height > 8192)
+        return malformed(fmt::format("tiles of {}x{}, [1, 8192] a side is allowed", tiles.width, tiles.height));
+    if (tiles.level_mode > 2) return malformed(fmt::format("tile level mode {}, [0, 2] is allowed", tiles.level_mode));
+    part.chunk_count = count_tiles(*part.data, tiles);
+    return check_chunk(tiles.width, tiles.height, part);
+}
+
+// Pixels outside the data window cost no file but memory all the same: up to 8K is always fine, beyond that the display
+// window may be 64 times the largest data window. Parts share the display window and need not fill it.
+Result<> check_proportions(std::span<const CheckedPart> parts) {
+    const auto area = [](const Window& window) { return window.width() * window.height(); };
+    const auto data = std::max_element(parts.begin(), parts.end(), [&](const CheckedPart& a, const CheckedPart& b) {
+        return area(*a.data) < area(*b.data);
+    });
+    for (const CheckedPart& part : parts)
+        if (area(*part.display) > (Wide{1} << 25) && area(*part.display) / 64 > area(*data->data))
+            return user_error(fmt::format("the display window ({}) is out of proportion to the data window ({})",
+                                          part.display->text(), data->data->text()));
+    return {};
+}
+
+// A chunk starts with its part (in files of several parts), its place, and the size of what follows.
+Result<> check_chunks(Reader table, const CheckedPart& part, bool is_tiled, bool is_multi_part,
+                      std::span<const std::byte> file, std::size_t first_chunk) {
+    const std::size_t place = (is_multi_part ? 4u : 0u) + (is_tiled ? 16u : 4u);
+    for (Wide chunk = 0; chunk < part.chunk_count; ++chunk) {
+        const auto offset = table.number<std::uint64_t>();
+        if (offset == 0)
+            return user_error(fmt::format("unfinished: chunk {} of {} was never written", chunk + 1, part.chunk_count));
+        if (offset < first_chunk)
+            return user_error(fmt::format("chunk {} of {} lies in the header", chunk + 1, part.chunk_count));
+        const bool fits = offset <= file.size() && file.size() - offset >= place + 4;
+        const Wide size = fits ? Reader(file, static_cast<std::size_t>(offset) + place).number<std::int32_t>() : 0;
+        if (size < 0) return user_error(fmt::format("chunk {} of {} has no size", chunk + 1, part.chunk_count));
+        if (!fits || file.size() - offset - place - 4 < static_cast<std::size_t>(size))
+            return user_error(
+                fmt::format("truncated: unexpected end of file in chunk {} of {}", chunk + 1, part.chunk_count));
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<> check_decoded_size(std::uint64_t bytes, std::size_t file_size) {
+    const std::uint64_t most = std::max<std::uint64_t>(always_decoded, file_size * decoded_per_byte);
+    if (bytes <= most) return {};
+    return user_error(fmt::format("its pixels need {} bytes, a file of {} bytes may need {}", bytes, file_size, most));
+}
+
+Result<> check_exr(std::span<const std::byte> file) {
+    Reader reader(file);
+    if (reader.number<std::uint32_t>() != 0x01312f76) return user_error("is no OpenEXR file");
+    const auto version = reader.number<std::uint32_t>();
+    if (reader.is_past_end()) return cut_off();
+    if ((version & 0xff) != 2) return user_error(fmt::format("OpenEXR version {}, 2 is read here", version & 0xff));
+    const bool is_multi_part = (version & multi_part_flag) != 0;
+    if ((version & deep_flag) != 0) return user_error("has deep pixels, which are not read here; flatten it first");
+
+    std::vector<CheckedPart> parts;
+    for (;;) {
+        CheckedPart part;
+        if (auto read = read_part(reader, part); !read) return read;
+        parts.push_back(std::move(part));
+        if (!is_multi_part) break;
+        if (parts.size() > 256) return malformed("more than 256 parts");
+        Reader ahead = reader;
+        if (ahead.number<std::uint8_t>() == 0) {
+            if (ahead.is_past_end()) return cut_off();
+            reader = ahead;
+            break;
+        }
+    }
+
+    Wide total = 0;
+    std::uint64_t decoded = 0;
+    std::vector<bool> is_tiled;
+    for (CheckedPart& part : parts) {
+        is_tiled.push_back(is_multi_part ? part.type.starts_with("tiledimage") : (version & tiled_flag) != 0);
+        if (part.type.starts_with("deep"))
+            return user_error("has deep pixels, which are not read here; flatten it first");
+        if (is_multi_part && part.type != "tiledimage" && part.type != "scanlineimage")
+            return malformed("a part of a kind that is neither scanlineimage nor tiledimage");
+        if (!part.type.empty() && part.type.starts_with("tiledimage") != is_tiled.back())
+            return malformed(fmt::format("the type is {}, the version field says {}", part.type,
+                                         is_tiled.back() ? "tiled" : "scan lines"));
+        if (auto checked = check_part(part, is_tiled.back(), file.size()); !checked) return checked;
+        total += part.chunk_count;
+        decoded += static_cast<std::uint64_t>(part.bytes);
+    }
+    if (auto checked = check_decoded_size(decoded, file.size()); !checked) return checked;
+    if (auto checked = check_proportions(parts); !checked) return checked;
+    if (static_cast<Wide>(reader.left() / 8) < total)
+        return user_error(fmt::format("truncated: unexpected end of file in the table of {} chunks", total));
+    const std::size_t first_chunk = reader.position() + static_cast<std::size_t>(total) * 8;
+    Reader table = reader;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (auto checked = check_chunks(table, parts[i], is_tiled[i], is_multi_part, file, first_chunk); !checked)
+            return checked;
+        table.block(parts[i].chunk_count * 8);
+    }
+    return {};
+}
+
+}  // namespace darkroom

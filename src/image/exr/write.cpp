@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "image/exr/write.hpp"
+
+#include <Imath/half.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfThreading.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <limits>
+
+#include "core/files.hpp"
+#include "image/exr/source.hpp"
+
+namespace darkroom {
+namespace {
+
+class MemoryOutput final : public Imf::OStream {
+  public:
+    MemoryOutput() : OStream("memory") {}
+    void write(const char* from, int count) override {
+        const std::size_t end = position_ + static_cast<std::size_t>(count);
+        if (end > bytes.size()) bytes.resize(end);
+        std::memcpy(bytes.data() + position_, from, static_cast<std::size_t>(count));
+        position_ = end;
+    }
+    std::uint64_t tellp() override { return position_; }
+    void seekp(std::uint64_t position) override { position_ = position; }
+
+    std::vector<std::byte> bytes;
+
+  private:
+    std::size_t position_ = 0;
+};
+
+float clamped(float value, float largest) { return std::isnan(value) ? 0.0f : std::clamp(value, -largest, largest); }
+
+/// Rows of one channel as they are stored.
+void convert(const ExrChannel& channel, std::size_t first, std::size_t count, std::vector<std::byte>& to) {
+    const float* from = channel.values + first * channel.stride;
+    to.resize(count * size_of(channel.kind));
+    if (channel.kind == SampleKind::Half) {
+        constexpr float largest_half = 65504.0f;
+        for (std::size_t i = 0; i < count; ++i, from += channel.stride) {
+            const std::uint16_t bits = imath_float_to_half(channel.is_clamped ? clamped(*from, largest_half) : *from);
+            std::memcpy(to.data() + i * sizeof bits, &bits, sizeof bits);
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < count; ++i, from += channel.stride) {
+        const float value = channel.is_clamped ? clamped(*from, std::numeric_limits<float>::max()) : *from;
+        std::memcpy(to.data() + i * sizeof value, &value, sizeof value);
+    }
+}
+
+Imf::PixelType type_of(SampleKind kind) { return kind == SampleKind::Half ? Imf::HALF : Imf::FLOAT; }
+
+/// `file` is an Imf::OutputFile or a part of several.
+template <class File>
+void write_pixels(File& file, const ExrPart& part) {
+    const Imath::Box2i& window = part.header.dataWindow();
+    const int width = window.max.x - window.min.x + 1;
+    constexpr int band = 128;  // whole chunks of most compressions, and several of them
+    std::vector<std::vector<std::byte>> samples(part.channels.size());
+    for (int row = window.min.y; row <= window.max.y; row += band) {
+        const int rows = std::min(band, window.max.y - row + 1);
+        const std::size_t first = static_cast<std::size_t>(row - window.min.y) * static_cast<std::size_t>(width);
+        Imf::FrameBuffer buffer;
+        for (std::size_t i = 0; i < part.channels.size(); ++i) {
+            const ExrChannel& channel = part.channels[i];
+            convert(channel, first, static_cast<std::size_t>(width) * static_cast<std::size_t>(rows), samples[i]);
+            buffer.insert(channel.name, Imf::Slice::Make(type_of(channel.kind), samples[i].data(),
+                                                         Imath::V2i(window.min.x, row), width, rows));
+        }
+        file.setFrameBuffer(buffer);
+        file.writePixels(rows);
+    }
+}
+
+}  // namespace
+
+Imf::Header exr_header(std::uint32_t width, std::uint32_t height, std::string_view compression) {
+    Imf::Header header(static_cast<int>(width), static_cast<int>(height));
+    const auto known = std::ranges::find(exr_compressions, compression);
+    header.compression() = known == exr_compressions.end()
+                               ? Imf::ZIP_COMPRESSION
+                               : static_cast<Imf::Compression>(known - exr_compressions.begin());
+    return header;
+}
+
+void add_rec709(Imf::Header& header) { Imf::addChromaticities(header, Imf::Chromaticities()); }
+
+Result<std::vector<std::byte>> encode_exr(std::span<const ExrPart> parts, std::size_t max_threads) {
+    if (max_threads != 1) start_exr_threads();
+    const int threads = max_threads == 1 ? 0 : Imf::globalThreadCount();
+    MemoryOutput memory;
+    try {
+        std::vector<Imf::Header> headers;
+        for (const ExrPart& part : parts) {
+            Imf::Header& header = headers.emplace_back(part.header);
+            for (const ExrChannel& channel : part.channels)
+                header.channels().insert(channel.name, Imf::Channel(type_of(channel.kind)));
+            if (parts.size() > 1) header.setType(Imf::SCANLINEIMAGE);
+        }
+        if (parts.size() == 1) {
+            Imf::OutputFile file(memory, headers.front(), threads);
+            write_pixels(file, parts.front());
+        } else {
+            Imf::MultiPartOutputFile file(memory, headers.data(), static_cast<int>(headers.size()), false, threads);
+            for (std::size_t i = 0; i < parts.size(); ++i) {
+                Imf::OutputPart output(file, static_cast<int>(i));
+                write_pixels(output, parts[i]);
+            }
+        }
+    } catch (const std::exception& exception) {
+        return machine_error(fmt::format("cannot be written as {}: {}", name_of(FileKind::OpenExr),
+                                         one_printable_line(exception.what())));
+    }
+    return std::move(memory.bytes);
+}
+
+Result<> write_exr(const std::filesystem::path& path, std::span<const ExrPart> parts, std::size_t max_threads) {
+    const auto bytes = encode_exr(parts, max_threads);
+    if (!bytes) return failure({bytes.error().fault, fmt::format("{}: {}", path.string(), bytes.error().text)});
+    return write_file(path, *bytes);
+}
+
+}  // namespace darkroom

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/files.hpp"
+#include "image/frame/frame_file.hpp"
+#include "toml/toml_text.hpp"
+
+namespace darkroom {
+namespace {
+
+std::optional<double> number(const toml::node& node) {
+    const std::optional<double> value = node.value<double>();
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+// Written by rows, kept by columns.
+std::optional<Matrix> matrix(const toml::node& node) {
+    const toml::array* rows = node.as_array();
+    if (rows == nullptr || rows->size() != 16) return std::nullopt;
+    Matrix result{};
+    for (std::size_t i = 0; i < 16; ++i) {
+        const auto value = number(*rows->get(i));
+        if (!value) return std::nullopt;
+        result[i % 4 * 4 + i / 4] = static_cast<float>(*value);
+    }
+    return result;
+}
+
+// The inverse of a rotation and a translation; a camera is not scaled.
+std::optional<Matrix> rigid_inverse(const Matrix& m) {
+    Matrix result{};
+    for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column) {
+            result[column * 4 + row] = m[row * 4 + column];
+            float dot = 0;
+            for (std::size_t i = 0; i < 3; ++i) dot += m[row * 4 + i] * m[column * 4 + i];
+            if (std::abs(dot - (row == column ? 1.0f : 0.0f)) > 1e-2f) return std::nullopt;
+            result[12 + row] -= m[row * 4 + column] * m[12 + column];
+        }
+    }
+    result[15] = 1;
+    return result;
+}
+
+Result<> read_entry(std::string_view key, const toml::node& node, FrameCamera& camera) {
+    const bool is_matrix = key == "world_to_camera" || key == "camera_to_world" || key == "projection";
+    if (!is_matrix && key != "fov")
+        return user_error(fmt::format("unknown key {}; world_to_camera, camera_to_world, projection and fov are known",
+                                      one_printable_line(key)));
+    if (key == "fov") {
+        camera.vertical_field_of_view = number(node);
+        if (!camera.vertical_field_of_view || *camera.vertical_field_of_view <= 0 ||
+            *camera.vertical_field_of_view >= 180)
+            return user_error("fov: a number of degrees in (0, 180) is needed");
+        return {};
+    }
+    const auto value = matrix(node);
+    if (!value) return user_error(fmt::format("{}: an array of 16 numbers is needed", key));
+    if (key == "projection") {
+        camera.projection = value;
+        return {};
+    }
+    camera.world_to_camera = key == "world_to_camera" ? value : rigid_inverse(*value);
+    if (!camera.world_to_camera)
+        return user_error("camera_to_world: a rotation and a translation are needed, unscaled");
+    return {};
+}
+
+}  // namespace
+
+Result<FrameCamera> read_camera(const std::filesystem::path& path) {
+    auto bytes = read_file(path, {.max_size = most_toml_bytes});
+    if (!bytes) return failure(std::move(bytes));
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    const Result<toml::table> table = parse_toml(text, one_printable_line(path.string()));
+    if (!table) return failure(table.error());
+    FrameCamera camera;
+    for (const auto& [key, node] : *table)
+        if (auto read = read_entry(key.str(), node, camera); !read)
+            return user_error(
+                fmt::format("{}:{}: {}", path.string(), node.source().begin.line, std::move(read).error().text));
+    return camera;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: MIT
+#include "image/frame/channels.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <string_view>
+
+namespace darkroom {
+namespace {
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& character : result) character = static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
+    return result;
+}
+
+std::string last_component(std::string_view name) { return lower(name.substr(name.rfind('.') + 1)); }
+
+std::string_view parent(std::string_view name) {
+    const std::size_t dot = name.rfind('.');
+    return dot == std::string_view::npos ? std::string_view() : name.substr(0, dot);
+}
+
+// The channels of a part that share what is before the last dot.
+struct Layer {
+    std::size_t part = 0;
+    std::string prefix;
+    std::string name;  // the prefix or, in files of several parts, the name of the part where the prefix is empty
+    std::map<std::string, int> components;  // in lower case
+
+    [[nodiscard]] int channel(std::string_view component) const {
+        const auto found = components.find(std::string(component));
+        return found == components.end() ? -1 : found->second;
+    }
+    [[nodiscard]] bool has(std::string_view letters) const {
+        return std::all_of(letters.begin(), letters.end(),
+                           [&](char letter) { return channel(std::string_view(&letter, 1)) >= 0; });
+    }
+    [[nodiscard]] ChannelSet set(std::string_view letters) const {
+        ChannelSet result{.part = part, .channels = {-1, -1, -1, -1}, .prefix = name};
+        for (std::size_t i = 0; i < letters.size(); ++i) result.channels[i] = channel(letters.substr(i, 1));
+        return result;
+    }
+    [[nodiscard]] bool is_plain() const { return prefix.empty(); }
+};
+
+// Is what follows the word a number, and nothing but that?
+bool is_numbered(std::string_view name, std::string_view word) {
+    return name.size() > word.size() && name.starts_with(word) &&
+           name.find_first_not_of("0123456789", word.size()) == std::string_view::npos;
+}
+
+// Shadows beside a frame change nothing of how its layers are found.
+std::size_t count_frame_parts(std::span<const FilePart> parts) {
+    return parts.size() - static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), is_shadow_part));
+}
+
+std::vector<Layer> layers_of(std::span<const FilePart> parts) {
+    std::vector<Layer> layers;
+    const bool has_several = count_frame_parts(parts) > 1;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        if (is_shadow_part(parts[part])) continue;
+        const std::size_t first = layers.size();
+        for (std::size_t i = 0; i < parts[part].channels.size(); ++i) {
+            const std::string& channel = parts[part].channels[i];
+            const std::string prefix(parent(channel));
+            auto layer = std::find_if(layers.begin() + static_cast<std::ptrdiff_t>(first), layers.end(),
+                                      [&](const Layer& known) { return known.prefix == prefix; });
+            if (layer == layers.end()) {
+                const bool is_named_by_part = prefix.empty() && has_several;
+                layers.push_back(Layer{part, prefix, is_named_by_part ? parts[part].name : prefix, {}});
+                layer = layers.end() - 1;
+            }
+            layer->components.emplace(last_component(channel), static_cast<int>(i));
+        }
+    }
+    return layers;
+}
+
+// Levenshtein, V. I., Binary codes capable of correcting deletions, insertions and reversals (1966), by rows.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row[b.size()];
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    constexpr std::size_t most = 24;
+    std::vector<std::string> shown;
+    for (std::size_t i = 0; i < std::min(names.size(), most); ++i) shown.push_back(one_printable_line(names[i]));
+    std::string text = fmt::format("{}", fmt::join(shown, ", "));
+    if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+    return text;
+}
+
+class Finder {
+  public:
+    Finder(std::span<const FilePart> parts, const LayerNames& names)
+        : parts_(parts), names_(names), part_count_(count_frame_parts(parts)), layers_(layers_of(parts)) {}
+
+    Result<FrameChannels> find();
+
+  private:
+    [[nodiscard]] const std::string* mapped(std::string_view what) const {
+        const auto found = names_.find(what);
+        return found == names_.end() ? nullptr : &found->second;
+    }
+    [[nodiscard]] Failure unknown(std::string_view what, const std::string& name) const;
+    [[nodiscard]] Result<ChannelSet> mapped_set(std::string_view what, const std::string& name,
+                                                std::span<const std::string_view> components) const;
+    [[nodiscard]] std::optional<ChannelSet> lone_channel(const std::string& name) const;
+    [[nodiscard]] bool is_same_view(const Layer& layer) const;
+    template <class Accept>
+    [[nodiscard]] const Layer* best(const Accept& accept) const;
+
+    Result<> find_color(FrameChannels& found) const;
+    Result<> find_depth(FrameChannels& found) const;
+    Result<> find_normals(FrameChannels& found) const;
+    Result<> find_velocity(FrameChannels& found) const;
+
+    std::span<const FilePart> parts_;
+    const LayerNames& names_;
+    std::size_t part_count_ = 0;  // without shadows
+    std::vector<Layer> layers_;
+    ChannelSet color_;
+};
+
+Failure Finder::unknown(std::string_view what, const std::string& name) const {
+    std::vector<std::string> candidates = channel_names(parts_);
+    for (const Layer& layer : layers_)
+        if (!layer.name.empty()) candidates.push_back(layer.name);
+    const auto nearest = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
+        return edit_distance(lower(a), lower(name)) < edit_distance(lower(b), lower(name));
+    });
+    return user_error(fmt::format("has no channels \"{}\" for {}; the nearest name is \"{}\"", one_printable_line(name),
+                                  what, nearest == candidates.end() ? "" : one_printable_line(*nearest)));
+}
+
+std::optional<ChannelSet> Finder::lone_channel(const std::string& name) const {
+    for (std::size_t part = 0; part < parts_.size(); ++part)
+        for (std::size_t i = 0; i < parts_[part].channels.size(); ++i) {
+            const std::string& channel = parts_[part].channels[i];
+            if (channel == name || (parts_.size() > 1 && parts_[part].name + "." + channel == name))
+                return ChannelSet{.part = part, .channels = {static_cast<int>(i), -1, -1, -1}, .prefix = name};
+        }
+    return std::nullopt;
+}
+
+Result<ChannelSet> Finder::mapped_set(std::string_view what, const std::string& name,
+                                      std::span<const std::string_view> components) const {
+    bool is_known = false;
+    for (const Layer& layer : layers_) {
+        if (layer.name != name && (layer.prefix != name || name.empty())) continue;
+        is_known = true;
+        for (const std::string_view letters : components)
+            if (layer.has(letters)) return layer.set(letters);
+    }
+    if (!is_known) return unknown(what, name);
+    return user_error(fmt::format("the layer \"{}\" has not the components {} that {} needs", one_printable_line(name),
+                                  components.front(), what));
+}
+
+bool Finder::is_same_view(const Layer& layer) const {
+    const std::string& ours = parts_[color_.part].view;
+    const std::string& theirs = parts_[layer.part].view;
+    return ours.empty() || theirs.empty() || ours == theirs;
+}
+
+// The first layer that is accepted, but one of the colour's own view layer before others.
+template <class Accept>
+const Layer* Finder::best(const Accept& accept) const {
+    const Layer* result = nullptr;
+    for (const Layer& layer : layers_) {
+        if (!is_same_view(layer) || !accept(layer)) continue;
+        if (parent(layer.name) == parent(color_.prefix)) return &layer;
+        if (result == nullptr) result = &layer;
+    }
+    return result;
+}
+
+Result<> Finder::find_color(FrameChannels& found) const {
+    if (const std::string* name = mapped("color")) {
+        constexpr std::array<std::string_view, 2> components{"rgb", "xyz"};
+        if (auto lone = lone_channel(*name)) {
+            found.color = *lone;
+            found.is_gray = true;
+            found.color.channels = {lone->channels[0], lone->channels[0], lone->channels[0], -1};
+            return {};
+        }
+        auto set = mapped_set("color", *name, components);
+        if (!set) return failure(std::move(set));
+        found.color = *set;
+        for (const Layer& layer : layers_)
+            if (layer.part == set->part && layer.name == set->prefix) found.color.channels[3] = layer.channel("a");
+        return {};
+    }
+    const auto first = [&](const auto& accept) {
+        const auto layer = std::find_if(layers_.begin(), layers_.end(), accept);
+        return layer == layers_.end() ? nullptr : &*layer;
+    };
+    const Layer* layer = nullptr;
+    if (part_count_ == 1) layer = first([](const Layer& l) { return l.is_plain() && l.has("rgb"); });
+    if (layer == nullptr)
+        layer = first([](const Layer& l) { return last_component(l.name) == "combined" && l.has("rgb"); });
+    if (layer == nullptr) layer = first([](const Layer& l) { return l.is_plain() && l.has("rgb"); });
+    if (layer != nullptr) {
+        found.color = layer->set("rgba");
+        return {};
+    }
+    layer = first([](const Layer& l) { return l.is_plain() && l.has("y") && !l.has("x"); });
+    if (layer == nullptr && part_count_ == 1)
+        layer = first([&](const Layer& l) {
+            const std::size_t count = parts_[l.part].channels.size() - (l.has("a") ? 1 : 0);
+            return l.is_plain() && count == 1 && !l.has("z") && l.channel("depth") < 0;
+        });
+    if (layer == nullptr)
+        return user_error(fmt::format("has no color: channels found: {}; needed: R, G, B or Y, or a mapping of color",
+                                      listed(channel_names(parts_))));
+    int gray = layer->channel("y");
+    for (const auto& [component, channel] : layer->components)
+        if (gray < 0 && component != "a") gray = channel;
+    found.is_gray = true;
+    found.color = ChannelSet{layer->part, {gray, gray, gray, layer->channel("a")}, layer->name};
+    return {};
+}
+
+Result<> Finder::find_depth(FrameChannels& found) const {
+    if (const std::string* name = mapped("depth")) {
+        constexpr std::array<std::string_view, 2> components{"z", "v"};
+        found.depth = lone_channel(*name);
+        if (found.depth) return {};
+        auto set = mapped_set("depth", *name, components);
+        if (!set) return failure(std::move(set));
+        found.depth = *set;
+        return {};
+    }
+    const auto is_lone_z = [](const Layer& l) { return l.has("z") && !l.has("x"); };
+    const Layer* layer = nullptr;
+    if (part_count_ == 1) layer = best([&](const Layer& l) { return l.is_plain() && is_lone_z(l); });
+    if (layer == nullptr)
+        layer = best([&](const Layer& l) { return last_component(l.name) == "depth" && is_lone_z(l); });
+    if (layer == nullptr)
+        layer = best([&](const Layer& l) { return lower(l.name).find("depth") != std::string::npos && is_lone_z(l); });
+    if (layer == nullptr)
+        layer = best([&](const Layer& l) { return l.is_plain() && l.part == color_.part && is_lone_z(l); });
+    if (layer != nullptr) found.depth = layer->set("z");
+    return {};
+}
+
+Result<> Finder::find_normals(FrameChannels& found) const {
+    if (const std::string* name = mapped("normals")) {
+        constexpr std::array<std::string_view, 2> components{"xyz", "rgb"};
+        auto set = mapped_set("normals", *name, components);
+        if (!set) return failure(std::move(set));
+        found.normals = *set;
+        return {};
+    }
+    const Layer* layer = best([](const Layer& l) {
+        const std::string name = last_component(l.name);
+        return (name == "n" || name == "normal" || name == "normals") && l.has("xyz");
+    });
+    if (layer != nullptr) found.normals = layer->set("xyz");
+    return {};
+}
+
+// Blender's pass is named Vector and has two motions: X and Y to the previous frame, Z and W to the next.
+Result<> Finder::find_velocity(FrameChannels& found) const {
+    const auto is_blender = [](const Layer& l) { return last_component(l.name) == "vector" && l.has("xyzw"); };
+    if (const std::string* name = mapped("velocity")) {
+        constexpr std::array<std::string_view, 3> components{"xy", "uv", "rg"};
+        auto set = mapped_set("velocity", *name, components);
+        if (!set) return failure(std::move(set));
+        found.velocity = *set;
+        found.is_velocity_y_up = std::any_of(layers_.begin(), layers_.end(), [&](const Layer& l) {
+            return l.part == set->part && l.name == set->prefix && is_blender(l);
+        });
+        return {};
+    }
+    const Layer* layer = best([](const Layer& l) { return last_component(l.name) == "velocity" && l.has("xy"); });
+    if (layer == nullptr) {
+        layer = best(is_blender);
+        found.is_velocity_y_up = layer != nullptr;
+    }
+    if (layer != nullptr) found.velocity = layer->set("xy");
+    return {};
+}
+
+Result<FrameChannels> Finder::find() {
+    for (const auto& [what, name] : names_)
+        if (what != "color" && what != "depth" && what != "normals" && what != "velocity")
+            return user_error(fmt::format("a mapping of \"{}\"; color, depth, normals and velocity can be mapped",
+                                          one_printable_line(what)));
+    FrameChannels found;
+    if (auto done = find_color(found); !done) return failure(std::move(done));
+    color_ = found.color;
+    if (auto done = find_depth(found); !done) return failure(std::move(done));
+    if (auto done = find_normals(found); !done) return failure(std::move(done));
+    if (auto done = find_velocity(found); !done) return failure(std::move(done));
+    return found;
+}
+
+}  // namespace
+
+bool is_shadow_part(const FilePart& part) {
+    return is_numbered(part.name, "shadow") &&
+           std::all_of(part.channels.begin(), part.channels.end(),
+                       [](const auto& name) { return is_numbered(name, "cascade"); });
+}
+
+std::vector<std::string> channel_names(std::span<const FilePart> parts) {
+    std::vector<std::string> names;
+    for (const FilePart& part : parts)
+        for (const std::string& channel : part.channels)
+            names.push_back(parts.size() > 1 ? part.name + "." + channel : channel);
+    return names;
+}
+
+Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names) {
+    return Finder(parts, names).find();
+}
+
+}  // namespace darkroom

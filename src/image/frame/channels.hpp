@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which channels of a file are the colour, the depth, the normals and the motion of a frame. It works on names alone:
+// those of Darkroom, Blender and V-Ray are known, a caller's mapping goes before them.
+
+#include <array>
+#include <darkroom/result.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/codec/decoder.hpp"
+
+namespace darkroom {
+
+/// Channels of one part, by their index there; -1: none. Colour: red, green, blue, alpha. Depth: the first only.
+struct ChannelSet {
+    std::size_t part = 0;
+    std::array<int, 4> channels{-1, -1, -1, -1};
+    std::string prefix;  ///< the layer's name, without the component: "ViewLayer.Depth", "" for plain R, G, B
+};
+
+struct FrameChannels {
+    ChannelSet color;
+    bool is_gray = false;  ///< red, green and blue are the same channel
+    std::optional<ChannelSet> depth;
+    std::optional<ChannelSet> normals;
+    std::optional<ChannelSet> velocity;
+    bool is_velocity_y_up = false;  ///< Blender's Vector pass
+};
+
+/// What the caller calls the layers: "color", "depth", "normals" or "velocity" to a channel or to what is before the
+/// dot.
+using LayerNames = std::map<std::string, std::string, std::less<>>;
+
+/// Does the part hold the cascades of a light? It is shadow0, shadow1 and so on, with channels cascade0, cascade1 and
+/// so on alone, and is no layer of the frame.
+[[nodiscard]] bool is_shadow_part(const FilePart& part);
+
+/// Every channel of the file by its full name, part name first where the file has several parts.
+[[nodiscard]] std::vector<std::string> channel_names(std::span<const FilePart> parts);
+
+/// Parts with shadows are passed over, unless a mapping names one of their channels. An error names the channels that
+/// were found and what was looked for, without the file name.
+[[nodiscard]] Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names);
+
+}  // namespace darkroom

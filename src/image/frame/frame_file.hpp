@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A frame as a file: the picture a renderer made with, where the file has them, depth, normals, motion, camera and the
+// lights with their shadows. Any image file is a frame with a picture alone. What is read is finite and in one
+// convention whatever wrote it; tone mapping, scaling and everything else that changes a picture is left to effects.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/codec/decoder.hpp"
+#include "image/frame/channels.hpp"
+#include "image/picture/picture.hpp"
+
+namespace darkroom {
+
+/// 4x4, column-major, applied to column vectors (as in darkroom/frame.hpp). OpenEXR stores the same sixteen numbers in
+/// the same order, read as rows and applied to row vectors.
+using Matrix = std::array<float, 16>;
+
+/// What the depth of a pixel without a surface is read as. In files, 1e9 and more, infinity and NaN mean the same.
+inline constexpr float sky_depth = 1e10f;
+
+/// Where the frame was seen from, as far as it is known.
+struct FrameCamera {
+    std::optional<Matrix> world_to_camera;  ///< the camera looks along -z, y up
+    std::optional<Matrix> projection;       ///< camera to clip space
+    /// Given with a field of view, the projection is made from it: y down, depth 0 at 0.1 and 1 at 1000.
+    std::optional<double> vertical_field_of_view;  ///< degrees
+    std::optional<Matrix> previous_world_to_camera, previous_projection;
+    std::optional<float> near_distance, far_distance;  ///< far may be infinite
+};
+
+/// A square depth map that a light sees its shadows by, row-major, top row first.
+struct FrameCascade {
+    Matrix world_to_cascade{};  ///< to x, y in [-1, 1] (y down) and depth in [0, 1]
+    float split = 0;            ///< how far it reaches along the view axis of the camera
+    Plane<1> depth;             ///< 0 near the light .. 1: nothing there; empty: see FrameOptions::has_shadow_depths
+    [[nodiscard]] bool operator==(const FrameCascade&) const = default;
+};
+
+/// A directional light, numbered as darkroom::Light. Without cascades it casts no shadow.
+struct FrameLight {
+    static constexpr std::size_t max_cascades = 4;
+    std::array<float, 3> direction{0, 1, 0};
+    std::array<float, 3> color{1, 1, 1};
+    float volumetric_intensity = 0;
+    std::array<float, 3> volumetric_color{1, 1, 1};
+    std::vector<FrameCascade> cascades;  ///< of one size
+    [[nodiscard]] bool operator==(const FrameLight&) const = default;
+};
+
+/// What a file holds at most: lights, those with cascades, texels of a cascade's side, and of all cascades together
+/// (4 GiB here).
+inline constexpr std::size_t max_frame_lights = 16, max_frame_shadows = 4;
+inline constexpr std::uint32_t max_cascade_side = 16384;
+inline constexpr std::uint64_t max_cascade_texels = std::uint64_t{1} << 30;
+
+struct FrameOptions {
+    LayerNames names;                              ///< go before the known names; see add_mapping
+    std::optional<double> vertical_field_of_view;  ///< degrees; goes before the file's projection
+    /// See read_camera; goes before what the frame's own file says. Of a camera that is not the file's, the previous
+    /// place and the distances are not known either.
+    std::filesystem::path camera_file;
+    /// False: these stay in the file, for those who do not need them.
+    bool has_depth = true, has_normals = true, has_velocity = true;
+    /// False: so do the depths of cascades, which are most of a file.
+    bool has_shadow_depths = true;
+    /// Layers that are halves in the file, and are what they should be, come in FrameFile::halves.
+    bool keeps_halves = false;
+    std::size_t max_threads = 0;  ///< that decode, 0: as many as there are processors
+};
+
+/// Pixels that were not finite, and are now: NaN became 0, an infinity +-65504 (the largest half); alpha 1.
+struct PixelCounts {
+    std::size_t nan_color = 0;
+    std::size_t infinite_color = 0;
+    std::size_t nan_alpha = 0;
+    std::size_t infinite_alpha = 0;
+    /// Normals and motion (became 0), depth that is NaN (became sky), depth of shadows (became 1, which is lit).
+    std::size_t not_finite_other = 0;
+    [[nodiscard]] bool operator==(const PixelCounts&) const = default;
+};
+
+/// Layers as halves, row-major, top row first. Those that are not empty stand for the numbers of the frame's layer of
+/// that name, which has its size and no numbers then.
+struct HalfLayers {
+    std::vector<std::uint16_t> color;     ///< red, green, blue, alpha
+    std::vector<std::uint16_t> normals;   ///< x, y, z, 1
+    std::vector<std::uint16_t> velocity;  ///< x, y
+};
+
+struct FrameFile {
+    /// Scene-linear Rec. 709. As large as the display window; pixels outside the data window are 0, alpha included.
+    /// Alpha is carried as the file has it: colour is neither multiplied nor divided by it.
+    Picture color;
+    bool has_alpha = false;            ///< false: alpha is 1 wherever there are data
+    std::optional<Plane<1>> depth;     ///< distance along the view axis; sky_depth where there is no surface
+    std::optional<Plane<3>> normals;   ///< world space; 0 where there is no surface
+    std::optional<Plane<2>> velocity;  ///< previous minus current position, pixels, y down
+    FrameCamera camera;
+    HalfLayers halves;  ///< see FrameOptions::keeps_halves
+    std::vector<FrameLight> lights;
+    std::optional<double> time, delta_time;    ///< seconds
+    std::optional<std::uint64_t> frame_index;  ///< at most 2^53
+    FileKind kind = FileKind::OpenExr;
+    SampleKind samples = SampleKind::Half;  ///< of the colour, in the file
+    PixelCounts counts;
+    std::vector<std::string> warnings;                ///< one line each, without the file name
+    std::vector<std::string> channels;                ///< all that the file has, used or not
+    std::shared_ptr<const ExrAttributes> attributes;  ///< what else an OpenEXR file says; else null
+};
+
+/// Gives the layers of `halves` their numbers as floats, and leaves no halves.
+void widen(FrameFile& frame);
+
+/// Reads any known image file. Integers are decoded as sRGB; floats are linear, and converted if the file names
+/// primaries other than Rec. 709. The error text begins with the path.
+[[nodiscard]] Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options = {});
+
+/// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, worldToCamera,
+/// and as attributes of our own darkroom:projection, previousWorldToCamera, previousProjection, near, far, time,
+/// deltaTime and frameIndex, bit for bit. Colour is half, or float if `frame.samples` is; depth and motion are float,
+/// normals half. Lights are attributes as well, and their cascades parts of their own beside the frame's: see
+/// docs/conventions.md.
+/// `max_threads`: that compress, 0: as many as there are processors.
+[[nodiscard]] Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame,
+                                   std::size_t max_threads = 0);
+
+/// A camera in a TOML file: `world_to_camera` or `camera_to_world` (16 numbers, row by row as one writes a matrix for
+/// column vectors), `projection` (16 numbers) or `fov` (vertical, degrees). All are optional; other keys are refused.
+[[nodiscard]] Result<FrameCamera> read_camera(const std::filesystem::path& path);
+
+/// Adds "depth=NAME", "normals=PREFIX", "velocity=PREFIX" or "color=PREFIX".
+[[nodiscard]] Result<> add_mapping(LayerNames& names, std::string_view mapping);
+
+/// The projection of FrameCamera's field of view; `aspect` is width over height.
+[[nodiscard]] Matrix perspective(double vertical_field_of_view, double aspect);
+
+}  // namespace darkroom

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+#include "image/frame/frame_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "image/picture/primaries.hpp"
+#include "image/test_files.hpp"
+
+namespace darkroom {
+namespace {
+
+class ImageFrame : public WithFolder {};
+class ImageFrameData : public WithData {};
+
+FrameFile full_frame() {
+    FrameFile frame;
+    frame.color = Picture(5, 3);
+    frame.depth = Plane<1>(5, 3);
+    frame.normals = Plane<3>(5, 3);
+    frame.velocity = Plane<2>(5, 3);
+    frame.has_alpha = true;
+    for (std::size_t i = 0; i < frame.color.pixels.size(); ++i) frame.color.pixels[i] = static_cast<float>(i) / 8;
+    for (std::size_t i = 0; i < 15; ++i) frame.depth->values[i] = 1.0f + static_cast<float>(i) / 3;
+    frame.depth->values[7] = sky_depth;
+    for (std::size_t i = 0; i < 45; ++i) frame.normals->values[i] = static_cast<float>(i % 5) / 4 - 0.5f;
+    for (std::size_t i = 0; i < 30; ++i) frame.velocity->values[i] = static_cast<float>(i) / 7 - 2;
+    Matrix matrix{};
+    for (std::size_t i = 0; i < 16; ++i) matrix[i] = static_cast<float>(i) + 0.25f;
+    frame.camera.world_to_camera = matrix;
+    matrix[3] = -7;
+    frame.camera.projection = matrix;
+    matrix[0] = 1.0F / 3;
+    frame.camera.previous_world_to_camera = matrix;
+    matrix[15] = 1e-30F;
+    frame.camera.previous_projection = matrix;
+    frame.camera.near_distance = 0.1F;
+    frame.camera.far_distance = std::numeric_limits<float>::infinity();
+    frame.time = 1.0 / 3;
+    frame.delta_time = 1.0 / 24;
+    frame.frame_index = 5'000'000'000;
+    return frame;
+}
+
+TEST_F(ImageFrame, WhatIsWrittenIsRead) {
+    const FrameFile frame = full_frame();
+    ASSERT_TRUE(write_frame(file("a.exr"), frame));
+    const auto back = read_frame(file("a.exr"));
+    ASSERT_TRUE(back) << back.error().text;
+    EXPECT_TRUE(back->color == frame.color);
+    EXPECT_EQ(back->depth, frame.depth);
+    EXPECT_EQ(back->normals, frame.normals);
+    EXPECT_EQ(back->velocity, frame.velocity);
+    EXPECT_EQ(back->camera.world_to_camera, frame.camera.world_to_camera);
+    EXPECT_EQ(back->camera.projection, frame.camera.projection);
+    EXPECT_EQ(back->camera.previous_world_to_camera, frame.camera.previous_world_to_camera);
+    EXPECT_EQ(back->camera.previous_projection, frame.camera.previous_projection);
+    EXPECT_EQ(back->camera.near_distance, frame.camera.near_distance);
+    EXPECT_EQ(back->camera.far_distance, frame.camera.far_distance);
+    EXPECT_EQ(back->time, frame.time);
+    EXPECT_EQ(back->delta_time, frame.delta_time);
+    EXPECT_EQ(back->frame_index, frame.frame_index);
+    EXPECT_TRUE(back->warnings.empty());
+    EXPECT_FALSE(write_frame(file("a.png"), frame));
+}
+
+TEST_F(ImageFrame, WhatIsNotGivenStaysUnknown) {
+    FrameFile frame = full_frame();
+    frame.camera = {.world_to_camera = frame.camera.world_to_camera};
+    frame.time = frame.delta_time = std::nullopt;
+    frame.frame_index = std::nullopt;
+    ASSERT_TRUE(write_frame(file("a.exr"), frame));
+    const auto back = read_frame(file("a.exr"));
+    ASSERT_TRUE(back) << back.error().text;
+    EXPECT_TRUE(back->camera.world_to_camera);
+    EXPECT_FALSE(back->camera.previous_world_to_camera || back->camera.previous_projection);
+    EXPECT_FALSE(back->camera.near_distance || back->camera.far_distance);
+    EXPECT_FALSE(back->time || back->delta_time || back->frame_index);
+}
+
+TEST_F(ImageFrame, AnotherCameraHasNoPast) {
+    ASSERT_TRUE(write_frame(file("a.exr"), full_frame()));
+    const auto wide = read_frame(file("a.exr"), {.vertical_field_of_view = 90});
+    ASSERT_TRUE(wide) << wide.error().text;
+    EXPECT_FALSE(wide->camera.previous_projection || wide->camera.far_distance);
+    EXPECT_TRUE(wide->time);
+}
+
+TEST_F(ImageFrame, SignsOfZeroAreKept) {
+    FrameFile frame = full_frame();
+    frame.color.pixels[0] = -0.0F;
+    ASSERT_TRUE(write_frame(file("a.exr"), frame));
+    const auto back = read_frame(file("a.exr"));
+    ASSERT_TRUE(back) << back.error().text;
+    EXPECT_TRUE(std::signbit(back->color.pixels[0]));
+}
+
+TEST_F(ImageFrame, MappingGoesBeforeTheKnownNames) {
+    ASSERT_TRUE(write_frame(file("a.exr"), full_frame()));
+    FrameOptions options;
+    ASSERT_TRUE(add_mapping(options.names, "depth=G"));
+    ASSERT_TRUE(add_mapping(options.names, "color=N"));
+    const auto back = read_frame(file("a.exr"), options);
+    ASSERT_TRUE(back) << back.error().text;
+    EXPECT_EQ(back->depth->values[1], 5.0f / 8);
+    EXPECT_EQ(back->color.pixels[1], full_frame().normals->values[1]);
+    EXPECT_EQ(back->warnings.size(), 0u) << "chromaticities are in the file";
+}
+
+TEST_F(ImageFrame, UnknownNameGivesTheNearest) {
+    ASSERT_TRUE(write_frame(file("a.exr"), full_frame()));
+    FrameOptions options;
+    ASSERT_TRUE(add_mapping(options.names, "velocity=velocty"));
+    const auto back = read_frame(file("a.exr"), options);
+    ASSERT_FALSE(back);
+    EXPECT_EQ(back.error().text,
+              file("a.exr").string() + ": has no channels \"velocty\" for velocity; the nearest name is \"velocity\"");
+    EXPECT_FALSE(add_mapping(options.names, "depht=Z"));
+    EXPECT_FALSE(add_mapping(options.names, "depth"));
+    EXPECT_FALSE(add_mapping(options.names, "depth="));
+}
+
+TEST_F(ImageFrame, CameraComesFromAFileOrAFieldOfView) {
+    FrameFile frame = full_frame();
+    frame.camera = {};
+    ASSERT_TRUE(write_frame(file("a.exr"), frame));
+    const auto bare = read_frame(file("a.exr"));
+    ASSERT_TRUE(bare);
+    EXPECT_FALSE(bare->camera.projection);
+    const auto wide = read_frame(file("a.exr"), {.vertical_field_of_view = 90});
+    ASSERT_TRUE(wide);
+    EXPECT_FLOAT_EQ((*wide->camera.projection)[5], -1.0f);
+    EXPECT_FLOAT_EQ((*wide->camera.projection)[0], 3.0f / 5);
+    EXPECT_FALSE(read_frame(file("a.exr"), {.vertical_field_of_view = 180}));
+
+    put(file("c.toml"), "fov = 60\ncamera_to_world = [0,-1,0,4, 1,0,0,5, 0,0,1,6, 0,0,0,1]\n");
+    const auto given = read_frame(file("a.exr"), {.camera_file = file("c.toml")});
+    ASSERT_TRUE(given) << given.error().text;
+    EXPECT_EQ(given->camera.vertical_field_of_view, 60);
+    const Matrix& view = *given->camera.world_to_camera;  // of the point (4, 5, 6), the camera's own place: the origin
+    for (std::size_t row = 0; row < 3; ++row)
+        EXPECT_FLOAT_EQ(view[row] * 4 + view[4 + row] * 5 + view[8 + row] * 6 + view[12 + row], 0);
+    EXPECT_FLOAT_EQ(view[4], 1);  // world y is camera x
+
+    put(file("bad.toml"), "fov = 60\nfocal = 3\n");
+    const auto bad = read_camera(file("bad.toml"));
+    ASSERT_FALSE(bad);
+    EXPECT_TRUE(bad.error().text.starts_with(file("bad.toml").string() + ":2: unknown key focal")) << bad.error().text;
+    put(file("deep.toml"), "fov = " + std::string(1000, '['));
+    const auto deep = read_camera(file("deep.toml"));
+    ASSERT_FALSE(deep);
+    EXPECT_NE(deep.error().text.find("depth of 16"), std::string::npos) << deep.error().text;
+}
+
+TEST(ImagePrimaries, Rec709IsUnchangedAndWhiteStaysWhite) {
+    const auto same = to_rec709({});
+    ASSERT_TRUE(same);
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR((*same)[i], i % 4 == 0 ? 1 : 0, 1e-12);
+    // ACES AP0: other primaries, other white; its white becomes ours.
+    const auto aces = to_rec709({{0.7347, 0.2653}, {0, 1}, {0.0001, -0.077}, {0.32168, 0.33767}});
+    ASSERT_TRUE(aces);
+    for (std::size_t row = 0; row < 3; ++row)
+        EXPECT_NEAR((*aces)[row * 3] + (*aces)[row * 3 + 1] + (*aces)[row * 3 + 2], 1, 1e-9);
+    EXPECT_NEAR((*aces)[0], 2.52169, 2e-3);  // ACES 1.0, AP0 to Rec. 709 with Bradford
+    EXPECT_FALSE(to_rec709({{0.3, 0.3}, {0.3, 0.3}, {0.3, 0.3}, {0.3, 0.3}}));
+}
+
+TEST_F(ImageFrameData, TristimulusFileEqualsItsRec709Twin) {
+    const auto xyz = read_frame(data_ / "exr/photos/XYZ.exr");
+    const auto rgb = read_frame(data_ / "exr/photos/Rec709.exr");
+    ASSERT_TRUE(xyz && rgb);
+    double sum = 0;
+    for (std::size_t i = 0; i < rgb->color.pixels.size(); ++i)
+        sum += std::abs(xyz->color.pixels[i] - rgb->color.pixels[i]);
+    EXPECT_LT(sum / static_cast<double>(rgb->color.pixels.size()), 3e-4);
+}
+
+TEST_F(ImageFrameData, BlenderLayersAreRecognised) {
+    const auto frame = read_frame(data_ / "exr/render_interior/interior.0022.exr");
+    ASSERT_TRUE(frame) << frame.error().text;
+    ASSERT_TRUE(frame->depth && frame->normals && frame->velocity);
+    EXPECT_EQ(frame->color.width, 384u);
+    EXPECT_EQ(frame->channels.size(), 19u);
+    // Motion leads to where the pixel was: the colours of the previous frame there are nearer than those in place.
+    const auto previous = read_frame(data_ / "exr/render_interior/interior.0021.exr");
+    ASSERT_TRUE(previous);
+    double moved = 0;
+    double flipped = 0;
+    for (std::uint32_t y = 20; y < 196; ++y)
+        for (std::uint32_t x = 20; x < 364; ++x) {
+            const float* motion = frame->velocity->at(x, y);
+            if (std::abs(motion[1]) < 2) continue;  // says nothing about the direction of y
+            const auto difference = [&](float sign) {
+                const auto column = std::clamp<long>(std::lround(static_cast<float>(x) + motion[0]), 0, 383);
+                const auto row = std::clamp<long>(std::lround(static_cast<float>(y) + sign * motion[1]), 0, 215);
+                const float then =
+                    previous->depth->at(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))[0];
+                return std::min(1.0f, std::abs(then - frame->depth->at(x, y)[0]));
+            };
+            moved += difference(1);
+            flipped += difference(-1);
+        }
+    EXPECT_LT(moved, 0.9 * flipped);
+    std::size_t sky = 0;
+    for (const float distance : frame->depth->values) sky += distance == sky_depth;
+    for (const float distance : frame->depth->values) ASSERT_TRUE(distance > 0 && distance <= sky_depth);
+    EXPECT_GT(sky, 0u);
+}
+
+TEST_F(ImageFrameData, VrayNormalsAreTurnedToTheWorld) {
+    const auto frame = read_frame(data_ / "exr/vray_cornellBox_50ch.0001.exr");
+    ASSERT_TRUE(frame) << frame.error().text;
+    EXPECT_EQ(frame->color.width, 960u);
+    ASSERT_TRUE(frame->normals && frame->camera.world_to_camera && frame->camera.projection);
+    EXPECT_GT(frame->normals->at(480, 525)[2], 0.9f) << "the floor looks up, z there";
+    EXPECT_LT(frame->normals->at(480, 10)[2], -0.9f) << "the ceiling looks down";
+    const Matrix& view = *frame->camera.world_to_camera;
+    EXPECT_FLOAT_EQ(view[9], 1) << "world z is up in the camera";
+    EXPECT_NEAR(*frame->camera.vertical_field_of_view, 32.27, 0.05);
+    EXPECT_EQ(frame->color.at(0, 0)[3], 0) << "outside the data window";
+}
+
+TEST_F(ImageFrameData, DataWindowIsPlacedInTheDisplayWindow) {
+    const auto whole = read_frame(data_ / "exr/displaywindow/t01.exr");
+    const auto cropped = read_frame(data_ / "exr/displaywindow/t05.exr");   // display from (30, 20), 340 x 260
+    const auto bordered = read_frame(data_ / "exr/displaywindow/t08.exr");  // data from (30, 40) in 501 x 401
+    ASSERT_TRUE(whole && cropped && bordered);
+    EXPECT_EQ(cropped->color.width, 340u);
+    EXPECT_EQ(bordered->color.width, 501u);
+    for (std::uint32_t y = 0; y < 260; y += 13)
+        for (std::uint32_t x = 0; x < 340; x += 11)
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_EQ(cropped->color.at(x, y)[c], whole->color.at(x + 30, y + 20)[c]) << x << " " << y;
+                ASSERT_EQ(bordered->color.at(x + 30, y + 40)[c], whole->color.at(x, y)[c]) << x << " " << y;
+            }
+    EXPECT_EQ(bordered->color.at(29, 40)[3], 0);
+    EXPECT_EQ(bordered->color.at(30, 40)[3], 1);
+}
+
+TEST_F(ImageFrameData, PartsOfOneViewBelongTogether) {
+    const auto parts = read_frame(data_ / "exr/beachball/multipart.0001.exr");
+    const auto single = read_frame(data_ / "exr/beachball/singlepart.0001.exr");
+    ASSERT_TRUE(parts && single);
+    EXPECT_EQ(parts->color, single->color);
+    EXPECT_EQ(parts->depth->at(1000, 700)[0], single->depth->at(1000, 700)[0]);
+    EXPECT_EQ(parts->channels.size(), 20u);
+}
+
+TEST_F(ImageFrameData, EveryFileIsReadOrRefusedForAKnownReason) {
+    for (const char* folder : {"exr", "env"})
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(data_ / folder)) {
+            const auto extension = entry.path().extension();
+            if (extension != ".exr" && extension != ".hdr") continue;
+            const std::string name = entry.path().stem().string();
+            const auto frame = read_frame(entry.path());
+            if (name == "deep_Trunks") {
+                ASSERT_FALSE(frame) << name;
+                EXPECT_NE(frame.error().text.find("has deep pixels"), std::string::npos) << frame.error().text;
+            } else {
+                EXPECT_TRUE(frame) << frame.error().text;
+            }
+        }
+    const auto wide = read_frame(data_ / "exr/testimages/WideFloatRange.exr");
+    ASSERT_TRUE(wide);
+    EXPECT_EQ(wide->color.at(100, 100)[0], wide->color.at(100, 100)[2]) << "a lone channel is gray";
+    const auto levels = read_frame(data_ / "exr/misc/ColorCodedLevels.exr");
+    ASSERT_TRUE(levels);
+    EXPECT_EQ(levels->color.width, 512u);
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,496 @@
+// SPDX-License-Identifier: MIT
+#include <Imath/half.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "image/frame/frame_file.hpp"
+#include "image/frame/frame_lights.hpp"
+#include "image/frame/layer_read.hpp"
+#include "image/picture/primaries.hpp"
+
+namespace darkroom {
+namespace {
+
+constexpr float largest_half = 65504.0f;
+constexpr std::uint16_t half_one = 0x3c00;
+
+bool is_inside(const FilePart& part, std::uint32_t x, std::uint32_t y) {
+    const std::int64_t column = std::int64_t{x} - part.x;
+    const std::int64_t row = std::int64_t{y} - part.y;
+    return column >= 0 && row >= 0 && column < part.width && row < part.height;
+}
+
+bool is_finite(std::uint16_t half) { return (half & 0x7c00u) != 0x7c00u; }
+bool is_nan(std::uint16_t half) { return !is_finite(half) && (half & 0x3ffu) != 0; }
+
+void make_finite(std::span<std::uint16_t> color, PixelCounts& counts) {
+    constexpr std::uint16_t largest = 0x7bff;
+    for (std::size_t i = 0; i < color.size(); i += 4) {
+        std::uint16_t* const pixel = &color[i];
+        if (is_finite(pixel[0]) && is_finite(pixel[1]) && is_finite(pixel[2]) && is_finite(pixel[3])) continue;
+        bool has_nan = false;
+        bool has_infinity = false;
+        for (int c = 0; c < 3; ++c) {
+            if (is_finite(pixel[c])) continue;
+            (is_nan(pixel[c]) ? has_nan : has_infinity) = true;
+            pixel[c] = is_nan(pixel[c]) ? std::uint16_t{0} : static_cast<std::uint16_t>((pixel[c] & 0x8000u) | largest);
+        }
+        counts.nan_color += has_nan;
+        counts.infinite_color += has_infinity;
+        if (is_finite(pixel[3])) continue;
+        ++(is_nan(pixel[3]) ? counts.nan_alpha : counts.infinite_alpha);
+        pixel[3] = half_one;
+    }
+}
+
+void make_finite(Picture& color, PixelCounts& counts) {
+    for (std::size_t i = 0; i < color.pixels.size(); i += 4) {
+        float* pixel = &color.pixels[i];
+        bool has_nan = false;
+        bool has_infinity = false;
+        for (int c = 0; c < 3; ++c) {
+            if (std::isfinite(pixel[c])) continue;
+            has_nan |= std::isnan(pixel[c]);
+            has_infinity |= std::isinf(pixel[c]);
+            pixel[c] = std::isnan(pixel[c]) ? 0.0f : std::copysign(largest_half, pixel[c]);
+        }
+        counts.nan_color += has_nan;
+        counts.infinite_color += has_infinity;
+        if (std::isfinite(pixel[3])) continue;
+        ++(std::isnan(pixel[3]) ? counts.nan_alpha : counts.infinite_alpha);
+        pixel[3] = 1.0f;
+    }
+}
+
+// Every code of an 8- or 16-bit file decoded once; a picture has more pixels than there are codes.
+void decode_srgb(Picture& color, SampleKind samples) {
+    const float largest = samples == SampleKind::Integer8 ? 255.0f : 65535.0f;
+    std::vector<float> decoded(static_cast<std::size_t>(largest) + 1);
+    for (std::size_t code = 0; code < decoded.size(); ++code)
+        decoded[code] = srgb_decode(static_cast<float>(code) / largest);
+    for (std::size_t i = 0; i < color.pixels.size(); ++i)
+        if (i % 4 != 3) color.pixels[i] = decoded[static_cast<std::size_t>(std::lround(color.pixels[i] * largest))];
+}
+
+void convert(Picture& color, const ColorMatrix& matrix) {
+    constexpr double largest = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < color.pixels.size(); i += 4) {
+        float* pixel = &color.pixels[i];
+        const std::array<double, 3> in{pixel[0], pixel[1], pixel[2]};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double value = matrix[c * 3] * in[0] + matrix[c * 3 + 1] * in[1] + matrix[c * 3 + 2] * in[2];
+            pixel[c] = static_cast<float>(std::clamp(value, -largest, largest));
+        }
+    }
+}
+
+class FrameReader {
+  public:
+    FrameReader(Decoder& decoder, const FrameOptions& options) : decoder_(decoder), options_(options) {}
+    Result<FrameFile> read();
+
+  private:
+    Result<> make_color();
+    Result<> make_depth();
+    Result<> make_normals();
+    Result<> make_velocity();
+    void finish_color();
+    void finish_depth();
+    void finish_normals();
+    void finish_velocity();
+    Result<> read_camera_of_file();
+    void read_time_of_file();
+    [[nodiscard]] std::optional<ColorMatrix> conversion_of_color();
+    [[nodiscard]] bool are_halves(const ChannelSet& set, std::uint32_t components) const;
+    void add_place(const ChannelSet& set, std::uint32_t components, std::vector<float>& plane);
+    void add_half_place(const ChannelSet& set, std::uint32_t components, std::vector<std::uint16_t>& plane);
+    [[nodiscard]] Result<> check(const ChannelSet& set, std::uint32_t components, const char* what) const;
+    [[nodiscard]] const FilePart& part(const ChannelSet& set) const { return decoder_.parts()[set.part]; }
+    [[nodiscard]] std::optional<Matrix> matrix(const char* attribute) const;
+    [[nodiscard]] std::optional<Matrix> world_to_camera() const;
+
+    Decoder& decoder_;
+    const FrameOptions& options_;
+    FrameChannels found_;
+    FrameFile frame_;
+    std::vector<LayerPlace> places_;  // of what is read
+    bool is_vray_ = false;
+    std::optional<ColorMatrix> to_rec709_;  // of the colour
+    std::optional<Matrix> vray_normals_;    // world to camera, of what V-Ray wrote
+};
+
+std::optional<Matrix> FrameReader::matrix(const char* attribute) const {
+    const std::vector<float> values = decoder_.numbers(found_.color.part, attribute);
+    if (values.size() != 16 || !std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+        return std::nullopt;
+    Matrix result{};
+    std::copy(values.begin(), values.end(), result.begin());
+    return result;
+}
+
+// As the file has it. V-Ray has a name of its own.
+std::optional<Matrix> FrameReader::world_to_camera() const {
+    const std::optional<Matrix> standard = matrix("worldToCamera");
+    return standard || !is_vray_ ? standard : matrix("cameraTransform");
+}
+
+// All parts of an OpenEXR file should have one display window; a plane of another size than the picture has no meaning.
+Result<> FrameReader::check(const ChannelSet& set, std::uint32_t components, const char* what) const {
+    const FilePart& ours = part(set);
+    if (ours.display_width != frame_.color.width || ours.display_height != frame_.color.height)
+        return user_error(fmt::format("{} is {}x{}, the color is {}x{}; one display window is needed", what,
+                                      ours.display_width, ours.display_height, frame_.color.width,
+                                      frame_.color.height));
+    for (std::uint32_t i = 0; i < components; ++i) {
+        if (set.channels[i] < 0) continue;
+        const auto channel = static_cast<std::size_t>(set.channels[i]);
+        if (ours.kinds[channel] == SampleKind::Integer32)
+            return user_error(fmt::format("channel {} for {} has 32-bit integers; half or float is needed",
+                                          one_printable_line(ours.channels[channel]), what));
+    }
+    return {};
+}
+
+bool FrameReader::are_halves(const ChannelSet& set, std::uint32_t components) const {
+    if (!options_.keeps_halves || decoder_.kind() != FileKind::OpenExr) return false;
+    for (std::uint32_t i = 0; i < components; ++i)
+        if (set.channels[i] >= 0 && part(set).kinds[static_cast<std::size_t>(set.channels[i])] != SampleKind::Half)
+            return false;
+    return true;
+}
+
+void FrameReader::add_place(const ChannelSet& set, std::uint32_t components, std::vector<float>& plane) {
+    places_.push_back({.source = set, .components = components, .plane = reinterpret_cast<std::byte*>(plane.data())});
+}
+
+void FrameReader::add_half_place(const ChannelSet& set, std::uint32_t components, std::vector<std::uint16_t>& plane) {
+    places_.push_back({.source = set,
+                       .components = components,
+                       .kind = SampleKind::Half,
+                       .plane = reinterpret_cast<std::byte*>(plane.data())});
+}
+
+// What turns the colour into Rec. 709, if that is anything.
+std::optional<ColorMatrix> FrameReader::conversion_of_color() {
+    if (frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16) return {};
+    const std::vector<float> values = decoder_.numbers(found_.color.part, "chromaticities");
+    if (values.size() != 8) {
+        const std::string& red = part(found_.color).channels[static_cast<std::size_t>(found_.color.channels[0])];
+        if (red.ends_with("X") || red.ends_with("x"))
+            frame_.warnings.push_back(
+                "the color is in X, Y, Z and no chromaticities are given: taken as linear Rec. 709");
+        return {};
+    }
+    if (found_.is_gray) return {};
+    const Chromaticities primaries{.red = {values[0], values[1]},
+                                   .green = {values[2], values[3]},
+                                   .blue = {values[4], values[5]},
+                                   .white = {values[6], values[7]}};
+    const auto matrix = to_rec709(primaries);
+    if (!matrix) frame_.warnings.push_back("the chromaticities span no color space: taken as linear Rec. 709");
+    // Not even the sign of a zero may change in a picture that is in our primaries.
+    if (!matrix || *matrix == ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) return {};
+    return *matrix;
+}
+
+Result<> FrameReader::make_color() {
+    const FilePart& source = part(found_.color);
+    // 2^28 pixels are 4 GiB here, and more than any device takes as one image.
+    if (std::uint64_t{source.display_width} * source.display_height > (std::uint64_t{1} << 28))
+        return user_error(fmt::format("the picture is {}x{}, at most {} pixels are allowed", source.display_width,
+                                      source.display_height, 1u << 28));
+    frame_.color.width = source.display_width;
+    frame_.color.height = source.display_height;
+    const std::size_t pixels = std::size_t{source.display_width} * source.display_height;
+    if (auto checked = check(found_.color, 4, "the color"); !checked) return checked;
+    frame_.samples = source.kinds[static_cast<std::size_t>(found_.color.channels[0])];
+    frame_.has_alpha = found_.color.channels[3] >= 0;
+    to_rec709_ = conversion_of_color();
+    const auto fill_alpha = [&](auto& values, auto one) {
+        for (std::size_t i = 0; i < pixels; ++i)
+            if (is_inside(source, static_cast<std::uint32_t>(i % source.display_width),
+                          static_cast<std::uint32_t>(i / source.display_width)))
+                values[i * 4 + 3] = one;
+    };
+    if (!to_rec709_ && are_halves(found_.color, 4)) {
+        frame_.halves.color.resize(pixels * 4);
+        if (!frame_.has_alpha) fill_alpha(frame_.halves.color, half_one);
+        add_half_place(found_.color, 4, frame_.halves.color);
+        return {};
+    }
+    frame_.color.pixels.resize(pixels * 4);
+    if (!frame_.has_alpha) fill_alpha(frame_.color.pixels, 1.0f);
+    add_place(found_.color, 4, frame_.color.pixels);
+    return {};
+}
+
+void FrameReader::finish_color() {
+    if (!frame_.halves.color.empty()) {
+        make_finite(frame_.halves.color, frame_.counts);
+        return;
+    }
+    make_finite(frame_.color, frame_.counts);
+    if (frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16)
+        decode_srgb(frame_.color, frame_.samples);
+    else if (to_rec709_)
+        convert(frame_.color, *to_rec709_);
+}
+
+Result<> FrameReader::make_depth() {
+    if (!found_.depth || !options_.has_depth) return {};
+    if (auto checked = check(*found_.depth, 1, "the depth"); !checked) return checked;
+    frame_.depth.emplace(frame_.color.width, frame_.color.height);
+    std::fill(frame_.depth->values.begin(), frame_.depth->values.end(), sky_depth);
+    add_place(*found_.depth, 1, frame_.depth->values);
+    return {};
+}
+
+void FrameReader::finish_depth() {
+    if (!frame_.depth) return;
+    for (float& distance : frame_.depth->values) {
+        if (distance < 1e9f && std::isfinite(distance)) continue;
+        frame_.counts.not_finite_other += std::isnan(distance) || distance == -std::numeric_limits<float>::infinity();
+        distance = sky_depth;
+    }
+}
+
+// V-Ray writes normals in the space of its camera (x right, y down, z forward), others in that of the world.
+Result<> FrameReader::make_normals() {
+    if (!found_.normals || !options_.has_normals) return {};
+    if (auto checked = check(*found_.normals, 3, "the normals"); !checked) return checked;
+    if (is_vray_ && !options_.names.contains("normals")) {
+        vray_normals_ = world_to_camera();
+        if (!vray_normals_) {
+            frame_.warnings.push_back(
+                "V-Ray normals without cameraTransform cannot be turned to world space: left out");
+            return {};
+        }
+    }
+    frame_.normals.emplace();
+    frame_.normals->width = frame_.color.width;
+    frame_.normals->height = frame_.color.height;
+    const std::size_t pixels = std::size_t{frame_.color.width} * frame_.color.height;
+    if (!vray_normals_ && are_halves(*found_.normals, 3)) {
+        frame_.halves.normals.resize(pixels * 4);
+        for (std::size_t i = 3; i < pixels * 4; i += 4) frame_.halves.normals[i] = half_one;
+        add_half_place(*found_.normals, 4, frame_.halves.normals);
+        places_.back().read = 3;
+        return {};
+    }
+    frame_.normals->values.resize(pixels * 3);
+    add_place(*found_.normals, 3, frame_.normals->values);
+    return {};
+}
+
+void FrameReader::finish_normals() {
+    std::vector<std::uint16_t>& halves = frame_.halves.normals;
+    for (std::size_t i = 0; i < halves.size(); i += 4) {
+        if (is_finite(halves[i]) && is_finite(halves[i + 1]) && is_finite(halves[i + 2])) continue;
+        ++frame_.counts.not_finite_other;
+        std::fill_n(&halves[i], 3, std::uint16_t{0});
+    }
+    if (!frame_.normals) return;
+    for (std::size_t i = 0; i < frame_.normals->values.size(); i += 3) {
+        float* normal = &frame_.normals->values[i];
+        if (!std::isfinite(normal[0]) || !std::isfinite(normal[1]) || !std::isfinite(normal[2])) {
+            ++frame_.counts.not_finite_other;
+            std::fill_n(normal, 3, 0.0f);
+        }
+        if (!vray_normals_) continue;
+        const Matrix& turn = *vray_normals_;
+        const std::array<float, 3> in{normal[0], normal[1], normal[2]};
+        for (std::size_t row = 0; row < 3; ++row)
+            normal[row] = turn[row * 4] * in[0] + turn[row * 4 + 1] * in[1] + turn[row * 4 + 2] * in[2];
+    }
+}
+
+Result<> FrameReader::make_velocity() {
+    if (!found_.velocity || !options_.has_velocity) return {};
+    if (auto checked = check(*found_.velocity, 2, "the motion"); !checked) return checked;
+    frame_.velocity.emplace();
+    frame_.velocity->width = frame_.color.width;
+    frame_.velocity->height = frame_.color.height;
+    const std::size_t values = std::size_t{frame_.color.width} * frame_.color.height * 2;
+    if (!found_.is_velocity_y_up && are_halves(*found_.velocity, 2)) {
+        frame_.halves.velocity.resize(values);
+        add_half_place(*found_.velocity, 2, frame_.halves.velocity);
+        return {};
+    }
+    frame_.velocity->values.resize(values);
+    add_place(*found_.velocity, 2, frame_.velocity->values);
+    return {};
+}
+
+void FrameReader::finish_velocity() {
+    std::vector<std::uint16_t>& halves = frame_.halves.velocity;
+    for (std::size_t i = 0; i < halves.size(); i += 2) {
+        if (is_finite(halves[i]) && is_finite(halves[i + 1])) continue;
+        ++frame_.counts.not_finite_other;
+        halves[i] = halves[i + 1] = 0;
+    }
+    if (!frame_.velocity) return;
+    for (std::size_t i = 0; i < frame_.velocity->values.size(); i += 2) {
+        float* motion = &frame_.velocity->values[i];
+        if (!std::isfinite(motion[0]) || !std::isfinite(motion[1])) {
+            ++frame_.counts.not_finite_other;
+            std::fill_n(motion, 2, 0.0f);
+        }
+        if (found_.is_velocity_y_up) motion[1] = -motion[1];
+    }
+}
+
+Result<> FrameReader::read_camera_of_file() {
+    FrameCamera& camera = frame_.camera;
+    const double aspect = static_cast<double>(frame_.color.width) / frame_.color.height;
+    camera.world_to_camera = world_to_camera();
+    camera.projection = matrix("darkroom:projection");
+    camera.previous_world_to_camera = matrix("darkroom:previousWorldToCamera");
+    camera.previous_projection = matrix("darkroom:previousProjection");
+    const auto distance = [&](const char* name) -> std::optional<float> {
+        const std::optional<double> value = decoder_.number(found_.color.part, name);
+        if (!value || !(*value >= 0)) return std::nullopt;
+        return static_cast<float>(*value);
+    };
+    camera.near_distance = distance("darkroom:near");
+    camera.far_distance = distance("darkroom:far");
+    // What follows from another camera than the file's is known of the file's alone.
+    const auto forget = [&] {
+        camera.previous_world_to_camera.reset();
+        camera.previous_projection.reset();
+        camera.near_distance.reset();
+        camera.far_distance.reset();
+    };
+    if (is_vray_) {
+        if (camera.world_to_camera)
+            for (std::size_t i = 0; i < 16; ++i)
+                if (i % 4 == 1 || i % 4 == 2) (*camera.world_to_camera)[i] = -(*camera.world_to_camera)[i];
+        const std::vector<float> fov = decoder_.numbers(found_.color.part, "cameraFov");  // horizontal
+        if (!camera.projection && fov.size() == 1 && fov[0] > 0 && fov[0] < 180) {
+            constexpr double degrees = 180 / std::numbers::pi;
+            camera.vertical_field_of_view = 2 * degrees * std::atan(std::tan(fov[0] / degrees / 2) / aspect);
+        }
+    }
+    if (!options_.camera_file.empty()) {
+        auto given = read_camera(options_.camera_file);
+        if (!given) return failure(std::move(given));
+        forget();
+        if (given->world_to_camera) camera.world_to_camera = given->world_to_camera;
+        if (given->projection || given->vertical_field_of_view) {
+            camera.projection = given->projection;
+            camera.vertical_field_of_view = given->vertical_field_of_view;
+        }
+    }
+    if (options_.vertical_field_of_view) {
+        if (!(*options_.vertical_field_of_view > 0 && *options_.vertical_field_of_view < 180))
+            return user_error(
+                fmt::format("a field of view of {} degrees; (0, 180) is allowed", *options_.vertical_field_of_view));
+        forget();
+        camera.projection.reset();
+        camera.vertical_field_of_view = options_.vertical_field_of_view;
+    }
+    if (!camera.projection && camera.vertical_field_of_view)
+        camera.projection = perspective(*camera.vertical_field_of_view, aspect);
+    return {};
+}
+
+void FrameReader::read_time_of_file() {
+    const auto number = [&](const char* name) -> std::optional<double> {
+        const std::optional<double> value = decoder_.number(found_.color.part, name);
+        return value && std::isfinite(*value) ? value : std::nullopt;
+    };
+    frame_.time = number("darkroom:time");
+    frame_.delta_time = number("darkroom:deltaTime");
+    constexpr double most = 9007199254740992;  // 2^53: whole numbers beyond are not exact in a double
+    const std::optional<double> index = number("darkroom:frameIndex");
+    if (index && *index >= 0 && *index <= most && *index == std::floor(*index))
+        frame_.frame_index = static_cast<std::uint64_t>(*index);
+}
+
+Result<FrameFile> FrameReader::read() {
+    frame_.kind = decoder_.kind();
+    frame_.channels = channel_names(decoder_.parts());
+    auto found = find_channels(decoder_.parts(), options_.names);
+    if (!found) return failure(std::move(found));
+    found_ = std::move(*found);
+    is_vray_ = decoder_.has_attribute_starting(found_.color.part, "vrayInfo/");
+    frame_.attributes = decoder_.attributes(found_.color.part);
+    if (auto done = make_color(); !done) return failure(std::move(done));
+    if (auto done = make_depth(); !done) return failure(std::move(done));
+    if (auto done = make_normals(); !done) return failure(std::move(done));
+    if (auto done = make_velocity(); !done) return failure(std::move(done));
+    if (auto done = read_layers(decoder_, places_); !done) return failure(std::move(done));
+    finish_color();
+    finish_depth();
+    finish_normals();
+    finish_velocity();
+    if (auto done = read_camera_of_file(); !done) return failure(std::move(done));
+    read_time_of_file();
+    if (auto done = read_lights(decoder_, found_.color.part, options_, frame_); !done) return failure(std::move(done));
+    const std::vector<float> aspect = decoder_.numbers(found_.color.part, "PixelAspectRatio");
+    if (aspect.size() == 1 && std::abs(aspect[0] - 1) > 1e-3f)
+        frame_.warnings.push_back(fmt::format("pixels are {:g} times as wide as high: taken as square", aspect[0]));
+    const PixelCounts& counts = frame_.counts;
+    if (counts != PixelCounts{})
+        frame_.warnings.push_back(fmt::format(
+            "pixels that are not finite: NaN {} color, {} alpha; infinite {} color, {} alpha; {} in other channels: "
+            "NaN "
+            "became 0, infinity +-65504, alpha 1",
+            counts.nan_color, counts.nan_alpha, counts.infinite_color, counts.infinite_alpha, counts.not_finite_other));
+    return std::move(frame_);
+}
+
+}  // namespace
+
+void widen(FrameFile& frame) {
+    const auto take = [](std::vector<std::uint16_t>& from, std::size_t kept, std::size_t of, std::vector<float>& to) {
+        if (from.empty()) return;
+        to.resize(from.size() / of * kept);
+        for (std::size_t i = 0; i < to.size(); ++i) to[i] = imath_half_to_float(from[i / kept * of + i % kept]);
+        from = {};
+    };
+    take(frame.halves.color, 4, 4, frame.color.pixels);
+    if (frame.normals) take(frame.halves.normals, 3, 4, frame.normals->values);
+    if (frame.velocity) take(frame.halves.velocity, 2, 2, frame.velocity->values);
+}
+
+Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options) {
+    auto decoder = Decoder::open(path, options.max_threads);
+    if (!decoder) return failure(std::move(decoder));
+    auto frame = FrameReader(*decoder, options).read();
+    const std::string place = path.string() + ": ";
+    if (!frame && !frame.error().text.starts_with(place) &&
+        (options.camera_file.empty() || !frame.error().text.starts_with(options.camera_file.string())))
+        frame.error().text.insert(0, place);
+    return frame;
+}
+
+Result<> add_mapping(LayerNames& names, std::string_view mapping) {
+    const std::size_t equals = mapping.find('=');
+    const std::string what(mapping.substr(0, equals));
+    const bool is_known = what == "color" || what == "depth" || what == "normals" || what == "velocity";
+    if (equals == std::string_view::npos || equals + 1 == mapping.size() || !is_known)
+        return user_error(fmt::format(
+            "\"{}\" maps nothing; color, depth, normals or velocity, then = and the name of a channel are needed",
+            one_printable_line(mapping)));
+    names[what] = mapping.substr(equals + 1);
+    return {};
+}
+
+Matrix perspective(double vertical_field_of_view, double aspect) {
+    constexpr double near_distance = 0.1;
+    constexpr double far_distance = 1000.0;
+    const double scale = 1 / std::tan(vertical_field_of_view * std::numbers::pi / 360);
+    Matrix matrix{};
+    matrix[0] = static_cast<float>(scale / aspect);
+    matrix[5] = static_cast<float>(-scale);
+    matrix[10] = static_cast<float>(far_distance / (near_distance - far_distance));
+    matrix[11] = -1;
+    matrix[14] = static_cast<float>(near_distance * far_distance / (near_distance - far_distance));
+    return matrix;
+}
+
+}  // namespace darkroom

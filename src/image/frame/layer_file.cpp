@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "image/frame/layer_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/text/param_text.hpp"
+#include "image/frame/channels.hpp"
+
+namespace darkroom {
+namespace {
+
+// Those of a set, each once: a grey picture has one channel for all three.
+FileLayer layer_of(std::string name, const ChannelSet& set) {
+    FileLayer layer{.name = std::move(name), .file_name = set.prefix, .part = set.part};
+    for (const int channel : set.channels)
+        if (channel >= 0 && std::ranges::count(layer.channels, static_cast<std::uint32_t>(channel)) == 0)
+            layer.channels.push_back(static_cast<std::uint32_t>(channel));
+    return layer;
+}
+
+std::string prefix_of(const std::string& channel) {
+    const std::size_t dot = channel.rfind('.');
+    return dot == std::string::npos ? std::string() : channel.substr(0, dot);
+}
+
+bool holds(const FileLayer& layer, std::size_t part, std::uint32_t channel) {
+    return layer.part == part && std::ranges::find(layer.channels, channel) != layer.channels.end();
+}
+
+}  // namespace
+
+void SampleRange::add(std::span<const float> samples, std::size_t stride) {
+    for (std::size_t i = 0; i < samples.size(); i += stride) {
+        const float value = samples[i];
+        if (std::isfinite(value)) {
+            least = std::min(least, value);
+            most = std::max(most, value);
+        } else {
+            ++(std::isnan(value) ? nan : infinite);
+        }
+    }
+}
+
+void SampleRange::add(const SampleRange& other) {
+    least = std::min(least, other.least);
+    most = std::max(most, other.most);
+    nan += other.nan;
+    infinite += other.infinite;
+}
+
+Result<LayerFile> LayerFile::open(const std::filesystem::path& path) {
+    Result<Decoder> decoder = Decoder::open(path);
+    if (!decoder) return failure(std::move(decoder));
+    LayerFile file(path.string(), std::move(*decoder));
+    file.list_layers();
+    return file;
+}
+
+Failure LayerFile::error(std::string_view text) const {
+    return user_error(fmt::format("{}: {}", printable(path_), text));
+}
+
+void LayerFile::list_layers() {
+    const std::span<const FilePart> parts = decoder_.parts();
+    if (const Result<FrameChannels> found = find_channels(parts, {})) {
+        layers_.push_back(layer_of("color", found->color));
+        if (found->depth) layers_.push_back(layer_of("depth", *found->depth));
+        if (found->normals) layers_.push_back(layer_of("normals", *found->normals));
+        if (found->velocity) layers_.push_back(layer_of("velocity", *found->velocity));
+    } else {
+        why_no_frame_ = found.error().text;
+    }
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        const std::size_t first = layers_.size();
+        for (std::uint32_t channel = 0; channel < parts[part].channels.size(); ++channel) {
+            const auto is_taken = [&](const FileLayer& layer) { return holds(layer, part, channel); };
+            if (std::any_of(layers_.begin(), layers_.begin() + static_cast<std::ptrdiff_t>(first), is_taken)) continue;
+            // Plain channels are a layer together only where they have a part of their own.
+            std::string name = prefix_of(parts[part].channels[channel]);
+            if (name.empty()) name = parts.size() > 1 ? parts[part].name : parts[part].channels[channel];
+            const auto is_same = [&](const FileLayer& layer) { return layer.name == name; };
+            auto layer = std::find_if(layers_.begin() + static_cast<std::ptrdiff_t>(first), layers_.end(), is_same);
+            if (layer == layers_.end()) layer = layers_.insert(layer, {.name = name, .file_name = name, .part = part});
+            layer->channels.push_back(channel);
+        }
+        // Two parts may have layers of one name, as the two views of a stereo picture do.
+        for (std::size_t i = first; i < layers_.size(); ++i)
+            if (std::any_of(layers_.begin(), layers_.begin() + static_cast<std::ptrdiff_t>(first),
+                            [&](const FileLayer& other) { return other.name == layers_[i].file_name; }))
+                layers_[i].name = fmt::format("{}.{}", part, layers_[i].file_name);
+    }
+}
+
+Result<FileLayer> LayerFile::find(std::string_view name) const {
+    const std::string_view wanted = name == "motion" ? "velocity" : name;
+    for (const FileLayer& layer : layers_)
+        if (layer.name == wanted) return layer;
+    for (const FileLayer& layer : layers_)
+        if (!layer.file_name.empty() && layer.file_name == name) return layer;
+    const std::vector<std::string> channels = darkroom::channel_names(decoder_.parts());
+    std::size_t index = 0;
+    for (std::size_t part = 0; part < decoder_.parts().size(); ++part)
+        for (std::uint32_t channel = 0; channel < decoder_.parts()[part].channels.size(); ++channel, ++index)
+            if (channels[index] == name)
+                return FileLayer{
+                    .name = std::string(name), .file_name = channels[index], .part = part, .channels = {channel}};
+    if (name == "color") return error(why_no_frame_);
+    std::vector<std::string> known;
+    for (const FileLayer& layer : layers_) known.push_back(one_printable_line(layer.name));
+    constexpr std::size_t most = 24;
+    const std::string more = known.size() > most ? fmt::format(" and {} more", known.size() - most) : "";
+    return error(fmt::format("has no layer '{}': there are {}{}{}", printable(name),
+                             fmt::join(known.begin(), known.begin() + std::min(most, known.size()), ", "), more,
+                             suggestion(name, known)));
+}
+
+std::vector<std::string> LayerFile::channel_names(const FileLayer& layer) const {
+    std::vector<std::string> names;
+    for (const std::uint32_t channel : layer.channels)
+        names.push_back(one_printable_line(decoder_.parts()[layer.part].channels[channel]));
+    return names;
+}
+
+bool LayerFile::has_wide_integers(const FileLayer& layer) const {
+    const std::vector<SampleKind>& kinds = decoder_.parts()[layer.part].kinds;
+    return std::ranges::any_of(layer.channels, [&](std::uint32_t c) { return kinds[c] == SampleKind::Integer32; });
+}
+
+Result<LayerSamples> LayerFile::read(const FileLayer& layer) {
+    const FilePart& part = decoder_.parts()[layer.part];
+    if (has_wide_integers(layer))
+        return error(fmt::format("the layer {} has 32-bit integers; numbers of at most 16 bits, half or float are read",
+                                 one_printable_line(layer.name)));
+    const auto count = static_cast<std::uint32_t>(layer.channels.size());
+    // As much as a picture of four channels may have: 4 GiB here.
+    constexpr std::uint64_t most_values = std::uint64_t{1} << 30;
+    if (std::uint64_t{part.display_width} * part.display_height > most_values / std::max(count, 4U))
+        return error(fmt::format("the layer {} is {}x{} with {} channels, at most {} samples are allowed",
+                                 one_printable_line(layer.name), part.display_width, part.display_height, count,
+                                 most_values));
+    LayerSamples out{.width = part.display_width, .height = part.display_height, .channels = count};
+    out.values.resize(std::size_t{out.width} * out.height * count);
+    const auto [first, last] = std::ranges::minmax(layer.channels);
+    const std::uint32_t read_count = last - first + 1;
+    const std::int64_t left = std::max<std::int64_t>(0, -std::int64_t{part.x});
+    const std::int64_t right = std::min<std::int64_t>(part.width, std::int64_t{part.display_width} - part.x);
+    const auto place = [&](std::uint32_t row, std::uint32_t rows, std::span<const float> samples) {
+        for (std::uint32_t i = 0; i < rows; ++i) {
+            const std::int64_t y = std::int64_t{row} + i + part.y;
+            if (y < 0 || y >= part.display_height) continue;
+            const float* const in = &samples[std::size_t{i} * part.width * read_count];
+            float* const to = &out.values[static_cast<std::size_t>(y) * out.width * count];
+            for (std::int64_t x = left; x < right; ++x)
+                for (std::uint32_t c = 0; c < count; ++c)
+                    to[(x + part.x) * count + c] = in[x * read_count + (layer.channels[c] - first)];
+        }
+    };
+    if (Result<> done = decoder_.read(layer.part, first, read_count, place); !done) return failure(std::move(done));
+    return out;
+}
+
+Result<std::vector<SampleRange>> LayerFile::ranges(std::size_t part) {
+    const auto count = static_cast<std::uint32_t>(decoder_.parts()[part].channels.size());
+    std::vector<SampleRange> ranges(count);
+    const auto add = [&](std::uint32_t, std::uint32_t, std::span<const float> samples) {
+        for (std::uint32_t c = 0; c < count; ++c) ranges[c].add(samples.subspan(c), count);
+    };
+    if (Result<> done = decoder_.read(part, 0, count, add); !done) return failure(std::move(done));
+    return ranges;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#include "image/picture/display_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "image/picture/primaries.hpp"
+
+namespace darkroom {
+
+namespace {
+
+void convert(Picture& picture, const ColorMatrix& matrix) {
+    constexpr double largest = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < picture.pixels.size(); i += 4) {
+        float* const pixel = &picture.pixels[i];
+        const std::array<double, 3> in{pixel[0], pixel[1], pixel[2]};
+        if (!std::ranges::all_of(in, [](double value) { return std::isfinite(value); })) continue;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double value = matrix[c * 3] * in[0] + matrix[c * 3 + 1] * in[1] + matrix[c * 3 + 2] * in[2];
+            pixel[c] = static_cast<float>(std::clamp(value, -largest, largest));
+        }
+    }
+}
+
+// To red, green, blue and alpha: one channel or two are grey, and what has no alpha is opaque wherever there are data.
+Picture picture_of(const LayerSamples& samples, const FilePart& part) {
+    Picture out(samples.width, samples.height);
+    const bool is_gray = samples.channels < 3;
+    const bool has_alpha = samples.channels == 2 || samples.channels == 4;
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const float* const in = &samples.values[(std::size_t{y} * out.width + x) * samples.channels];
+            float* const pixel = out.at(x, y);
+            for (std::uint32_t c = 0; c < 3; ++c) pixel[c] = in[is_gray ? 0 : c];
+            const std::int64_t column = std::int64_t{x} - part.x, row = std::int64_t{y} - part.y;
+            const bool is_inside = column >= 0 && row >= 0 && column < part.width && row < part.height;
+            pixel[3] = has_alpha ? in[samples.channels - 1] : is_inside ? 1.0f : 0.0f;
+        }
+    return out;
+}
+
+}  // namespace
+
+Result<ComparablePicture> read_comparable(const std::filesystem::path& path) {
+    Result<LayerFile> file = LayerFile::open(path);
+    if (!file) return failure(std::move(file));
+    return read_comparable(*file);
+}
+
+Result<ComparablePicture> read_comparable(LayerFile& file) {
+    const Result<FileLayer> layer = file.find("color");
+    if (!layer) return failure(layer.error());
+    const Result<LayerSamples> samples = file.read(*layer);
+    if (!samples) return failure(samples.error());
+    const FilePart& part = file.decoder().parts()[layer->part];
+    ComparablePicture out{.picture = picture_of(*samples, part)};
+    const SampleKind kind = part.kinds[layer->channels.front()];
+    if (kind != SampleKind::Half && kind != SampleKind::Float) return out;
+    out.encoding = PictureEncoding::SceneLinear;
+    const std::vector<float> values = file.decoder().numbers(layer->part, "chromaticities");
+    if (values.size() != 8 || samples->channels < 3) return out;
+    const std::optional<ColorMatrix> matrix = to_rec709({.red = {values[0], values[1]},
+                                                         .green = {values[2], values[3]},
+                                                         .blue = {values[4], values[5]},
+                                                         .white = {values[6], values[7]}});
+    if (matrix && *matrix != ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) convert(out.picture, *matrix);
+    return out;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A picture as it is compared: files of integers keep their encoded values, files of floats their linear ones, and NaN
+// and infinity stay. Frames, which are always linear and finite, are in frame_file.hpp.
+
+#include <darkroom/result.hpp>
+#include <filesystem>
+
+#include "image/compare/flip.hpp"
+#include "image/frame/layer_file.hpp"
+#include "image/picture/picture.hpp"
+
+namespace darkroom {
+
+struct ComparablePicture {
+    Picture picture;  ///< as large as the display window
+    PictureEncoding encoding = PictureEncoding::Display;
+};
+
+/// Any known image file. Floats of other primaries than Rec. 709 are converted, but for pixels that are not finite. The
+/// error text begins with the path.
+[[nodiscard]] Result<ComparablePicture> read_comparable(const std::filesystem::path& path);
+/// The color of an opened file.
+[[nodiscard]] Result<ComparablePicture> read_comparable(LayerFile& file);
+
+}  // namespace darkroom

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "image/picture/picture_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <string_view>
+
+#include "core/files.hpp"
+#include "image/codec/codecs.hpp"
+#include "image/codec/jpeg_check.hpp"
+#include "image/codec/png_check.hpp"
+#include "image/exr/check.hpp"
+#include "image/exr/source.hpp"
+
+namespace darkroom {
+namespace {
+
+Result<> check_structure(FileKind kind, std::span<const std::byte> bytes) {
+    if (kind == FileKind::OpenExr) return check_exr(bytes);
+    if (kind == FileKind::Png) return check_png(bytes);
+    if (kind == FileKind::Jpeg) return check_jpeg(bytes);
+    return {};
+}
+
+// The fewest bytes that a picture of this kind can take, so that a few damaged bytes of header cannot ask for
+// gigabytes. TIFF: deflate makes at most 1032 bytes from one; it may also hold fax runs, hence the smaller claim.
+// JPEG: a bit for each block of 8x8 (ITU-T T.81). Radiance: 4 bytes a line, and 2 for each run of at most 127 in each
+// of the 4 components; lines shorter than 8 or longer than 32767 pixels are not packed.
+double smallest_size(FileKind kind, const FilePart& part) {
+    const double width = part.width;
+    const double height = part.height;
+    switch (kind) {
+        case FileKind::OpenExr:
+        case FileKind::Png:
+            return 0;  // check_exr and check_png have seen to it
+        case FileKind::Jpeg:
+            return width * height / 64 / 8;
+        case FileKind::Tiff:
+            return width * height / 8 / 4096;
+        case FileKind::Radiance:
+            return height *
+                   (width < 8 || width > 32767 ? 4 * width : 4 + 8 * static_cast<double>((part.width + 126) / 127));
+    }
+    return 0;
+}
+
+Result<> check_size(FileKind kind, const FilePart& part, std::size_t file_size) {
+    if (std::max({part.width, part.height, part.display_width, part.display_height}) > max_picture_side)
+        return user_error(fmt::format("the picture is {}x{}, at most {} a side is allowed", part.width, part.height,
+                                      max_picture_side));
+    // Only what would take much memory is refused unread: the decoder knows better what is wrong with a small file.
+    constexpr double large = 1 << 22;
+    if (static_cast<double>(part.width) * part.height > large &&
+        static_cast<double>(file_size) < smallest_size(kind, part))
+        return user_error(
+            fmt::format("a picture of {}x{} cannot be in a file of {} bytes: truncated, or a damaged header",
+                        part.width, part.height, file_size));
+    double row_bytes = 0;
+    for (const SampleKind sample : part.kinds)
+        row_bytes += static_cast<double>(part.width) * static_cast<double>(size_of(sample));
+    return check_decoded_size(static_cast<std::uint64_t>(row_bytes * part.height), file_size);
+}
+
+Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads) {
+    if (kind != FileKind::OpenExr) {
+        const Result<const Codecs*> others = codecs();
+        if (!others) return failure(others.error());
+        return (*others)->open(kind, bytes);
+    }
+    try {
+        return ExrSource::open(bytes, max_threads);
+    } catch (const std::exception& exception) {
+        return user_error(fmt::format("cannot be read as {}: {}", name_of(kind), one_printable_line(exception.what())));
+    }
+}
+
+}  // namespace
+
+Result<> PictureSource::read_rows(std::size_t part, std::uint32_t row, std::uint32_t rows,
+                                  std::span<const SamplePlace> places) {
+    if (places.empty() || rows == 0) return {};
+    try {
+        return read(part, row, rows, places);
+    } catch (const std::exception& exception) {
+        return user_error(fmt::format("damaged or truncated: {}", one_printable_line(exception.what())));
+    }
+}
+
+Result<FileKind> kind_of_file(std::span<const std::byte> start) {
+    if (start.empty()) return user_error("is empty");
+    const std::string_view text(reinterpret_cast<const char*>(start.data()), std::min<std::size_t>(start.size(), 16));
+    if (text.starts_with("\x76\x2f\x31\x01")) return FileKind::OpenExr;
+    if (text.starts_with("\x89PNG\r\n\x1a\n")) return FileKind::Png;
+    if (text.starts_with("\xff\xd8\xff")) return FileKind::Jpeg;
+    if (text.starts_with("#?")) return FileKind::Radiance;
+    const std::string_view tiff = text.substr(0, 4);
+    if (tiff == std::string_view("II*\0", 4) || tiff == std::string_view("MM\0*", 4) ||
+        tiff == std::string_view("II+\0", 4) || tiff == std::string_view("MM\0+", 4))
+        return FileKind::Tiff;
+    return user_error("is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)");
+}
+
+Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path) {
+    const auto check_start = [](std::span<const std::byte> start) -> Result<> {
+        const Result<FileKind> kind = kind_of_file(start);
+        return kind ? Result<>() : failure(kind.error());
+    };
+    return read_file(path, {.max_size = max_image_file, .check_start = check_start});
+}
+
+Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads) {
+    const Result<FileKind> kind = kind_of_file(bytes);
+    if (!kind) return failure(kind.error());
+    if (auto checked = check_structure(*kind, bytes); !checked) return failure(std::move(checked));
+    auto source = open(*kind, bytes, max_threads);
+    if (!source) return failure(std::move(source));
+    for (const FilePart& part : (*source)->parts())
+        if (auto checked = check_size(*kind, part, bytes.size()); !checked) return failure(std::move(checked));
+    return OpenedSource{*kind, std::move(*source)};
+}
+
+}  // namespace darkroom

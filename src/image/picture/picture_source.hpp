@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// An image file in memory whose structure has been read and whose samples have not. OpenEXR files come through OpenEXR,
+// the others through OpenImageIO, which is loaded when the first of them is opened (image/codec/codecs.hpp).
+
+#include <cstddef>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/codec/file_kind.hpp"
+
+namespace darkroom {
+
+/// Where the samples of one channel go. Integers of a file become 0..1 as floats, as encoded; OpenEXR files give halves
+/// and floats alone.
+struct SamplePlace {
+    std::size_t channel = 0;  ///< of FilePart::channels
+    SampleKind kind = SampleKind::Float;
+    std::byte* first = nullptr;      ///< of the leftmost sample of the first row that is read
+    std::ptrdiff_t pixel_bytes = 0;  ///< from one sample to the next
+    std::ptrdiff_t row_bytes = 0;    ///< from one row to the next
+};
+
+class PictureSource {
+  public:
+    PictureSource() = default;
+    PictureSource(const PictureSource&) = delete;
+    PictureSource& operator=(const PictureSource&) = delete;
+    virtual ~PictureSource() = default;
+
+    [[nodiscard]] std::span<const FilePart> parts() const { return parts_; }
+    /// The numbers of an attribute (one number, a point, a matrix by rows), empty if the part has none of that name.
+    /// Names are compared without regard to case.
+    [[nodiscard]] virtual std::vector<double> numbers(std::size_t part, std::string_view attribute) const = 0;
+    [[nodiscard]] virtual std::vector<std::string> attributes(std::size_t part) const = 0;
+    /// Rows of the data window, 0 at its top. What lies between the samples of a place is not touched. Errors name no
+    /// file; some rows may have been written then.
+    [[nodiscard]] Result<> read_rows(std::size_t part, std::uint32_t row, std::uint32_t rows,
+                                     std::span<const SamplePlace> places);
+    /// Rows that are read together without decoding anything twice: a multiple of this many.
+    [[nodiscard]] virtual std::uint32_t row_unit(std::size_t part) const = 0;
+
+  protected:
+    std::vector<FilePart> parts_;
+
+  private:
+    /// May throw what the library under it throws. `places` is not empty.
+    [[nodiscard]] virtual Result<> read(std::size_t part, std::uint32_t row, std::uint32_t rows,
+                                        std::span<const SamplePlace> places) = 0;
+};
+
+struct OpenedSource {
+    FileKind kind = FileKind::OpenExr;
+    std::unique_ptr<PictureSource> source;
+};
+
+/// Which kind of file the first 16 bytes (or fewer) belong to.
+[[nodiscard]] Result<FileKind> kind_of_file(std::span<const std::byte> start);
+
+/// Bytes of an image file at most.
+inline constexpr std::uintmax_t max_image_file = std::uintmax_t{4} << 30;
+
+/// The bytes of a file whose first ones are those of a known kind; no others are read to their end.
+[[nodiscard]] Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path);
+
+/// Tells the kind of file by its content, checks its structure and its sizes, and opens it. The bytes outlive the
+/// source. `max_threads` decode one picture, 0: as many as there are processors. Errors name no file.
+[[nodiscard]] Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads = 0);
+
+}  // namespace darkroom

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "image/picture/primaries.hpp"
+
+#include <cmath>
+
+namespace darkroom {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+ColorMatrix multiply(const ColorMatrix& a, const ColorMatrix& b) {
+    ColorMatrix product{};
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+            for (std::size_t i = 0; i < 3; ++i) product[row * 3 + column] += a[row * 3 + i] * b[i * 3 + column];
+    return product;
+}
+
+Vector apply(const ColorMatrix& m, const Vector& v) {
+    return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
+            m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
+}
+
+std::optional<ColorMatrix> inverse(const ColorMatrix& m) {
+    const ColorMatrix cofactors{m[4] * m[8] - m[5] * m[7], m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],
+                                m[5] * m[6] - m[3] * m[8], m[0] * m[8] - m[2] * m[6], m[2] * m[3] - m[0] * m[5],
+                                m[3] * m[7] - m[4] * m[6], m[1] * m[6] - m[0] * m[7], m[0] * m[4] - m[1] * m[3]};
+    const double determinant = m[0] * cofactors[0] + m[1] * cofactors[3] + m[2] * cofactors[6];
+    if (!(std::abs(determinant) > 1e-9)) return std::nullopt;
+    ColorMatrix result = cofactors;
+    for (double& value : result) value /= determinant;
+    return result;
+}
+
+// SMPTE RP 177-1993, Derivation of Basic Television Color Equations, section 3.3: the columns are the primaries, scaled
+// so that equal red, green and blue give the white point with Y = 1.
+std::optional<ColorMatrix> to_xyz(const Chromaticities& c) {
+    if (!(std::abs(c.white.y) > 1e-9)) return std::nullopt;
+    const ColorMatrix primaries{c.red.x,
+                                c.green.x,
+                                c.blue.x,
+                                c.red.y,
+                                c.green.y,
+                                c.blue.y,
+                                1 - c.red.x - c.red.y,
+                                1 - c.green.x - c.green.y,
+                                1 - c.blue.x - c.blue.y};
+    const auto inverted = inverse(primaries);
+    if (!inverted) return std::nullopt;
+    const Vector scale = apply(*inverted, {c.white.x / c.white.y, 1.0, (1 - c.white.x - c.white.y) / c.white.y});
+    ColorMatrix result = primaries;
+    for (std::size_t i = 0; i < 9; ++i) result[i] *= scale[i % 3];
+    return result;
+}
+
+// Lam, K. M., Metamerism and Colour Constancy (1985): the Bradford cone responses, scaled from one white to the other.
+std::optional<ColorMatrix> adaptation(const Chromaticity& from, const Chromaticity& to) {
+    constexpr ColorMatrix bradford{0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
+    const Vector source = apply(bradford, {from.x / from.y, 1.0, (1 - from.x - from.y) / from.y});
+    const Vector target = apply(bradford, {to.x / to.y, 1.0, (1 - to.x - to.y) / to.y});
+    ColorMatrix scaled = bradford;
+    for (std::size_t row = 0; row < 3; ++row) {
+        if (!(std::abs(source[row]) > 1e-9)) return std::nullopt;
+        for (std::size_t column = 0; column < 3; ++column) scaled[row * 3 + column] *= target[row] / source[row];
+    }
+    return multiply(*inverse(bradford), scaled);
+}
+
+bool is_near(const Chromaticity& a, const Chromaticity& b) {
+    return std::abs(a.x - b.x) < 1e-4 && std::abs(a.y - b.y) < 1e-4;
+}
+
+}  // namespace
+
+std::optional<ColorMatrix> to_rec709(const Chromaticities& from) {
+    const Chromaticities rec709;
+    // Exactly nothing to do: files keep the numbers of the standard in 32 bits, and a frame must come back as it was.
+    if (is_near(from.red, rec709.red) && is_near(from.green, rec709.green) && is_near(from.blue, rec709.blue) &&
+        is_near(from.white, rec709.white))
+        return ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const auto rgb_to_xyz = to_xyz(from);
+    if (!rgb_to_xyz) return std::nullopt;
+    const ColorMatrix xyz_to_rec709 = *inverse(*to_xyz(rec709));
+    const bool is_tristimulus = is_near(from.red, {1, 0}) && is_near(from.green, {0, 1}) && is_near(from.blue, {0, 0});
+    if (is_tristimulus || is_near(from.white, rec709.white)) return multiply(xyz_to_rec709, *rgb_to_xyz);
+    const auto adapted = adaptation(from.white, rec709.white);
+    if (!adapted) return std::nullopt;
+    return multiply(xyz_to_rec709, multiply(*adapted, *rgb_to_xyz));
+}
+
+float srgb_decode(float encoded) {
+    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+float srgb_encode(float linear) {
+    return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include "image/picture/write.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/assert.hpp"
+#include "core/files.hpp"
+#include "image/codec/codecs.hpp"
+#include "image/codec/png_write.hpp"
+#include "image/exr/write.hpp"
+
+namespace darkroom {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, FileKind>, 7> extensions{{{".png", FileKind::Png},
+                                                                           {".jpg", FileKind::Jpeg},
+                                                                           {".jpeg", FileKind::Jpeg},
+                                                                           {".tif", FileKind::Tiff},
+                                                                           {".tiff", FileKind::Tiff},
+                                                                           {".exr", FileKind::OpenExr},
+                                                                           {".hdr", FileKind::Radiance}}};
+
+struct Format {
+    std::span<const SampleKind> samples;  // the first is the default
+    bool has_alpha;
+    std::span<const std::string_view> compressions;  // by name
+};
+
+Format format_of(FileKind kind) {
+    using enum SampleKind;
+    static constexpr std::array png{Integer8, Integer16};
+    static constexpr std::array jpeg{Integer8};
+    static constexpr std::array tiff{Integer8, Integer16, Float};
+    static constexpr std::array exr{Half, Float};
+    static constexpr std::array radiance{Float};
+    static constexpr std::array<std::string_view, 13> levels{"0", "1", "2", "3",  "4",  "5", "6",
+                                                             "7", "8", "9", "10", "11", "12"};
+    static constexpr std::array<std::string_view, 4> tiff_names{"none", "packbits", "lzw", "zip"};
+    switch (kind) {
+        case FileKind::Png:
+            return {png, true, levels};
+        case FileKind::Jpeg:
+            return {jpeg, false, {}};
+        case FileKind::Tiff:
+            return {tiff, true, tiff_names};
+        case FileKind::OpenExr:
+            return {exr, true, exr_compressions};
+        case FileKind::Radiance:
+            return {radiance, false, {}};
+    }
+    DARKROOM_ASSERT(false);
+    return {};
+}
+
+// JPEG has 16 bits for a side (ITU-T T.81); libpng refuses more than a million; the others have 31.
+Result<> check_size(const std::filesystem::path& path, FileKind kind, std::uint32_t width, std::uint32_t height) {
+    const std::uint32_t most = kind == FileKind::Jpeg ? 65500 : 65536;
+    if (width >= 1 && height >= 1 && width <= most && height <= most) return {};
+    return user_error(fmt::format("{}: a picture of {}x{}; [1, {}] a side is allowed in {}", path.string(), width,
+                                  height, most, name_of(kind)));
+}
+
+template <class T>
+std::vector<T> integers(const Picture& picture, std::uint32_t channels) {
+    constexpr float largest = std::numeric_limits<T>::max();
+    std::vector<T> values;
+    values.reserve(picture.pixels.size() / 4 * channels);
+    for (std::size_t i = 0; i < picture.pixels.size(); i += 4)
+        for (std::uint32_t c = 0; c < channels; ++c) {
+            const float value = picture.pixels[i + c];
+            // The order of the comparison sends NaN to 0.
+            const float clamped = value > 0 ? std::min(value, 1.0f) : 0.0f;
+            values.push_back(static_cast<T>(clamped * largest + 0.5f));
+        }
+    return values;
+}
+
+std::vector<float> floats(const Picture& picture, std::uint32_t channels, float smallest, float largest) {
+    std::vector<float> values;
+    values.reserve(picture.pixels.size() / 4 * channels);
+    for (std::size_t i = 0; i < picture.pixels.size(); i += 4)
+        for (std::uint32_t c = 0; c < channels; ++c) {
+            const float value = picture.pixels[i + c];
+            values.push_back(std::isnan(value) ? 0.0f : std::clamp(value, smallest, largest));
+        }
+    return values;
+}
+
+Result<> check_coding(const std::filesystem::path& path, FileKind kind, const WriteOptions& options) {
+    if (options.quality && kind != FileKind::Jpeg)
+        return user_error(fmt::format("{}: {} has no quality; .jpg has", path.string(), name_of(kind)));
+    if (options.quality && (*options.quality < 1 || *options.quality > 100))
+        return user_error(
+            fmt::format("{}: a JPEG quality of {}; [1, 100] is allowed", path.string(), *options.quality));
+    const std::span<const std::string_view> known = format_of(kind).compressions;
+    if (options.compression.empty() || std::ranges::find(known, options.compression) != known.end()) return {};
+    return user_error(fmt::format("{}: compression {} in {}; allowed: {}", path.string(),
+                                  one_printable_line(options.compression), name_of(kind),
+                                  known.empty() ? "none can be chosen" : fmt::format("{}", fmt::join(known, ", "))));
+}
+
+}  // namespace
+
+Result<FileKind> file_kind(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    for (const auto& [known, kind] : extensions)
+        if (extension == known) return kind;
+    return user_error(fmt::format("{}: {}; .png .jpg .jpeg .tif .tiff .exr .hdr can be written", path.string(),
+                                  extension.empty() ? "no extension" : fmt::format("unknown extension {}", extension)));
+}
+
+Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOptions& options) {
+    const auto kind = file_kind(path);
+    if (!kind) return failure(kind.error());
+    const Format format = format_of(*kind);
+    if (options.alpha && !format.has_alpha)
+        return user_error(fmt::format("{}: {} has no alpha; .png .tif .exr have", path.string(), name_of(*kind)));
+    if (auto checked = check_coding(path, *kind, options); !checked) return failure(std::move(checked));
+    const SampleKind samples = options.samples.value_or(format.samples.front());
+    if (std::find(format.samples.begin(), format.samples.end(), samples) != format.samples.end()) return samples;
+    std::string allowed;
+    for (const SampleKind known : format.samples)
+        allowed += (allowed.empty() ? "" : ", ") + std::string(name_of(known));
+    return user_error(
+        fmt::format("{}: {} samples in {}; allowed: {}", path.string(), name_of(samples), name_of(*kind), allowed));
+}
+
+namespace {
+
+/// Samples of 8 or 16 bits, or floats, into any kind of file but OpenEXR.
+Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc, const WriteOptions& options) {
+    const auto encode = [&]() -> Result<std::vector<std::byte>> {
+        if (desc.file == FileKind::Png) {
+            PngDesc png{.width = desc.width,
+                        .height = desc.height,
+                        .channels = desc.channels,
+                        .bytes = static_cast<std::uint32_t>(size_of(desc.kind)),
+                        .samples = desc.samples};
+            if (!options.compression.empty()) png.level = std::stoi(options.compression);
+            return encode_png(png);
+        }
+        const Result<const Codecs*> others = codecs();
+        if (!others) return failure(others.error());
+        return (*others)->encode(desc);
+    };
+    const auto bytes = encode();
+    if (!bytes) return failure({bytes.error().fault, fmt::format("{}: {}", path.string(), bytes.error().text)});
+    return write_file(path, *bytes);
+}
+
+Result<> add_layers(const std::filesystem::path& path, const Picture& picture, const KeptLayers& layers,
+                    ExrPart& part) {
+    if (layers.width != picture.width || layers.height != picture.height)
+        return user_error(
+            fmt::format("{}: the layers of the frame are {}x{}, the picture {}x{}; they are kept at their size",
+                        path.string(), layers.width, layers.height, picture.width, picture.height));
+    for (const KeptLayers::Channel& channel : layers.channels)
+        part.channels.push_back(
+            {.name = channel.name, .kind = channel.kind, .values = channel.values.data(), .is_clamped = false});
+    return {};
+}
+
+Result<> write_floats(const std::filesystem::path& path, const Picture& picture, SampleKind samples,
+                      const WriteOptions& options) {
+    ExrPart part{.header = exr_header(picture.width, picture.height, options.compression)};
+    add_rec709(part.header);
+    if (options.attributes) options.attributes->add_to(part.header);
+    constexpr std::array names{"R", "G", "B", "A"};
+    for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)
+        part.channels.push_back({.name = names[c], .kind = samples, .values = picture.pixels.data() + c, .stride = 4});
+    if (options.layers)
+        if (Result<> done = add_layers(path, picture, *options.layers, part); !done) return done;
+    return write_exr(path, {&part, 1}, options.max_threads);
+}
+
+/// What the path and the options ask for, checked.
+Result<EncodeDesc> describe(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                            const WriteOptions& options) {
+    const auto samples = sample_kind(path, options);
+    if (!samples) return failure(samples.error());
+    const FileKind kind = *file_kind(path);
+    if (auto checked = check_size(path, kind, width, height); !checked) return failure(std::move(checked));
+    return EncodeDesc{.file = kind,
+                      .kind = *samples,
+                      .width = width,
+                      .height = height,
+                      .channels = options.alpha ? 4U : 3U,
+                      .quality = options.quality,
+                      .compression = options.compression};
+}
+
+}  // namespace
+
+Result<> write_picture(const std::filesystem::path& path, const Picture& picture, const WriteOptions& options) {
+    DARKROOM_ASSERT(picture.pixels.size() == std::size_t{picture.width} * picture.height * 4);
+    Result<EncodeDesc> desc = describe(path, picture.width, picture.height, options);
+    if (!desc) return failure(std::move(desc));
+    if (desc->file == FileKind::OpenExr) return write_floats(path, picture, desc->kind, options);
+    const auto write = [&](const auto& samples) {
+        desc->samples = samples.data();
+        return write_samples(path, *desc, options);
+    };
+    if (desc->kind == SampleKind::Integer8) return write(integers<std::uint8_t>(picture, desc->channels));
+    if (desc->kind == SampleKind::Integer16) return write(integers<std::uint16_t>(picture, desc->channels));
+    // Radiance: no negative values, and a shared exponent of at most 2^127.
+    constexpr float largest_radiance = 1.7e38f;
+    constexpr float largest_float = std::numeric_limits<float>::max();
+    const bool is_radiance = desc->file == FileKind::Radiance;
+    return write(floats(picture, desc->channels, is_radiance ? 0 : -largest_float,
+                        is_radiance ? largest_radiance : largest_float));
+}
+
+Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                     std::span<const std::uint8_t> rgba, const WriteOptions& options) {
+    DARKROOM_ASSERT(rgba.size() == std::size_t{width} * height * 4);
+    WriteOptions bytes = options;
+    bytes.samples = SampleKind::Integer8;
+    Result<EncodeDesc> desc = describe(path, width, height, bytes);
+    if (!desc) return failure(std::move(desc));
+    desc->samples = rgba.data();
+    if (options.alpha) return write_samples(path, *desc, options);
+    std::vector<std::uint8_t> opaque(rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < rgba.size() / 4; ++i) std::copy_n(&rgba[4 * i], 3, &opaque[3 * i]);
+    desc->samples = opaque.data();
+    return write_samples(path, *desc, options);
+}
+
+}  // namespace darkroom

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Pictures into image files. The extension decides the kind of file; the numbers are written as they are given: encoded
+// values for integer files, which say that they are sRGB, linear Rec. 709 ones for float files. Nothing is tone-mapped
+// or encoded here. A file appears whole or not at all.
+
+#include <cstdint>
+#include <darkroom/result.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "image/codec/decoder.hpp"
+#include "image/frame/kept_layers.hpp"
+#include "image/picture/picture.hpp"
+
+namespace darkroom {
+
+struct WriteOptions {
+    /// Not given: 8-bit for PNG, JPEG and TIFF, half for OpenEXR, float for Radiance HDR.
+    std::optional<SampleKind> samples;
+    bool alpha = false;          ///< false: the file has no alpha channel, which is opaque everywhere
+    std::optional<int> quality;  ///< JPEG: 1 to 100, not given: 95
+    /// PNG: a level, 0 to 12; TIFF: none, packbits, lzw, zip; OpenEXR: none, rle, zips, zip, piz, pxr24, b44, b44a,
+    /// dwaa, dwab. Empty: PNG fast, the others zip.
+    std::string compression;
+    std::shared_ptr<const ExrAttributes> attributes;  ///< of the frame that the picture was made of: into OpenEXR files
+    std::shared_ptr<const KeptLayers> layers;         ///< of that frame, into OpenEXR files of its size; null: none
+    std::size_t max_threads = 0;                      ///< that compress, 0: as many as there are processors
+};
+
+/// The kind that a path's extension asks for. Known: .png .jpg .jpeg .tif .tiff .exr .hdr, in any case.
+[[nodiscard]] Result<FileKind> file_kind(const std::filesystem::path& path);
+
+/// The kind of samples that would be written; an error if the format cannot hold what the options ask for, or knows no
+/// such quality or compression. Lets a program refuse before it has computed the picture.
+[[nodiscard]] Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOptions& options);
+
+/// Integer files clamp to 0..1 and round to nearest; half and Radiance clamp to what they can hold; NaN is written as
+/// 0.
+[[nodiscard]] Result<> write_picture(const std::filesystem::path& path, const Picture& picture,
+                                     const WriteOptions& options = {});
+
+/// The same for four bytes a pixel, already encoded, into PNG, JPEG or TIFF. `rgba.size()` must be width * height * 4.
+[[nodiscard]] Result<> write_bytes(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                                   std::span<const std::uint8_t> rgba, const WriteOptions& options = {});
+
+}  // namespace darkroom

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "image/picture/write.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "image/frame/frame_file.hpp"
+#include "image/picture/primaries.hpp"
+#include "image/test_files.hpp"
+
+namespace darkroom {
+namespace {
+
+class ImageWrite : public WithFolder {};
+
+// Every 8-bit code in red, others spread; 32 x 24.
+Picture codes() {
+    Picture picture(32, 24);
+    for (std::size_t i = 0; i < picture.pixels.size() / 4; ++i) {
+        picture.pixels[i * 4] = static_cast<float>(i % 256) / 255;
+        picture.pixels[i * 4 + 1] = static_cast<float>(i % 17) / 16;
+        picture.pixels[i * 4 + 2] = static_cast<float>(i % 5) / 4;
+        picture.pixels[i * 4 + 3] = static_cast<float>(i % 3) / 2;
+    }
+    return picture;
+}
+
+TEST_F(ImageWrite, IntegersComeBackDecodedToTheCode) {
+    const Picture picture = codes();
+    struct Case {
+        const char* name;
+        SampleKind samples;
+        float largest;
+    };
+    for (const Case& c : {Case{"a.png", SampleKind::Integer8, 255}, Case{"b.png", SampleKind::Integer16, 65535},
+                          Case{"c.tif", SampleKind::Integer8, 255}, Case{"d.TIFF", SampleKind::Integer16, 65535}}) {
+        ASSERT_TRUE(write_picture(file(c.name), picture, {.samples = c.samples, .alpha = true})) << c.name;
+        const auto back = read_frame(file(c.name));
+        ASSERT_TRUE(back) << back.error().text;
+        EXPECT_EQ(back->samples, c.samples) << c.name;
+        EXPECT_TRUE(back->has_alpha);
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+            const float encoded = i % 4 == 3 ? back->color.pixels[i] : srgb_encode(back->color.pixels[i]);
+            ASSERT_NEAR(encoded, picture.pixels[i], 0.51f / c.largest) << c.name << " " << i;
+        }
+    }
+}
+
+TEST_F(ImageWrite, FloatsComeBackAsTheyWere) {
+    Picture picture(7, 5);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = std::ldexp(1.0f, static_cast<int>(i % 30) - 14);
+    for (const char* name : {"a.exr", "a.tif"}) {
+        ASSERT_TRUE(write_picture(file(name), picture, {.samples = SampleKind::Float, .alpha = true}));
+        const auto back = read_frame(file(name));
+        ASSERT_TRUE(back) << back.error().text;
+        EXPECT_EQ(back->color, picture) << name;
+    }
+    ASSERT_TRUE(write_picture(file("half.exr"), picture, {.alpha = true}));
+    const auto half = read_frame(file("half.exr"));
+    ASSERT_TRUE(half) << half.error().text;
+    EXPECT_EQ(half->samples, SampleKind::Half);
+    EXPECT_EQ(half->color, picture) << "powers of two are exact in half";
+    ASSERT_TRUE(write_picture(file("a.hdr"), picture));
+    const auto radiance = read_frame(file("a.hdr"));
+    ASSERT_TRUE(radiance) << radiance.error().text;
+    for (std::size_t i = 0; i < picture.pixels.size(); i += 4)  // a shared exponent: 8 bits of the largest component
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float largest = std::max({picture.pixels[i], picture.pixels[i + 1], picture.pixels[i + 2]});
+            ASSERT_NEAR(radiance->color.pixels[i + c], picture.pixels[i + c], largest / 128);
+        }
+}
+
+TEST_F(ImageWrite, ValuesAreClampedToTheFormat) {
+    Picture picture(2, 1);
+    picture.pixels = {
+        -1, 2, std::numeric_limits<float>::quiet_NaN(), 1, 1e9f, -std::numeric_limits<float>::infinity(), 0.5f, 1};
+    ASSERT_TRUE(write_picture(file("a.exr"), picture));
+    const auto half = read_frame(file("a.exr"));
+    ASSERT_TRUE(half);
+    EXPECT_EQ(half->counts, PixelCounts{});
+    EXPECT_EQ(half->color.pixels, (std::vector<float>{-1, 2, 0, 1, 65504, -65504, 0.5f, 1}));
+    ASSERT_TRUE(write_picture(file("a.png"), picture));
+    const auto png = read_frame(file("a.png"));
+    ASSERT_TRUE(png);
+    EXPECT_FALSE(png->has_alpha) << "a PNG is opaque unless asked for";
+    EXPECT_EQ(png->color.pixels[0], 0);
+    EXPECT_EQ(png->color.pixels[1], 1);
+    EXPECT_EQ(png->color.pixels[2], 0);
+    EXPECT_EQ(png->color.pixels[3], 1);
+}
+
+TEST_F(ImageWrite, BytesAreWrittenUnchanged) {
+    std::vector<std::uint8_t> rgba(256 * 4);
+    for (std::size_t i = 0; i < rgba.size(); ++i) rgba[i] = static_cast<std::uint8_t>(i % 4 == 3 ? i / 8 : i / 4);
+    ASSERT_TRUE(write_bytes(file("a.png"), 16, 16, rgba, {.alpha = true}));
+    const auto back = read_frame(file("a.png"));
+    ASSERT_TRUE(back);
+    for (std::size_t i = 0; i < rgba.size(); ++i) {
+        const float value = i % 4 == 3 ? back->color.pixels[i] : srgb_encode(back->color.pixels[i]);
+        ASSERT_EQ(std::lround(value * 255), rgba[i]) << i;
+    }
+    EXPECT_TRUE(write_bytes(file("a.jpg"), 16, 16, rgba));
+    EXPECT_TRUE(read_frame(file("a.jpg")));
+    EXPECT_FALSE(write_bytes(file("a.exr"), 16, 16, rgba)) << "bytes have no place in OpenEXR";
+}
+
+TEST_F(ImageWrite, WhatCannotBeIsRefusedInOneLine) {
+    const Picture picture(2, 2);
+    const auto text = [&](const char* name, const WriteOptions& options) {
+        const auto written = write_picture(file(name), picture, options);
+        return written ? std::string("written") : written.error().text.substr(folder_.string().size() + 1);
+    };
+    EXPECT_EQ(text("a.gif", {}), "a.gif: unknown extension .gif; .png .jpg .jpeg .tif .tiff .exr .hdr can be written");
+    EXPECT_EQ(text("a", {}), "a: no extension; .png .jpg .jpeg .tif .tiff .exr .hdr can be written");
+    EXPECT_EQ(text("a.png", {.samples = SampleKind::Half}),
+              "a.png: half samples in PNG; allowed: 8-bit integer, 16-bit integer");
+    EXPECT_EQ(text("a.jpg", {.alpha = true}), "a.jpg: JPEG has no alpha; .png .tif .exr have");
+    EXPECT_EQ(text("a.jpg", {.quality = 0}), "a.jpg: a JPEG quality of 0; [1, 100] is allowed");
+    EXPECT_EQ(file_count(), 0u);
+}
+
+TEST_F(ImageWrite, FailureLeavesTheOldFile) {
+    const Picture picture(2, 2);
+    put(file("a.png"), "old");
+    EXPECT_FALSE(write_picture(file("a.png"), Picture(), {}));
+    EXPECT_FALSE(write_picture(file("a.png"), picture, {.samples = SampleKind::Float}));
+    EXPECT_EQ(content(file("a.png")), "old");
+    EXPECT_FALSE(write_picture(file("no/such.png"), picture));
+    EXPECT_EQ(file_count(), 1u);
+    ASSERT_TRUE(write_picture(file("a.png"), picture));
+    EXPECT_NE(content(file("a.png")), "old");
+    EXPECT_EQ(file_count(), 1u);
+}
+
+}  // namespace
+}  // namespace darkroom

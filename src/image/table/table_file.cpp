@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "image/table/table_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <random>
+
+#include "core/files.hpp"
+#include "core/text/param_text.hpp"
+#include "image/codec/load_module.hpp"
+#include "image/picture/picture_numbers.hpp"
+#include "image/table/color_chain.hpp"
+#include "tables/evaluate.hpp"
+#include "tables/table_image.hpp"
+
+namespace darkroom {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 5> chain_names{".3dl", ".spi1d", ".spi3d", ".csp", ".clf"};
+/// Bytes of a file that OpenColorIO reads: it makes more than ten times as many of them.
+constexpr std::uintmax_t max_chain_file = std::uintmax_t{32} << 20;
+
+std::string extension_of(const fs::path& path) {
+    std::string out = path.extension().string();
+    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return out;
+}
+
+double worst_error(const ColorTable& table, const ColorChain& chain) {
+    constexpr std::size_t count = 20000;
+    const bool is_shaped = table.shaper_size > 0;
+    const auto& min = is_shaped ? table.shaper_min : table.min;
+    const auto& max = is_shaped ? table.shaper_max : table.max;
+    std::mt19937 random(1);
+    std::vector<std::array<float, 3>> colors(count);
+    for (auto& color : colors)
+        for (std::size_t i = 0; i < 3; ++i)
+            color[i] = min[i] + (max[i] - min[i]) * (static_cast<float>(random() >> 8U) / 16777215.0f);
+    std::vector<std::array<float, 3>> expected = colors;
+    chain.apply(expected);
+    double worst = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        const TableColor found = evaluate(table, {colors[n][0], colors[n][1], colors[n][2]});
+        for (std::size_t i = 0; i < 3; ++i) worst = std::max(worst, std::abs(found[i] - double{expected[n][i]}));
+    }
+    return worst;
+}
+
+Result<FoundTable> read_chain(const fs::path& path, const std::string& extension) {
+    const std::string shown = printable(path.string());
+    const auto refuse = [&](const Error& error) {
+        return failure(Error{error.fault, fmt::format("{}: {}", shown, error.text)});
+    };
+    // What OpenColorIO makes of them it bounds itself: 129 a side of a cube, 2^20 entries of a 1D table.
+    if (const auto bytes = read_file(path, {.max_size = max_chain_file}); !bytes) return failure(bytes.error());
+    const Result<const ColorChains*> chains = color_chains();
+    if (!chains) return refuse(chains.error());
+    const Result<std::unique_ptr<ColorChain>> chain = (*chains)->open(path);
+    if (!chain) return refuse(chain.error());
+    Result<ColorTable> table = (*chain)->sampled();
+    if (!table) return refuse(table.error());
+    for (const std::vector<float>* const entries : {&table->shaper, &table->cube})
+        if (!std::ranges::all_of(*entries, [](float v) { return std::isfinite(v); }))
+            return refuse({Fault::User, "its operations make colours that are no finite numbers"});
+    FoundTable out{.file = {.table = std::move(*table)}, .format = extension};
+    out.error = worst_error(out.file.table, **chain);
+    return out;
+}
+
+Result<FoundTable> read_picture_table(const fs::path& path) {
+    const auto check = [](const FilePart& part) -> Result<> {
+        if (part.channels.size() < 3)
+            return user_error(fmt::format("{} channels: red, green and blue are needed", part.channels.size()));
+        const Result<std::uint32_t> edge = table_image_edge(part.width, part.height);
+        return edge ? Result<>() : failure(edge.error());
+    };
+    const Result<ResourceImage> image = read_numbers(path, check);
+    if (!image) return failure(image.error());
+    Result<ColorTable> table = table_of_image(*image);
+    if (!table)
+        return failure(Error{table.error().fault, fmt::format("{}: {}", printable(path.string()), table.error().text)});
+    return FoundTable{.file = {.table = std::move(*table)}, .format = "a picture"};
+}
+
+}  // namespace
+
+Result<const ColorChains*> color_chains() {
+    static const Result<const void*> loaded = load_module("libdarkroom_ocio.so", "darkroom_ocio_chains", "OpenColorIO");
+    if (!loaded) return failure(loaded.error());
+    return static_cast<const ColorChains*>(*loaded);
+}
+
+bool is_table_name(const fs::path& path) {
+    const std::string extension = extension_of(path);
+    return extension == ".cube" || std::ranges::find(chain_names, extension) != chain_names.end();
+}
+
+Result<FoundTable> read_table_file(const fs::path& path) {
+    const std::string extension = extension_of(path);
+    if (extension == ".cube") {
+        Result<TableFile> file = read_cube(path);
+        if (!file) return failure(std::move(file));
+        return FoundTable{.file = std::move(*file), .format = extension};
+    }
+    if (is_table_name(path)) return read_chain(path, extension);
+    return read_picture_table(path);
+}
+
+}  // namespace darkroom

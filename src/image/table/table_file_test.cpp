@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "image/table/table_file.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "image/picture/write.hpp"
+#include "image/table/color_chain.hpp"
+#include "image/test_files.hpp"
+#include "tables/evaluate.hpp"
+#include "tables/test_tables.hpp"
+
+namespace darkroom {
+namespace {
+
+using Colors = std::vector<std::array<float, 3>>;
+
+/// Of the inputs that a table takes, and a tenth of them beyond each end.
+Colors random_colors(const ColorTable& table, std::size_t count = 20000) {
+    const auto& min = table.shaper_size > 0 ? table.shaper_min : table.min;
+    const auto& max = table.shaper_size > 0 ? table.shaper_max : table.max;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> part(-0.1f, 1.1f);
+    Colors out(count);
+    for (auto& color : out)
+        for (std::size_t i = 0; i < 3; ++i) color[i] = min[i] + (max[i] - min[i]) * part(random);
+    return out;
+}
+
+double worst(const ColorTable& table, const ColorChain& chain) {
+    const Colors colors = random_colors(table);
+    Colors expected = colors;
+    chain.apply(expected);
+    double out = 0;
+    for (std::size_t n = 0; n < colors.size(); ++n)
+        out = std::max(out, test::distance(evaluate(table, {colors[n][0], colors[n][1], colors[n][2]}),
+                                           {expected[n][0], expected[n][1], expected[n][2]}));
+    return out;
+}
+
+class ImageTables : public WithFolder {
+  protected:
+    std::filesystem::path write(const std::string& name, const std::string& text) {
+        put(file(name), text);
+        return file(name);
+    }
+    static std::unique_ptr<ColorChain> chain_of(const std::filesystem::path& path) {
+        const auto chains = color_chains();
+        EXPECT_TRUE(chains) << chains.error().text;
+        auto chain = (*chains)->open(path);
+        return chain ? std::move(*chain) : nullptr;
+    }
+    /// The file's table is what OpenColorIO makes of colours, as near as it says, and no further than `tolerance`.
+    static ColorTable expect_same(const std::filesystem::path& path, double tolerance) {
+        const Result<FoundTable> found = read_table_file(path);
+        EXPECT_TRUE(found) << found.error().text;
+        const auto chain = chain_of(path);
+        if (!found || chain == nullptr) return {};
+        const double error = worst(found->file.table, *chain);
+        EXPECT_LE(error, tolerance) << path;
+        EXPECT_TRUE(found->error && *found->error <= tolerance) << path;
+        return found->file.table;
+    }
+};
+
+/// Entries that are somewhere else than they were: n^3 of them, red or blue fastest.
+std::string cube_rows(std::uint32_t size, bool has_red_fastest, bool has_indices, double scale = 1) {
+    std::string out;
+    for (std::uint32_t a = 0; a < size; ++a)
+        for (std::uint32_t g = 0; g < size; ++g)
+            for (std::uint32_t c = 0; c < size; ++c) {
+                const std::uint32_t r = has_red_fastest ? c : a, b = has_red_fastest ? a : c;
+                const double x = r / (size - 1.0), y = g / (size - 1.0), z = b / (size - 1.0);
+                if (has_indices) out += fmt::format("{} {} {} ", r, g, b);
+                const std::array<double, 3> color{0.2 + 0.7 * y, x * z, 1 - 0.5 * x - 0.4 * z};
+                for (const double value : color)
+                    out += scale == 1 ? fmt::format("{:.7f} ", value) : fmt::format("{:.0f} ", value * scale);
+                out += "\n";
+            }
+    return out;
+}
+
+TEST_F(ImageTables, TablesOfEveryKindAreTheirOperations) {
+    const ColorTable line =
+        expect_same(write("a.spi1d",
+                          "Version 1\nFrom -0.5 2.0\nLength 4\nComponents 3\n{\n0 0 0\n0.1 0.2 0.3\n"
+                          "0.6 0.5 0.4\n1 1.5 2\n}\n"),
+                    1e-5);
+    EXPECT_EQ(line.shaper_size, 4u);
+    EXPECT_EQ(line.size, 0u);
+    EXPECT_NEAR(line.shaper_min[0], -0.5, 1e-6);
+    EXPECT_NEAR(line.shaper_max[2], 2.0, 1e-6);
+
+    const ColorTable cube = expect_same(write("a.spi3d", "SPILUT 1.0\n3 3\n4 4 4\n" + cube_rows(4, false, true)), 1e-5);
+    EXPECT_EQ(cube.size, 4u);
+    EXPECT_EQ(cube.shaper_size, 0u);
+
+    const ColorTable lustre = expect_same(write("a.3dl", "0 341 682 1023\n" + cube_rows(4, false, false, 4095)), 1e-5);
+    EXPECT_EQ(lustre.size, 4u);
+
+    // A shaper whose entries are not spread evenly, before a cube.
+    const ColorTable shaped = expect_same(
+        write("a.csp", "CSPLUTV100\n3D\n\n3\n0 0.5 2\n0 0.8 1\n3\n0 0.5 2\n0 0.8 1\n3\n0 0.5 2\n0 0.8 1\n\n3 3 3\n" +
+                           cube_rows(3, true, false)),
+        1e-3);
+    EXPECT_EQ(shaped.size, 3u);
+    EXPECT_GT(shaped.shaper_size, 100u);
+}
+
+const std::string clf_head =
+    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<ProcessList compCLFversion=\"3\" id=\"a\">\n";
+const std::string clf_matrix =
+    "<Matrix inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"3 3\">0.8 0.1 0.1 0.2 0.7 0.1 0 0.3 0.7</Array>"
+    "</Matrix>\n";
+const std::string clf_curve =
+    "<LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\"><Array dim=\"5 1\">0 0.4 0.7 0.9 1</Array></LUT1D>\n";
+
+TEST_F(ImageTables, ChainsAreSampledAndSayHowWell) {
+    // Curve, matrix, curve: the first one is the shaper, the others a cube of 65.
+    const ColorTable table =
+        expect_same(write("a.clf", clf_head + clf_curve + clf_matrix + clf_curve + "</ProcessList>\n"), 0.01);
+    EXPECT_EQ(table.shaper_size, 5u);
+    EXPECT_EQ(table.size, 65u);
+    const auto chain = chain_of(file("a.clf"));
+    const Result<FoundTable> found = read_table_file(file("a.clf"));
+    ASSERT_TRUE(found && found->error && chain);
+    EXPECT_GT(*found->error, 1e-6) << "a curve behind a matrix is not exact";
+    EXPECT_NEAR(*found->error, worst(table, *chain), 0.5 * *found->error);
+}
+
+TEST_F(ImageTables, WhatIsNoTableIsOneLine) {
+    const std::array files{
+        std::pair(write("bomb.spi1d", "Version 1\nFrom 0 1\nLength 100000000000\nComponents 1\n{\n0\n1\n}\n"),
+                  "Length"),
+        std::pair(write("bomb.spi3d", "SPILUT 1.0\n3 3\n4000 4000 4000\n0 0 0 0 0 0\n"), "4000"),
+        std::pair(write("bomb.clf", clf_head + "<LUT3D inBitDepth=\"32f\" outBitDepth=\"32f\">"
+                                               "<Array dim=\"4000 4000 4000 3\">0 0 0</Array></LUT3D></ProcessList>"),
+                  "4000"),
+        std::pair(write("text.3dl", "nothing"), ".3dl"),
+        std::pair(write("text.csp", "nothing"), "text.csp"),
+        std::pair(write("text.cube", "nothing"), "text.cube:1: "),
+        std::pair(write("text.png", "nothing"), "text.png"),
+        std::pair(file("none.clf"), "none.clf"),
+        std::pair(file("none.cube"), "none.cube")};
+    for (const auto& [path, part] : files) {
+        const Result<FoundTable> found = read_table_file(path);
+        ASSERT_FALSE(found) << path;
+        EXPECT_TRUE(found.error().text.starts_with(path.string())) << found.error().text;
+        EXPECT_NE(found.error().text.find(part), std::string::npos) << found.error().text;
+        EXPECT_EQ(found.error().text.find('\n'), std::string::npos) << found.error().text;
+    }
+}
+
+TEST_F(ImageTables, PicturesAreTablesByTheirSize) {
+    Picture strip(256, 16), hald(8, 8);
+    for (std::uint32_t y = 0; y < 16; ++y)
+        for (std::uint32_t x = 0; x < 256; ++x) {
+            const std::array<std::uint32_t, 3> place{x % 16, y, x / 16};
+            for (std::uint32_t i = 0; i < 3; ++i) strip.at(x, y)[i] = static_cast<float>(place[i] * 17) / 255;
+        }
+    for (std::uint32_t n = 0; n < 64; ++n)
+        for (std::uint32_t i = 0; i < 3; ++i)
+            hald.at(n % 8, n / 8)[i] = static_cast<float>((n >> 2 * i & 3) * 85) / 255;
+    for (const auto& [name, picture, size] :
+         {std::tuple("strip.png", &strip, 16u), std::tuple("hald.tif", &hald, 4u), std::tuple("hald.exr", &hald, 4u)}) {
+        ASSERT_TRUE(
+            write_picture(file(name), *picture,
+                          {.samples = std::string(name).ends_with("exr") ? SampleKind::Float : SampleKind::Integer8}));
+        const Result<FoundTable> found = read_table_file(file(name));
+        ASSERT_TRUE(found) << found.error().text;
+        EXPECT_EQ(found->file.table.size, size);
+        // The codes are the entries: nothing was decoded.
+        for (const TableColor color : {TableColor{0.1, 0.5, 0.9}, TableColor{0.7, 0.2, 0.3}})
+            EXPECT_LE(test::distance(evaluate(found->file.table, color), color), 1e-6) << name;
+    }
+    ASSERT_TRUE(write_picture(file("photo.png"), Picture(40, 30)));
+    const Result<FoundTable> photo = read_table_file(file("photo.png"));
+    ASSERT_FALSE(photo);
+    EXPECT_NE(photo.error().text.find("a picture of 40x30 is no table"), std::string::npos) << photo.error().text;
+}
+
+class ImageTablesData : public WithData {};
+
+// Our reader's tables against OpenColorIO's processor, on random colours: a code of 10 bits is 1 / 1023.
+TEST_F(ImageTablesData, EveryFileThatOpenColorIOTakesIsItsTable) {
+    std::size_t taken = 0;
+    const auto chains = color_chains();
+    ASSERT_TRUE(chains) << chains.error().text;
+    std::vector<std::filesystem::path> paths{data_ / "lut/src/crosstalk.3dl"};
+    for (const auto& entry : std::filesystem::directory_iterator(data_ / "lut"))
+        if (entry.path().extension() == ".cube") paths.push_back(entry.path());
+    EXPECT_EQ(paths.size(), 12u);
+    for (const std::filesystem::path& path : paths) {
+        const Result<FoundTable> found = read_table_file(path);
+        ASSERT_TRUE(found) << found.error().text;
+        const auto chain = (*chains)->open(path);
+        if (!chain) continue;
+        ++taken;
+        EXPECT_LE(worst(found->file.table, **chain), 1 / 1023.0) << path;
+    }
+    // It refuses a TITLE before a shaper.
+    EXPECT_EQ(taken, 11u);
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <darkroom/look.hpp>
+
+#include "core/text/param_text.hpp"
+#include "looks/apply/look_resources.hpp"
+#include "looks/look_parts.hpp"
+
+namespace darkroom {
+
+namespace {
+
+class Overrider {
+  public:
+    Overrider(Look& look, const LookOptions& options) : look_(look), files_({}, options) {}
+
+    Result<> run(std::span<const LookOverride> overrides) {
+        for (const LookOverride& one : overrides)
+            if (Result<> done = set(one); !done) return done;
+        // A toggle that was typed counts, whatever an amount implies.
+        for (const auto& [entry, on] : toggles_) {
+            entry->state.enabled = on;
+            entry->is_asked_for = on.on != 0;
+        }
+        for (const LookEntry& entry : look_.entries)
+            if (const std::string conflict = conflict_of(entry); !conflict.empty()) return user_error(conflict);
+        return {};
+    }
+
+  private:
+    Result<> set(const LookOverride& one) {
+        const std::string shown = printable(one.shown.empty() ? one.key : one.shown);
+        const Result<LookTarget> target = find_target(look_, one.key, shown);
+        if (!target) return failure(target.error());
+        const auto& [entry, row, is_state, wire] = *target;
+        if (wire != nullptr) {
+            const Result<> done = files_.put(*entry, *wire, one.text);
+            return done ? done : user_error(fmt::format("{}: {}", shown, done.error().text));
+        }
+        if (!is_state && row->kind == Kind::Resource) {
+            const Result<> done = files_.put(*entry, *row, one.text);
+            if (!done) return user_error(fmt::format("{}: {}", shown, done.error().text));
+            if (row->is_amount) entry->state.enabled = !one.text.empty();
+            return {};
+        }
+        const Result<ParamValue> value = parse_text(*row, one.text);
+        if (!value) return user_error(fmt::format("{}: {}", shown, value.error().text));
+        if (!is_state) {
+            if (Result<> done = assign(*row, entry->words, *value, shown); !done) return done;
+            const bool is_positive = std::bit_cast<float>(entry->words[row->word]) > 0;
+            if (row->is_amount) {
+                entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
+                entry->is_asked_for = entry->state.enabled.on != 0;
+            }
+            if (row->switched_word < entry->words.size() && is_positive) {
+                entry->words[row->switched_word] = 1;
+                entry->state.enabled = entry->is_asked_for = true;
+            }
+            return {};
+        }
+        StateWords words = state_words(entry->state);
+        if (Result<> done = assign(*row, words, *value, shown); !done) return done;
+        entry->state = std::bit_cast<EntryState>(words);
+        if (row->kind == Kind::Toggle) toggles_.emplace_back(entry, entry->state.enabled);
+        return {};
+    }
+
+    Look& look_;
+    ResourceFiles files_;
+    std::vector<std::pair<LookEntry*, Toggle>> toggles_;
+};
+
+}  // namespace
+
+Result<> override_look(Look& look, std::span<const LookOverride> overrides, const LookOptions& options) {
+    return Overrider(look, options).run(overrides);
+}
+
+}  // namespace darkroom

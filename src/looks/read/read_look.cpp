@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <darkroom/look.hpp>
+#include <system_error>
+
+#include "core/files.hpp"
+#include "core/text/param_text.hpp"
+#include "looks/look_parts.hpp"
+#include "looks/read/look_reader.hpp"
+
+namespace darkroom {
+
+Result<Look> LookReader::read(const toml::table& file) {
+    read_top(file);
+    const toml::node* const flat = file.get("post_process");
+    const toml::node* const stack = file.get("stack");
+    if (flat != nullptr && stack != nullptr)
+        report(*stack, Weight::Wrong, "[[stack]] beside [post_process]: a look has one of them");
+    Look look = stack != nullptr ? read_stack(*this, *stack) : read_flat(*this, flat);
+    if (const toml::node* const ui = file.get("ui")) read_ui(*this, look, *ui);
+    if (options_.allows_modulation) read_modulation(*this, file, look);
+    return finish(std::move(look));
+}
+
+void LookReader::read_top(const toml::table& file) {
+    const std::vector<std::string> names{"format", "post_process", "stack", "ui", "pulse", "layer"};
+    // Of a scene's other tables the reader of scenes reports what it does not know.
+    for (const auto& [key, node] : file)
+        if (!options_.is_scene && std::find(names.begin(), names.end(), key.str()) == names.end())
+            report(key.source().begin, Weight::Slip,
+                   fmt::format("unknown key '{}'{}", printable(key.str()), suggestion(key.str(), names)));
+    const toml::node* const format = file.get("format");
+    if (format == nullptr) return;
+    const auto* const number = format->as_integer();
+    if (number == nullptr || number->get() != Look::format)
+        report(*format, Weight::Wrong,
+               fmt::format("format = {}: this build reads format {}", show(*format), Look::format));
+}
+
+bool LookReader::take(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node,
+                      std::string_view key) {
+    const std::optional<ParamValue> value = value_of(node);
+    if (!value) {
+        report(node, Weight::Wrong,
+               fmt::format("{} = {}: expected {}, allowed is {}", key, show(node), expected_kind(row.kind),
+                           interval(row)));
+        return false;
+    }
+    const std::optional<ParamProblem> problem = try_assign(row, words, *value, key);
+    if (!problem) return true;
+    const bool is_wrong = problem->why == ParamProblem::Why::WrongKind;
+    const std::string used = is_wrong || options_.is_strict ? "" : fmt::format("; {} is used", format(row, words));
+    report(node, is_wrong ? Weight::Wrong : Weight::Slip, problem->text + used);
+    return false;
+}
+
+bool LookReader::take(const ParamInfo& row, LookEntry& entry, const toml::node& node, std::string_view key) {
+    if (row.kind != Kind::Resource) return take(row, entry.words, node, key);
+    const auto* const name = node.as_string();
+    const std::string wrong = name == nullptr ? fmt::format("expected {}", interval(row)) : [&] {
+        const Result<> done = files_.put(entry, row, name->get());
+        return done ? std::string() : done.error().text;
+    }();
+    if (!wrong.empty()) report(node, Weight::Wrong, fmt::format("{} = {}: {}", key, show(node), wrong));
+    return wrong.empty();
+}
+
+void LookReader::take(const WireInfo& wire, LookEntry& entry, const std::string& file, const toml::node& node) {
+    if (const Result<> done = files_.put(entry, wire, file); !done)
+        report(node, Weight::Wrong, fmt::format("{} = {}: {}", wire.key, show(node), done.error().text));
+}
+
+bool LookReader::take(const ParamInfo& row, EntryState& state, const toml::node& node, std::string_view key) {
+    StateWords words = state_words(state);
+    const bool is_taken = take(row, words, node, key);
+    state = std::bit_cast<EntryState>(words);
+    return is_taken;
+}
+
+void LookReader::report_unknown(const toml::key& key, const toml::node& node, std::span<const std::string> known,
+                                const std::function<std::string(const std::string&)>& allowed) {
+    std::string text = fmt::format("unknown key '{}' = {}", printable(key.str()), show(node));
+    const std::string near = nearest(key.str(), known);
+    if (!near.empty()) text += fmt::format(", did you mean '{}', which takes {}?", near, allowed(near));
+    report(key.source().begin, Weight::Slip, std::move(text));
+}
+
+// Errors end the reading all together, in the order of the file; the rest goes to the caller's list.
+Result<Look> LookReader::finish(Look look) {
+    look.shown_name = shown_name_;
+    std::stable_sort(problems_.begin(), problems_.end(),
+                     [](const Problem& a, const Problem& b) { return a.place < b.place; });
+    constexpr std::size_t most = 20;
+    std::vector<std::string> errors, warnings;
+    for (const Problem& problem : problems_) {
+        const bool is_error = problem.weight == Weight::Wrong || (problem.weight == Weight::Slip && options_.is_strict);
+        (is_error ? errors : warnings)
+            .push_back(
+                fmt::format("{}:{}:{}: {}", shown_name_, problem.place.line, problem.place.column, problem.text));
+    }
+    for (std::vector<std::string>* const list : {&errors, &warnings}) {
+        if (list->size() <= most) continue;
+        const std::size_t more = list->size() - most;
+        list->resize(most);
+        list->push_back(fmt::format("{}: and {} more like these", shown_name_, more));
+    }
+    if (options_.warnings != nullptr)
+        options_.warnings->insert(options_.warnings->end(), warnings.begin(), warnings.end());
+    if (!errors.empty()) return user_error(fmt::format("{}", fmt::join(errors, "; ")));
+    return look;
+}
+
+Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options) {
+    std::string shown = printable(shown_name);
+    const Result<toml::table> file = parse_toml(text, shown);
+    if (!file) return failure(file.error());
+    return LookReader(std::move(shown), options).read(*file);
+}
+
+Result<std::string> read_look_text(const std::filesystem::path& path) {
+    const std::string shown = printable(path.string());
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
+        return user_error(fmt::format("{}: is a device, expected a look file", shown));
+    const std::uintmax_t size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
+    if (!error && size > most_toml_bytes)
+        return user_error(fmt::format("{}: {} bytes, a look file has at most {}", shown, size, most_toml_bytes));
+    const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_toml_bytes});
+    if (!bytes) return failure(bytes.error());
+    return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) {
+    const Result<std::string> text = read_look_text(path);
+    if (!text) return failure(text.error());
+    LookOptions here = options;
+    if (here.folder.empty()) here.folder = path.parent_path();
+    return parse_look(*text, path.string(), here);
+}
+
+}  // namespace darkroom

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "plan/frame/frame_shape.hpp"
+
+#include <algorithm>
+
+namespace darkroom::plan {
+
+namespace {
+
+bool is_whole(const gpu::Region& region) {
+    return region.offset.x == 0 && region.offset.y == 0 && region.extent.width == region.image.width &&
+           region.extent.height == region.image.height;
+}
+
+bool is_twice(VkExtent2D larger, VkExtent2D smaller) {
+    return larger.width == 2 * smaller.width && larger.height == 2 * smaller.height;
+}
+
+}  // namespace
+
+Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, const FrameValues& values,
+               const gpu::Region& output, std::span<const gpu::Binding> inputs) {
+    Shape shape;
+    if (!has_lean(pass)) return shape;
+    if (is_whole(output) && std::ranges::all_of(inputs, [](const gpu::Binding& b) { return is_whole(b.region); }))
+        shape.steps |= Shape::is_whole;
+    if (pass.asks_sizes && !inputs.empty()) {
+        if (is_twice(inputs[0].region.extent, output.extent)) shape.steps |= Shape::input_is_twice;
+        if (is_twice(output.extent, inputs[0].region.extent)) shape.steps |= Shape::output_is_twice;
+    }
+    if (pass.asks_rays_meet && values.rays_meet()) shape.steps |= Shape::rays_meet;
+    if (pass.is_fused) {
+        if (pass.finish == Finish::OfFrame)
+            shape.steps |= static_cast<std::uint64_t>(values.finish()) << Shape::finish_bit;
+        for (std::size_t i = 0; i < pass.steps.size(); ++i) {
+            const std::uint32_t entry = pass.steps[i].entry;
+            if (!values.is_on(entry)) continue;
+            shape.steps |= (entries[entry]->is_plain(values.opacity(entry)) ? std::uint64_t{1} : std::uint64_t{3})
+                           << (2 * i);
+        }
+    }
+    for (const Literal& literal : pass.literals) {
+        const std::uint32_t entry = pass.steps[literal.step].entry;
+        // An entry that is off is not in the kernel; a pass of an effect that is off does not run, or for another one.
+        if (pass.is_fused && !values.is_on(entry)) continue;
+        shape.choices |= (values.words(entry)[literal.row->word] & literal.mask()) << literal.bit;
+    }
+    return shape;
+}
+
+Shape expected_shape(const Program& program, const graph::Compiled& compiled, const graph::Schedule& schedule,
+                     const FrameValues& values, std::span<const Entry* const> entries, const ProgramPass& pass,
+                     VkExtent2D largest) {
+    const auto region = [&](std::uint32_t slot, std::uint32_t mip_level) {
+        // A pass that is off has no slot: any region does.
+        if (slot >= compiled.slots().size()) return gpu::Region{{}, largest, largest};
+        const graph::ImageDesc& desc = compiled.slots()[slot].desc;
+        const VkExtent2D extent = graph::mip_extent(desc.size.of(largest), std::min(mip_level, desc.mip_levels - 1));
+        return gpu::Region{{}, extent, extent};
+    };
+    std::array<gpu::Binding, gpu::most_images> inputs;
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        const PassInput& input = pass.inputs[i];
+        if (input.table == no_table) {
+            inputs[i].region = region(schedule.slot_of(input.version, input.instead), input.mip_level);
+        } else {
+            const VkExtent3D& extent = program.fixed_images[input.table].desc.extent;
+            inputs[i].region.extent = inputs[i].region.image = {extent.width, extent.height};
+        }
+    }
+    Shape shape = shape_of(pass, entries, values, region(schedule.slot_of(pass.output), pass.output_mip_level),
+                           {inputs.data(), pass.inputs.size()});
+    if (pass.asks_rays_meet) shape.steps |= Shape::rays_meet;
+    return shape;
+}
+
+}  // namespace darkroom::plan

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/assert.hpp"
+#include "plan/planner/planner_state.hpp"
+
+namespace darkroom::plan {
+
+PassImage Builder::remember(Image image) {
+    images_.push_back(image);
+    return {static_cast<std::uint32_t>(images_.size() - 1)};
+}
+
+PassImage Builder::image_of(std::size_t value) {
+    const auto version =
+        planner_.materialise(value, fmt::format("{} reads around its pixels", planner_.stack_[entry_].desc.name));
+    if (!version) {
+        error = version.error().text;
+        return {};
+    }
+    return remember({.version = *version});
+}
+
+PassImage Builder::picture() { return image_of(input_); }
+
+PassImage Builder::source() {
+    const Handle handle = planner_.stack_[entry_].desc.source;
+    if (!handle.is_given()) return image_of(input_);
+    const PassImage image = image_of(planner_.value_of(handle, entry_));
+    if (!error.empty()) return {};
+    return at_own_size(planner_.at_size(images_[image.index].version, planner_.values_[input_].size,
+                                        fmt::format("{}.source", planner_.stack_[entry_].desc.name)));
+}
+
+PassImage Builder::at_own_size(Result<graph::Version> version) {
+    if (version) return remember({.version = *version, .format = planner_.facts_.at(version->index).format});
+    error = version.error().text;
+    return {};
+}
+
+graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
+    const graph::Size size = planner_.values_[input_].size;
+    const bool is_absolute = desc.extent.width != 0;
+    return {.name = planner_.own_name(fmt::format("{}.{}", planner_.stack_[entry_].desc.name, desc.name)),
+            .format = desc.format,
+            .size = is_absolute ? graph::Size{.width = desc.extent.width, .height = desc.extent.height}
+                                : scaled(size, {desc.numerator, desc.denominator}),
+            .mip_levels = desc.mip_levels};
+}
+
+PassImage Builder::remember_new(graph::Version version, const graph::ImageDesc& desc) {
+    planner_.facts_[version.index] = {.root = version.index,
+                                      .size = desc.size,
+                                      .format = desc.format,
+                                      .usage = own_usage,
+                                      .fall_backs = {},
+                                      .name = desc.name};
+    return remember({.version = version, .first_written = {}, .format = desc.format});
+}
+
+std::uint32_t Builder::from_max_extent(std::uint32_t (*question)(VkExtent2D)) {
+    const graph::Size size = planner_.values_[input_].size;
+    const std::uint32_t answer = question(size.of(planner_.desc_.max_extent));
+    planner_.program_.extent_answers.push_back({question, size, answer});
+    return answer;
+}
+
+PassImage Builder::create(const PassImageDesc& desc) {
+    const graph::ImageDesc image = image_desc(desc);
+    return remember_new(planner_.program_.graph.create(image), image);
+}
+
+bool Builder::is_stored(VkFormat format) const {
+    if (!planner_.traits_.packing_pays) return false;
+    const auto stage = planner_.traits_.stage_of({.name = "", .outputs = {format}, .is_additive = true});
+    return stage && *stage == gpu::Stage::Compute;
+}
+
+PassBuilder::History Builder::history(const PassImageDesc& desc) {
+    const graph::ImageDesc image = image_desc(desc);
+    auto& entries = planner_.program_.history_entries;
+    const auto number = static_cast<std::uint32_t>(std::ranges::count(entries, entry_));
+    const graph::Graph::History made =
+        planner_.program_.graph.history(image, {planner_.stack_[entry_].history_owner, number});
+    entries.push_back(entry_);
+    return {remember_new(made.current, image), remember_new(made.previous, image)};
+}
+
+namespace {
+
+struct FrameImageRow {
+    HostImage image;
+    const char* name;
+    ImageUse use;
+};
+
+FrameImageRow frame_image_row(const CompileDesc& desc, FrameImage which) {
+    const std::array<FrameImageRow, 4> rows{{{HostImage::Depth, "depth", desc.depth},
+                                             {HostImage::Normals, "normals", desc.normals},
+                                             {HostImage::Velocity, "velocity", desc.velocity},
+                                             {HostImage::Ui, "ui", desc.ui}}};
+    return rows[static_cast<std::size_t>(which)];
+}
+
+}  // namespace
+
+bool Builder::has_frame_image(FrameImage which) const {
+    return frame_image_row(planner_.desc_, which).use.format != VK_FORMAT_UNDEFINED;
+}
+
+PassImage Builder::frame_image(FrameImage which) {
+    const FrameImageRow row = frame_image_row(planner_.desc_, which);
+    if (row.use.format == VK_FORMAT_UNDEFINED) {
+        error = fmt::format("effect '{}' reads the frame's {} without naming it in its needs",
+                            planner_.stack_[entry_].info->name, row.name);
+        return {};
+    }
+    const graph::Version image = planner_.import_host(row.image, row.name, row.use, {});
+    return at_own_size(planner_.frame_image_at_size(which, image, planner_.values_[input_].size));
+}
+
+PassImage Builder::shadow_map(std::uint32_t number) {
+    constexpr std::array<const char*, max_shadow_lights> names{"shadow 0", "shadow 1", "shadow 2", "shadow 3"};
+    DARKROOM_ASSERT(number < max_shadow_lights);
+    if (!planner_.desc_.has_shadows) {
+        error = fmt::format("effect '{}' reads shadows without naming them in its needs",
+                            planner_.stack_[entry_].info->name);
+        return {};
+    }
+    const auto which = static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::Shadow0) + number);
+    return remember(
+        {.version = planner_.import_host(which, names[number], {VK_FORMAT_D32_SFLOAT}, {.width = 1, .height = 1}),
+         .format = VK_FORMAT_D32_SFLOAT,
+         .is_shadow_map = true});
+}
+
+PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&), ConditionFunction condition) {
+    const std::string key = fmt::format("{} {}", name, fraction_text(planner_.values_[input_].size));
+    auto found = planner_.shared_.find(key);
+    if (found == planner_.shared_.end()) {
+        // A toggle of its own, which further effects join; what is shared may itself need something shared.
+        planner_.program_.gates.push_back({});
+        const auto own = static_cast<std::int32_t>(planner_.program_.gates.size() - 1);
+        const std::int32_t outer = std::exchange(shared_toggle_, own);
+        const std::vector<std::int32_t> outer_needs = std::exchange(shared_needs_, {});
+        const PassImage made = make(*this);
+        shared_toggle_ = outer;
+        const std::vector<std::int32_t> needs = std::exchange(shared_needs_, outer_needs);
+        if (made.index >= images_.size()) return {};
+        const Image& written = images_[made.index];
+        found = planner_.shared_
+                    .emplace(key, Planner::Shared{.version = written.version,
+                                                  .first_written = written.first_written,
+                                                  .format = written.format,
+                                                  .toggle = own,
+                                                  .needs = needs})
+                    .first;
+    }
+    const Planner::Shared& image = found->second;
+    const auto join = [&](std::int32_t index) {
+        Gate& toggle = planner_.program_.gates[static_cast<std::size_t>(index)];
+        toggle.entries.push_back(entry_);
+        toggle.conditions.push_back(condition);
+        shared_needs_.push_back(index);
+    };
+    join(image.toggle);
+    for (const std::int32_t need : image.needs) join(need);
+    return remember({.version = image.version,
+                     .first_written = image.first_written,
+                     .format = image.format,
+                     .shared_toggle = image.toggle});
+}
+
+PassImage Builder::table(const TableDesc& desc) {
+    planner_.program_.fixed_images.push_back({.desc = desc});
+    return remember(
+        {.format = desc.format, .table = static_cast<std::uint32_t>(planner_.program_.fixed_images.size() - 1)});
+}
+
+PassInput Builder::input_of(const Image& image, std::uint32_t mip_level) const {
+    return {
+        .version = image.version, .mip_level = mip_level, .table = image.table, .is_shadow_map = image.is_shadow_map};
+}
+
+PassImage Builder::add(const KernelPassDesc& desc) {
+    const Entry& entry = planner_.stack_[entry_];
+    if (!error.empty() || desc.output.index >= images_.size()) return {};
+    ProgramPass pass{.name = fmt::format("{}.{}", entry.desc.name, desc.name),
+                     .boundary = fmt::format("{} has passes of its own", entry.desc.name),
+                     .is_fused = false,
+                     .constants = desc.constants};
+    FusedStep step{.info = entry.info, .entry = entry_, .name = entry.desc.name};
+    for (const KernelPassDesc::Input& input : desc.inputs) {
+        if (input.image.index >= images_.size()) return {};
+        step.images.push_back(input.name);
+        const PassInput from = input_of(images_[input.image.index], input.mip_level);
+        gpu::KernelImage image = planner_.kernel_image(input.name + place_suffix(0), from);
+        const VkFormat format = from.table == no_table ? planner_.storage_format(from.version) : VK_FORMAT_UNDEFINED;
+        if (input.is_loaded && planner_.traits_.is_software && format != VK_FORMAT_UNDEFINED) {
+            image.loads_by = image.name + "_texels";
+            pass.inputs.push_back(from);
+            pass.spec.images.push_back({.name = image.loads_by, .storage_format = format});
+        }
+        pass.inputs.push_back(from);
+        pass.spec.images.push_back(std::move(image));
+    }
+    Image written = images_[desc.output.index];
+    auto text = planner_.text_of(*entry.info, std::string(desc.shader), 0, step.images);
+    if (!text) {
+        error = text.error().text;
+        return {};
+    }
+    step.text = std::move(*text);
+    if (step.text->asks_parameters) append_parameter_members(*entry.info, 0, pass.spec.members);
+    pass.steps.push_back(std::move(step));
+    pass.spec.name = pass.name;
+    pass.spec.outputs = {written.format};
+    pass.spec.is_additive = desc.is_additive;
+    pass.spec.custom_vectors = desc.custom_vectors;
+    pass.spec.frame = frame_members();
+    pass.toggle = shared_toggle_;
+    if (pass.toggle < 0) {
+        pass.toggle =
+            planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
+    }
+    for (const KernelPassDesc::Input& input : desc.inputs)
+        if (const std::int32_t shared = images_[input.image.index].shared_toggle; shared >= 0)
+            planner_.program_.graph.imply(pass.toggle, shared);
+    const auto version = planner_.add_pass(std::move(pass), written.version, desc.output_mip_level);
+    if (!version) {
+        error = version.error().text;
+        return {};
+    }
+    written.version = *version;
+    if (!written.first_written.is_valid()) written.first_written = *version;
+    return remember(written);
+}
+
+void Builder::add_side(std::string name, PassImage image, const PassVector& neutral, bool is_loaded) {
+    const bool is_known = image.index < images_.size();
+    PassInput input = is_known ? input_of(images_[image.index], 0) : PassInput{};
+    input.is_loaded = is_loaded;
+    const bool is_always_there = is_known && !images_[image.index].first_written.is_valid();  // a table, or a picture
+    if (!is_always_there) {
+        const VkFormat format = is_known ? images_[image.index].format : VK_FORMAT_R32G32B32A32_SFLOAT;
+        const graph::Version constant = planner_.import_neutral(format, neutral);
+        input.is_loaded = is_loaded && is_known && planner_.facts_.at(constant.index).format == format;
+        if (is_known)
+            input.instead = constant;
+        else
+            input.version = constant;
+    }
+    sides.push_back({std::move(name), input});
+}
+
+void Builder::result(PassImage image) {
+    DARKROOM_ASSERT(image.index < images_.size() || !error.empty());
+    if (image.index < images_.size()) output = images_[image.index].version;
+}
+
+}  // namespace darkroom::plan

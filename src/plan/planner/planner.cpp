@@ -1,0 +1,495 @@
+// SPDX-License-Identifier: MIT
+// The planner: walks the stack in the user's order, keeps a kernel open as long as the next entry may join it, and says
+// why a new one starts. See architecture.md, ideas 3 and 4.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "gpu/resource/formats.hpp"
+#include "plan/planner/planner_state.hpp"
+
+namespace darkroom::plan {
+
+namespace {
+
+std::uint32_t vectors_of(std::span<const FusedStep> steps) {
+    std::uint32_t vectors = 0;
+    for (const FusedStep& step : steps) vectors += step.custom_vectors;
+    return vectors;
+}
+
+std::string missing_needs(const Needs& needs, const CompileDesc& desc) {
+    std::string out;
+    const auto say = [&](bool is_needed, bool is_there, std::string_view name) {
+        if (is_needed && !is_there) out += fmt::format("{}{}", out.empty() ? "" : " and ", name);
+    };
+    say(needs.depth, desc.depth.format != VK_FORMAT_UNDEFINED, "depth");
+    say(needs.normals, desc.normals.format != VK_FORMAT_UNDEFINED, "normals");
+    say(needs.velocity, desc.velocity.format != VK_FORMAT_UNDEFINED, "velocity");
+    say(needs.shadows, desc.has_shadows, "shadows");
+    say(needs.ui, desc.ui.format != VK_FORMAT_UNDEFINED, "a UI image");
+    return out;
+}
+
+}  // namespace
+
+Planner::Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits)
+    : stack_(stack), desc_(desc), traits_(traits), target_domain_(target_domain(desc)) {}
+
+Result<Program> Planner::run() {
+    if (auto ok = check_handles(); !ok) return failure(std::move(ok));
+    program_.is_left_out.assign(stack_.size(), false);
+    program_.is_mixable.assign(stack_.size(), true);
+    program_.watch_gates.assign(desc_.watches.size(), -1);
+
+    const graph::Version color = import_host(HostImage::Color, "color", desc_.color, {});
+    values_.push_back({.image = color, .why = "the scene colour starts here"});
+    entry_values_.assign(stack_.size(), 0);
+    leave_out();
+    resolve_inputs();
+    count_readers();
+    if (auto ok = make_wires(); !ok) return failure(std::move(ok));
+
+    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
+        const auto read = scaled_input(i);
+        if (!read) return failure(read.error());
+        auto at_target = at_target_size(i, *read);
+        if (!at_target) return failure(std::move(at_target));
+        const std::size_t input = *at_target;
+        program_.entry_sizes.push_back(values_[input].size);
+        if (program_.is_left_out[i]) {
+            entry_values_[i] = input;
+        } else {
+            auto value = add_entry(i, input);
+            if (!value) return failure(std::move(value));
+            entry_values_[i] = *value;
+        }
+        if (auto ok = keep_output(i); !ok) return failure(std::move(ok));
+        if (auto ok = add_watches(i); !ok) return failure(std::move(ok));
+    }
+    if (auto ok = finish(); !ok) return failure(std::move(ok));
+    if (auto ok = add_watches(no_entry); !ok) return failure(std::move(ok));
+    remark_watches();
+    return std::move(program_);
+}
+
+void Planner::leave_out() {
+    // Entries whose picture would be an interface that is not there. What reads one of those is left out.
+    std::vector<bool> is_missing(stack_.size(), desc_.ui.format == VK_FORMAT_UNDEFINED);
+    for (std::uint32_t i = 0; i < stack_.size(); ++i) {
+        const EffectInfo& info = *stack_[i].info;
+        const EntryDesc& desc = stack_[i].desc;
+        const auto reads_missing = [&](Handle wire) {
+            if (desc_.ui.format != VK_FORMAT_UNDEFINED) return false;
+            return wire == ui_layer || (is_of_entry(wire) && index_of(wire) < i && is_missing[index_of(wire)]);
+        };
+        const std::uint32_t before = entry_before(i, desc.is_ui);
+        is_missing[i] = desc.input.is_given() ? reads_missing(desc.input)
+                                              : reads_missing(before < i           ? Handle{stack_[before].id}
+                                                              : before == ui_entry ? ui_layer
+                                                                                   : Handle{});
+        Needs needs = info.needs;
+        needs.ui |=
+            is_missing[i] || std::ranges::any_of(std::array{desc.source, second_of(i), desc.mask}, reads_missing);
+        std::string why;
+        if (const std::string missing = missing_needs(needs, desc_); !missing.empty())
+            why = fmt::format("needs {}, which the frame does not have", missing);
+        else if (info.is_last_step && target_domain_ == Domain::SceneLinear)
+            why = "the target takes scene-linear floats";
+        if (why.empty()) continue;
+        program_.left_out.push_back(fmt::format("{}: {}", stack_[i].desc.name, why));
+        program_.is_left_out[i] = true;
+    }
+}
+
+Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
+    const EffectInfo& info = *stack_[entry].info;
+
+    Builder builder(*this, entry, input);
+    if (info.build != nullptr) {
+        info.build(builder);
+        if (!builder.error.empty()) return user_error(builder.error);
+    }
+    if (info.touch == Touch::Neighbourhood || info.touch == Touch::History) return add_result(entry, input, builder);
+
+    FusedStep step{.info = &info,
+                   .entry = entry,
+                   .name = stack_[entry].desc.name,
+                   .constants = builder.end_function,
+                   .custom_vectors = builder.end_vectors};
+    step.is_wrapped = info.works_encoded && !may_be_encoded(entry);
+    if (is_reading(info.touch)) {
+        if (!builder.sides.empty()) return user_error(fmt::format("effect '{}': a map reads no images", info.name));
+        return append_reading(entry, input, std::move(step));
+    }
+    std::vector<PassInput> side_inputs;
+    for (Builder::Side& side : builder.sides) {
+        step.images.push_back(side.name);
+        side_inputs.push_back(side.input);
+    }
+    if (info.has_second) {
+        const std::size_t value = value_of(second_of(entry), entry);
+        step.images.emplace_back("second");
+        if (info.has_second_in_place && desc_.fuse && values_[value].reading != no_reading) {
+            const Reading reading = readings_[values_[value].reading];
+            side_inputs.push_back({.version = reading.image});
+            return append(entry, input, std::move(step), std::move(side_inputs), &reading);
+        }
+        auto second = materialise(value, fmt::format("{} reads it as its second picture", stack_[entry].desc.name));
+        if (!second) return failure(std::move(second));
+        side_inputs.push_back({.version = *second});
+    }
+    return append(entry, input, std::move(step), std::move(side_inputs));
+}
+
+Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, Builder& builder) {
+    if (!builder.output.is_valid())
+        return user_error(fmt::format("effect '{}': its build() names no result", stack_[entry].info->name));
+    auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].desc.name));
+    if (!picture) return failure(std::move(picture));
+    const std::string why = fmt::format("{} has passes of its own", stack_[entry].desc.name);
+    const graph::Size size = scaled(values_[input].size, stack_[entry].info->output_scale);
+    // Whoever reads the output counts on its size, on or off.
+    picture = at_size(*picture, size, fmt::format("{}.resampled input", stack_[entry].desc.name));
+    if (!picture) return failure(std::move(picture));
+    fall_back(builder.output, *picture);
+    if (stack_[entry].is_plain()) {
+        program_.is_mixable[entry] = false;
+        values_.push_back({.image = builder.output, .size = size, .why = why});
+        return values_.size() - 1;
+    }
+    values_.push_back({.image = *picture, .size = size, .why = why});
+    FusedStep step{.info = stack_[entry].info, .entry = entry, .name = stack_[entry].desc.name, .is_merge = true};
+    return append(entry, values_.size() - 1, std::move(step), {{.version = builder.output}});
+}
+
+Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, FusedStep step,
+                                    std::vector<PassInput> sides, const Reading* second) {
+    const std::string& name = stack_[entry].desc.name;
+    const Value from = values_[input];
+    std::size_t kernel = from.kernel;
+    const std::size_t side_count = sides.size() + (stack_[entry].desc.mask.is_given() ? 1 : 0);
+    if (kernel == no_kernel) {
+        kernel = open_kernel(input, from.why);
+    } else {
+        std::string why;
+        if (!desc_.fuse)
+            why = "fusion is off";
+        else if ((step.info->touch == Touch::Warp && !step.is_merge) || step.is_layer)
+            why = fmt::format("{} reads the picture at moved coordinates", name);
+        else if (!from.reader.empty())
+            why = fmt::format("{} reads the picture before it, too", from.reader);
+        else if (kernels_[kernel].images.size() + side_count >= gpu::most_images)
+            why = fmt::format("a kernel reads at most {} images", gpu::most_images);
+        else if (vectors_of(kernels_[kernel].steps) + step.custom_vectors +
+                     (second == nullptr ? 0 : vectors_of(second->steps)) >
+                 most_fused_vectors)
+            why = fmt::format("a kernel holds at most {} vectors of its effects", most_fused_vectors);
+        if (!why.empty()) {
+            if (auto image = materialise(input, why); !image) return failure(std::move(image));
+            kernel = open_kernel(input, std::move(why));
+        }
+    }
+    // The steps of a reading come before the one that reads by it.
+    const std::size_t place = kernels_[kernel].steps.size() + (second == nullptr ? 0 : second->steps.size());
+    const std::string suffix = place_suffix(static_cast<std::uint32_t>(place));
+    if (second != nullptr)
+        if (auto ok = add_steps(kernel, *second, "second" + suffix); !ok) return failure(std::move(ok));
+    if (stack_[entry].desc.mask.is_given()) {
+        auto mask = materialise(value_of(stack_[entry].desc.mask, entry), fmt::format("{} reads it as its mask", name));
+        if (mask) mask = at_size(*mask, from.size, fmt::format("{}.mask", name));
+        if (!mask) return failure(std::move(mask));
+        step.has_mask = true;
+        kernels_[kernel].images.push_back({"mask" + suffix, {.version = *mask}});
+    }
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const bool is_second = !step.is_merge && step.images[i] == "second";
+        if (is_second && step.info->has_second_in_place) {
+            step.is_second_resampled = !has_size(sides[i].version, from.size);
+            sides[i].is_loaded = second == nullptr && !step.is_second_resampled;
+        } else if (step.is_merge || is_second) {
+            auto version = at_size(sides[i].version, from.size, fmt::format("{}.resampled", name));
+            if (!version) return failure(std::move(version));
+            sides[i].version = *version;
+        }
+        const std::string shown = step.is_merge ? "layer" : step.images[i];
+        kernels_[kernel].images.push_back({shown + suffix, sides[i]});
+    }
+    if (auto ok = add_step(kernel, std::move(step)); !ok) return failure(std::move(ok));
+    values_.push_back({.kernel = kernel, .size = from.size, .reader = image_reader_[entry]});
+    return values_.size() - 1;
+}
+
+std::size_t Planner::open_kernel(std::size_t input, std::string why) {
+    kernels_.push_back({.picture = values_[input].image, .size = values_[input].size, .boundary = std::move(why)});
+    return kernels_.size() - 1;
+}
+
+Result<graph::Version> Planner::materialise(std::size_t index, const std::string& why) {
+    if (values_[index].image.is_valid()) return values_[index].image;
+    return materialise_into(
+        index, create_picture(fmt::format("picture {}", kernels_.size()), values_[index].size, desc_.intermediate),
+        false, why);
+}
+
+Result<graph::Version> Planner::materialise_into(std::size_t index, graph::Version image, bool is_always_on,
+                                                 const std::string& why) {
+    auto version =
+        close_kernel(values_[index].kernel, image, facts_.at(image.index).format, Finish::None, is_always_on);
+    if (!version) return version;
+    // Nobody joined the kernel behind this value (its reader was known), so whoever comes next starts a new one.
+    values_[index].image = *version;
+    values_[index].why = why;
+    values_[index].kernel = no_kernel;
+    return *version;
+}
+
+bool Planner::has_size(graph::Version version, graph::Size size) const {
+    const Facts& facts = facts_.at(version.index);
+    return is_same(facts.size, size) &&
+           std::ranges::all_of(facts.fall_backs, [&](graph::Version instead) { return has_size(instead, size); });
+}
+
+Result<graph::Version> Planner::at_size(graph::Version version, graph::Size size, const std::string& name) {
+    if (has_size(version, size)) return version;
+    kernels_.push_back({.picture = version, .size = size, .boundary = "its pictures differ in size"});
+    return close_kernel(kernels_.size() - 1, create_picture(name, size, desc_.intermediate), desc_.intermediate,
+                        Finish::None, true);
+}
+
+Result<> Planner::finish() {
+    const std::uint32_t last_entry = last_of_picture();
+    const std::size_t last = last_entry == no_entry ? 0 : entry_values_[last_entry];
+    // Values change after compile, and with them the domain.
+    Finish finish = finish_of(Domain::SceneLinear, desc_);
+    const bool is_open = finish_of(Domain::Encoded, desc_) != finish_of(Domain::SceneLinear, desc_);
+    for (std::uint32_t i = program_.last_entry; is_open && i < stack_.size(); i = program_.entry_inputs[i])
+        if (stack_[i].info->makes != nullptr) finish = Finish::OfFrame;
+    const VkExtent2D own = desc_.target_extent;
+    std::size_t kernel = values_[last].kernel;
+    const graph::Size target_size{.width = own.width, .height = own.height};
+    // Where the interface is composed, the picture has been sampled already.
+    const bool is_scaled = own.width != 0 && !(kernel != no_kernel && values_[last].reader.empty() &&
+                                               is_same(kernels_[kernel].size, target_size));
+    if (is_scaled || kernel == no_kernel || !values_[last].reader.empty()) {
+        const std::string why = is_scaled
+                                    ? "the target has an extent of its own: the picture is sampled into it"
+                                    : fmt::format("{} reads the picture before the target, too", values_[last].reader);
+        if (auto image = materialise(last, why); !image) return failure(std::move(image));
+        kernel = open_kernel(last, is_scaled ? why : values_[last].why);
+    }
+    if (is_scaled) kernels_[kernel].size = target_size;
+    if (own.width != 0)
+        // What the entries do is done at the picture's extent, fused or not: a dither that is scaled is the price.
+        program_.remarks.push_back(
+            fmt::format("the target has an extent of its own, up to {}x{}: the last kernel samples the picture into "
+                        "it, bilinearly.",
+                        own.width, own.height));
+    program_.target_size = kernels_[kernel].size;
+    const graph::Version target = import_host(HostImage::Target, "target", desc_.target, program_.target_size);
+    auto version = close_kernel(kernel, target, desc_.target.format, finish, true);
+    if (!version) return failure(std::move(version));
+    program_.graph.keep(*version);
+    return {};
+}
+
+Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version target, VkFormat format, Finish finish,
+                                             bool is_always_on) {
+    const OpenKernel kernel = kernels_[index];
+    ProgramPass pass{.boundary = kernel.boundary, .steps = kernel.steps, .is_alpha = kernel.is_alpha, .finish = finish};
+    const bool is_moved_here = is_moved(kernel.steps);
+
+    Gate toggle;
+    for (const FusedStep& step : kernel.steps) {
+        const std::string& name = stack_[step.entry].desc.name;
+        pass.name += (pass.name.empty() ? "" : "+") + name;
+        toggle.entries.push_back(step.entry);
+        append_header_members(*step.info, step.place, pass.spec.members);
+        append_parameter_members(*step.info, step.place, pass.spec.members);
+        pass.spec.custom_vectors += step.custom_vectors;
+    }
+    if (pass.name.empty()) pass.name = kernel.is_alpha ? "scene alpha" : "copy";
+    pass.spec.name = pass.name;
+    if (finish == Finish::OfFrame) pass.spec.members.insert(pass.spec.members.begin(), finish_member());
+    pass.spec.frame = frame_members();
+    pass.spec.outputs = {format};
+    // imageLoad needs GENERAL, sampling the other layout: one image can be in one of them.
+    const bool is_shared = std::ranges::any_of(kernel.images, [&](const auto& image) {
+        return image.second.table == no_table && may_share(kernel.picture, image.second.version);
+    });
+    const bool is_warp = is_moved_here && kernel.steps.front().info->touch == Touch::Warp;
+    if (!is_warp && !has_size(kernel.picture, kernel.size)) pass.resampling = kernel.resampling;
+    const bool loads_alone = is_warp && traits_.is_software && kernel.steps.front().text->loads_picture_alone;
+    const bool is_filtered = is_moved_here && !loads_alone;
+    const bool is_sampled = is_filtered || is_shared || pass.resampling != Resampling::None;
+    pass.spec.images.push_back(
+        {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
+    pass.inputs.push_back({.version = kernel.picture});
+    for (const auto& [name, input] : kernel.images) {
+        gpu::KernelImage image = kernel_image(name, input);
+        if (is_storage_side(kernel, input)) image.storage_format = storage_format(input.version);
+        if (is_loaded_beside(kernel, name)) {
+            image.loads_by = name + "_texels";
+            pass.spec.images.push_back({.name = image.loads_by, .storage_format = storage_format(input.version)});
+            pass.inputs.push_back(input);
+        }
+        pass.spec.images.push_back(std::move(image));
+        pass.inputs.push_back(input);
+    }
+    // Unfused, a kernel whose entry is off copies: else every picture would live as long as those it may stand in for.
+    // So does one that gives the picture another size.
+    const bool has_toggle = !is_always_on && desc_.fuse && !pass.is_alpha && pass.resampling == Resampling::None;
+    if (has_toggle) pass.toggle = toggle_index(std::move(toggle));
+    auto version = add_pass(std::move(pass), target, 0);
+    if (!version) return version;
+    if (has_toggle) {
+        fall_back(*version, kernel.picture);
+    }
+    return version;
+}
+
+void Planner::limit_storage_images(ProgramPass& pass) const {
+    std::vector<gpu::KernelImage>& images = pass.spec.images;
+    const auto is_storage = [](const gpu::KernelImage& image) { return image.storage_format != VK_FORMAT_UNDEFINED; };
+    const auto is_beyond = [&] {
+        const auto count = static_cast<std::size_t>(std::ranges::count_if(images, is_storage));
+        return count + pass.spec.outputs.size() > traits_.max_storage_images;
+    };
+    if (!is_beyond()) return;
+    // An image that is both loaded and sampled stands there twice: the sampled one stays.
+    for (gpu::KernelImage& image : images) {
+        if (image.loads_by.empty()) continue;
+        const auto loaded = std::ranges::find(images, std::exchange(image.loads_by, {}), &gpu::KernelImage::name);
+        loaded->name.clear();
+    }
+    for (std::size_t i = images.size(); i-- > 0;) {
+        if (pass.inputs[i].table != no_table) continue;
+        images[i].storage_format = VK_FORMAT_UNDEFINED;
+        if (!images[i].name.empty()) continue;
+        images.erase(images.begin() + static_cast<std::ptrdiff_t>(i));
+        pass.inputs.erase(pass.inputs.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    // Then tables, the last first.
+    for (std::size_t i = images.size(); i-- > 0 && is_beyond();) images[i].storage_format = VK_FORMAT_UNDEFINED;
+}
+
+bool Planner::can_filter(const PassInput& input) const {
+    if (!traits_.can_filter) return true;
+    if (input.table != no_table) return traits_.can_filter(program_.fixed_images[input.table].desc.format);
+    const auto known = facts_.find(input.version.index);
+    if (known == facts_.end()) return true;
+    const Facts& facts = known->second;
+    // Depth is never filtered.
+    return gpu::is_depth(facts.format) ||
+           (traits_.can_filter(facts.format) && std::ranges::all_of(facts.fall_backs, [&](graph::Version instead) {
+                return can_filter({.version = instead});
+            }));
+}
+
+Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level) {
+    limit_storage_images(pass);
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        gpu::KernelImage& image = pass.spec.images[i];
+        image.is_filtered_by_loads = image.storage_format == VK_FORMAT_UNDEFINED && image.sampler_type == "sampler2D" &&
+                                     !can_filter(pass.inputs[i]);
+        image.is_depth =
+            pass.inputs[i].table == no_table && gpu::is_depth(facts_.at(pass.inputs[i].version.index).format);
+    }
+    pass.spec.is_software = traits_.is_software;
+    pass.spec.has_robust_images = traits_.has_robust_images;
+    pass.spec.workgroup = traits_.workgroup;
+    lay_out_literals(pass);
+    for (const FusedStep& step : pass.steps) {
+        pass.asks_sizes |= step.text && step.text->asks_sizes;
+        pass.asks_rays_meet |= step.text && step.text->asks_rays_meet;
+    }
+    const auto stage = traits_.stage_of(pass.spec);
+    if (!stage) return failure(stage.error());
+    pass.stage = *stage;
+    // What the host's target was made for decides over what would be faster.
+    const VkImageUsageFlags usage = facts_.at(target.index).usage;
+    if ((usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0) pass.stage = gpu::Stage::Raster;
+    if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) == 0) pass.stage = gpu::Stage::Compute;
+    const bool is_raster = pass.stage == gpu::Stage::Raster;
+    graph::PassDesc desc{.name = pass.name, .has_side_effect = pass.watch.has_value(), .gate = pass.toggle};
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        if (pass.inputs[i].table != no_table) continue;
+        const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
+        const bool is_general = !pass.spec.images[i].loads_by.empty();
+        const graph::Use use =
+            is_storage   ? (is_raster ? graph::Use::StorageReadFragment : graph::Use::StorageRead)
+            : is_general ? (is_raster ? graph::Use::SampledGeneralFragment : graph::Use::SampledGeneralCompute)
+                         : (is_raster ? graph::Use::SampledFragment : graph::Use::SampledCompute);
+        desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}, pass.inputs[i].instead});
+    }
+    const graph::Use use = pass.spec.is_additive ? (is_raster ? graph::Use::ColorBlend : graph::Use::StorageReadWrite)
+                                                 : (is_raster ? graph::Use::ColorWrite : graph::Use::StorageWrite);
+    desc.writes.push_back({target, use, {mip_level, 1}});
+    pass.output_mip_level = mip_level;
+    pass.output = program_.graph.add(std::move(desc)).front();
+    facts_[pass.output.index] = facts_[target.index];
+    facts_[pass.output.index].fall_backs.clear();
+    program_.passes.push_back(std::move(pass));
+    return program_.passes.back().output;
+}
+
+bool Planner::is_special_gate(std::size_t index) const {
+    return program_.gates[index].watch || std::ranges::any_of(shared_, [&](const auto& row) {
+               return row.second.toggle == static_cast<std::int32_t>(index);
+           });
+}
+
+std::int32_t Planner::toggle_index(Gate toggle) {
+    for (std::size_t i = 0; i < program_.gates.size(); ++i) {
+        const Gate& other = program_.gates[i];
+        if (!is_special_gate(i) && other.entries == toggle.entries && other.condition == toggle.condition &&
+            other.argument == toggle.argument)
+            return static_cast<std::int32_t>(i);
+    }
+    const auto index = static_cast<std::int32_t>(program_.gates.size());
+    for (std::int32_t i = 0; i < index; ++i) {
+        const Gate& other = program_.gates[static_cast<std::size_t>(i)];
+        if (is_special_gate(static_cast<std::size_t>(i)) || other.entries != toggle.entries ||
+            other.condition != toggle.condition)
+            continue;
+        // A condition that holds for an argument holds for all smaller ones.
+        if (other.argument < toggle.argument)
+            program_.graph.imply(index, i);
+        else
+            program_.graph.imply(i, index);
+    }
+    program_.gates.push_back(std::move(toggle));
+    return index;
+}
+
+Domain target_domain(const CompileDesc& desc) {
+    return desc.target_domain.value_or(gpu::format_traits(desc.target.format).is_float ? Domain::SceneLinear
+                                                                                       : Domain::Encoded);
+}
+
+Finish finish_of(Domain domain, const CompileDesc& desc) {
+    if (target_domain(desc) != Domain::Encoded) return Finish::None;
+    if (domain == Domain::Encoded)
+        return gpu::format_traits(desc.target.format).is_srgb ? Finish::DecodeSrgb : Finish::None;
+    const bool is_encoded_here = !gpu::format_traits(desc.target.format).is_srgb &&
+                                 desc.encodes_target.value_or(!gpu::format_traits(desc.target.format).is_float);
+    return is_encoded_here ? Finish::EncodeSrgb : Finish::None;
+}
+
+Result<std::shared_ptr<const EffectText>> Planner::text_of(const EffectInfo& info, const std::string& file,
+                                                           std::uint32_t place, std::span<const std::string> images) {
+    const auto key = std::tuple(&info, file, place, std::vector<std::string>(images.begin(), images.end()));
+    if (const auto found = texts_.find(key); found != texts_.end()) return found->second;
+    auto text = effect_text(info, file, place, images);
+    if (!text) return failure(std::move(text));
+    return texts_[key] = std::make_shared<const EffectText>(std::move(*text));
+}
+
+Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits) {
+    return Planner(stack, desc, traits).run();
+}
+
+}  // namespace darkroom::plan

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Readings, and where the interface meets the picture.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "plan/planner/planner_state.hpp"
+
+namespace darkroom::plan {
+
+Result<std::size_t> Planner::append_reading(std::uint32_t entry, std::size_t input, FusedStep step) {
+    const std::string why = fmt::format("{} reads the picture at moved coordinates", stack_[entry].desc.name);
+    if (!stack_[entry].is_plain()) {
+        step.reads = picture_name;
+        step.is_layer = true;
+        return append(entry, input, std::move(step), {});
+    }
+    program_.is_mixable[entry] = false;
+    const bool goes_on = values_[input].reading != no_reading;
+    const bool is_image = values_[input].image.is_valid();
+    Reading reading = goes_on ? readings_[values_[input].reading] : Reading{.size = values_[input].size};
+    if (!goes_on) {
+        auto image = materialise(input, why);
+        if (!image) return failure(std::move(image));
+        reading.image = *image;
+    }
+    reading.steps.push_back(std::move(step));
+    kernels_.push_back(
+        {.picture = reading.image, .size = reading.size, .boundary = is_image ? values_[input].why : why});
+    const std::size_t kernel = kernels_.size() - 1;
+    if (auto ok = add_steps(kernel, reading, picture_name); !ok) return failure(std::move(ok));
+    const graph::Size size = reading.size;
+    readings_.push_back(std::move(reading));
+    values_.push_back(
+        {.kernel = kernel, .size = size, .reader = image_reader_[entry], .reading = readings_.size() - 1});
+    return values_.size() - 1;
+}
+
+Result<> Planner::add_steps(std::size_t kernel, const Reading& reading, std::string_view image) {
+    for (FusedStep step : reading.steps) {
+        step.reads = image;
+        if (auto ok = add_step(kernel, std::move(step)); !ok) return ok;
+    }
+    return {};
+}
+
+Result<> Planner::add_step(std::size_t kernel, FusedStep step) {
+    std::vector<FusedStep>& steps = kernels_[kernel].steps;
+    step.place = static_cast<std::uint32_t>(steps.size());
+    step.first_vector = 0;
+    for (const FusedStep& other : steps) step.first_vector += other.custom_vectors;
+    if (!step.is_merge) {
+        auto text = text_of(*step.info, fmt::format("{}.glsl", step.info->name), step.place, step.images);
+        if (!text) return failure(std::move(text));
+        step.text = std::move(*text);
+    }
+    steps.push_back(std::move(step));
+    return {};
+}
+
+Result<std::size_t> Planner::at_target_size(std::uint32_t entry, std::size_t input) {
+    const EffectInfo& info = *stack_[entry].info;
+    const graph::Size target{.width = desc_.target_extent.width, .height = desc_.target_extent.height};
+    if (target.width == 0 || program_.is_left_out[entry] || !info.needs.ui || !info.has_second) return input;
+    const auto stays_in_kernel = [&](std::uint32_t i) {
+        const Entry& other = stack_[i];
+        return other.info->touch == Touch::Pointwise && !other.info->has_second && !other.desc.mask.is_given() &&
+               (other.info->build == nullptr || other.info->is_last_step) && !other.desc.input.is_given();
+    };
+    if (!desc_.fuse || is_same(values_[input].size, target)) return input;
+    for (std::uint32_t i = entry; i < stack_.size(); ++i) {
+        if (stack_[i].desc.is_ui) continue;
+        if (!image_reader_[i].empty() || (i != entry && !program_.is_left_out[i] && !stays_in_kernel(i))) return input;
+    }
+    const std::string why = "the interface is composed at the target's size";
+    if (auto image = materialise(input, why); !image) return failure(std::move(image));
+    kernels_.push_back({.picture = values_[input].image, .size = target, .boundary = why});
+    values_.push_back({.kernel = kernels_.size() - 1, .size = target});
+    return values_.size() - 1;
+}
+
+bool Planner::is_loaded_beside(const OpenKernel& kernel, std::string_view image) const {
+    if (!traits_.is_software || std::ranges::count(kernel.steps, image, &FusedStep::reads) == 0) return false;
+    const auto own = std::ranges::find(kernel.images, image, [](const auto& named) { return named.first; });
+    if (storage_format(own->second.version) == VK_FORMAT_UNDEFINED) return false;
+    // One image is in one layout: nothing else may read it.
+    const auto shares = [&](const auto& other) {
+        return other.first != image && other.second.table == no_table &&
+               may_share(other.second.version, own->second.version);
+    };
+    return !may_share(kernel.picture, own->second.version) && std::ranges::none_of(kernel.images, shares);
+}
+
+bool Planner::may_be_encoded(std::uint32_t entry) const {
+    std::uint32_t i = program_.entry_inputs[entry];
+    for (; i < stack_.size(); i = program_.entry_inputs[i]) {
+        const EffectInfo& info = *stack_[i].info;
+        if (info.makes == nullptr || program_.is_left_out[i]) continue;
+        for (const Domain before : {Domain::SceneLinear, Domain::DisplayLinear})
+            if (info.makes(before, info.parameters.defaults.data()) == Domain::Encoded) return true;
+    }
+    return i == ui_entry;
+}
+
+}  // namespace darkroom::plan

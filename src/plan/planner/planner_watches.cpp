@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// Copies of pictures inside the plan, for hosts that look into it: see darkroom/watch.hpp.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "plan/planner/planner_state.hpp"
+
+namespace darkroom::plan {
+
+Result<> Planner::add_watches(std::uint32_t entry) {
+    for (std::uint32_t i = 0; i < desc_.watches.size(); ++i) {
+        if (program_.watch_gates[i] >= 0) continue;
+        auto image = watched_output(i, entry);
+        if (!image) return failure(std::move(image));
+        if (!*image) continue;
+        if (auto ok = add_watch(i, **image); !ok) return ok;
+    }
+    return {};
+}
+
+Result<std::optional<Planner::WatchedImage>> Planner::watched_output(std::uint32_t watch, std::uint32_t entry) {
+    const Watch& wanted = desc_.watches[watch];
+    std::optional<WatchedImage> out;
+    if (!wanted.entry.is_given()) return watched_image(wanted);
+    if (wanted.entry == scene_color) return out = {.input = {.version = values_[0].image}};
+    if (!is_of_entry(wanted.entry) || index_of(wanted.entry) > entry) return out;
+    auto version = materialise(entry_values_[index_of(wanted.entry)], "a watch looks at the picture before it");
+    if (!version) return failure(std::move(version));
+    return out = {.input = {.version = *version}};
+}
+
+std::optional<Planner::WatchedImage> Planner::watched_image(const Watch& watch) {
+    const auto has_name = [&](graph::Version version) { return facts_.at(version.index).name == watch.image; };
+    const auto can_read = [&](graph::Version version) {
+        return (facts_.at(version.index).usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0;
+    };
+    const auto makes_level = [&](const ProgramPass& pass) {
+        return has_name(pass.output) && pass.output_mip_level == watch.mip_level;
+    };
+    const auto first = std::ranges::find_if(program_.passes, makes_level);
+    if (first == program_.passes.end()) {
+        for (const auto& [which, version] : host_images_)
+            if (has_name(version) && can_read(version) && shadow_number(which) < 0 && watch.mip_level == 0)
+                return WatchedImage{.input = {.version = version}};
+        return std::nullopt;
+    }
+    graph::Version last;
+    for (const ProgramPass& pass : program_.passes)
+        if (has_name(pass.output)) last = pass.output;
+    if (!can_read(last)) return std::nullopt;
+    WatchedImage out{.input = {.version = last, .mip_level = watch.mip_level}, .writer = first->toggle};
+    // Passes that write over it may have gates of their own.
+    if (out.writer >= 0) out.input.instead = import_neutral(facts_.at(last.index).format, {});
+    return out;
+}
+
+Result<> Planner::add_watch(std::uint32_t number, const WatchedImage& image) {
+    const Watch& watch = desc_.watches[number];
+    const bool is_entry = is_of_entry(watch.entry);
+    const std::string shown = is_entry                 ? stack_[index_of(watch.entry)].desc.name
+                              : watch.entry.is_given() ? "color"
+                                                       : watch.image;
+    const auto gate = static_cast<std::int32_t>(program_.gates.size());
+    program_.gates.push_back({.entries = {}, .conditions = {}, .watch = number, .writer = image.writer});
+    program_.watch_gates[number] = gate;
+    if (image.writer >= 0) program_.graph.imply(gate, image.writer);
+    const auto which = static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::FirstWatched) + number);
+    const graph::Version target =
+        import_host(which, fmt::format("watch {}", watch.id), watch.target, {.width = 1, .height = 1});
+    ProgramPass pass{.name = fmt::format("watch {}", shown),
+                     .toggle = gate,
+                     .boundary = "the host looks at it",
+                     .watch = number,
+                     .resampling = Resampling::Nearest};
+    pass.spec.name = pass.name;
+    pass.spec.frame = frame_members();
+    pass.spec.outputs = {watch.target.format};
+    pass.spec.images.push_back({.name = std::string(picture_name)});
+    pass.inputs.push_back(image.input);
+    auto made = add_pass(std::move(pass), target, 0);
+    return made ? Result<>{} : failure(std::move(made));
+}
+
+void Planner::remark_watches() {
+    for (std::size_t i = 0; i < desc_.watches.size(); ++i) {
+        const Watch& watch = desc_.watches[i];
+        if (program_.watch_gates[i] >= 0) continue;
+        const std::string what = watch.entry.is_given()
+                                     ? fmt::format("entry {}", watch.entry.id)
+                                     : fmt::format("mip level {} of an image '{}'", watch.mip_level, watch.image);
+        program_.remarks.push_back(fmt::format("watch {}: the plan has no {}.", watch.id, what));
+    }
+}
+
+}  // namespace darkroom::plan

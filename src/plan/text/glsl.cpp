@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: MIT
+#include "plan/text/glsl.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "gpu/shader/glsl_scan.hpp"
+
+namespace darkroom::plan {
+
+namespace {
+
+const EffectFile* find_file(std::span<const EffectFile> files, std::string_view name) {
+    const auto found = std::ranges::find(files, name, &EffectFile::name);
+    return found == files.end() ? nullptr : &*found;
+}
+std::string_view file_text(std::span<const EffectFile> files, std::string_view name) {
+    const EffectFile* const file = find_file(files, name);
+    return file == nullptr ? std::string_view{} : file->text;
+}
+
+struct Scalar {
+    gpu::BlockMember::Type type;
+    const char* suffix;
+};
+std::span<const Scalar> scalars_of(Kind kind) {
+    using enum gpu::BlockMember::Type;
+    static constexpr Scalar real[] = {{Float, ""}}, integer[] = {{Int, ""}}, natural[] = {{Uint, ""}};
+    static constexpr Scalar vector[] = {{Float, "_x"}, {Float, "_y"}, {Float, "_z"}, {Float, "_w"}};
+    static constexpr Scalar rgb[] = {{Float, "_r"}, {Float, "_g"}, {Float, "_b"}};
+    switch (kind) {
+        case Kind::Float:
+            return real;
+        case Kind::Int:
+            return integer;
+        case Kind::Toggle:
+        case Kind::Choice:
+            return natural;
+        case Kind::Vec2:
+            return std::span(vector).first(2);
+        case Kind::Vec3:
+            return std::span(vector).first(3);
+        case Kind::Vec4:
+            return vector;
+        case Kind::Rgb:
+            return rgb;
+        case Kind::Curve:
+        case Kind::Resource:
+            break;
+    }
+    return {};
+}
+
+const char* glsl_type(Kind kind) {
+    switch (kind) {
+        case Kind::Float:
+            return "float";
+        case Kind::Int:
+            return "int";
+        case Kind::Toggle:
+        case Kind::Choice:
+            return "uint";
+        case Kind::Vec2:
+            return "vec2";
+        case Kind::Vec3:
+        case Kind::Rgb:
+            return "vec3";
+        case Kind::Vec4:
+            return "vec4";
+        case Kind::Curve:
+        case Kind::Resource:
+            break;
+    }
+    return "";
+}
+
+std::string block_prefix(const EffectInfo& info, std::uint32_t place) {
+    return fmt::format("{}{}_", info.name, place_suffix(place));
+}
+
+/// The name in a line `#include "NAME"`, else nothing.
+std::string_view included_name(std::string_view line) {
+    constexpr std::string_view directive = "#include \"";
+    if (!line.starts_with(directive)) return {};
+    return line.substr(directive.size(), line.rfind('"') - directive.size());
+}
+
+/// Calls visit(line, number) for each line, without its end.
+template <class Visit>
+void for_each_line(std::string_view text, const Visit& visit) {
+    std::size_t number = 1;
+    for (std::size_t i = 0; i < text.size(); ++number) {
+        const std::size_t end = std::min(text.find('\n', i), text.size());
+        visit(text.substr(i, end - i), number);
+        i = end + 1;
+    }
+}
+
+Result<void> append_with_includes(std::string& out, std::string_view text, const std::string& shown_name, int depth) {
+    out += fmt::format("#line 1 \"{}\"\n", shown_name);
+    Result<void> result;
+    for_each_line(text, [&](std::string_view line, std::size_t number) {
+        const std::string_view name = included_name(line);
+        if (!result) return;
+        if (name.empty()) {
+            out.append(line).push_back('\n');
+            return;
+        }
+        const std::string_view included = file_text(shared_files(), name);
+        if (included.empty() || depth > 8) {
+            result = user_error(fmt::format("{}:{}: #include \"{}\": there is no such file in effects/shared",
+                                            shown_name, number, name));
+            return;
+        }
+        result = append_with_includes(out, included, fmt::format("effects/{}", name), depth + 1);
+        out += fmt::format("#line {} \"{}\"\n", number + 1, shown_name);
+    });
+    return result;
+}
+
+/// Lines that include a file of the effect's own folder, replaced by it.
+std::string with_own_files(const EffectInfo& info, std::string_view text, std::string_view shown_name) {
+    std::string out;
+    for_each_line(text, [&](std::string_view line, std::size_t number) {
+        const std::string_view name = included_name(line);
+        const std::string_view included = file_text(info.files, name);
+        if (included.empty())
+            out.append(line).push_back('\n');
+        else
+            out += fmt::format("#line 1 \"effects/{}/{}\"\n{}\n#line {} \"{}\"\n", info.name, name, included,
+                               number + 1, shown_name);
+    });
+    return out;
+}
+
+/// Names in the shared files keep theirs, even where they begin with an effect's name.
+const std::set<std::string_view>& shared_words() {
+    static const std::set<std::string_view> words = [] {
+        std::set<std::string_view> out;
+        for (const EffectFile& file : shared_files()) {
+            gpu::GlslScanner scanner(file.text);
+            for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next())
+                if (token.kind == gpu::Token::Kind::Word) out.insert(token.text);
+        }
+        return out;
+    }();
+    return words;
+}
+
+/// Of a curve the effect makes vectors (PassBuilder::end_constants), of a resource tables.
+bool is_in_block(const ParamInfo& row) { return row.kind != Kind::Curve && row.kind != Kind::Resource; }
+
+}  // namespace
+
+std::uint32_t parameter_words(const ParamTable& table) {
+    std::uint32_t words = 0;
+    for (const ParamInfo& row : table.rows)
+        if (is_in_block(row)) words += row.words;
+    return words;
+}
+
+void write_parameters(const ParamTable& table, std::span<const std::uint32_t> words, std::span<std::uint32_t> out) {
+    auto place = out.begin();
+    for (const ParamInfo& row : table.rows)
+        if (is_in_block(row)) place = std::copy_n(words.begin() + row.word, row.words, place);
+}
+
+std::string place_suffix(std::uint32_t place) { return fmt::format("_e{}", place); }
+
+std::span<const gpu::BlockMember> frame_members() {
+    using enum gpu::BlockMember::Type;
+    static const std::array<gpu::BlockMember, 11> members{{{Float, "frame_time"},
+                                                           {Float, "frame_delta_time"},
+                                                           {Uint, "frame_index"},
+                                                           {Uint, "frame_view"},
+                                                           {Vec4, "frame_projection_scale"},
+                                                           {Vec4, "frame_projection_offset"},
+                                                           {Vec4, "frame_view_to_world_x"},
+                                                           {Vec4, "frame_view_to_world_y"},
+                                                           {Vec4, "frame_view_to_world_z"},
+                                                           {Vec4, "frame_ray"},
+                                                           {Vec4, "frame_ray_flat"}}};
+    return members;
+}
+
+CameraBlock camera_block(const Camera& camera) {
+    const Matrix& p = camera.projection;
+    const Matrix& v = camera.view;
+    // The picture's v runs down, so where clip space has y up its row changes sign.
+    const float down = camera.is_y_down ? 1.0f : -1.0f;
+    CameraBlock out{p[0], p[5] * down, p[8], p[9] * down, p[12], p[13] * down, p[11], p[15]};
+    // The view matrix turns and moves, so its inverse is the transposed turn, and the eye is -R^T t.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        float eye = 0;
+        for (std::size_t row = 0; row < 3; ++row) {
+            const float entry = v[axis * 4 + row];
+            out[8 + axis * 4 + row] = entry;
+            eye -= entry * v[12 + row];
+        }
+        out[8 + axis * 4 + 3] = eye;
+    }
+    // x and y of view space, solved from those of clip space: (uv * ray.xy + ray.zw) * planar + uv * flat.xy + flat.zw.
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const float scale = out[axis], shear = out[2 + axis], offset = out[4 + axis];
+        out[20 + axis] = -2 * p[11] / scale;
+        out[22 + axis] = (p[11] + shear) / scale;
+        out[24 + axis] = 2 * p[15] / scale;
+        out[26 + axis] = (-p[15] - offset) / scale;
+    }
+    return out;
+}
+
+bool rays_meet(const Camera& camera) {
+    const Matrix& p = camera.projection;
+    return p[11] != 0 && p[15] == 0 && p[12] == 0 && p[13] == 0;
+}
+
+gpu::BlockMember finish_member() { return {gpu::BlockMember::Type::Uint, "finish_"}; }
+
+void append_header_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
+    using enum gpu::BlockMember::Type;
+    const std::string prefix = block_prefix(info, place);
+    out.push_back({Uint, prefix + "enabled_"});
+    out.push_back({Float, prefix + "opacity_"});
+    out.push_back({Uint, prefix + "blend_"});
+}
+
+void append_parameter_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
+    const std::string prefix = block_prefix(info, place);
+    for (const ParamInfo& row : info.parameters.rows) {
+        const std::string name = fmt::format("{}{}", prefix, row.name);
+        for (const Scalar& scalar : scalars_of(row.kind)) out.push_back({scalar.type, name + scalar.suffix});
+    }
+}
+
+namespace {
+
+/// `struct Bloom { float intensity; ... };` and a constant for every choice: Bloom_mode_additive.
+std::string parameter_struct(const ParamTable& table) {
+    std::string members, constants;
+    for (const ParamInfo& row : table.rows) {
+        if (!is_in_block(row)) continue;
+        members += fmt::format("    {} {};\n", glsl_type(row.kind), row.name);
+        for (std::size_t i = 0; i < row.choices.size(); ++i)
+            constants += fmt::format("const uint {}_{}_{} = {}u;\n", table.struct_name, row.name, row.choices[i], i);
+    }
+    if (members.empty()) members = "    uint unused_;\n";
+    return fmt::format("struct {} {{\n{}}};\n{}", table.struct_name, members, constants);
+}
+
+/// `Bloom bloom_parameters_e3() { return Bloom(bloom_e3_intensity, ...); }`
+std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::span<const Baked> baked) {
+    const std::string prefix = block_prefix(info, place);
+    std::string arguments;
+    for (const ParamInfo& row : info.parameters.rows) {
+        if (!is_in_block(row)) continue;
+        if (!arguments.empty()) arguments += ", ";
+        if (const auto found = std::ranges::find(baked, &row, &Baked::row); found != baked.end()) {
+            arguments += fmt::format("{}({}u)", glsl_type(row.kind), found->value);
+            continue;
+        }
+        std::string components;
+        for (const Scalar& scalar : scalars_of(row.kind))
+            components += fmt::format("{}{}{}{}", components.empty() ? "" : ", ", prefix, row.name, scalar.suffix);
+        arguments += fmt::format("{}({})", glsl_type(row.kind), components);
+    }
+    if (arguments.empty()) arguments = "0u";
+    return fmt::format("{0} {1}_parameters{2}() {{\n    return {0}({3});\n}}\n", info.parameters.struct_name, info.name,
+                       place_suffix(place), arguments);
+}
+
+}  // namespace
+
+Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, std::uint32_t place,
+                               std::span<const std::string> images) {
+    const EffectFile* const own = find_file(info.files, file);
+    const std::string_view text = own != nullptr ? own->text : file_text(shared_files(), file);
+    const bool is_shared = own == nullptr && !text.empty();
+    std::string shown = is_shared ? fmt::format("effects/{}", file) : fmt::format("effects/{}/{}", info.name, file);
+    if (own != nullptr && !own->shown.empty()) shown = own->shown;
+    const std::string expanded = with_own_files(info, text, shown);
+    if (expanded.empty()) return user_error(fmt::format("{}: there is no such file", shown));
+
+    EffectText out;
+    std::set<std::string_view> members;
+    const std::string prefix = std::string(info.name) + "_", loader = prefix + "parameters";
+    std::string renamed;
+    std::string_view function, before;
+    gpu::GlslScanner scanner(expanded);
+    for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next()) {
+        renamed += token.text;
+        if (token.kind == gpu::Token::Kind::Blank) continue;
+        const bool is_loaded =
+            before == "(" && (function == "load" || function == "load_clamped" || function == "size");
+        if (token.kind == gpu::Token::Kind::Word && token.text == "picture") out.loads_picture_alone &= is_loaded;
+        if (token.kind == gpu::Token::Kind::Directive && token.text.find("picture") != std::string_view::npos)
+            out.loads_picture_alone = false;
+        function = std::exchange(before, token.text);
+        if (token.kind == gpu::Token::Kind::Member) members.insert(token.text);
+        if (token.kind != gpu::Token::Kind::Word) continue;
+        const bool is_own =
+            (token.text == info.name || token.text.starts_with(prefix)) && !shared_words().contains(token.text);
+        if (is_own || std::ranges::find(images, token.text) != images.end()) renamed += place_suffix(place);
+        out.asks_sizes |= token.text == "input_is_twice" || token.text == "output_is_twice";
+        out.asks_parameters |= token.text == loader;
+    }
+    for (const ParamInfo& row : info.parameters.rows) {
+        const bool may_be_literal = row.is_loop_count || row.kind == Kind::Choice || row.kind == Kind::Toggle;
+        if (may_be_literal && members.contains(row.name)) out.literal_rows.push_back(&row);
+    }
+    if (auto ok = append_with_includes(out.glsl, renamed, shown, 0); !ok) return failure(std::move(ok));
+    out.asks_rays_meet = out.glsl.find("rays_meet") != std::string::npos;
+    return out;
+}
+
+std::string pass_body(const FusedStep& step) {
+    if (!step.text->asks_parameters) return step.text->glsl;
+    return parameter_struct(step.info->parameters) + parameter_loader(*step.info, step.place, step.baked) +
+           step.text->glsl;
+}
+
+namespace {
+
+/// What the text of a step reads its second picture by: the steps before it hold its reading, if it has one.
+std::string second_function(const FusedStep& step, std::span<const FusedStep> before) {
+    const std::string suffix = place_suffix(step.place), image = "second" + suffix;
+    const std::string name = fmt::format("{}_second{}", step.info->name, suffix);
+    const bool has_reading = std::ranges::any_of(before, [&](const FusedStep& other) { return other.reads == image; });
+    if (has_reading) return reading_function(name, image, before);
+    const std::string_view how = step.is_second_resampled ? "sample_linear({0}, pixel.uv)" : "load({0}, pixel.texel)";
+    return fmt::format("vec4 {}(Pixel pixel) {{ return {}; }}\n", name, fmt::format(fmt::runtime(how), image));
+}
+
+}  // namespace
+
+bool is_moved(std::span<const FusedStep> steps) {
+    if (steps.empty() || steps.front().is_merge) return false;
+    return steps.front().info->touch == Touch::Warp || steps.front().reads == picture_name;
+}
+
+Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha) {
+    std::string declarations, code;
+    std::set<std::string_view> structs;
+    bool has_merge = false, has_reading = false, reads_picture = false, has_wrap = false;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const FusedStep& step = steps[i];
+        const std::string suffix = place_suffix(step.place), prefix = block_prefix(*step.info, step.place);
+        const bool is_of_reading = !step.reads.empty();
+        has_reading |= is_of_reading;
+        if (step.info->has_second_in_place && !step.is_merge) declarations += second_function(step, steps.first(i));
+        if (!step.is_merge) {
+            if (structs.insert(step.info->parameters.struct_name).second)
+                declarations += parameter_struct(step.info->parameters);
+            declarations += parameter_loader(*step.info, step.place, step.baked);
+            if (step.custom_vectors > 0)
+                declarations += fmt::format("vec4 {}_custom{}(int index) {{ return custom[{} + index]; }}\n",
+                                            step.info->name, suffix, step.first_vector);
+            if (step.info->touch == Touch::Tap)
+                declarations += fmt::format("vec4 {}_read{}(vec2 uv) {{ return sample_linear({}, uv); }}\n",
+                                            step.info->name, suffix, step.reads);
+            declarations += step.text->glsl;
+        }
+        if (is_of_reading && !step.is_layer) {
+            reads_picture |= step.reads == picture_name;
+            continue;
+        }
+        if (step.is_layer) declarations += reading_function("reading_" + suffix, picture_name, {&step, 1});
+        std::string layer = step.is_merge   ? fmt::format("load(layer{}, pixel.texel)", suffix)
+                            : step.is_layer ? fmt::format("reading_{}(pixel)", suffix)
+                            : step.info->touch == Touch::Warp
+                                ? fmt::format("{0}{1}(pixel, {0}_parameters{1}())", step.info->name, suffix)
+                                : fmt::format("{0}{1}(color, pixel, {0}_parameters{1}())", step.info->name, suffix);
+        if (!step.is_plain) {
+            has_merge = true;
+            const std::string opacity =
+                step.has_mask ? fmt::format("{}opacity_ * mask_weight(load(mask{}, pixel.texel))", prefix, suffix)
+                              : fmt::format("{}opacity_", prefix);
+            layer = fmt::format("merge_layer(color, {}, {}, {}blend_)", layer, opacity, prefix);
+        }
+        if (step.is_wrapped) {
+            has_wrap = true;
+            declarations += fmt::format(
+                "vec4 wrapped{}(vec4 color, Pixel pixel) {{\n    color.rgb = srgb_encode_unbounded(color.rgb);\n"
+                "    color = {};\n    return vec4(srgb_decode_unbounded(color.rgb), color.a);\n}}\n",
+                suffix, layer);
+            layer = fmt::format("wrapped{}(color, pixel)", suffix);
+        }
+        code += step.is_certain ? fmt::format("    color = {};\n", layer)
+                                : fmt::format("    if ({}enabled_ != 0u) color = {};\n", prefix, layer);
+    }
+    if (reads_picture) declarations += reading_function("reading_picture", picture_name, steps);
+
+    std::string helpers;
+    const auto include = [&](std::string_view name) {
+        return append_with_includes(helpers, file_text(shared_files(), name), fmt::format("effects/{}", name), 0);
+    };
+    if (has_merge)
+        if (auto ok = include("shared/merge.glsl"); !ok) return failure(std::move(ok));
+    if (has_reading)
+        if (auto ok = include("shared/place.glsl"); !ok) return failure(std::move(ok));
+    if (has_wrap)
+        if (auto ok = include("shared/srgb_unbounded.glsl"); !ok) return failure(std::move(ok));
+    if (finish != Finish::None) {
+        if (auto ok = include("shared/srgb.glsl"); !ok) return failure(std::move(ok));
+        for (const auto& [kind, call] : {std::pair{Finish::EncodeSrgb, "color.rgb = srgb_encode(color.rgb);"},
+                                         std::pair{Finish::DecodeSrgb, "color.rgb = srgb_decode(color.rgb);"}}) {
+            if (finish == Finish::OfFrame)
+                code += fmt::format("    if (finish_ == {}u) {}\n", static_cast<unsigned>(kind), call);
+            else if (finish == kind)
+                code += fmt::format("    {}\n", call);
+        }
+    }
+    std::string_view read = is_moved(steps) ? "load_clamped(picture, pixel.texel)" : "load(picture, pixel.texel)";
+    if (resampling == Resampling::Linear) read = "sample_linear(picture, pixel.uv)";
+    // The texel under the pixel's centre; in integers, because a product of floats may fall short of it.
+    if (resampling == Resampling::Nearest)
+        read = "load_clamped(picture, (2 * pixel.texel + 1) * size(picture) / (2 * pixel.size))";
+    if (reads_picture) read = "reading_picture(pixel)";
+    if (is_alpha) read = "vec4(vec3(clamp(load(picture, pixel.texel).a, 0.0, 1.0)), 1.0)";
+    return fmt::format(
+        "{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",
+        helpers, declarations, read, code);
+}
+
+}  // namespace darkroom::plan

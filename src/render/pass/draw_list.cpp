@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "render/pass/draw_list.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace darkroom::render {
+
+namespace {
+
+using scene::Instance;
+using scene::Snapshot;
+using scene::SurfaceBlend;
+
+/// What one call cannot change: pipeline state and textures.
+using SurfaceKey = std::array<std::uint32_t, 19>;
+
+SurfaceKey surface_key(const scene::SnapshotMaterial& material) {
+    const scene::ModelMaterial& surface = material.surface;
+    const std::array textures{&surface.base_color_texture, &surface.metallic_roughness_texture, &surface.normal_texture,
+                              &surface.occlusion_texture, &surface.emissive_texture};
+    SurfaceKey key{};
+    std::size_t next = 0;
+    key[next++] = static_cast<std::uint32_t>(surface.blend);
+    key[next++] = static_cast<std::uint32_t>(material.writes);
+    key[next++] = surface.is_double_sided ? 1 : 0;
+    key[next++] = material.model;
+    key[next++] = material.entity_texture;
+    for (const scene::Texture* texture : textures) {
+        key[next++] = texture->image;
+        key[next++] = static_cast<std::uint32_t>(texture->wrap_u) + 4 * static_cast<std::uint32_t>(texture->wrap_v) +
+                      16 * (texture->is_nearest ? 1U : 0U);
+    }
+    return key;
+}
+
+/// A number for each material; equal ones have equal surfaces, and smaller ones come first.
+std::vector<std::uint32_t> surface_numbers(const Snapshot& snapshot) {
+    std::map<SurfaceKey, std::vector<std::uint32_t>> groups;
+    for (std::uint32_t i = 0; i < snapshot.materials.size(); ++i)
+        groups[surface_key(snapshot.materials[i])].push_back(i);
+    std::vector<std::uint32_t> numbers(snapshot.materials.size());
+    std::uint32_t number = 0;
+    for (const auto& [key, members] : groups) {
+        for (const std::uint32_t member : members) numbers[member] = number;
+        ++number;
+    }
+    return numbers;
+}
+
+struct Entry {
+    std::uint32_t instance = 0;
+    std::uint32_t surface = 0;  ///< of surface_numbers()
+    bool is_skinned = false, is_mirrored = false;
+    scene::MeshId mesh;
+    float distance = 0;  ///< along the view axis
+
+    [[nodiscard]] auto state() const { return std::tie(is_skinned, is_mirrored, surface, mesh); }
+};
+
+bool is_transparent(const Snapshot& snapshot, const Instance& instance) {
+    const scene::SnapshotMaterial& material = snapshot.materials[instance.material];
+    const SurfaceBlend blend = material.surface.blend;
+    // What only writes alpha comes after everything that may hide it.
+    return material.writes == scene::Writes::Alpha || (blend != SurfaceBlend::Opaque && blend != SurfaceBlend::Mask);
+}
+
+void append(DrawList& list, std::vector<Batch>& batches, std::span<const Entry> entries, const Snapshot& snapshot) {
+    const Entry* last = nullptr;
+    for (const Entry& entry : entries) {
+        if (last == nullptr || last->state() != entry.state()) {
+            batches.push_back({.mesh = entry.mesh,
+                               .first = static_cast<std::uint32_t>(list.order.size()),
+                               .material = snapshot.instances[entry.instance].material,
+                               .is_skinned = entry.is_skinned,
+                               .is_mirrored = entry.is_mirrored});
+        }
+        ++batches.back().count;
+        list.order.push_back(entry.instance);
+        last = &entry;
+    }
+}
+
+Entry make_entry(const Snapshot& snapshot, std::uint32_t index, std::span<const std::uint32_t> surfaces) {
+    const Instance& instance = snapshot.instances[index];
+    const scene::vec4 center(instance.bounds.center(), 1);
+    const scene::mat4& view = snapshot.camera.view;
+    return {.instance = index,
+            .surface = surfaces[instance.material],
+            .is_skinned = instance.first_joint != scene::no_index,
+            .is_mirrored = instance.is_mirrored,
+            .mesh = instance.mesh,
+            .distance = -(view[0].z * center.x + view[1].z * center.y + view[2].z * center.z + view[3].z)};
+}
+
+void sort_by_state(std::vector<Entry>& entries) {
+    std::ranges::sort(entries, [](const Entry& a, const Entry& b) {
+        return std::tie(a.is_skinned, a.is_mirrored, a.surface, a.mesh, a.instance) <
+               std::tie(b.is_skinned, b.is_mirrored, b.surface, b.mesh, b.instance);
+    });
+}
+
+/// Within a batch the nearest first: what they hide costs no shading then.
+void sort_near_to_far(std::vector<Entry>& entries) {
+    sort_by_state(entries);
+    for (auto first = entries.begin(); first != entries.end();) {
+        const auto last =
+            std::find_if(first, entries.end(), [&](const Entry& e) { return e.state() != first->state(); });
+        std::stable_sort(first, last, [](const Entry& a, const Entry& b) { return a.distance < b.distance; });
+        first = last;
+    }
+}
+
+}  // namespace
+
+// Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes from the World-View-Projection Matrix", 2001.
+Frustum::Frustum(const scene::mat4& world_to_clip) {
+    const scene::mat4 rows = glm::transpose(world_to_clip);
+    planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[2], rows[3] - rows[2]};
+}
+
+bool Frustum::touches(const scene::Box& box) const {
+    if (box.is_empty()) return false;
+    return std::ranges::all_of(planes, [&](const scene::vec4& plane) {
+        const scene::vec3 furthest(plane.x >= 0 ? box.high.x : box.low.x, plane.y >= 0 ? box.high.y : box.low.y,
+                                   plane.z >= 0 ? box.high.z : box.low.z);
+        return plane.x * furthest.x + plane.y * furthest.y + plane.z * furthest.z + plane.w >= 0;
+    });
+}
+
+DrawList draw_list(const Snapshot& snapshot) {
+    DrawList list;
+    const Frustum frustum(snapshot.camera.projection * snapshot.camera.view);
+    const std::vector<std::uint32_t> surfaces = surface_numbers(snapshot);
+    std::vector<Entry> opaque, transparent, wireframe;
+    for (std::uint32_t i = 0; i < snapshot.instances.size(); ++i) {
+        const Instance& instance = snapshot.instances[i];
+        if (!frustum.touches(instance.bounds)) {
+            ++list.culled;
+            continue;
+        }
+        const Entry entry = make_entry(snapshot, i, surfaces);
+        if (instance.is_wireframe) {
+            wireframe.push_back(entry);
+        } else if (is_transparent(snapshot, instance)) {
+            transparent.push_back(entry);
+        } else {
+            opaque.push_back(entry);
+        }
+    }
+    sort_near_to_far(opaque);
+    sort_by_state(wireframe);
+    std::ranges::stable_sort(transparent, [](const Entry& a, const Entry& b) { return a.distance > b.distance; });
+    append(list, list.opaque, opaque, snapshot);
+    append(list, list.transparent, transparent, snapshot);
+    append(list, list.wireframe, wireframe, snapshot);
+    return list;
+}
+
+DrawList caster_list(const Snapshot& snapshot, const scene::mat4& world_to_cascade) {
+    DrawList list;
+    const Frustum frustum(world_to_cascade);
+    const std::vector<std::uint32_t> surfaces = surface_numbers(snapshot);
+    std::vector<Entry> opaque, transparent;
+    for (std::uint32_t i = 0; i < snapshot.instances.size(); ++i) {
+        const Instance& instance = snapshot.instances[i];
+        const bool casts = instance.casts_shadow && !instance.is_wireframe &&
+                           snapshot.materials[instance.material].writes == scene::Writes::All;
+        if (!casts) continue;
+        if (!frustum.touches(instance.bounds)) {
+            ++list.culled;
+            continue;
+        }
+        (is_transparent(snapshot, instance) ? transparent : opaque).push_back(make_entry(snapshot, i, surfaces));
+    }
+    sort_by_state(opaque);
+    sort_by_state(transparent);
+    append(list, list.opaque, opaque, snapshot);
+    append(list, list.transparent, transparent, snapshot);
+    return list;
+}
+
+}  // namespace darkroom::render

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "render/pass/resolve.hpp"
+
+#include <fmt/format.h>
+
+#include "render/shader_text.hpp"
+
+namespace darkroom::render {
+
+namespace {
+
+/// shader_text() begins with a version line, which kernels have of their own.
+std::string body_of(std::string_view name) {
+    const std::string text = shader_text(name);
+    return text.substr(text.find("#line"));
+}
+
+gpu::KernelSpec spec_of(const TargetFormats& formats, std::array<std::uint32_t, 2> workgroup) {
+    gpu::KernelSpec spec{.name = "scene resolve",
+                         .images = {},
+                         .outputs = {VK_FORMAT_R32_SFLOAT},
+                         .is_whole = true,
+                         .frame = {},
+                         .members = {},
+                         .custom_vectors = 1,
+                         .body = body_of("resolve.glsl")};
+    spec.workgroup = workgroup;
+    if (formats.samples == VK_SAMPLE_COUNT_1_BIT) {
+        spec.images = {{.name = "drawn_depth"}};
+        spec.body += body_of("resolve_one.glsl");
+        return spec;
+    }
+    for (const char* name : {"drawn_color", "drawn_normals", "drawn_velocity", "drawn_depth"})
+        spec.images.push_back({.name = name, .sampler_type = "sampler2DMS"});
+    spec.outputs = {formats.color, formats.normals, formats.velocity, VK_FORMAT_R32_SFLOAT};
+    spec.body += fmt::format("const int samples = {};\n", static_cast<int>(formats.samples));
+    spec.body += body_of("resolve_many.glsl");
+    return spec;
+}
+
+gpu::Region whole(const Targets& targets) {
+    const VkExtent3D size = targets.color.info.extent;
+    return {.extent = {size.width, size.height}, .image = {size.width, size.height}};
+}
+
+std::vector<gpu::Binding> inputs_of(const Targets& targets) {
+    std::vector<const gpu::Image*> images{&targets.depth};
+    if (targets.is_multi_sampled())
+        images = {&targets.many_color, &targets.many_normals, &targets.many_velocity, &targets.depth};
+    std::vector<gpu::Binding> out;
+    for (const gpu::Image* image : images)
+        out.push_back({.view = image->view, .region = whole(targets), .is_nearest = true});
+    return out;
+}
+
+std::vector<gpu::Binding> outputs_of(const Targets& targets) {
+    std::vector<const gpu::Image*> images{&targets.planar_depth};
+    if (targets.is_multi_sampled())
+        images = {&targets.color, &targets.normals, &targets.velocity, &targets.planar_depth};
+    std::vector<gpu::Binding> out;
+    for (const gpu::Image* image : images) out.push_back({.view = image->view, .region = whole(targets)});
+    return out;
+}
+
+}  // namespace
+
+Result<Resolve> Resolve::create(gpu::Context& context, const TargetFormats& formats, std::uint32_t slots) {
+    Resolve out;
+    out.context_ = &context;
+    const gpu::KernelSpec spec = spec_of(formats, gpu::usual_workgroup(context));
+    Result<std::unique_ptr<gpu::Kernel>> kernel =
+        gpu::Kernel::create(context, spec, gpu::preferred_stage(context, spec));
+    if (!kernel) return failure(std::move(kernel));
+    out.kernel_ = std::move(*kernel);
+    const std::vector<VkDescriptorSetLayout> layouts(slots, out.kernel_->set_layout());
+    Result<gpu::DescriptorSets> sets = gpu::DescriptorSets::create(context, layouts);
+    if (!sets) return failure(std::move(sets));
+    out.sets_ = std::move(*sets);
+    const VkDeviceSize alignment = context.traits.uniform_alignment;
+    out.block_stride_ = (gpu::own_block_size(spec) + alignment - 1) / alignment * alignment;
+    Result<gpu::Buffer> blocks = gpu::Buffer::create(context, out.block_stride_ * slots, gpu::block_usage,
+                                                     gpu::Memory::Kind::Constants, "blocks of the scene's resolve");
+    if (!blocks) return failure(std::move(blocks));
+    out.blocks_ = std::move(*blocks);
+    return out;
+}
+
+ResolveUse Resolve::use() const {
+    if (kernel_->stage() == gpu::Stage::Raster) return {};
+    return {.stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+            .write_stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+            .write_access = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+            .write_layout = VK_IMAGE_LAYOUT_GENERAL};
+}
+
+void Resolve::prepare(const scene::CameraState& camera, const Targets& targets, std::uint32_t slot) {
+    const std::array<std::array<float, 4>, 1> custom{std::array{
+        camera.near_distance, camera.far_distance, camera.kind == scene::Projection::Perspective ? 1.0F : 0.0F, 0.0F}};
+    const std::vector<gpu::Binding> inputs = inputs_of(targets);
+    gpu::write_own_block(kernel_->spec(), whole(targets), inputs, custom, {},
+                         {blocks_.memory.mapped + slot * block_stride_, gpu::own_block_size(kernel_->spec())});
+}
+
+void Resolve::record(VkCommandBuffer commands, const Targets& targets, std::uint32_t slot) const {
+    const std::vector<gpu::Binding> inputs = inputs_of(targets), outputs = outputs_of(targets);
+    const VkDescriptorSet set = sets_.sets[slot];
+    kernel_->write_set({.set = set,
+                        .own = {blocks_.handle, slot * block_stride_, gpu::own_block_size(kernel_->spec())},
+                        .images = inputs,
+                        .outputs = outputs});
+    kernel_->record(commands, set, outputs);
+}
+
+}  // namespace darkroom::render

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "render/upload/upload.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace darkroom::render {
+
+namespace {
+
+/// Beyond this much staging memory a submission is worth its wait.
+constexpr std::size_t most_staged_bytes = std::size_t{256} << 20U;
+
+}  // namespace
+
+Result<VkBuffer> Uploader::stage(std::size_t size, std::byte*& mapped) {
+    if (staged_bytes_ > 0 && staged_bytes_ + size > most_staged_bytes)
+        if (Result<> flushed = flush(); !flushed) return failure(std::move(flushed));
+    Result<gpu::Buffer> staging = gpu::Buffer::create(*context_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                      gpu::Memory::Kind::Upload, "staging of scene assets");
+    if (!staging) return failure(std::move(staging));
+    mapped = staging->memory.mapped;
+    staged_bytes_ += size;
+    staging_.push_back(std::move(*staging));
+    return staging_.back().handle;
+}
+
+Result<gpu::Buffer> Uploader::buffer(std::span<const std::byte> bytes, VkBufferUsageFlags usage, std::size_t least_size,
+                                     std::string_view name) {
+    const std::size_t size = std::max(bytes.size(), least_size);
+    Result<gpu::Buffer> made =
+        gpu::Buffer::create(*context_, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::Memory::Kind::Device, name);
+    if (!made) return made;
+    std::byte* mapped = nullptr;
+    const Result<VkBuffer> source = stage(size, mapped);
+    if (!source) return failure(source.error());
+    std::ranges::copy(bytes, mapped);
+    std::fill(mapped + bytes.size(), mapped + size, std::byte{0});
+    buffer_copies_.push_back({*source, made->handle, size});
+    return made;
+}
+
+Result<> Uploader::image(gpu::Image& out, VkFormat format, std::span<const Level> levels, std::string_view name) {
+    Result<gpu::Image> made =
+        gpu::Image::create(*context_, {.name = std::string(name),
+                                       .format = format,
+                                       .extent = {levels[0].width, levels[0].height, 1},
+                                       .mip_levels = static_cast<std::uint32_t>(levels.size()),
+                                       .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+    if (!made) return failure(std::move(made));
+    out = std::move(*made);
+    std::size_t size = 0;
+    for (const Level& level : levels) size += level.rgba.size();
+    std::byte* mapped = nullptr;
+    const Result<VkBuffer> source = stage(size, mapped);
+    if (!source) return failure(source.error());
+    ImageCopy copy{.source = *source, .target = &out, .regions = {}};
+    std::size_t offset = 0;
+    for (const Level& level : levels) {
+        std::memcpy(mapped + offset, level.rgba.data(), level.rgba.size());
+        copy.regions.push_back({.bufferOffset = offset,
+                                .imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT,
+                                                     .mipLevel = static_cast<std::uint32_t>(copy.regions.size()),
+                                                     .layerCount = 1},
+                                .imageExtent = {level.width, level.height, 1}});
+        offset += level.rgba.size();
+    }
+    image_copies_.push_back(std::move(copy));
+    return {};
+}
+
+Result<> Uploader::flush() {
+    if (buffer_copies_.empty() && image_copies_.empty()) return {};
+    const gpu::Dispatch& vk = context_->vk;
+    Result<> done = gpu::submit_and_wait(*context_, "uploading the scene's assets", [&](VkCommandBuffer commands) {
+        for (const BufferCopy& copy : buffer_copies_) {
+            const VkBufferCopy region{.size = copy.size};
+            vk.CmdCopyBuffer(commands, copy.source, copy.target, 1, &region);
+        }
+        for (const ImageCopy& copy : image_copies_) {
+            gpu::transition(*context_, commands, *copy.target, VK_IMAGE_LAYOUT_UNDEFINED,
+                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+            vk.CmdCopyBufferToImage(commands, copy.source, copy.target->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                    static_cast<std::uint32_t>(copy.regions.size()), copy.regions.data());
+            gpu::transition(*context_, commands, *copy.target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                            VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        }
+        const VkMemoryBarrier2 written{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                       .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+                                       .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                       .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &written};
+        vk.CmdPipelineBarrier2(commands, &dependency);
+    });
+    buffer_copies_.clear();
+    image_copies_.clear();
+    staging_.clear();
+    staged_bytes_ = 0;
+    return done;
+}
+
+}  // namespace darkroom::render

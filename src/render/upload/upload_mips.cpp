@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "render/upload/upload_mips.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace darkroom::render {
+
+namespace {
+
+constexpr std::size_t steps = 65536;
+
+/// IEC 61966-2-1.
+float decode_srgb(float encoded) {
+    return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
+float encode_srgb(float linear) {
+    return linear <= 0.0031308F ? linear * 12.92F : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
+}
+
+const std::array<float, 256>& decoded_bytes(bool is_srgb) {
+    static const auto make = [](bool decodes) {
+        std::array<float, 256> table{};
+        for (std::size_t i = 0; i < table.size(); ++i) {
+            const float value = static_cast<float>(i) / 255;
+            table[i] = decodes ? decode_srgb(value) : value;
+        }
+        return table;
+    };
+    static const std::array<float, 256> srgb = make(true), linear = make(false);
+    return is_srgb ? srgb : linear;
+}
+
+std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 1.0F) * 255 + 0.5F); }
+
+std::uint8_t encoded_byte(float linear) {
+    static const std::vector<std::uint8_t> table = [] {
+        std::vector<std::uint8_t> made(steps);
+        for (std::size_t i = 0; i < steps; ++i)
+            made[i] = to_byte(encode_srgb(static_cast<float>(i) / (static_cast<float>(steps) - 1)));
+        return made;
+    }();
+    return table[static_cast<std::size_t>(std::clamp(linear, 0.0F, 1.0F) * (static_cast<float>(steps) - 1) + 0.5F)];
+}
+
+/// Taps of one output along one axis.
+struct Taps {
+    std::uint32_t first = 0, count = 1;
+    std::array<float, 3> weights{1, 0, 0};
+};
+
+Taps taps_of(std::uint32_t output, std::uint32_t size) {
+    if (size == 1) return {};
+    if (size % 2 == 0) return {.first = 2 * output, .count = 2, .weights = {0.5F, 0.5F, 0}};
+    const auto n = static_cast<float>(size), half = static_cast<float>(size / 2), i = static_cast<float>(output);
+    return {.first = 2 * output, .count = 3, .weights = {(half - i) / n, half / n, (i + 1) / n}};
+}
+
+/// Linear numbers of a level, four a pixel.
+struct LinearLevel {
+    std::uint32_t width = 0, height = 0;
+    std::vector<float> values;
+};
+
+/// `source(index)`: the linear number at that place.
+template <class Source>
+LinearLevel halved(std::uint32_t width, std::uint32_t height, const Source& source) {
+    LinearLevel out{.width = std::max(width / 2, 1U), .height = std::max(height / 2, 1U), .values = {}};
+    out.values.resize(std::size_t{out.width} * out.height * 4);
+    float* value = out.values.data();
+    for (std::uint32_t y = 0; y < out.height; ++y) {
+        const Taps down = taps_of(y, height);
+        for (std::uint32_t x = 0; x < out.width; ++x, value += 4) {
+            const Taps across = taps_of(x, width);
+            for (std::uint32_t j = 0; j < down.count; ++j) {
+                for (std::uint32_t i = 0; i < across.count; ++i) {
+                    const std::size_t place = (std::size_t{down.first + j} * width + across.first + i) * 4;
+                    const float weight = down.weights[j] * across.weights[i];
+                    for (std::size_t channel = 0; channel < 4; ++channel)
+                        value[channel] += weight * source(place + channel);
+                }
+            }
+        }
+    }
+    return out;
+}
+
+MipLevel encoded(const LinearLevel& level, bool is_srgb) {
+    MipLevel out{.width = level.width, .height = level.height, .rgba = {}};
+    out.rgba.resize(level.values.size());
+    for (std::size_t i = 0; i < out.rgba.size(); ++i)
+        out.rgba[i] = is_srgb && i % 4 != 3 ? encoded_byte(level.values[i]) : to_byte(level.values[i]);
+    return out;
+}
+
+}  // namespace
+
+std::vector<MipLevel> mip_levels(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba,
+                                 bool is_srgb) {
+    std::vector<MipLevel> levels;
+    if (width <= 1 && height <= 1) return levels;
+    const std::array<float, 256>& color = decoded_bytes(is_srgb);
+    const std::array<float, 256>& alpha = decoded_bytes(false);
+    LinearLevel level = halved(
+        width, height, [&](std::size_t place) { return place % 4 == 3 ? alpha[rgba[place]] : color[rgba[place]]; });
+    levels.push_back(encoded(level, is_srgb));
+    while (level.width > 1 || level.height > 1) {
+        level = halved(level.width, level.height, [&](std::size_t place) { return level.values[place]; });
+        levels.push_back(encoded(level, is_srgb));
+    }
+    return levels;
+}
+
+}  // namespace darkroom::render

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "render/upload/upload_mips.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace darkroom::render {
+namespace {
+
+std::vector<std::uint8_t> picture(std::uint32_t width, std::uint32_t height, auto value) {
+    std::vector<std::uint8_t> rgba;
+    for (std::uint32_t y = 0; y < height; ++y) {
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const auto byte = static_cast<std::uint8_t>(value(x, y));
+            rgba.insert(rgba.end(), {byte, byte, byte, byte});
+        }
+    }
+    return rgba;
+}
+
+TEST(RenderMips, LevelsHalveDownToOnePixel) {
+    const auto grey = picture(13, 6, [](std::uint32_t, std::uint32_t) { return 77; });
+    const std::vector<MipLevel> levels = mip_levels(13, 6, grey, true);
+    ASSERT_EQ(levels.size(), 3U);
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>> sizes{{6, 3}, {3, 1}, {1, 1}};
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+        EXPECT_EQ(levels[i].width, sizes[i].first);
+        EXPECT_EQ(levels[i].height, sizes[i].second);
+        ASSERT_EQ(levels[i].rgba.size(), std::size_t{sizes[i].first} * sizes[i].second * 4);
+        for (const std::uint8_t byte : levels[i].rgba) EXPECT_EQ(byte, 77) << "what is even stays so";
+    }
+    EXPECT_TRUE(mip_levels(1, 1, std::vector<std::uint8_t>(4), false).empty());
+}
+
+TEST(RenderMips, EncodedColoursAreAveragedAsLightAndAlphaIsNot) {
+    const auto checker = picture(2, 2, [](std::uint32_t x, std::uint32_t y) { return (x + y) % 2 * 255; });
+    EXPECT_EQ(mip_levels(2, 2, checker, true)[0].rgba, (std::vector<std::uint8_t>{188, 188, 188, 128}));
+    EXPECT_EQ(mip_levels(2, 2, checker, false)[0].rgba, (std::vector<std::uint8_t>{128, 128, 128, 128}));
+}
+
+TEST(RenderMips, OddSizesKeepTheMean) {
+    for (const std::uint32_t width : {3U, 5U, 7U, 31U}) {
+        const auto ramp = picture(width, 1, [&](std::uint32_t x, std::uint32_t) { return 240 * x / (width - 1); });
+        double sum = 0;
+        for (std::uint32_t x = 0; x < width; ++x) sum += ramp[4 * x];
+        const std::vector<MipLevel> levels = mip_levels(width, 1, ramp, false);
+        EXPECT_NEAR(levels.back().rgba[0], sum / width, width == 3 ? 1.0 : 3.0) << width;
+        const MipLevel& first = levels[0];
+        double half_sum = 0;
+        for (std::uint32_t x = 0; x < first.width; ++x) half_sum += first.rgba[4 * x];
+        EXPECT_NEAR(half_sum / first.width, sum / width, 1) << width << ": every pixel weighs the same";
+    }
+}
+
+TEST(RenderMips, EveryCodeSurvivesDecodingAndEncoding) {
+    for (int code = 0; code < 256; ++code) {
+        const auto flat = picture(2, 1, [&](std::uint32_t, std::uint32_t) { return code; });
+        EXPECT_EQ(mip_levels(2, 1, flat, true)[0].rgba[0], code);
+    }
+}
+
+}  // namespace
+}  // namespace darkroom::render

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// A glTF file whose structure has been checked: the parsing library's tables, the bytes of the buffers, and accessors
+// that are safe to read. It makes nothing of them; the conversions (gltf_convert.hpp) do. This and the files that
+// include it are the only ones that know the library.
+
+#include <tiny_gltf.h>
+
+#include <cstddef>
+#include <darkroom/result.hpp>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/gltf/schema.hpp"
+
+namespace darkroom::scene::gltf {
+
+/// Elements of an accessor as numbers: normalised integers as -1..1 or 0..1, others as they are.
+struct Numbers {
+    std::vector<float> values;
+    std::uint32_t components = 1;
+    std::size_t count = 0;
+};
+
+/// Where the elements of an accessor are. Everything lies inside the buffers.
+struct Layout {
+    std::size_t count = 0;
+    std::uint32_t components = 1;
+    int component_type = 0;
+    bool is_normalized = false;
+    std::span<const std::byte> data;  ///< from the first element; empty: all elements are 0
+    std::size_t stride = 0;
+    std::size_t sparse_count = 0;
+    int sparse_type = 0;
+    std::span<const std::byte> sparse_indices, sparse_values;
+};
+
+/// The encoded bytes of an image, or the file they are in, or what is wrong with it.
+struct ImageSource {
+    std::string name;
+    std::span<const std::byte> bytes;
+    std::vector<std::byte> own_bytes;  ///< of a data URI; `bytes` views them
+    std::filesystem::path file;
+    std::string shown;  ///< what a message calls the file
+    std::string fault;
+};
+
+class Document {
+  public:
+    /// Errors are without the path.
+    [[nodiscard]] static Result<Document> open(const std::filesystem::path& path, Budget budget);
+
+    [[nodiscard]] const tinygltf::Model& model() const { return model_; }
+    [[nodiscard]] Faults& faults() { return faults_; }
+    /// Each once, however many images of the file have the same bytes.
+    [[nodiscard]] std::vector<ImageSource>& images() { return images_; }
+    /// Which of them is an image of the file.
+    [[nodiscard]] std::size_t image_of(int index) const { return image_of_[static_cast<std::size_t>(index)]; }
+
+    /// The error names the accessor and what is wrong with it.
+    [[nodiscard]] Result<const Layout*> layout(int accessor);
+    [[nodiscard]] Result<Numbers> numbers(int accessor);
+    /// Unsigned integers as they are; refuses other types.
+    [[nodiscard]] Result<std::vector<std::uint32_t>> integers(int accessor);
+    /// Accessors are charged to it as they are read: many of them may name the same bytes, or none.
+    [[nodiscard]] Budget& budget() { return budget_; }
+    [[nodiscard]] bool uses_extension(std::string_view name) const;
+
+  private:
+    [[nodiscard]] Result<> load_buffers(nlohmann::json& root, std::span<const std::byte> binary, bool has_binary,
+                                        const std::filesystem::path& folder);
+    [[nodiscard]] Result<> load_buffer(const nlohmann::json& buffer, std::size_t index, std::size_t largest,
+                                       const std::filesystem::path& folder);
+    [[nodiscard]] Result<std::span<const std::byte>> file_of_buffer(const std::filesystem::path& path,
+                                                                    std::size_t most);
+    [[nodiscard]] Result<> parse(nlohmann::json& root);
+    [[nodiscard]] Result<std::span<const std::byte>> view(int index);
+    [[nodiscard]] Result<Layout> make_layout(int accessor);
+    void check_extent(int accessor);
+    [[nodiscard]] Result<> add_sparse(const tinygltf::Accessor& accessor, const std::string& pointer, Layout& layout);
+    void load_images(const nlohmann::json& images, const std::filesystem::path& folder);
+
+    tinygltf::Model model_;
+    Faults faults_;
+    std::vector<std::byte> file_;
+    std::map<std::filesystem::path, std::vector<std::byte>> buffer_files_;  ///< each once, however many name it
+    std::deque<std::vector<std::byte>> data_uris_;
+    std::vector<std::byte> zeros_;  ///< what buffers that are nowhere share
+    std::vector<std::span<const std::byte>> buffers_;
+    std::vector<std::optional<Layout>> layouts_;
+    std::vector<ImageSource> images_;
+    std::vector<std::size_t> image_of_;
+    Budget budget_;
+};
+
+}  // namespace darkroom::scene::gltf

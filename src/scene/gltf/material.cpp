@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "scene/gltf/convert.hpp"
+
+namespace darkroom::scene::gltf {
+namespace {
+
+Wrap wrap_of(int mode) {
+    if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::Clamp;
+    if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::Mirror;
+    return Wrap::Repeat;
+}
+
+double element_of(const tinygltf::Value& object, const std::string& name, int index, double otherwise) {
+    if (!object.IsObject() || !object.Has(name)) return otherwise;
+    const tinygltf::Value& array = object.Get(name);
+    if (!array.IsArray() || index >= static_cast<int>(array.ArrayLen())) return otherwise;
+    const tinygltf::Value& value = array.Get(index);
+    return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+}
+
+// KHR_texture_transform: scale, then rotation, then offset. A positive angle turns the coordinates from u toward -v,
+// which is counter-clockwise where v points down, as the text of the extension and its reference viewer have it.
+mat3 uv_transform_of(const tinygltf::Value& transform) {
+    const float angle = as_float(number_of(transform, "rotation", 0));
+    const float sine = std::sin(angle);
+    const float cosine = std::cos(angle);
+    const float scale_u = as_float(element_of(transform, "scale", 0, 1));
+    const float scale_v = as_float(element_of(transform, "scale", 1, 1));
+    return {vec3(cosine * scale_u, -sine * scale_u, 0), vec3(sine * scale_v, cosine * scale_v, 0),
+            vec3(as_float(element_of(transform, "offset", 0, 0)), as_float(element_of(transform, "offset", 1, 0)), 1)};
+}
+
+class MaterialReader {
+  public:
+    MaterialReader(Document& document, const std::vector<bool>& is_broken, std::string pointer)
+        : document_(document), is_broken_(is_broken), pointer_(std::move(pointer)) {}
+
+    // For every kind of texture info, which share no base class in the library.
+    template <class Info>
+    Result<Texture> read(const Info& info, const char* place) const {
+        Texture texture;
+        if (info.index < 0) return texture;
+        Faults& faults = document_.faults();
+        if (auto checked = faults.check(fmt::format("/textures/{}", info.index)); !checked)
+            return failure(std::move(checked));
+        const tinygltf::Texture& source = document_.model().textures[static_cast<std::size_t>(info.index)];
+        if (source.source < 0) {
+            faults.warn(fmt::format("/textures/{}: has no image that is read here", info.index));
+            return texture;
+        }
+        const std::size_t image = document_.image_of(source.source);
+        if (is_broken_[image]) return texture;
+        texture.image = static_cast<std::uint32_t>(image);
+        if (source.sampler >= 0) {
+            if (auto checked = faults.check(fmt::format("/samplers/{}", source.sampler)); !checked)
+                return failure(std::move(checked));
+            const tinygltf::Sampler& sampler = document_.model().samplers[static_cast<std::size_t>(source.sampler)];
+            texture.wrap_u = wrap_of(sampler.wrapS);
+            texture.wrap_v = wrap_of(sampler.wrapT);
+            texture.is_nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+        }
+        int uv_set = info.texCoord;
+        const auto transform = info.extensions.find("KHR_texture_transform");
+        if (transform != info.extensions.end()) {
+            texture.uv_transform = uv_transform_of(transform->second);
+            uv_set = static_cast<int>(number_of(transform->second, "texCoord", uv_set));
+        }
+        if (uv_set > 1) {
+            faults.warn(fmt::format("{}/{}/texCoord: {}, sets 0 and 1 are read here", pointer_, place, uv_set));
+            uv_set = 0;
+        }
+        texture.uv_set = static_cast<std::uint32_t>(uv_set);
+        return texture;
+    }
+
+  private:
+    Document& document_;
+    const std::vector<bool>& is_broken_;
+    std::string pointer_;
+};
+
+}  // namespace
+
+double number_of(const tinygltf::Value& object, const std::string& name, double otherwise) {
+    if (!object.IsObject() || !object.Has(name)) return otherwise;
+    const tinygltf::Value& value = object.Get(name);
+    return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
+}
+
+Result<ModelMaterial> convert_material(Document& document, std::size_t index, const std::vector<bool>& is_broken) {
+    const std::string pointer = fmt::format("/materials/{}", index);
+    if (auto checked = document.faults().check(pointer); !checked) return failure(std::move(checked));
+    const tinygltf::Material& source = document.model().materials[index];
+    const tinygltf::PbrMetallicRoughness& pbr = source.pbrMetallicRoughness;
+    ModelMaterial material{.name = source.name};
+    for (std::size_t c = 0; c < 4 && c < pbr.baseColorFactor.size(); ++c)
+        material.base_color[static_cast<int>(c)] = as_float(pbr.baseColorFactor[c]);
+    material.metallic = as_float(pbr.metallicFactor);
+    material.roughness = as_float(pbr.roughnessFactor);
+    material.normal_scale = as_float(source.normalTexture.scale);
+    material.occlusion_strength = as_float(source.occlusionTexture.strength);
+    material.alpha_cutoff = as_float(source.alphaCutoff);
+    material.is_double_sided = source.doubleSided;
+    material.is_unlit = source.extensions.contains("KHR_materials_unlit");
+    double strength = 1;
+    if (const auto found = source.extensions.find("KHR_materials_emissive_strength"); found != source.extensions.end())
+        strength = number_of(found->second, "emissiveStrength", 1);
+    for (std::size_t c = 0; c < 3 && c < source.emissiveFactor.size(); ++c)
+        material.emissive[static_cast<int>(c)] = as_float(source.emissiveFactor[c] * strength);
+    if (source.alphaMode == "MASK")
+        material.blend = SurfaceBlend::Mask;
+    else if (source.alphaMode == "BLEND")
+        material.blend = SurfaceBlend::Alpha;
+    else if (source.alphaMode != "OPAQUE")
+        document.faults().warn(
+            fmt::format("{}/alphaMode: {}, allowed is OPAQUE, MASK and BLEND", pointer, source.alphaMode));
+
+    const MaterialReader reader(document, is_broken, pointer);
+    const auto read = [&](const auto& info, const char* place, Texture& texture) -> Result<> {
+        auto made = reader.read(info, place);
+        if (!made) return failure(std::move(made));
+        texture = *made;
+        return {};
+    };
+    if (auto done = read(pbr.baseColorTexture, "pbrMetallicRoughness/baseColorTexture", material.base_color_texture);
+        !done)
+        return failure(std::move(done));
+    if (auto done = read(pbr.metallicRoughnessTexture, "pbrMetallicRoughness/metallicRoughnessTexture",
+                         material.metallic_roughness_texture);
+        !done)
+        return failure(std::move(done));
+    if (auto done = read(source.normalTexture, "normalTexture", material.normal_texture); !done)
+        return failure(std::move(done));
+    if (auto done = read(source.occlusionTexture, "occlusionTexture", material.occlusion_texture); !done)
+        return failure(std::move(done));
+    if (auto done = read(source.emissiveTexture, "emissiveTexture", material.emissive_texture); !done)
+        return failure(std::move(done));
+    return material;
+}
+
+}  // namespace darkroom::scene::gltf

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "image/codec/decoder.hpp"
+#include "scene/gltf/convert.hpp"
+#include "scene/model.hpp"
+
+namespace darkroom::scene {
+namespace {
+
+using gltf::Document;
+using gltf::NodeOrder;
+
+/// Converts all of one kind. What the scene needs must be good; the rest is replaced by an empty one.
+template <class T, class Convert>
+Result<> convert_all(Document& document, std::size_t count, const std::vector<bool>& is_needed, const Convert& convert,
+                     std::vector<T>& out) {
+    for (std::size_t i = 0; i < count; ++i) {
+        Result<T> made = convert(i);
+        if (!made && is_needed[i]) return failure(std::move(made));
+        if (!made) {
+            document.faults().warn(fmt::format("{} (not drawn)", made.error().text));
+            made = T();
+        }
+        out.push_back(std::move(*made));
+    }
+    return {};
+}
+
+std::vector<bool> needed(std::size_t count, const std::vector<Node>& nodes, std::uint32_t Node::*index) {
+    std::vector<bool> is_needed(count);
+    for (const Node& node : nodes)
+        if (node.*index != no_index) is_needed[node.*index] = true;
+    return is_needed;
+}
+
+Result<> convert_drawn(Document& document, const NodeOrder& order, Model& model) {
+    const tinygltf::Model& source = document.model();
+    if (auto done = convert_all(
+            document, source.meshes.size(), needed(source.meshes.size(), model.nodes, &Node::mesh),
+            [&](std::size_t i) { return convert_mesh(document, i); }, model.meshes);
+        !done)
+        return done;
+    std::vector<bool> is_material_needed(source.materials.size());
+    const std::vector<bool> is_mesh_needed = needed(source.meshes.size(), model.nodes, &Node::mesh);
+    for (std::size_t mesh = 0; mesh < model.meshes.size(); ++mesh)
+        for (const Primitive& primitive : model.meshes[mesh].primitives)
+            if (is_mesh_needed[mesh] && primitive.material != no_index) is_material_needed[primitive.material] = true;
+    model.images = convert_images(document);
+    std::vector<bool> is_broken;
+    for (const Image& image : model.images) is_broken.push_back(image.is_empty());
+    if (auto done = convert_all(
+            document, source.materials.size(), is_material_needed,
+            [&](std::size_t i) { return convert_material(document, i, is_broken); }, model.materials);
+        !done)
+        return done;
+    return convert_all(
+        document, source.skins.size(), needed(source.skins.size(), model.nodes, &Node::skin),
+        [&](std::size_t i) { return convert_skin(document, i, order); }, model.skins);
+}
+
+// Cameras and lights do not depend on anything else, and animations only move what is drawn: a faulty one is left out.
+Result<> convert_rest(Document& document, const NodeOrder& order, Model& model) {
+    const tinygltf::Model& source = document.model();
+    for (std::size_t i = 0; i < source.cameras.size(); ++i) model.cameras.push_back(convert_camera(document, i));
+    for (Node& node : model.nodes)
+        if (node.camera != no_index && !document.faults().check(fmt::format("/cameras/{}", node.camera)))
+            node.camera = no_index;
+    const std::vector<bool> is_light_needed = needed(source.lights.size(), model.nodes, &Node::light);
+    for (std::size_t i = 0; i < source.lights.size(); ++i) {
+        const auto checked = document.faults().check(fmt::format("/extensions/KHR_lights_punctual/lights/{}", i));
+        if (!checked && is_light_needed[i]) return user_error(checked.error().text);
+        model.lights.push_back(convert_light(document, i));
+    }
+    for (std::size_t i = 0; i < source.animations.size(); ++i) {
+        auto animation = convert_animation(document, i, order, model);
+        if (animation)
+            model.animations.push_back(std::move(*animation));
+        else
+            document.faults().warn(fmt::format("{}; the animation is left out", animation.error().text));
+    }
+    return {};
+}
+
+// Of a mesh that many nodes may draw, each with another skin: the highest joint that it names.
+std::uint32_t highest_joint(const Mesh& mesh) {
+    std::uint32_t highest = 0;
+    for (const Primitive& primitive : mesh.primitives)
+        for (const VertexSkin& vertex : primitive.skin)
+            for (const std::uint16_t joint : vertex.joints) highest = std::max<std::uint32_t>(highest, joint);
+    return highest;
+}
+
+// What only nodes, meshes and skins together tell.
+Result<> check_nodes(Document& document, const NodeOrder& order, Model& model) {
+    std::vector<std::uint32_t> highest_joints;
+    for (const Mesh& mesh : model.meshes) highest_joints.push_back(highest_joint(mesh));
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+        Node& node = model.nodes[i];
+        const std::string pointer = fmt::format("/nodes/{}", order.file_index[i]);
+        const Mesh* mesh = node.mesh == no_index ? nullptr : &model.meshes[node.mesh];
+        if (!node.weights.empty() && (mesh == nullptr || node.weights.size() != mesh->weights.size())) {
+            document.faults().warn(fmt::format("{}/weights: {} numbers for {} morph targets", pointer,
+                                               node.weights.size(), mesh == nullptr ? 0 : mesh->weights.size()));
+            node.weights.resize(mesh == nullptr ? 0 : mesh->weights.size());
+        }
+        if (node.skin == no_index) continue;
+        if (mesh == nullptr) {
+            document.faults().warn(fmt::format("{}/skin: the node has no mesh", pointer));
+            continue;
+        }
+        const std::size_t joint_count = model.skins[node.skin].joints.size();
+        const auto has_no_skin = [](const Primitive& primitive) { return primitive.skin.empty(); };
+        const bool is_skinned = !std::ranges::all_of(mesh->primitives, has_no_skin);
+        if (std::ranges::any_of(mesh->primitives, has_no_skin))
+            document.faults().warn(fmt::format("{}/skin: a primitive of mesh {} has no joints", pointer, node.mesh));
+        if (is_skinned && highest_joints[node.mesh] >= joint_count)
+            return user_error(fmt::format("{}/skin: mesh {} names joint {}, skin {} has {}", pointer, node.mesh,
+                                          highest_joints[node.mesh], node.skin, joint_count));
+    }
+    return {};
+}
+
+Result<Model> read(const std::filesystem::path& path, Budget budget) {
+    auto document = Document::open(path, std::move(budget));
+    if (!document) return failure(std::move(document));
+    auto order = order_nodes(*document);
+    if (!order) return failure(std::move(order));
+    Model model{.name = path.stem().string()};
+    for (std::size_t i = 0; i < order->file_index.size(); ++i)
+        model.nodes.push_back(convert_node(*document, order->file_index[i], order->parent[i]));
+    // The others only for what is wrong with them.
+    for (std::uint32_t i = 0; i < order->new_index.size(); ++i)
+        if (order->new_index[i] == no_index) static_cast<void>(convert_node(*document, i, no_index));
+    if (auto done = convert_drawn(*document, *order, model); !done) return failure(std::move(done));
+    if (auto done = check_nodes(*document, *order, model); !done) return failure(std::move(done));
+    if (auto done = convert_rest(*document, *order, model); !done) return failure(std::move(done));
+    if (auto done = document->budget().check(); !done) return failure(std::move(done));
+    model.file_bytes = document->budget().file_bytes();
+    for (std::string& warning : document->faults().take_warnings())
+        model.warnings.push_back(one_printable_line(warning));
+    return model;
+}
+
+}  // namespace
+
+Result<Model> read_model(const std::filesystem::path& path, Budget budget) {
+    try {
+        auto model = read(path, std::move(budget));
+        if (model) return model;
+        Error error = model.error();
+        error.text = fmt::format("{}: {}", path.string(), one_printable_line(error.text));
+        return failure(std::move(error));
+    } catch (const std::exception& exception) {
+        return user_error(fmt::format("{}: cannot be read: {}", path.string(), one_printable_line(exception.what())));
+    }
+}
+
+}  // namespace darkroom::scene

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: MIT
+#include "scene/gltf/schema.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "scene/gltf/tables.hpp"
+
+namespace darkroom::scene::gltf {
+namespace {
+
+using nlohmann::json;
+
+// Enough to see what is wrong with a file, however much of it is.
+constexpr std::size_t most_warnings = 20;
+
+constexpr std::array<std::string_view, 5> read_extensions{"KHR_lights_punctual", "KHR_materials_emissive_strength",
+                                                          "KHR_materials_unlit", "KHR_mesh_quantization",
+                                                          "KHR_texture_transform"};
+
+std::string shown(const json& value) {
+    std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+    return text.size() > 40 ? text.substr(0, 37) + "..." : text;
+}
+
+std::string shown_range(double low, double high) {
+    if (!std::isfinite(high)) return fmt::format("at least {}", low);
+    return fmt::format("{} to {}", low, high);
+}
+
+// Whole numbers may be written 1.0; the parsing library wants them without the point.
+bool make_integer(json& value) {
+    if (value.is_number_unsigned()) return value.get<std::uint64_t>() <= most_integer;
+    if (value.is_number_integer()) return value.get<std::int64_t>() >= -static_cast<std::int64_t>(most_integer);
+    if (!value.is_number_float()) return false;
+    const double number = value.get<double>();
+    if (!(std::abs(number) <= static_cast<double>(most_integer)) || number != std::floor(number)) return false;
+    value = static_cast<std::int64_t>(number);
+    return true;
+}
+
+bool is_finite_number(const json& value) {
+    return value.is_number() && std::abs(value.get<double>()) <= std::numeric_limits<float>::max();
+}
+
+class Checker {
+  public:
+    Checker(const json& root, Faults& faults) : faults_(faults) {
+        for (const Array& array : arrays)
+            if (const auto found = root.find(array.name); found != root.end() && found->is_array())
+                sizes_[std::string(array.name)] = found->size();
+        if (const auto* lights = find_lights(root)) sizes_["lights"] = lights->size();
+    }
+
+    static const json* find_lights(const json& root) {
+        const auto extensions = root.find("extensions");
+        if (extensions == root.end() || !extensions->is_object()) return nullptr;
+        const auto punctual = extensions->find("KHR_lights_punctual");
+        if (punctual == extensions->end() || !punctual->is_object()) return nullptr;
+        const auto lights = punctual->find("lights");
+        return lights == punctual->end() || !lights->is_array() ? nullptr : &*lights;
+    }
+
+    // Elements that cannot be used are replaced by the placeholder.
+    void check_array(json& array, const Definition& definition, std::string_view placeholder,
+                     const std::string& pointer) {
+        const std::string_view array_name = std::string_view(pointer).substr(pointer.rfind('/') + 1);
+        if (array.empty()) faults_.warn(fmt::format("{}: is empty, at least one element is needed", pointer));
+        for (std::size_t i = 0; i < array.size(); ++i) {
+            element_ = fmt::format("{}/{}", pointer, i);
+            const bool is_good = check_object(array[i], definition, element_) && check_choices(array[i], array_name);
+            if (!is_good) array[i] = json::parse(placeholder);
+        }
+    }
+
+    void check_root(const json& root) { check_extension_types(root, ""); }
+
+  private:
+    // false: the object that holds the value cannot be used.
+    bool refuse(const Property& property, const std::string& pointer, const std::string& what) {
+        if (property.is_required || is_vital(property.kind)) {
+            faults_.add(element_, fmt::format("{}: {}", pointer, what));
+            return false;
+        }
+        faults_.warn(fmt::format("{}: {}; it is passed over", pointer, what));
+        return true;
+    }
+
+    static bool is_vital(Kind kind) {
+        return kind == Kind::Integer || kind == Kind::Index || kind == Kind::Indices || kind == Kind::IndexMap ||
+               kind == Kind::IndexMaps || kind == Kind::Object || kind == Kind::Objects;
+    }
+
+    bool check_object(json& object, const Definition& definition, const std::string& pointer) {
+        if (!object.is_object()) {
+            faults_.add(element_, fmt::format("{}: {}, an object is needed", pointer, shown(object)));
+            return false;
+        }
+        check_extension_types(object, pointer);
+        json kept = json::object();
+        for (const Property& property : definition.properties) {
+            const auto found = object.find(property.name);
+            const std::string place = fmt::format("{}/{}", pointer, property.name);
+            if (found == object.end()) {
+                if (!property.is_required) continue;
+                faults_.add(element_, fmt::format("{}: is missing", place));
+                return false;
+            }
+            bool is_kept = true;
+            if (!check_value(*found, property, place, is_kept)) return false;
+            if (is_kept) kept[std::string(property.name)] = std::move(*found);
+        }
+        object = std::move(kept);
+        return true;
+    }
+
+    void check_extension_types(const json& object, const std::string& pointer) {
+        const auto extensions = object.find("extensions");
+        if (extensions == object.end()) return;
+        if (!extensions->is_object())
+            return faults_.warn(fmt::format("{}/extensions: {}, an object is needed", pointer, shown(*extensions)));
+        for (const auto& [name, extension] : extensions->items())
+            if (!extension.is_object())
+                faults_.warn(fmt::format("{}/extensions/{}: {}, an object is needed", pointer, name, shown(extension)));
+    }
+
+    // What the library refuses a whole file for.
+    bool check_choices(const json& object, std::string_view array) {
+        const auto refuse_unless = [&](bool is_good, std::string_view property, std::string_view allowed) {
+            if (!is_good)
+                faults_.add(
+                    element_,
+                    fmt::format("{}/{}: {}, allowed is {}", element_, property,
+                                object.contains(property) ? shown(object[std::string(property)]) : "missing", allowed));
+            return is_good;
+        };
+        const auto is_one_of = [&](const char* property, std::initializer_list<std::string_view> choices) {
+            const auto value = object[property].get<std::string>();
+            return std::find(choices.begin(), choices.end(), value) != choices.end();
+        };
+        if (array == "accessors") {
+            const int type = object["componentType"].get<int>();
+            return refuse_unless(type != 5124, "componentType", "5120 to 5123, 5125 and 5126") &&
+                   refuse_unless(is_one_of("type", {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}), "type",
+                                 "SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 and MAT4");
+        }
+        if (array == "bufferViews")
+            return refuse_unless(!object.contains("byteStride") || object["byteStride"].get<int>() % 4 == 0,
+                                 "byteStride", "multiples of 4");
+        if (array == "cameras" && object.contains("perspective") && object.contains("orthographic"))
+            faults_.warn(fmt::format("{}: is perspective and also orthographic; type says which", element_));
+        if (array == "cameras")
+            return refuse_unless(is_one_of("type", {"perspective", "orthographic"}), "type",
+                                 "perspective and orthographic") &&
+                   refuse_unless(object.contains(object["type"].get<std::string>()), object["type"].get<std::string>(),
+                                 "an object");
+        const bool has_parts =
+            object.contains("translation") || object.contains("rotation") || object.contains("scale");
+        if (array == "nodes" && object.contains("matrix") && has_parts)
+            faults_.warn(fmt::format("{}: has a matrix and also its parts; the matrix is used", element_));
+        if (array == "lights")
+            return refuse_unless(is_one_of("type", {"directional", "point", "spot"}), "type",
+                                 "directional, point and spot");
+        return true;
+    }
+
+    bool check_number(const json& value, const Property& property, const std::string& pointer) {
+        const double number = value.get<double>();
+        if (number < property.low || number > property.high)
+            faults_.warn(
+                fmt::format("{}: {}, allowed is {}", pointer, shown(value), shown_range(property.low, property.high)));
+        return true;
+    }
+
+    bool check_integer(json& value, const Property& property, const std::string& pointer, bool& is_kept) {
+        const bool is_whole = make_integer(value);
+        if (is_whole && value.get<double>() >= property.low && value.get<double>() <= property.high) return true;
+        is_kept = false;
+        return refuse(
+            property, pointer,
+            fmt::format("{}, a whole number, {}, is needed", shown(value), shown_range(property.low, property.high)));
+    }
+
+    bool check_index(json& value, const Property& property, const std::string& pointer, bool& is_kept) {
+        const std::size_t size = sizes_.contains(property.target) ? sizes_.find(property.target)->second : 0;
+        if (!make_integer(value)) {
+            is_kept = false;
+            return refuse(property, pointer, fmt::format("{}, an index is needed", shown(value)));
+        }
+        if (value.get<std::int64_t>() >= 0 && value.get<std::uint64_t>() < size) return true;
+        is_kept = false;
+        return refuse(property, pointer, fmt::format("{}, there are {} {}", shown(value), size, property.target));
+    }
+
+    bool check_indices(json& value, const Property& property, const std::string& pointer, bool& is_kept) {
+        if (!value.is_array()) return refuse(property, pointer, fmt::format("{}, an array is needed", shown(value)));
+        if (value.empty()) faults_.warn(fmt::format("{}: is empty", pointer));
+        for (std::size_t i = 0; i < value.size(); ++i)
+            if (!check_index(value[i], property, fmt::format("{}/{}", pointer, i), is_kept)) return false;
+        return true;
+    }
+
+    bool check_index_map(json& value, const Property& property, const std::string& pointer, bool& is_kept) {
+        if (!value.is_object()) return refuse(property, pointer, fmt::format("{}, an object is needed", shown(value)));
+        if (value.empty()) faults_.warn(fmt::format("{}: is empty", pointer));
+        for (auto& [name, index] : value.items())
+            if (!check_index(index, property, fmt::format("{}/{}", pointer, name), is_kept)) return false;
+        return true;
+    }
+
+    bool check_numbers(const json& value, const Property& property, const std::string& pointer, bool& is_kept) {
+        const bool is_good = value.is_array() && std::all_of(value.begin(), value.end(), is_finite_number) &&
+                             (property.count == 0 || value.size() == property.count);
+        if (!is_good) {
+            is_kept = false;
+            const std::string wanted = property.count == 0 ? "" : fmt::format("{} ", property.count);
+            return refuse(property, pointer, fmt::format("{}, {}numbers are needed", shown(value), wanted));
+        }
+        if (value.empty()) faults_.warn(fmt::format("{}: is empty", pointer));
+        return std::all_of(value.begin(), value.end(),
+                           [&](const json& number) { return check_number(number, property, pointer); });
+    }
+
+    bool check_value(json& value, const Property& property, const std::string& pointer, bool& is_kept) {
+        const auto wrong = [&](std::string_view wanted) {
+            is_kept = false;
+            return refuse(property, pointer, fmt::format("{}, {} is needed", shown(value), wanted));
+        };
+        switch (property.kind) {
+            case Kind::Boolean:
+                return value.is_boolean() || wrong("true or false");
+            case Kind::Integer:
+            case Kind::LooseInteger:
+                return check_integer(value, property, pointer, is_kept);
+            case Kind::Number:
+                return is_finite_number(value) ? check_number(value, property, pointer) : wrong("a number");
+            case Kind::Numbers:
+                return check_numbers(value, property, pointer, is_kept);
+            case Kind::Text:
+                return value.is_string() || wrong("a string");
+            case Kind::Index:
+            case Kind::UnusedIndex:
+                return check_index(value, property, pointer, is_kept);
+            case Kind::Indices:
+                return check_indices(value, property, pointer, is_kept);
+            case Kind::IndexMap:
+                return check_index_map(value, property, pointer, is_kept);
+            case Kind::IndexMaps:
+            case Kind::Objects:
+                break;
+            case Kind::Object:
+                return check_object(value, *property.object, pointer);
+        }
+        if (!value.is_array()) return wrong("an array");
+        if (value.empty()) faults_.warn(fmt::format("{}: is empty, at least one element is needed", pointer));
+        for (std::size_t i = 0; i < value.size(); ++i) {
+            const std::string place = fmt::format("{}/{}", pointer, i);
+            const bool is_good = property.kind == Kind::Objects ? check_object(value[i], *property.object, place)
+                                                                : check_index_map(value[i], property, place, is_kept);
+            if (!is_good) return false;
+        }
+        return true;
+    }
+
+    Faults& faults_;
+    std::map<std::string, std::size_t, std::less<>> sizes_;
+    std::string element_;
+};
+
+Result<> check_asset(const json& root, Faults& faults) {
+    const auto asset = root.find("asset");
+    if (asset == root.end() || !asset->is_object()) return user_error("/asset: is missing, with the version of glTF");
+    const auto version = asset->find("version");
+    if (version == asset->end() || !version->is_string()) return user_error("/asset/version: is missing");
+    const auto text = version->get<std::string>();
+    if (!text.starts_with("2."))
+        return user_error(fmt::format("/asset/version: {}, 2.0 is read here", shown(*version)));
+    const auto least = asset->find("minVersion");
+    if (least == asset->end()) return {};
+    if (!least->is_string() || !least->get<std::string>().starts_with("2."))
+        return user_error(fmt::format("/asset/minVersion: {}, 2.0 is read here", shown(*least)));
+    if (least->get<std::string>() > text)
+        faults.warn(fmt::format("/asset/minVersion: {} is above the version {}", shown(*least), shown(*version)));
+    return {};
+}
+
+Result<> check_extensions(const json& root, Faults& faults) {
+    for (const char* name : {"extensionsUsed", "extensionsRequired"}) {
+        const auto found = root.find(name);
+        if (found == root.end()) continue;
+        const bool is_required = std::string_view(name) == "extensionsRequired";
+        if (!found->is_array()) {
+            faults.warn(fmt::format("/{}: {}, an array is needed", name, shown(*found)));
+            continue;
+        }
+        if (found->empty()) faults.warn(fmt::format("/{}: is empty", name));
+        for (std::size_t i = 0; i < found->size(); ++i) {
+            const json& extension = (*found)[i];
+            const std::string place = fmt::format("/{}/{}", name, i);
+            if (!extension.is_string()) {
+                faults.warn(fmt::format("{}: {}, a string is needed", place, shown(extension)));
+                continue;
+            }
+            const bool is_read = std::find(read_extensions.begin(), read_extensions.end(),
+                                           extension.get<std::string>()) != read_extensions.end();
+            if (is_required && !is_read)
+                return user_error(fmt::format("{}: {} is required and not read here", place, shown(extension)));
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+void Faults::warn(std::string text) {
+    if (warnings_.size() > most_warnings || contains(text)) return;
+    warnings_.push_back(std::move(text));
+}
+
+// A fault is told once, though much may depend on it.
+bool Faults::contains(std::string_view text) const {
+    return std::any_of(warnings_.begin(), warnings_.end(),
+                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+void Faults::add(const std::string& element, std::string text) {
+    if (faults_.emplace(element, std::move(text)).second) order_.push_back(element);
+}
+
+Result<> Faults::check(const std::string& element) {
+    const auto found = faults_.find(element);
+    if (found == faults_.end()) return {};
+    return user_error(found->second);
+}
+
+std::vector<std::string> Faults::take_warnings() {
+    for (const std::string& element : order_) warn(faults_.at(element));
+    if (warnings_.size() > most_warnings) {
+        warnings_.resize(most_warnings);
+        warnings_.emplace_back("there are more faults");
+    }
+    return std::move(warnings_);
+}
+
+Result<> check_structure(json& root, Faults& faults, Budget& budget) {
+    if (auto checked = check_asset(root, faults); !checked) return checked;
+    if (auto checked = check_extensions(root, faults); !checked) return checked;
+    Checker checker(root, faults);
+    checker.check_root(root);
+    json kept = json::object();
+    kept["asset"] = {{"version", "2.0"}};
+    for (const Array& array : arrays) {
+        const auto found = root.find(array.name);
+        if (found == root.end()) continue;
+        if (!found->is_array())
+            return user_error(fmt::format("/{}: {}, an array is needed", array.name, shown(*found)));
+        const std::string pointer = fmt::format("/{}", array.name);
+        if (auto taken = budget.take(pointer, "elements", found->size(), array.element_size); !taken) return taken;
+        checker.check_array(*found, *array.definition, array.placeholder, pointer);
+        kept[std::string(array.name)] = std::move(*found);
+    }
+    if (const json* lights = Checker::find_lights(root)) {
+        if (auto taken =
+                budget.take("/extensions/KHR_lights_punctual/lights", "elements", lights->size(), element_size);
+            !taken)
+            return taken;
+        json copy = *lights;
+        checker.check_array(copy, light_definition, light_placeholder, "/extensions/KHR_lights_punctual/lights");
+        for (json& light : copy)
+            if (light["type"] == "spot" && !light.contains("spot")) light["spot"] = json::object();
+        kept["extensions"]["KHR_lights_punctual"]["lights"] = std::move(copy);
+    }
+    if (const auto scene = root.find("scene"); scene != root.end()) {
+        const std::size_t count = kept.contains("scenes") ? kept["scenes"].size() : 0;
+        if (!make_integer(*scene) || scene->get<std::int64_t>() < 0 || scene->get<std::uint64_t>() >= count)
+            return user_error(fmt::format("/scene: {}, there are {} scenes", shown(*scene), count));
+        kept["scene"] = std::move(*scene);
+    }
+    kept["extensionsUsed"] = json::array();
+    if (const auto used = root.find("extensionsUsed"); used != root.end() && used->is_array())
+        for (json& extension : *used)
+            if (extension.is_string()) kept["extensionsUsed"].push_back(std::move(extension));
+    root = std::move(kept);
+    return {};
+}
+
+}  // namespace darkroom::scene::gltf

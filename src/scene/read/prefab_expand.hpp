@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Which entities a scene has: those of its [entities], and those that its [prefabs] bring in from templates, in the
+// order of the file. Nothing is read of them here but names, parents and how tables lie on each other.
+//
+//     [prefabs.left]                            a template is a file, prefabs/lamp.prefab.toml beside the scene or one
+//     template = "lamp"                         folder up, any path that ends in .toml, or [templates.lamp] of the file
+//     prefix = "left"                           that names it; it holds [entities.*] and may hold [prefabs.*]
+//     overrides.bulb.light.intensity = 4
+//
+// The entity "bulb" of the template becomes "left_bulb", or what ${PREFIX} in its name says; a parent that is of the
+// template is renamed alike.
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "scene/read/read_values.hpp"
+
+namespace darkroom::scene::reading {
+
+struct RawEntity {
+    std::string name;
+    Place place;
+    Value table;
+    const toml::table* archetypes = nullptr;  ///< of the file that the entity stands in
+};
+
+/// What entities are taken from: a file, or a table of one.
+struct Level {
+    std::uint32_t file = 0;
+    std::filesystem::path folder;  ///< of the file
+    const toml::table* table = nullptr;
+    const toml::table* templates = nullptr;   ///< [templates] of the file
+    const toml::table* archetypes = nullptr;  ///< [archetypes] of the file
+};
+
+/// That of a whole file.
+[[nodiscard]] Level level_of(const toml::table& table, std::uint32_t file, std::filesystem::path folder);
+
+inline constexpr std::size_t most_entities = 100'000;
+
+/// Files of prefabs, kept since the trees point into them.
+struct LoadedFile {
+    std::string identity;  ///< the same for all names of a file
+    toml::table table;
+    Level level;
+};
+
+class PrefabExpander {
+  public:
+    PrefabExpander(Report& report, TreeBuilder& trees, std::filesystem::path scene_folder)
+        : report_(report), trees_(trees), scene_folder_(std::move(scene_folder)) {}
+    PrefabExpander(const PrefabExpander&) = delete;
+    PrefabExpander& operator=(const PrefabExpander&) = delete;
+    [[nodiscard]] std::vector<RawEntity> expand(const Level& scene);
+
+    /// Of the prefabs that were read.
+    [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
+    /// A limit was passed, and an error reported: the rest of the scene is not expanded.
+    [[nodiscard]] bool is_full() const { return is_full_; }
+
+  private:
+    struct Instance {
+        std::string name;  // of the table
+        std::string template_name;
+        Place template_place;
+        std::string prefix;
+        Value overrides;
+    };
+    struct Template {
+        std::string identity;  // what a cycle is noticed by
+        std::string shown;
+        Level level;
+    };
+
+    void expand_level(const Level& level, const std::string* prefix);
+    void add_entity(const Level& level, const toml::key& key, const toml::node& node, const std::string* prefix);
+    void expand_instance(const Level& level, const toml::key& key, const toml::node& node, const std::string* prefix);
+    void apply_overrides(const Instance& instance, std::size_t first);
+    [[nodiscard]] std::optional<Instance> read_instance(const Level& level, const toml::key& key,
+                                                        const toml::node& node, const std::string* prefix);
+    [[nodiscard]] std::optional<Template> find_template(const Level& level, const Instance& instance);
+    [[nodiscard]] LoadedFile* load(const std::filesystem::path& path, const Instance& instance);
+    [[nodiscard]] const toml::table* table_of(const Level& level, std::string_view key);
+    /// Templates and archetypes are tables of tables, used or not.
+    void check_tables(const Level& level);
+
+    Report& report_;
+    TreeBuilder& trees_;
+    std::filesystem::path scene_folder_;
+    std::deque<LoadedFile> files_;
+    std::vector<RawEntity> entities_;
+    std::unordered_map<std::string, std::size_t> names_;
+    std::vector<Template> chain_;
+    std::size_t instances_ = 0;
+    std::uint64_t file_bytes_ = 0;
+    bool is_full_ = false;
+};
+
+}  // namespace darkroom::scene::reading

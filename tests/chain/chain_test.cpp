@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: MIT
+// Whole stacks against the truth: the GPU's chain beside the CPU references run one after the other, and the looks that
+// are shipped.
+
+#include <gtest/gtest.h>
+
+#include <darkroom/look.hpp>
+#include <filesystem>
+
+#include "compose/test_stacks/host.hpp"
+#include "develop/reference_chain.hpp"
+#include "tests/places.hpp"
+
+namespace darkroom {
+namespace {
+
+using test::add;
+
+class ChainReference : public test::StackTest {};
+class ChainLooks : public test::StackTest {};
+
+/// Light as scenes have it: dark parts, mid-tones and lights, in half floats.
+ReferenceImage scene(std::uint32_t width, std::uint32_t height) {
+    ReferenceImage picture = test::random_display(width, height, 21);
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x) {
+            Rgba& p = picture.at(x, y);
+            const double shade = 0.02 + 0.9 * x / width, light = x % 31 == 5 && y % 17 == 3 ? 40 : 1;
+            p = {p.r * shade * light, p.g * shade * light, p.b * shade * 0.5 * light, 1};
+        }
+    return test::round_to_half(picture);
+}
+
+/// Every flat effect in the documented order, or the other one, all on; but for fxaa, which compares pixels, and may
+/// choose another neighbour where half floats round.
+void fill_default(Composer& composer, bool is_documented) {
+    std::vector<const EffectInfo*> flat;
+    const auto rank = [&](const EffectInfo* info) {
+        return is_documented ? info->flat.documented : info->flat.scene_linear;
+    };
+    for (const EffectInfo* const info : all_effects())
+        if (rank(info) >= 0 && info->name != "fxaa") flat.push_back(info);
+    std::ranges::sort(flat, {}, rank);
+    for (const EffectInfo* const info : flat) composer.add(*info, nullptr, {.source = scene_color});
+}
+
+/// What of the reference's pictures is nearest to `made`: of the picture as it is, and where the device filters less
+/// precisely than the references, all between those of the picture with what a filtered fetch may lose taken off and
+/// added.
+ReferenceImage reference_near(const Composer& composer, const ReferenceImage& picture, const ReferenceImage& made) {
+    const auto reference = [&](double sign) {
+        ReferenceImage input = picture;
+        const ReferenceImage loss = test::filter_loss(picture);
+        for (std::size_t i = 0; i < input.pixels.size(); ++i) {
+            input.pixels[i].r += sign * loss.pixels[i].r;
+            input.pixels[i].g += sign * loss.pixels[i].g;
+            input.pixels[i].b += sign * loss.pixels[i].b;
+        }
+        return test::must(run_reference(composer, {.color = &input, .time = 2.5, .frame_index = 150})).picture;
+    };
+    ReferenceImage near = reference(0);
+    if (gpu::test::filter_step() == 0) return near;
+    const ReferenceImage less = reference(-1), more = reference(1);
+    for (std::size_t i = 0; i < near.pixels.size(); ++i)
+        for (double Rgba::*const c : {&Rgba::r, &Rgba::g, &Rgba::b}) {
+            const auto [low, high] = std::minmax({near.pixels[i].*c, less.pixels[i].*c, more.pixels[i].*c});
+            near.pixels[i].*c = std::clamp(made.pixels[i].*c, low, high);
+        }
+    return near;
+}
+
+void expect_is_the_reference(Composer& composer, VkFormat intermediate, double allowed_codes) {
+    const ReferenceImage picture = scene(131, 77);
+    const test::Host host(picture, VK_FORMAT_R16G16B16A16_SFLOAT);
+    CompileDesc desc = host.compile_desc();
+    desc.intermediate = intermediate;
+    const auto plan = composer.compile(desc);
+    ASSERT_TRUE(plan) << plan.error().text;
+    Frame frame = host.frame();
+    frame.time = 2.5;
+    frame.frame_index = 150;
+    test::must(host.record(composer, frame));
+    const ReferenceImage expected = reference_near(composer, picture, host.read_target());
+    EXPECT_LE(test::worst_codes(host.read_target(), expected), allowed_codes);
+    // Not only rounded alike.
+    EXPECT_LE(test::worst_difference(host.read_target(), expected), 0.5 / 255);
+}
+
+TEST_F(ChainReference, TheDefaultOrders) {
+    for (const bool is_documented : {true, false}) {
+        SCOPED_TRACE(is_documented);
+        Composer composer(gpu::test::device());
+        fill_default(composer, is_documented);
+        test::must(composer.set(*composer.find("bloom"), "intensity", 0.3));
+        test::must(composer.set(*composer.find("exposure"), "exposure", 1.2));
+        expect_is_the_reference(composer, VK_FORMAT_R16G16B16A16_SFLOAT, 1);
+    }
+}
+
+/// A floor that rises to a wall with sky above it, a post before them, and a light from above that half a roof hides.
+struct LitFloor {
+    LitFloor() {
+        camera.previous_view[12] += 0.25F;  // it goes to the side
+        for (std::uint32_t y = 0; y < extent.height; ++y)
+            for (std::uint32_t x = 0; x < extent.width; ++x) {
+                const double v = (y + 0.5) / extent.height;
+                const bool is_post = x > 30 && x < 42 && y > 16;
+                const double behind = v < 0.2 ? 1e10 : v < 0.45 ? 18.0 : 3.6 / (v - 0.25);
+                depth.at(x, y).r = double{static_cast<float>(is_post ? 4.5 : behind)};
+            }
+        // The cube of 40 m around the origin, from above: x and z go across, -y is the way of the light.
+        light.light.world_to_cascade[0] = {0.05F, 0, 0, 0, 0, 0, -0.025F, 0, 0, 0.05F, 0, 0, 0, 0, 0.5F, 1};
+        light.light.splits[0] = 1000;
+        light.cascades = {{0, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1}};
+    }
+    [[nodiscard]] test::RunOptions options() const {
+        return {.color = VK_FORMAT_R16G16B16A16_SFLOAT,
+                .time = 2.5,
+                .frame_index = 150,
+                .depth = &depth,
+                .camera = camera,
+                .lights = {&light, 1}};
+    }
+
+    VkExtent2D extent{97, 61};
+    ReferenceImage picture = scene(extent.width, extent.height), depth{extent.width, extent.height};
+    Camera camera = test::look_at({0, 2, 6}, {0, 1, -4}, 1.0, 97.0 / 61);
+    ReferenceLight light{.light = {.volumetric_intensity = 1}, .resolution = 4};
+};
+
+/// The references one after the other, each with all that the frame brings. `swapped`: this entry and the next change
+/// places.
+ReferenceImage references_in_turn(const Composer& composer, const LitFloor& floor, std::size_t swapped) {
+    ReferenceImage picture = floor.picture;
+    for (std::size_t i = 0; i < composer.size(); ++i) {
+        const std::size_t taken = i == swapped ? i + 1 : i == swapped + 1 ? i - 1 : i;
+        const Handle entry = composer.entry(taken);
+        picture = composer.info(entry)->reference(composer.words(entry).data(), {.picture = &picture,
+                                                                                 .source = &floor.picture,
+                                                                                 .depth = &floor.depth,
+                                                                                 .lights = {&floor.light, 1},
+                                                                                 .camera = floor.camera,
+                                                                                 .time = 2.5,
+                                                                                 .frame_index = 150});
+    }
+    return picture;
+}
+
+/// Mean over the pixels of their most different channel, in codes of 8 bits.
+double mean_codes(const ReferenceImage& a, const ReferenceImage& b) {
+    if (a.pixels.size() != b.pixels.size() || a.pixels.empty()) return 1e9;
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const Rgba &p = a.pixels[i], &q = b.pixels[i];
+        sum += std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b)});
+    }
+    return 255 * sum / static_cast<double>(a.pixels.size());
+}
+
+using Names = std::vector<std::string>;
+const Names documented_order{"radial_blur",
+                             "chromatic_aberration",
+                             "ssao",
+                             "volumetric",
+                             "motion_blur",
+                             "bloom",
+                             "exposure",
+                             "color_grade",
+                             "tonemap",
+                             "fog",
+                             "lens_distortion",
+                             "encode",
+                             "dither",
+                             "vignette"};
+const Names scene_linear_order{
+    "radial_blur", "chromatic_aberration", "ssao",    "volumetric",      "motion_blur", "bloom",  "fog",
+    "exposure",    "color_grade",          "tonemap", "lens_distortion", "vignette",    "encode", "dither"};
+
+/// The flat table with everything on at once, strong enough that each effect shows.
+void fill_with_everything(Composer& composer, bool is_documented) {
+    const std::string order = is_documented ? "documented" : "scene_linear";
+    const auto look = parse_look("[post_process]\norder = \"" + order + R"("
+radial_blur = 2
+chromatic_aberration = 6
+ssao_intensity = 4
+ssao_radius = 1.5
+volumetric_enabled = true
+volumetric_density = 40
+motion_blur_enabled = true
+motion_blur_shutter_angle = 360
+motion_blur_resolution = "full"
+bloom_intensity = 1
+bloom_threshold = 0.1
+exposure = 1.3
+fog_enabled = true
+fog_density = 0.02
+fog_end = 40
+dither_enabled = true
+dither_intensity = 0.05
+vignette_enabled = true
+vignette_intensity = 0.6
+lens_distortion = 0.3
+color_grade_temperature = 5500
+color_grade_contrast = 1.3
+)",
+                                 "everything.toml", {.is_strict = true});
+    ASSERT_TRUE(look) << look.error().text;
+    test::must(apply(*look, composer));
+}
+
+class ChainEverything : public test::StackTest {
+  protected:
+    void SetUp() override {
+        for (const std::string& name : documented_order)
+            if (find_effect(name) == nullptr) GTEST_SKIP() << "this build has no effect " << name;
+    }
+};
+
+TEST_F(ChainEverything, IsPlannedInBothOrders) {
+    for (const bool is_documented : {true, false}) {
+        Composer composer(gpu::test::device());
+        fill_with_everything(composer, is_documented);
+        const auto plan =
+            composer.plan({.max_extent = {320, 200}, .depth = {VK_FORMAT_D32_SFLOAT}, .has_shadows = true});
+        ASSERT_TRUE(plan) << plan.error().text;
+        Names planned;
+        for (const PlanPass& pass : plan->passes)
+            planned.insert(planned.end(), pass.entries.begin(), pass.entries.end());
+        EXPECT_EQ(planned, is_documented ? documented_order : scene_linear_order);
+        EXPECT_TRUE(plan->left_out.empty()) << plan->left_out.front();
+        EXPECT_TRUE(plan->remarks.empty()) << plan->remarks.front();
+    }
+}
+
+TEST_F(ChainEverything, IsItsReferencesInThatOrder) {
+    const LitFloor floor;
+    for (const bool is_documented : {true, false}) {
+        SCOPED_TRACE(is_documented);
+        Composer composer(gpu::test::device());
+        fill_with_everything(composer, is_documented);
+        const ReferenceImage made = test::develop([&](Composer& stack) { fill_with_everything(stack, is_documented); },
+                                                  floor.picture, floor.options());
+        // Occlusion chooses pixels to read, and may round to another one than its reference: few pixels then differ by
+        // more than the half floats between kernels explain; a GPU's pyramid has fewer bits than those.
+        const ReferenceImage expected = references_in_turn(composer, floor, composer.size());
+        const double error = mean_codes(made, expected);
+        EXPECT_LE(error, gpu::test::filter_step() == 0 ? 0.04 : 0.08);
+        EXPECT_LE(255 * test::worst_difference(made, expected), 4);
+        // Only this order gives this picture, which filtering may hide in part. Volumetric light and the bloom of the
+        // scene are both added.
+        const double clearly = gpu::test::filter_step() == 0 ? 2 : 1;
+        for (std::size_t i = 0; i + 1 < composer.size(); ++i) {
+            if (composer.desc(composer.entry(i))->name == "volumetric") continue;
+            EXPECT_GT(mean_codes(made, references_in_turn(composer, floor, i)), clearly * error)
+                << composer.desc(composer.entry(i))->name << " and what follows it";
+        }
+    }
+}
+
+TEST_F(ChainReference, WiresOpacityMasksAndModes) {
+    Composer composer(gpu::test::device());
+    const Handle exposed = add(composer, "exposure", {{"exposure", 1.5}});
+    const Handle blurred =
+        add(composer, "gaussian_blur", {{"radius", 3}}, {.opacity = 0.75f, .blend = BlendMode::Lighten});
+    add(composer, "tonemap", {}, {.input = exposed});
+    add(composer, "grayscale", {}, {.mask = blurred, .opacity = 0.5f});
+    add(composer, "blend", {{"amount", 0.25}}, {.second = blurred, .blend = BlendMode::Screen});
+    const Handle off = add(composer, "negative");
+    test::must(composer.set_enabled(off, false));
+    add(composer, "encode");
+    expect_is_the_reference(composer, VK_FORMAT_R32G32B32A32_SFLOAT, 1);
+}
+
+// What a later entry reads must be the picture at that place, though the kernel could have gone on.
+TEST_F(ChainReference, APictureInTheMiddleIsReadAsItWasThere) {
+    for (const std::string_view wire : {"input", "source", "second", "mask"}) {
+        SCOPED_TRACE(wire);
+        Composer composer(gpu::test::device());
+        const Handle middle = add(composer, "exposure", {{"exposure", 0.5}});
+        add(composer, "negative");
+        add(composer, "vignette", {{"intensity", 1}});
+        if (wire == "input") add(composer, "grayscale", {}, {.input = middle});
+        if (wire == "source") add(composer, "bloom", {{"intensity", 1}, {"threshold", 0.1}}, {.source = middle});
+        if (wire == "second") add(composer, "blend", {}, {.second = middle});
+        if (wire == "mask") add(composer, "grayscale", {}, {.mask = middle});
+        add(composer, "encode");
+        expect_is_the_reference(composer, VK_FORMAT_R32G32B32A32_SFLOAT, 1);
+    }
+}
+
+TEST_F(ChainReference, AnEmptyStackIsEncoded) {
+    const ReferenceImage picture = scene(40, 30);
+    const test::Host host(picture, VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R8G8B8A8_UNORM);
+    Composer composer(host.device);
+    test::must(composer.compile(host.compile_desc()));
+    const auto expected = run_reference(composer, {.color = &picture});
+    ASSERT_TRUE(expected);
+    EXPECT_LE(test::worst_codes(host.run(composer), expected->picture), 1);
+}
+
+std::vector<std::filesystem::path> shipped_looks() {
+    std::vector<std::filesystem::path> out;
+    for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(test::source_folder) / "looks"))
+        if (file.path().extension() == ".toml") out.push_back(file.path());
+    std::ranges::sort(out);
+    return out;
+}
+
+TEST_F(ChainLooks, EveryShippedLookDevelopsAsItsReference) {
+    ASSERT_FALSE(shipped_looks().empty());
+    for (const std::filesystem::path& path : shipped_looks()) {
+        SCOPED_TRACE(path.filename());
+        const auto look = read_look(path, {.is_strict = true});
+        ASSERT_TRUE(look) << look.error().text;
+        Composer composer(gpu::test::device());
+        test::must(apply(*look, composer));
+        expect_is_the_reference(composer, VK_FORMAT_R32G32B32A32_SFLOAT, 1);
+    }
+}
+
+TEST_F(ChainLooks, TheShippedOrdersGiveNoRemark) {
+    for (const char* const order : {"documented", "scene_linear"}) {
+        const auto look = parse_look("[post_process]\norder = \"" + std::string(order) +
+                                         "\"\nvignette_enabled = true\ndither_enabled = true\nfxaa_enabled = true\n",
+                                     "a.toml", {.is_strict = true});
+        ASSERT_TRUE(look) << look.error().text;
+        Composer composer(gpu::test::device());
+        test::must(apply(*look, composer));
+        const auto plan = composer.plan({.max_extent = {320, 200}});
+        ASSERT_TRUE(plan) << plan.error().text;
+        EXPECT_TRUE(plan->remarks.empty()) << order << ": " << plan->remarks.front();
+    }
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// Layers of a frame that go into the picture's file as they are: every bit, finite or not, and what cannot go.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "cli_support.hpp"
+#include "image/exr/test_exr.hpp"
+#include "image/frame/frame_file.hpp"
+#include "image/frame/layer_file.hpp"
+
+namespace darkroom {
+namespace {
+
+using test::Outcome;
+
+class CliKeepLayers : public test::CliFixture {
+  protected:
+    static constexpr std::size_t width = 12, height = 8;
+    inline static const std::vector<std::string> channels{"R", "G", "B", "Z", "matte00.R", "matte00.G", "note"};
+
+    void make_files() override {
+        const float infinity = std::numeric_limits<float>::infinity();
+        for (std::size_t i = 0; i < width * height; ++i) {
+            const auto step = static_cast<float>(i);
+            const float odd = i % 3 == 0 ? infinity : i % 3 == 1 ? -1e30f : std::numeric_limits<float>::quiet_NaN();
+            values.insert(values.end(), {step / 40, 0.5f, 0.25f, 1 + step, step * 1e20f, odd, 0.1f + step});
+        }
+        test::store_floats(path("frame.exr"), channels, width, values);
+    }
+    [[nodiscard]] std::vector<float> read(const std::string& file, const std::string& channel) const {
+        Result<LayerFile> opened = LayerFile::open(path(file));
+        EXPECT_TRUE(opened);
+        const Result<FileLayer> layer = opened->find(channel);
+        EXPECT_TRUE(layer) << layer.error().text;
+        Result<LayerSamples> samples = layer ? opened->read(*layer) : Result<LayerSamples>(failure(layer.error()));
+        return samples ? samples->values : std::vector<float>{};
+    }
+
+    std::vector<float> values;
+};
+
+TEST_F(CliKeepLayers, AreTheSameBitForBit) {
+    const Outcome outcome = run({"develop", path("frame.exr"), "--no-ssao", "--keep-layers", "-o", path("out.exr")});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    for (std::size_t c = 3; c < channels.size(); ++c) {
+        const std::vector<float> kept = read("out.exr", channels[c]);
+        ASSERT_EQ(kept.size(), width * height) << channels[c];
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            ASSERT_EQ(std::bit_cast<std::uint32_t>(kept[i]),
+                      std::bit_cast<std::uint32_t>(values[i * channels.size() + c]))
+                << channels[c] << " " << i;
+    }
+    EXPECT_NE(read("out.exr", "R"), read("frame.exr", "R")) << "the colour is the picture's";
+    ASSERT_EQ(run({"develop", path("frame.exr"), "--no-ssao", "-o", path("plain.exr")}).code, 0);
+    EXPECT_EQ(read("out.exr", "R"), read("plain.exr", "R"));
+    EXPECT_EQ(read_frame(path("plain.exr"))->channels.size(), 3U) << "without the flag none go along";
+}
+
+TEST_F(CliKeepLayers, HalvesStayHalvesAndShadowsStayBehind) {
+    write("sun.scene.toml",
+          "[entities.sun.light]\ndirection = [1, 1, 0]\n[entities.box]\nbounds = { min = [-1, 0, -1], max = [1, 1, 1] "
+          "}\n");
+    ASSERT_EQ(run({"render", path("sun.scene.toml"), "--size", "24x16", "--shadow-resolution", "16", "--save-frame",
+                   path("sun.exr"), "-o", path("sun.png")})
+                  .code,
+              0);
+    const Outcome outcome =
+        run({"develop", path("sun.exr"), "--keep-layers", "--bits", "float", "-o", path("out.exr")});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    const Outcome same =
+        run({"compare", path("sun.exr"), path("out.exr"), "--layers", "depth,normals,velocity", "--fail-max", "0"});
+    EXPECT_EQ(same.code, 0) << same.err << same.out;
+    Result<LayerFile> file = LayerFile::open(path("out.exr"));
+    ASSERT_TRUE(file);
+    ASSERT_EQ(file->decoder().parts().size(), 1U);
+    const FilePart& part = file->decoder().parts().front();
+    for (std::size_t c = 0; c < part.channels.size(); ++c) {
+        EXPECT_EQ(part.channels[c].find("cascade"), std::string::npos);
+        const bool is_normal = part.channels[c].find("N.") != std::string::npos;
+        EXPECT_EQ(part.kinds[c], is_normal ? SampleKind::Half : SampleKind::Float) << part.channels[c];
+    }
+}
+
+TEST_F(CliKeepLayers, WhereThereIsNoPlaceTheyAreRefused) {
+    const std::string frame = path("frame.exr");
+    expect_refused({"develop", frame, "--keep-layers", "-o", path("a.png")}, 1,
+                   "a.png has no place for them, .exr has");
+    expect_refused({"develop", frame, "--keep-layers", "-o", "-", "--format", "y4m"}, 1,
+                   "a stream has no place for them");
+    expect_refused({"develop", frame, "--no-ssao", "--keep-layers", "--size", "6x4", "-o", path("a.exr")}, 1,
+                   "the layers of the frame are 12x8, the picture 6x4");
+    // A layer cannot have the name of the picture's own channels.
+    test::store_floats(path("two.exr"), {"Combined.R", "Combined.G", "Combined.B", "R"}, width,
+                       std::vector<float>(width * height * 4, 0.5f));
+    const Outcome mapped =
+        run({"develop", path("two.exr"), "--map", "color=Combined", "--keep-layers", "-o", path("b.exr")});
+    EXPECT_EQ(mapped.code, 0) << mapped.err;
+    EXPECT_NE(mapped.err.find("R is not kept: the picture has a channel of this name"), std::string::npos)
+        << mapped.err;
+}
+
+}  // namespace
+}  // namespace darkroom

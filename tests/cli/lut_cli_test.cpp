@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// Tables on the command line: `darkroom lut`, and tables as values of looks.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "cli_support.hpp"
+#include "image/frame/frame_file.hpp"
+#include "image/picture/write.hpp"
+#include "image/table/table_file.hpp"
+
+namespace darkroom {
+namespace {
+
+using test::Outcome;
+
+class CliLut : public test::CliFixture {
+  protected:
+    void make_files() override {
+        FrameFile frame;
+        frame.color = Picture(64, 48);
+        std::mt19937 random(4);
+        std::uniform_real_distribution<float> stops(-9, 6);
+        for (std::size_t i = 0; i < frame.color.pixels.size(); ++i)
+            frame.color.pixels[i] = i % 4 == 3 ? 1.0f : 0.18f * std::exp2(stops(random));
+        ASSERT_TRUE(write_frame(path("frame.exr"), frame));
+        write("bad.cube", "LUT_3D_SIZE 2\n0 0 0\n");
+        write("half.cube", "LUT_1D_SIZE 2\n0 0 0\n0.5 0.5 0.5\n");
+    }
+    void expect_done(const std::vector<std::string>& arguments, const std::string& err = "") const {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        if (err.empty())
+            EXPECT_EQ(outcome.err, "");
+        else
+            EXPECT_NE(outcome.err.find(err), std::string::npos) << outcome.err;
+    }
+    /// Largest difference of two pictures.
+    [[nodiscard]] double apart(const std::string& a, const std::string& b) const {
+        const Picture one = picture(a), other = picture(b);
+        EXPECT_EQ(one.pixels.size(), other.pixels.size());
+        double worst = 0;
+        for (std::size_t i = 0; i < std::min(one.pixels.size(), other.pixels.size()); ++i)
+            worst = std::max(worst, double{std::abs(one.pixels[i] - other.pixels[i])});
+        return worst;
+    }
+};
+
+// Half the code is what half of a table says: 188 becomes 94.
+TEST_F(CliLut, TheFlagLooksColoursUp) {
+    write("look.toml", "[[stack]]\neffect = \"encode\"\n");
+    write("with.toml", "[[stack]]\neffect = \"lut\"\nlut = \"half.cube\"\n[[stack]]\neffect = \"encode\"\n");
+    const std::string frame = path("frame.exr");
+    expect_done({"develop", frame, "--look", path("look.toml"), "-o", path("plain.png")});
+    expect_done({"develop", frame, "--look", path("with.toml"), "-o", path("look.png")});
+    const Picture plain = picture("plain.png"), look = picture("look.png");
+    ASSERT_EQ(look.pixels.size(), plain.pixels.size());
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i)
+        ASSERT_NEAR(look.pixels[i], i % 4 == 3 ? 1 : plain.pixels[i] / 2, 1.01 / 255);
+    const std::vector<std::string> common{"--bloom-enabled", "off", "--ssao-enabled", "off"};
+    const auto develop = [&](std::vector<std::string> arguments, const std::string& out) {
+        arguments.insert(arguments.begin(), {"develop", frame, "-o", path(out)});
+        arguments.insert(arguments.end(), common.begin(), common.end());
+        expect_done(arguments);
+    };
+    develop({}, "a.png");
+    develop({"--lut", path("half.cube"), "--lut-strength", "0"}, "b.png");
+    develop({"--lut", path("half.cube")}, "c.png");
+    develop({"--lut", path("half.cube"), "--reference"}, "d.png");
+    EXPECT_EQ(apart("a.png", "b.png"), 0);
+    EXPECT_GT(apart("a.png", "c.png"), 0.4);
+    EXPECT_LE(apart("c.png", "d.png"), 1.01 / 255);
+}
+
+TEST_F(CliLut, ExportedLooksDoWhatTheirEffectsDo) {
+    // With what depends on the place, which is left out by name.
+    const std::string kept =
+        "[[stack]]\neffect = \"exposure\"\nexposure = 1.5\n[[stack]]\neffect = \"tonemap\"\ncurve = \"agx\"\n"
+        "opacity = 0.8\n[[stack]]\neffect = \"grayscale\"\namount = 0.4\n[[stack]]\neffect = \"encode\"\n";
+    write("kept.toml", kept);
+    write("all.toml", kept + "[[stack]]\neffect = \"vignette\"\nname = \"corners\"\n[[stack]]\neffect = \"dither\"\n");
+    expect_done({"lut", "export", path("all.toml"), "-o", path("look.cube")},
+                "left out: corners: depends on the place");
+    const Result<FoundTable> table = read_table_file(path("look.cube"));
+    ASSERT_TRUE(table) << table.error().text;
+    EXPECT_EQ(table->file.table.size, 65u);
+    const std::string comments = test::content(path("look.cube")).substr(0, 800);
+    for (const char* const part :
+         {"# Input: scene-linear Rec. 709", "-10 to +6.5 stops", "# Error on 20000 random colours: largest 0.0",
+          "# Left out: corners: depends on the place", "# Left out: dither: ", "result = \"display\""})
+        EXPECT_NE(comments.find(part), std::string::npos) << part << " is not in " << comments;
+
+    write("table.toml",
+          "[[stack]]\neffect = \"lut\"\nlut = \"look.cube\"\nspace = \"scene_linear\"\nresult = \"display\"\n"
+          "[[stack]]\neffect = \"encode\"\n");
+    expect_done({"develop", path("frame.exr"), "--look", path("kept.toml"), "-o", path("effects.png")});
+    expect_done({"develop", path("frame.exr"), "--look", path("table.toml"), "-o", path("table.png")});
+    // Saturated colours at the ends of the range are the worst; the file says how far they are off.
+    const std::string mark = "largest ";
+    const std::size_t at = comments.find(mark);
+    ASSERT_NE(at, std::string::npos);
+    const double largest = std::stod(comments.substr(at + mark.size()));
+    EXPECT_LT(largest, 0.03);
+    EXPECT_LE(apart("effects.png", "table.png"), largest + 1.01 / 255);
+    const Picture effects = picture("effects.png"), in_table = picture("table.png");
+    ASSERT_EQ(in_table.pixels.size(), effects.pixels.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < effects.pixels.size(); ++i) sum += std::abs(effects.pixels[i] - in_table.pixels[i]);
+    EXPECT_LT(sum / static_cast<double>(effects.pixels.size()), 0.5 / 255);
+}
+
+// Without a tone mapping what comes out is light, too.
+TEST_F(CliLut, ExportedGradesGiveLight) {
+    write("grade.toml", "[[stack]]\neffect = \"exposure\"\nexposure = 0.5\n");
+    expect_done({"lut", "export", path("grade.toml"), "-o", path("grade.cube")});
+    EXPECT_NE(test::content(path("grade.cube")).find("result = \"same\""), std::string::npos);
+    write("table.toml", "[[stack]]\neffect = \"lut\"\nlut = \"grade.cube\"\nspace = \"scene_linear\"\n");
+    expect_done(
+        {"develop", path("frame.exr"), "--look", path("grade.toml"), "-o", path("effects.exr"), "--bits", "float"});
+    expect_done(
+        {"develop", path("frame.exr"), "--look", path("table.toml"), "-o", path("table.exr"), "--bits", "float"});
+    const Picture effects = picture("effects.exr"), table = picture("table.exr");
+    ASSERT_FALSE(effects.empty());
+    ASSERT_EQ(table.pixels.size(), effects.pixels.size());
+    for (std::size_t i = 0; i < effects.pixels.size(); ++i)
+        ASSERT_NEAR(table.pixels[i], effects.pixels[i], 1e-3 * effects.pixels[i] + 1e-5) << i;
+}
+
+TEST_F(CliLut, ConvertedTablesAreTheSame) {
+    write("line.spi1d", "Version 1\nFrom -0.5 2.0\nLength 3\nComponents 1\n{\n0\n0.25\n1\n}\n");
+    expect_done({"lut", "convert", path("line.spi1d"), "-o", path("line.cube")});
+    const Outcome told = run({"lut", "info", path("line.cube"), "--json"});
+    EXPECT_EQ(run({"info", path("line.cube"), "--json"}).out, told.out);
+    const nlohmann::json document = nlohmann::json::parse(told.out, nullptr, false);
+    ASSERT_TRUE(document.is_object()) << told.out << told.err;
+    EXPECT_EQ(document.at("kind"), "table");
+    EXPECT_EQ(document.at("table_1d").at("entries"), 3);
+    EXPECT_EQ(document.at("table_1d").at("inputs_from"), -0.5);
+    EXPECT_EQ(document.at("table_1d").at("greatest"), 1.0);
+    EXPECT_NE(document.at("comments").at(0).get<std::string>().find("Sampled from .spi1d"), std::string::npos);
+
+    Picture strip(16, 256);
+    for (std::uint32_t y = 0; y < 256; ++y)
+        for (std::uint32_t x = 0; x < 16; ++x) {
+            const std::array<std::uint32_t, 3> place{x, y % 16, y / 16};
+            for (std::uint32_t i = 0; i < 3; ++i) strip.at(x, y)[i] = static_cast<float>(place[i] * 17) / 255;
+        }
+    ASSERT_TRUE(write_picture(path("strip.png"), strip));
+    expect_done({"lut", "convert", path("strip.png"), "-o", path("strip.cube")});
+    const Result<FoundTable> cube = read_table_file(path("strip.cube"));
+    ASSERT_TRUE(cube) << cube.error().text;
+    EXPECT_EQ(cube->file.table.size, 16u);
+    EXPECT_EQ(cube->file.table.cube[3], 17.0f / 255);
+}
+
+TEST_F(CliLut, WhatCannotBeDoneIsOneLine) {
+    expect_refused({"lut", "convert", path("bad.cube"), "-o", path("out.cube")}, 1,
+                   "bad.cube:2: the file ends after 1");
+    expect_refused({"lut", "convert", path("frame.exr"), "-o", path("out.cube")}, 1, "64x48 is no table");
+    expect_refused({"lut", "convert", path("half.cube"), "-o", path("out.txt")}, 1, ".cube");
+    expect_refused({"lut", "info", path("bad.cube")}, 1, "bad.cube:2: ");
+    expect_refused({"lut", "inf"}, 1, "did you mean 'info'?");
+    expect_refused({"lut"}, 1, "info, convert, export");
+    expect_refused({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path("bad.cube")}, 1, "bad.cube:2: ");
+    expect_refused({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path("none.cube")}, 1, "none.cube");
+    write("blur.toml", "[[stack]]\neffect = \"gaussian_blur\"\n");
+    expect_refused({"lut", "export", path("blur.toml"), "-o", path("out.cube")}, 1, "nothing of it is a function");
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// Sequences through the built program: the same files whatever the threads and the pieces, and what becomes of frames
+// that are there already, missing or damaged.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "cli_support.hpp"
+#include "image/frame/frame_file.hpp"
+
+namespace darkroom {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::content;
+using test::Outcome;
+
+class CliSequence : public test::CliFixture {
+  protected:
+    static constexpr int count = 7;
+
+    void make_files() override {
+        for (int number = 1; number <= count; ++number) make_frame(number, true);
+    }
+    void make_frame(int number, bool has_depth) const {
+        FrameFile frame;
+        frame.color = Picture(48, 32);
+        for (std::size_t i = 0; i < frame.color.pixels.size(); ++i)
+            frame.color.pixels[i] =
+                i % 4 == 3 ? 1.0f : static_cast<float>((i * 37 + static_cast<std::size_t>(number)) % 101) / 40.0f;
+        if (has_depth) {
+            frame.depth = Plane<1>(48, 32);
+            std::ranges::fill(frame.depth->values, 5.0f);
+        }
+        ASSERT_TRUE(write_frame(path(in(number)), frame));
+    }
+    static void put(const std::string& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+    static std::string in(int number) { return fmt::format("f.{:04}.exr", number); }
+    static std::string out(const std::string& folder, int number) {
+        return fmt::format("{}/f.{:04}.png", folder, number);
+    }
+
+    [[nodiscard]] Outcome develop(const std::string& folder, std::vector<std::string> flags = {}) const {
+        fs::create_directories(path(folder));
+        flags.insert(flags.begin(),
+                     {"develop", path("f.%04d.exr"), "-o", path(folder) + "/", "--dither-enabled", "on"});
+        return run(flags);
+    }
+    [[nodiscard]] std::vector<std::string> pictures(const std::string& folder) const {
+        std::vector<std::string> out_files;
+        for (int number = 1; number <= count; ++number) out_files.push_back(content(path(out(folder, number))));
+        return out_files;
+    }
+};
+
+TEST_F(CliSequence, FilesAreTheSameWhateverTheJobs) {
+    for (const char* jobs : {"1", "2", "5"}) {
+        const Outcome outcome = develop(jobs, {"--jobs", jobs});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        EXPECT_EQ(std::ranges::count(outcome.out, '\n'), count);
+    }
+    const std::vector<std::string> one = pictures("1");
+    EXPECT_NE(one[0], one[1]);
+    EXPECT_EQ(pictures("2"), one);
+    EXPECT_EQ(pictures("5"), one);
+}
+
+TEST_F(CliSequence, PiecesAreTheWhole) {
+    ASSERT_EQ(develop("whole").code, 0);
+    ASSERT_EQ(develop("a", {"--frames", "3-5"}).code, 0);
+    EXPECT_FALSE(fs::exists(path(out("a", 2))));
+    EXPECT_FALSE(fs::exists(path(out("a", 6))));
+    for (int number = 3; number <= 5; ++number)
+        EXPECT_EQ(content(path(out("a", number))), content(path(out("whole", number)))) << number;
+    const Outcome none = develop("a", {"--frames", "30-50"});
+    EXPECT_EQ(none.code, 1);
+    EXPECT_EQ(none.err, "darkroom: --frames 30-50: none of the 7 inputs has such a number\n");
+}
+
+TEST_F(CliSequence, NamesOfPicturesThatAreNotAskedForAreNotTried) {
+    fs::create_directories(path(out("g", 2)));
+    EXPECT_NE(develop("g").code, 0) << "a folder is in the way";
+    EXPECT_EQ(develop("g", {"--frames", "3-5"}).code, 0);
+}
+
+TEST_F(CliSequence, WhatIsThereStaysWhereAsked) {
+    fs::create_directories(path("b"));
+    put(path(out("b", 3)), "there");
+    put(path(out("b", 4)), "");
+    ASSERT_EQ(develop("b", {"--skip-existing"}).code, 0);
+    EXPECT_EQ(content(path(out("b", 3))), "there");
+    EXPECT_GT(content(path(out("b", 4))).size(), 100u) << "an empty file is no picture";
+    const Outcome again = develop("b", {"--skip-existing"});
+    EXPECT_EQ(again.code, 0);
+    EXPECT_EQ(again.out, "");
+    ASSERT_EQ(develop("b").code, 0);
+    EXPECT_NE(content(path(out("b", 3))), "there");
+}
+
+TEST_F(CliSequence, AFailureStopsTheFramesAfterIt) {
+    put(path(in(4)), "no picture");
+    const Outcome outcome = develop("c", {"--jobs", "3"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find("f.0004.exr: is no image file"), std::string::npos) << outcome.err;
+    for (int number = 1; number <= 3; ++number) EXPECT_TRUE(fs::exists(path(out("c", number)))) << number;
+    EXPECT_FALSE(fs::exists(path(out("c", 4))));
+}
+
+TEST_F(CliSequence, KeepsGoingAndListsAllFailures) {
+    put(path(in(2)), "no picture");
+    put(path(in(6)), "");
+    const Outcome outcome = develop("d", {"--keep-going"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("f.0002.exr: is no image file"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("f.0006.exr: is empty"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(outcome.err.ends_with("darkroom: 2 of 7 frames failed\n")) << outcome.err;
+    for (int number = 1; number <= count; ++number)
+        EXPECT_EQ(fs::exists(path(out("d", number))), number != 2 && number != 6) << number;
+}
+
+TEST_F(CliSequence, SignsAreDigits) {
+    const Outcome outcome = run({"develop", path("f.####.exr[2-3]"), "-o", path("g.@@@.png")});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_TRUE(fs::exists(path("g.002.png")));
+    EXPECT_TRUE(fs::exists(path("g.003.png")));
+    EXPECT_EQ(run({"develop", path(in(1)), "-o", path("a#1.png")}).code, 0);
+    EXPECT_TRUE(fs::exists(path("a#1.png"))) << "one sign is a name";
+}
+
+TEST_F(CliSequence, TellsWhereWhatIsLeftOutChanges) {
+    make_frame(3, false);
+    make_frame(4, false);
+    const Outcome outcome = develop("e", {"--fog-density", "0.1"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("f.0003.exr: left out: fog: needs depth"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("f.0005.exr: nothing is left out any more"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CliSequence, TimingsSayWhatEachStageTook) {
+    const Outcome outcome = develop("h", {"--timings", "--jobs", "2"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* line : {"ms  decode a frame, on 2 threads", "ms  upload, GPU and read-back a frame",
+                             "ms  encode a frame, on 2 threads", "frames a second", "together, means of all frames"})
+        EXPECT_NE(outcome.out.find(line), std::string::npos) << line << "\n" << outcome.out;
+}
+
+TEST_F(CliSequence, FramesASecondMakeWhatMovesMove) {
+    for (int number = 2; number <= count; ++number)
+        fs::copy_file(path(in(1)), path(in(number)), fs::copy_options::overwrite_existing);
+    ASSERT_EQ(develop("j", {"--fps", "24"}).code, 0);
+    EXPECT_NE(content(path(out("j", 1))), content(path(out("j", 2)))) << "the dither moves with time";
+    ASSERT_EQ(develop("k", {"--time", "0.5"}).code, 0);
+    ASSERT_EQ(develop("l", {"--fps", "2"}).code, 0);
+    EXPECT_EQ(content(path(out("k", 1))), content(path(out("l", 1)))) << "frame 1 is at half a second";
+    const Outcome both = develop("i", {"--fps", "24", "--time", "1"});
+    EXPECT_EQ(both.code, 1);
+    EXPECT_EQ(both.err, "darkroom: --time: --fps says the time of every frame, leave out one of them\n");
+}
+
+TEST_F(CliSequence, FilesAreCodedAsAsked) {
+    const auto size = [&](const std::string& name, std::vector<std::string> flags) {
+        flags.insert(flags.begin(), {"develop", path(in(1)), "-o", path(name)});
+        const Outcome outcome = run(flags);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return fs::file_size(path(name));
+    };
+    EXPECT_LT(size("a.jpg", {"--quality", "20"}), size("b.jpg", {"--quality", "95"}));
+    EXPECT_LT(size("a.png", {"--compression", "9"}), size("b.png", {"--compression", "0"}));
+    EXPECT_LT(size("a.exr", {"--compression", "zip"}), size("b.exr", {"--compression", "none"}));
+    const auto refused = [&](const std::string& name, std::vector<std::string> flags) {
+        flags.insert(flags.begin(), {"develop", path(in(1)), "-o", path(name)});
+        const Outcome outcome = run(flags);
+        EXPECT_EQ(outcome.code, 1);
+        return outcome.err.substr(outcome.err.find(name));
+    };
+    EXPECT_EQ(refused("c.png", {"--quality", "20"}), "c.png: PNG has no quality; .jpg has\n");
+    EXPECT_EQ(refused("c.tif", {"--compression", "piz"}),
+              "c.tif: compression piz in TIFF; allowed: none, packbits, lzw, zip\n");
+    EXPECT_EQ(refused("c.jpg", {"--compression", "zip"}),
+              "c.jpg: compression zip in JPEG; allowed: none can be chosen\n");
+}
+
+TEST_F(CliSequence, RenderedFramesAreTheSameWhateverTheJobs) {
+    put(path("s.scene.toml"), "[scene]\nname = \"empty\"\n");
+    for (const char* jobs : {"1", "3"}) {
+        const Outcome outcome =
+            run({"render", path("s.scene.toml"), "--size", "32x24", "--frames", "2-5", "--jobs", jobs, "-o",
+                 path(std::string("r") + jobs + ".##.png"), "--frame", path(std::string("r") + jobs + ".##.exr")});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+    }
+    for (const char* number : {"02", "03", "04", "05"})
+        for (const char* kind : {"png", "exr"})
+            EXPECT_EQ(content(path(fmt::format("r1.{}.{}", number, kind))),
+                      content(path(fmt::format("r3.{}.{}", number, kind))))
+                << number;
+}
+
+}  // namespace
+}  // namespace darkroom

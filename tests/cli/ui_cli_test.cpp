@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// The interface on the command line and in looks.
+#include "cli_support.hpp"
+#include "image/frame/frame_file.hpp"
+#include "image/picture/write.hpp"
+
+namespace darkroom {
+namespace {
+
+using test::Outcome;
+
+class CliUi : public test::CliFixture {
+  protected:
+    static constexpr std::uint32_t width = 48, height = 32;
+    void make_files() override {
+        FrameFile frame;
+        frame.color = Picture(width, height);
+        frame.color.pixels.assign(frame.color.pixels.size(), 0.2f);
+        for (std::size_t i = 3; i < frame.color.pixels.size(); i += 4) frame.color.pixels[i] = 1;
+        ASSERT_TRUE(write_frame(path("frame.exr"), frame));
+        // The left half opaque, then a half-transparent column; straight alpha, as PNG has it.
+        Picture hud(width, height);
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x) {
+                const float alpha = x < width / 2 ? 1.0f : x < width / 2 + 8 ? 128 / 255.0f : 0.0f;
+                const std::array<float, 4> texel{200 / 255.0f, static_cast<float>(y) / 255.0f, 16 / 255.0f, alpha};
+                std::ranges::copy(texel, hud.at(x, y));
+            }
+        ASSERT_TRUE(write_picture(path("hud.png"), hud, {.alpha = true}));
+        write("plain.toml", "[[stack]]\neffect = \"encode\"\n");
+        write("ui.toml", "[[stack]]\neffect = \"encode\"\n[ui]\ndocument = \"hud.png\"\n");
+    }
+    [[nodiscard]] Picture developed(std::vector<std::string> flags) const {
+        std::vector<std::string> arguments{"develop", path("frame.exr"), "-o", path("out.png")};
+        arguments.insert(arguments.end(), flags.begin(), flags.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        return picture("out.png");
+    }
+    static int code(float value) { return static_cast<int>(std::lround(value * 255)); }
+};
+
+TEST_F(CliUi, AnInterfaceIsAnImageOfTheLookOrOfTheFlag) {
+    const Picture plain = developed({"--look", path("plain.toml")}), look = developed({"--look", path("ui.toml")});
+    EXPECT_EQ(developed({"--look", path("plain.toml"), "--ui", path("hud.png")}).pixels, look.pixels);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        EXPECT_EQ(code(look.at(3, y)[0]), 200);
+        EXPECT_EQ(code(look.at(3, y)[1]), static_cast<int>(y));
+        EXPECT_EQ(look.at(width - 2, y)[0], plain.at(width - 2, y)[0]);
+        const double under = plain.at(width / 2 + 4, y)[0] * (1 - 128 / 255.0);
+        EXPECT_NEAR(look.at(width / 2 + 4, y)[0], under + 100 / 255.0, 1.01 / 255);
+    }
+    // The flat table has it, too, and the references agree.
+    const Picture flat =
+        developed({"--ui", path("hud.png"), "--ui-echo-strength", "0.3", "--ui-warp-strength", "-0.2"});
+    const Picture reference =
+        developed({"--ui", path("hud.png"), "--ui-echo-strength", "0.3", "--ui-warp-strength", "-0.2", "--reference"});
+    double worst = 0;
+    for (std::size_t i = 0; i < flat.pixels.size(); ++i)
+        worst = std::max(worst, double{std::abs(flat.pixels[i] - reference.pixels[i])});
+    EXPECT_LE(worst, 1.01 / 255);
+    EXPECT_GT(code(flat.at(3, 5)[0]), code(look.at(3, 5)[0])) << "the echo adds to it";
+}
+
+TEST_F(CliUi, TheTableHasTheChainsParameters) {
+    write("table.toml",
+          "[[stack]]\neffect = \"encode\"\n[ui]\ndocument = \"hud.png\"\nui_composite_additive = 1\n"
+          "contrast_gamma_contrast = 1.5\n");
+    const Picture out = developed({"--look", path("table.toml")}), plain = developed({"--look", path("plain.toml")});
+    EXPECT_NEAR(out.at(width - 2, 3)[0], std::min(1.0f, plain.at(width - 2, 3)[0] * 1.5f), 1.6 / 255);
+    EXPECT_NEAR(out.at(3, 3)[2], 1.5 * (plain.at(3, 3)[2] + 0.7 * 16 / 255), 1.6 / 255);
+    const Outcome info = run({"info", path("table.toml")});
+    EXPECT_EQ(info.code, 0) << info.err;
+    write("slip.toml", "[ui]\nui_wrap_strength = 1\n");
+    const Outcome slip = run({"develop", path("frame.exr"), "--look", path("slip.toml"), "-o", path("never.png")});
+    EXPECT_NE(slip.err.find("slip.toml:2:1: unknown key 'ui_wrap_strength' = 1, did you mean 'ui_warp_strength'"),
+              std::string::npos)
+        << slip.err;
+}
+
+// The game says that there is little health, the controller fires, and the pulse doubles the light.
+TEST_F(CliUi, EventsControllersAndPulsesMeet) {
+    write("c.lua", "engine.on_frame('low', function() if game.health < 50 then engine.fire('hit') end end)\n");
+    write("game.toml",
+          "[[stack]]\neffect = \"exposure\"\n[[stack]]\neffect = \"encode\"\n"
+          "[[pulse]]\nevent = \"hit\"\nparameter = \"exposure.exposure\"\namount = 1\nduration = 1\n"
+          "[ui]\ncontrollers = [\"c.lua\"]\ngame = { health = 100 }\n");
+    write("events.toml", "[[event]]\ntime = 2\ngame = { health = 20 }\n");
+    const auto at = [&](const std::string& time) {
+        return developed({"--look", path("game.toml"), "--events", path("events.toml"), "--time", time}).at(9, 9)[0];
+    };
+    const auto encoded = [](double light) { return 1.055 * std::pow(light, 1 / 2.4) - 0.055; };
+    EXPECT_NEAR(at("1"), encoded(0.2), 1.01 / 255);
+    EXPECT_NEAR(at("2"), encoded(0.4), 1.01 / 255);
+    write("c.lua", "engine.on_frame('low', function() error('no such luck') end)\n");
+    const Outcome outcome = run({"develop", path("frame.exr"), "--look", path("game.toml"), "-o", path("out.png")});
+    EXPECT_EQ(outcome.code, 0) << "a script's fault is told, and the picture made";
+    EXPECT_NE(outcome.err.find("no such luck"), std::string::npos) << outcome.err;
+    write("c.lua", "this is no Lua\n");
+    EXPECT_EQ(run({"develop", path("frame.exr"), "--look", path("game.toml"), "-o", path("never.png")}).code, 1);
+}
+
+TEST_F(CliUi, DocumentsShowWhatTheGameSays) {
+    write("hud.svg",
+          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100%\" height=\"100%\" viewBox=\"0 0 48 32\">"
+          "<rect width=\"{{width}}\" height=\"32\" fill=\"#00ff00\"/></svg>");
+    write("svg.toml", "[[stack]]\neffect = \"encode\"\n[ui]\ndocument = \"hud.svg\"\ngame = { width = 12 }\n");
+    write("events.toml", "[[event]]\ntime = 1\njump = true\ngame = { width = 36 }\n");
+    const auto green = [&](const std::vector<std::string>& more, std::uint32_t x) {
+        std::vector<std::string> flags{"--look", path("svg.toml")};
+        flags.insert(flags.end(), more.begin(), more.end());
+        return code(developed(flags).at(x, 9)[1]) == 255;
+    };
+    EXPECT_TRUE(green({}, 6));
+    EXPECT_FALSE(green({}, 20));
+    EXPECT_TRUE(green({"--game", "width=24"}, 20));
+    EXPECT_TRUE(green({"--events", path("events.toml"), "--time", "1"}, 30));
+    const Outcome none = run(
+        {"develop", path("frame.exr"), "--look", path("plain.toml"), "--ui", path("hud.svg"), "-o", path("never.png")});
+    EXPECT_EQ(none.code, 1);
+    EXPECT_NE(none.err.find("hud.svg:1: "), std::string::npos) << none.err;
+}
+
+// 55.6 ms after a jump the interface is read 0.0041 of the height further up, which is nothing a second later.
+TEST_F(CliUi, AJumpMovesTheInterface) {
+    write("events.toml", "[[event]]\ntime = 1\njump = true\n");
+    Picture step(width, height);
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x)
+            std::ranges::copy(std::array{0.0f, y < height / 2 ? 0.0f : 1.0f, 0.0f, 1.0f}, step.at(x, y));
+    ASSERT_TRUE(write_picture(path("hud.png"), step, {.alpha = true}));
+    const auto at = [&](const std::string& time) {
+        return developed({"--look", path("ui.toml"), "--events", path("events.toml"), "--time", time, "--bits", "16"});
+    };
+    const Picture before = at("0.9"), in_the_air = at("1.0556"), after = at("3");
+    EXPECT_EQ(before.pixels, after.pixels);
+    EXPECT_NEAR(in_the_air.at(3, height / 2)[1], 1 - 0.004088 * height, 1.5 / 255);
+}
+
+TEST_F(CliUi, IsNotOverwritten) {
+    const Outcome outcome = run({"develop", path("frame.exr"), "--ui", path("hud.png"), "-o", path("hud.png")});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("hud.png: is an input, and would be overwritten"), std::string::npos) << outcome.err;
+}
+
+// Where the look has moved it, inertia comes on top.
+TEST_F(CliUi, InertiaKeepsTheLooksOffset) {
+    write("events.toml", "[[event]]\ntime = 1\njump = true\n");
+    const std::vector<std::string> moved{"--look", path("ui.toml"), "--set", "ui_warp.offset=0.25,0"};
+    std::vector<std::string> with_events = moved;
+    with_events.insert(with_events.end(), {"--events", path("events.toml"), "--time", "9"});
+    EXPECT_EQ(developed(with_events).pixels, developed(moved).pixels);
+    EXPECT_NE(developed(moved).pixels, developed({"--look", path("ui.toml")}).pixels);
+}
+
+TEST_F(CliUi, ErrorsAreOneLine) {
+    for (const std::string name : {"none.png", "plain.toml", "frame.exr"}) {
+        const Outcome outcome = run({"develop", path("frame.exr"), "--ui", path(name), "-o", path("never.png")});
+        EXPECT_EQ(outcome.code, 1) << name;
+        EXPECT_NE(outcome.err.find(name), std::string::npos) << outcome.err;
+        EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+        EXPECT_FALSE(std::filesystem::exists(path("never.png")));
+    }
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: MIT
+// `darkroom render` as its users meet it: what each flag does, what is refused, and which files there are afterwards.
+#include <darkroom/effects.hpp>
+
+#include <map>
+#include <set>
+
+#include "core/text/param_text.hpp"
+#include "image/frame/frame_file.hpp"
+#include "image/picture/write.hpp"
+#include "tests/cli/cli_support.hpp"
+
+namespace darkroom {
+namespace {
+
+using test::content;
+using test::Outcome;
+
+// Sun, floor, a box that moves to the right, a lamp, sparks. Half a metre of everything, so that a few pixels show it.
+constexpr const char* scene_text = R"([scene]
+name = "Yard"
+[camera]
+position = [3, 2, 4]
+target = [0, 0.5, 0]
+fov = 50
+[post_process]
+exposure = 0.6
+[entities.sun.light]
+direction = [-1, 0.8, 0.5]
+intensity = 4
+volumetric_intensity = 2
+[entities.floor]
+archetype = "floor"
+bounds = { min = [-2, -0.1, -2], max = [2, 0, 2] }
+[entities.box]
+bounds = { min = [-0.5, 0, -0.5], max = [0.5, 1, 0.5] }
+material = { color = [0.8, 0.3, 0.1], metallic = 0.5, roughness = 0.4 }
+[[entities.box.transform.path]]
+time = 0
+position = [0, 0, 0]
+[[entities.box.transform.path]]
+time = 4
+position = [2, 0, 0]
+[entities.lamp]
+bounds = { min = [0.8, 0.6, -0.3], max = [1.1, 0.9, 0] }
+material = { color = [1, 1, 1], emissive = [4, 3, 2], emissive_strength = 3 }
+[entities.sparks.transform]
+position = [0, 1, 0]
+[entities.sparks.particle_emitter]
+emission_rate = 40
+size_start = 0.3
+size_end = 0.2
+)";
+
+class CliRender : public test::CliFixture {
+  protected:
+    void make_files() override { write("yard.scene.toml", scene_text); }
+
+    /// A small picture of the yard. Flags that say a size win, since CLI texts are taken in order only for lists.
+    [[nodiscard]] Outcome render(std::vector<std::string> flags, const std::string& out = "out.png") const {
+        flags.insert(flags.begin(), {"render", path("yard.scene.toml"), "-o", path(out)});
+        const bool has_size = std::any_of(flags.begin(), flags.end(), [](const std::string& flag) {
+            return flag == "--size" || flag == "--width" || flag == "--height";
+        });
+        if (!has_size) flags.insert(flags.end(), {"--size", "48x32"});
+        const bool has_frame = std::ranges::find(flags, "--frame") != flags.end();
+        if (has_frame) flags.insert(flags.end(), {"--shadow-resolution", "256"});  // it holds them
+        return run(flags);
+    }
+    /// Each list of flags gives another picture than all others.
+    void expect_all_differ(const std::vector<std::vector<std::string>>& cases) const {
+        std::map<std::string, std::string> seen;
+        for (const std::vector<std::string>& flags : cases) {
+            std::string shown;
+            for (const std::string& flag : flags) shown += flag + " ";
+            const Outcome outcome = render(flags);
+            ASSERT_EQ(outcome.code, 0) << shown << outcome.err;
+            const auto [other, is_new] = seen.try_emplace(content(path("out.png")), shown);
+            EXPECT_TRUE(is_new) << "'" << shown << "' gives the picture of '" << other->second << "'";
+        }
+    }
+    void expect_render_refused(std::vector<std::string> flags, const std::string& part) const {
+        flags.insert(flags.begin(), {"render", path("yard.scene.toml"), "-o", path("x.png")});
+        expect_refused(flags, 1, part);
+    }
+    [[nodiscard]] FrameFile frame(const std::string& name) const {
+        Result<FrameFile> read = read_frame(path(name));
+        EXPECT_TRUE(read) << read.error().text;
+        return read ? std::move(*read) : FrameFile{};
+    }
+};
+
+/// What a flag does; what is refused. Suites of their own, since each of their runs is a process.
+class CliRenderFlags : public CliRender {};
+class CliRenderRefused : public CliRender {};
+
+TEST_F(CliRender, RendersAScene) {
+    const Outcome outcome = render({});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(outcome.out, "Loaded scene Yard\nEntities: 5\nRendered 48x32 image to " + path("out.png") + "\n");
+    EXPECT_EQ(files(), (std::vector<std::string>{"out.png", "yard.scene.toml"})) << "nothing else is left behind";
+    ASSERT_EQ(render({}, "again.png").code, 0);
+    EXPECT_EQ(content(path("out.png")), content(path("again.png")));
+    std::set<float> values;
+    for (const float value : picture("out.png").pixels) values.insert(value);
+    EXPECT_GT(values.size(), 20u) << "there is something to see";
+}
+
+TEST_F(CliRender, AnySizeIsASize) {
+    for (const auto& [flags, width, height] :
+         std::vector<std::tuple<std::vector<std::string>, std::uint32_t, std::uint32_t>>{
+             {{"--size", "1x1"}, 1, 1},
+             {{"--size", "7x3"}, 7, 3},
+             {{"--width", "5", "--height", "90"}, 5, 90},
+             {{"--size", "8192x2"}, 8192, 2}}) {
+        const Outcome outcome = render(flags);
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(picture("out.png").width, width);
+        EXPECT_EQ(picture("out.png").height, height);
+    }
+}
+
+TEST_F(CliRender, WritesEveryKindOfFile) {
+    for (const auto& [name, flags] :
+         std::vector<std::pair<std::string, std::vector<std::string>>>{{"a.jpg", {}},
+                                                                       {"a.tif", {"--bits", "16"}},
+                                                                       {"b.tif", {"--bits", "16", "--no-postprocess"}},
+                                                                       {"a.exr", {"--debug-mode", "normals"}},
+                                                                       {"a.hdr", {}}}) {
+        const Outcome outcome = render(flags, name);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "") << name;
+        EXPECT_EQ(picture(name).height, 32u);
+    }
+}
+
+TEST_F(CliRenderFlags, EveryDebugModeIsAPicture) {
+    expect_all_differ({{},
+                       {"--debug-mode", "wireframe"},
+                       {"--debug-mode", "normals"},
+                       {"--debug-mode", "depth"},
+                       {"--debug-mode", "uv"},
+                       {"--debug-mode", "unlit"},
+                       {"--debug-mode", "metalrough"}});
+}
+
+TEST_F(CliRenderFlags, EveryMomentIsAPicture) {
+    expect_all_differ({{}, {"--time", "1"}, {"--time", "2.5"}, {"--time", "1", "--seed", "9"}});
+}
+
+TEST_F(CliRenderFlags, DefaultsAreThoseOfTheHelp) {
+    ASSERT_EQ(render({}, "a.png").code, 0);
+    ASSERT_EQ(
+        render({"--shadow-resolution", "2048", "--msaa", "1", "--fps", "24", "--time", "0", "--seed", "0"}, "b.png")
+            .code,
+        0);
+    EXPECT_EQ(content(path("a.png")), content(path("b.png")));
+    const std::string help = run({"render", "--help-all"}).out;
+    for (const char* const flag : {"--output",
+                                   "--width",
+                                   "--height",
+                                   "--size",
+                                   "--schemas",
+                                   "--distance",
+                                   "--yaw",
+                                   "--pitch",
+                                   "--target",
+                                   "--fov",
+                                   "--no-grid",
+                                   "--debug-mode",
+                                   "--wireframe-overlay",
+                                   "--show-normals",
+                                   "--no-tonemapping",
+                                   "--no-shadows",
+                                   "--shadow-resolution",
+                                   "--no-postprocess",
+                                   "--msaa",
+                                   "--time",
+                                   "--frames",
+                                   "--fps",
+                                   "--seed",
+                                   "--frame",
+                                   "--bits",
+                                   "--alpha",
+                                   "--timings",
+                                   "--device",
+                                   "--kernels",
+                                   "--look"})
+        EXPECT_NE(help.find(flag), std::string::npos) << flag;
+    for (const EffectInfo* const effect : all_effects())
+        for (const ParamInfo& row : effect->parameters.rows)
+            EXPECT_NE(help.find(flag_name(flat_key(effect->name, row.name)) + " "), std::string::npos) << effect->name;
+}
+
+TEST_F(CliRenderFlags, FlagsWinOverTheSceneWhichWinsOverDefaults) {
+    if (find_effect("exposure") == nullptr) GTEST_SKIP() << "the effect exposure is not in this build";
+    const std::string plain = write(
+        "plain.scene.toml", std::string(scene_text).replace(std::string(scene_text).find("exposure = 0.6"), 14, ""));
+    const auto other = [&](std::vector<std::string> flags, const std::string& out) {
+        flags.insert(flags.begin(), {"render", plain, "-o", path(out), "--size", "48x32"});
+        return run(flags).code;
+    };
+    ASSERT_EQ(other({}, "default.png"), 0);
+    ASSERT_EQ(other({"--exposure", "0.6"}, "flag.png"), 0);
+    ASSERT_EQ(render({}, "scene.png").code, 0);
+    ASSERT_EQ(render({"--exposure", "1"}, "both.png").code, 0);
+    EXPECT_NE(content(path("default.png")), content(path("scene.png")));
+    EXPECT_EQ(content(path("flag.png")), content(path("scene.png")));
+    EXPECT_EQ(content(path("both.png")), content(path("default.png")));
+    const std::string look = write("look.toml", "[post_process]\nexposure = 1.0\n");
+    ASSERT_EQ(render({"--look", look}, "look.png").code, 0);
+    EXPECT_EQ(content(path("look.png")), content(path("default.png"))) << "a look takes the place of the scene's";
+}
+
+TEST_F(CliRender, DevelopingTheFrameGivesThePicture) {
+    const std::vector<std::vector<std::string>> cases{
+        {}, {"--frames", "36", "--dither-enabled", "on"}, {"--msaa", "4", "--kernels", "compute", "--exposure", "3"}};
+    for (std::vector<std::string> flags : cases) {
+        if (find_effect("dither") == nullptr && flags.size() == 4) continue;
+        if (find_effect("exposure") == nullptr && flags.size() == 6) continue;
+        flags.insert(flags.end(), {"--frame", path("f.exr")});
+        const Outcome rendered = render(flags, "a.png");
+        ASSERT_EQ(rendered.code, 0) << rendered.err;
+        std::vector<std::string> again{"develop", path("f.exr"), "--look", path("yard.scene.toml"),
+                                       "-o",      path("b.png")};
+        for (std::size_t i = 0; i + 1 < flags.size(); i += 2)
+            if (flags[i] != "--msaa" && flags[i] != "--frames" && flags[i] != "--frame")
+                again.insert(again.end(), {flags[i], flags[i + 1]});
+        const Outcome developed = run(again);
+        ASSERT_EQ(developed.code, 0) << developed.err;
+        EXPECT_EQ(developed.err, "");
+        EXPECT_EQ(content(path("a.png")), content(path("b.png")));
+    }
+}
+
+TEST_F(CliRender, AFrameHasEveryLayer) {
+    ASSERT_EQ(render({"--time", "2", "--fps", "10", "--frame", path("f.exr")}).code, 0);
+    const FrameFile file = frame("f.exr");
+    ASSERT_TRUE(file.depth && file.normals && file.velocity);
+    ASSERT_TRUE(file.camera.world_to_camera && file.camera.projection && file.camera.previous_world_to_camera);
+    EXPECT_EQ(file.samples, SampleKind::Half);
+    EXPECT_EQ(file.camera.near_distance, 0.1F);
+    EXPECT_EQ(file.time, 2);
+    EXPECT_EQ(file.delta_time, 0.1);
+    EXPECT_EQ(file.frame_index, 0u);
+    EXPECT_EQ(std::count(file.depth->values.begin(), file.depth->values.end(), sky_depth) > 0, true);
+    float fastest = 0;
+    for (const float speed : file.velocity->values) fastest = std::max(fastest, std::abs(speed));
+    EXPECT_GT(fastest, 0.1F) << "the box moves 5 cm a frame";
+    ASSERT_EQ(render({"--time", "2", "--fps", "20", "--frame", path("g.exr")}).code, 0);
+    float slower = 0;
+    const FrameFile other = frame("g.exr");
+    ASSERT_TRUE(other.velocity);
+    for (const float speed : other.velocity->values) slower = std::max(slower, std::abs(speed));
+    EXPECT_NEAR(slower / fastest, 0.5F, 0.1F);
+}
+
+TEST_F(CliRender, FloatFilesHoldNoTimeOfDay) {
+    ASSERT_EQ(render({"--frame", path("frame.exr")}, "picture.exr").code, 0);
+    for (const char* const name : {"frame.exr", "picture.exr"})
+        for (const char* const date : {"DateTime", "capDate"})
+            EXPECT_EQ(content(path(name)).find(date), std::string::npos) << name;
+}
+
+TEST_F(CliRender, FramesAreNumbered) {
+    const Outcome outcome = render({"--frames", "3-5", "--fps", "2", "--frame", path("f.%03d.exr")}, "p.%04d.png");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(files(), (std::vector<std::string>{"f.003.exr", "f.004.exr", "f.005.exr", "p.0003.png", "p.0004.png",
+                                                 "p.0005.png", "yard.scene.toml"}));
+    EXPECT_NE(content(path("p.0003.png")), content(path("p.0004.png")));
+    EXPECT_NE(outcome.out.find("2/3 Rendered 48x32 image to " + path("p.0004.png")), std::string::npos) << outcome.out;
+    const FrameFile four = frame("f.004.exr");
+    EXPECT_EQ(four.time, 2);
+    EXPECT_EQ(four.frame_index, 4u);
+    // A frame is what it is, whichever were rendered before it.
+    ASSERT_EQ(render({"--time", "2", "--fps", "2", "--frame", path("alone.exr")}).code, 0);
+    const FrameFile alone = frame("alone.exr");
+    EXPECT_EQ(four.color, alone.color);
+    EXPECT_EQ(four.velocity, alone.velocity);
+    EXPECT_EQ(four.camera.previous_world_to_camera, alone.camera.previous_world_to_camera);
+}
+
+TEST_F(CliRender, FloatFilesWithoutPostProcessingAreTheLightItself) {
+    ASSERT_EQ(render({"--no-postprocess", "--bits", "half", "--frame", path("f.exr")}, "light.exr").code, 0);
+    const FrameFile file = frame("f.exr"), light = frame("light.exr");
+    ASSERT_EQ(light.color.pixels.size(), file.color.pixels.size());
+    float brightest = 0;
+    for (std::size_t i = 0; i < light.color.pixels.size(); ++i) {
+        if (i % 4 == 3) continue;
+        ASSERT_EQ(light.color.pixels[i], file.color.pixels[i]);
+        brightest = std::max(brightest, light.color.pixels[i]);
+    }
+    EXPECT_GT(brightest, 2) << "the lamp is not cut off";
+}
+
+TEST_F(CliRender, PostProcessingOffIsTheShadersOwnCurve) {
+    // The grid is blended, and blending in two spaces differs.
+    ASSERT_EQ(render({"--no-postprocess", "--no-grid"}, "off.png").code, 0);
+    std::vector<std::string> all_off{"--no-grid"};
+    if (find_effect("exposure") != nullptr) all_off.insert(all_off.end(), {"--exposure", "1"});
+    for (const EffectInfo* const effect : all_effects())
+        if (effect->flat.documented >= 0 && effect->makes == nullptr && effect->name != "exposure")
+            all_off.insert(all_off.end(), {flag_name(flat_key(effect->name, "enabled")), "off"});
+    ASSERT_EQ(render(all_off, "all_off.png").code, 0);
+    const Result<Comparison> result = compare(picture("off.png"), picture("all_off.png"));
+    ASSERT_TRUE(result);
+    EXPECT_LE(result->max_error, 2.001 / 255);
+    const std::string off =
+        write("off.scene.toml",
+              std::string(scene_text).replace(std::string(scene_text).find("exposure = 0.6"), 14, "enabled = false"));
+    ASSERT_EQ(run({"render", off, "-o", path("by_scene.png"), "--size", "48x32", "--no-grid"}).code, 0);
+    EXPECT_EQ(content(path("by_scene.png")), content(path("off.png")));
+}
+
+TEST_F(CliRender, VolumetricLightNeedsShadows) {
+    if (find_effect("volumetric") == nullptr) GTEST_SKIP() << "the effect volumetric is not in this build";
+    ASSERT_EQ(render({"--no-shadows"}, "plain.png").code, 0);
+    const Outcome outcome = render({"--no-shadows", "--volumetric-density", "20"}, "haze.png");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find("left out: volumetric: needs shadows"), std::string::npos) << outcome.err;
+    EXPECT_EQ(content(path("plain.png")), content(path("haze.png")));
+    expect_all_differ({{}, {"--volumetric-density", "20"}});
+}
+
+TEST_F(CliRender, WithoutPostProcessingNoEffectIsSeen) {
+    ASSERT_EQ(render({"--no-postprocess"}, "plain.png").code, 0);
+    std::vector<std::string> flags{"--no-postprocess"};
+    for (const EffectInfo* const effect : all_effects())
+        if (effect->flat.documented >= 0)
+            flags.insert(flags.end(), {flag_name(flat_key(effect->name, "enabled")), "on"});
+    ASSERT_EQ(render(flags, "on.png").code, 0);
+    EXPECT_EQ(content(path("plain.png")), content(path("on.png")));
+}
+
+TEST_F(CliRender, EffectsThatAreOffRunNoPass) {
+    if (find_effect("ssao") == nullptr) GTEST_SKIP() << "the effect ssao is not in this build";
+    const auto passes = [&](std::string_view state) {
+        std::vector<std::string> flags{"--timings"};
+        for (const EffectInfo* const effect : all_effects())
+            if (effect->flat.documented >= 0)
+                flags.insert(flags.end(), {flag_name(flat_key(effect->name, "enabled")), std::string(state)});
+        const Outcome outcome = render(flags);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        std::size_t count = 0;
+        for (std::size_t at = 0; (at = outcome.out.find(" ms  ", at)) != std::string::npos; ++at) ++count;
+        EXPECT_NE(outcome.out.find(" ms  together"), std::string::npos) << outcome.out;
+        return count - 1;
+    };
+    EXPECT_GT(passes("on"), 5U);
+    EXPECT_EQ(passes("off"), 1U) << "the one that writes the picture";
+}
+
+TEST_F(CliRender, RendersAModelAlone) {
+    // One triangle: three positions as floats.
+    write("one.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"buffers": [{"byteLength": 36,
+"uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+    const Outcome outcome = run({"render", path("one.gltf"), "-o", path("one.png"), "--size", "32x32"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("Entities: 1\n"), std::string::npos) << outcome.out;
+    std::set<float> values;
+    for (const float value : picture("one.png").pixels) values.insert(value);
+    EXPECT_GT(values.size(), 3u) << "the view is fitted to the model";
+}
+
+TEST_F(CliRender, MissingAssetsAreNamedAndTheRestRenders) {
+    write("gaps.scene.toml", std::string(scene_text) +
+                                 "[entities.wall]\nbounds = { min = [0, 0, -2], max = [1, 1, -1.9] }\n"
+                                 "material = { texture = \"no_such.png\" }\n"
+                                 "[entities.fox.model]\nasset = \"no_such_fox\"\n");
+    const Outcome outcome = run({"render", path("gaps.scene.toml"), "-o", path("out.png"), "--size", "16x16"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("no_such.png"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("no_such_fox"), std::string::npos) << outcome.err;
+    EXPECT_EQ(picture("out.png").width, 16u);
+}
+
+TEST_F(CliRenderFlags, OldCommandLinesAreTaken) {
+    const Outcome outcome = render({"--schemas", "a", "--schemas", "b"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_NE(outcome.err.find("--schemas"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CliRenderRefused, WrongScenesAreRefused) {
+    const std::string out = path("x.png");
+    expect_refused({"render"}, 1, "SCENE");
+    expect_refused({"render", path("none.scene.toml"), "-o", out}, 1, "none.scene.toml");
+    expect_refused({"render", write("bad.scene.toml", "[scene\n"), "-o", out}, 1, "bad.scene.toml:1:");
+    expect_refused({"render", write("bad.glb", "glTF"), "-o", out}, 1, "bad.glb");
+    expect_refused({"render", path("none.gltf"), "-o", out}, 1, "none.gltf");
+    write("slip.scene.toml", std::string(scene_text) + "[entities.a.transform]\npositoin = [0, 0, 0]\n");
+    const Outcome lenient = run({"render", path("slip.scene.toml"), "-o", path("ok.png"), "--size", "8x8"});
+    EXPECT_EQ(lenient.code, 0) << lenient.err;
+    EXPECT_NE(lenient.err.find("positoin"), std::string::npos) << lenient.err;
+    expect_refused({"render", path("slip.scene.toml"), "-o", out, "--strict"}, 1, "positoin");
+}
+
+TEST_F(CliRenderRefused, WrongSizesAndFilesAreRefused) {
+    for (const char* const size : {"0x0", "5x", "4294967297x1"}) expect_render_refused({"--size", size}, "--size");
+    expect_render_refused({"--size", "4x4", "--width", "5"}, "--size 4x4");
+    expect_render_refused({"--size", "99999x2"}, "allows 1x1 to");
+    expect_render_refused({"--bits", "12"}, "--bits 12");
+    expect_render_refused({"--frame", path("f.png")}, "--save-frame");
+    expect_render_refused({"--frame", path("none/f.exr")}, "none");
+    expect_refused({"render", path("yard.scene.toml"), "-o", path("x.xyz")}, 1, ".xyz");
+    expect_refused({"render", path("yard.scene.toml"), "-o", path("none/x.png")}, 1, "none");
+    expect_refused({"render", path("yard.scene.toml"), "-o", path("x.exr"), "--frame", path("x.exr")}, 1,
+                   "picture and frame");
+}
+
+TEST_F(CliRenderRefused, WhatTheSceneReadsIsNotOverwritten) {
+    Picture texture(2, 2);
+    ASSERT_TRUE(write_picture(path("leaf.png"), texture));
+    const std::string before = content(path("leaf.png"));
+    const std::string scene =
+        write("leaf.scene.toml", std::string(scene_text) + "[entities.leaf.sprite]\ntexture = \"leaf.png\"\n");
+    expect_refused({"render", scene, "--size", "8x8", "-o", path("leaf.png")}, 1, "leaf.png");
+    EXPECT_EQ(content(path("leaf.png")), before);
+}
+
+TEST_F(CliRenderRefused, DevicesAndEmptyValuesAreRefused) {
+    const std::string scene =
+        write("sky.scene.toml", std::string(scene_text) + "[environment]\nskybox = \"/dev/zero\"\n");
+    const Outcome outcome = run({"render", scene, "--size", "8x8", "-o", path("sky.png")});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find("asks for '/dev/zero': there is no such file"), std::string::npos) << outcome.err;
+    expect_refused({"render", path("yard.scene.toml"), "--size=", "-o", path("x.png")}, 1,
+                   "--size: one value is needed");
+    expect_refused({"develop", "/dev/zero", "-o", path("x.png")}, 1, "is a device");
+}
+
+TEST_F(CliRenderRefused, WrongValuesAreRefused) {
+    for (const char* const target : {"1,2", "1,2,3,4", "a,b,c", "", "1,2,1e300"})
+        expect_render_refused({std::string("--target=") + target}, "--target");
+    expect_render_refused({"--debug-mode", "wirefrane"},
+                          "wireframe, normals, depth, uv, unlit, metalrough, did you mean 'wireframe'?");
+    expect_render_refused({"--no-such-flag"}, "--no-such-flag");
+    expect_render_refused({"--device", "none such"}, "none such");
+    expect_render_refused({"--kernels", "magic"}, "auto, compute or raster");
+    expect_render_refused({"--order", "sideways"}, "documented or scene_linear");
+    expect_render_refused({"--look", path("none.toml")}, "none.toml");
+    expect_render_refused({"--no-postprocess", "--timings"}, "--timings");
+}
+
+TEST_F(CliRenderRefused, CountsOfSamplesThatTheDeviceLacksAreRefusedByName) {
+    expect_render_refused({"--msaa", "3"}, "1, ");
+    expect_render_refused({"--msaa", "64"}, "1, ");
+}
+
+TEST_F(CliRenderRefused, WrongMomentsAreRefused) {
+    for (const char* const frames : {"5-3", "1-", "1-2-3", "", "0-999999999999"})
+        expect_render_refused({std::string("--frames=") + frames}, "--frames");
+    expect_render_refused({"--frames", "1-3"}, "%04d");
+    expect_refused(
+        {"render", path("yard.scene.toml"), "-o", path("p.%04d.png"), "--frames", "1-3", "--frame", path("f.exr")}, 1,
+        "--save-frame");
+    expect_render_refused({"--time", "1", "--frames", "2"}, "--time");
+}
+
+TEST_F(CliRenderRefused, AnExistingPictureSurvivesAFailure) {
+    const std::string kept = write("kept.png", "kept");
+    EXPECT_EQ(run({"render", write("bad.scene.toml", "= 1"), "-o", kept}).code, 1);
+    EXPECT_EQ(content(kept), "kept");
+}
+
+}  // namespace
+}  // namespace darkroom

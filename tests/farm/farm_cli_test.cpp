@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+// What a farm makes is what one machine makes: chunk by chunk with the tasks alone, and on a cluster of Slurm's own
+// programs where they are installed, with a task killed and a node taken down on the way.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <darkroom/effects.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+#include "image/frame/frame_file.hpp"
+#include "tests/cli/cli_support.hpp"
+#include "tests/places.hpp"
+
+namespace darkroom {
+namespace {
+
+namespace fs = std::filesystem;
+
+using nlohmann::json;
+using test::content;
+using test::Outcome;
+
+class FarmFixture : public test::CliFixture {
+  protected:
+    /// Frames from 0 on, each another picture.
+    void make_frames(int count) const {
+        for (int number = 0; number < count; ++number) {
+            FrameFile frame;
+            frame.color = Picture(48, 32);
+            for (std::size_t i = 0; i < frame.color.pixels.size(); ++i)
+                frame.color.pixels[i] =
+                    i % 4 == 3 ? 1.0f : static_cast<float>((i * 37 + static_cast<std::size_t>(number)) % 101) / 40.0f;
+            ASSERT_TRUE(write_frame(path(in(number)), frame));
+        }
+        for (const char* const folder : {"one", "out"}) fs::create_directory(path(folder));
+    }
+    static std::string in(int number) { return fmt::format("shot.{:04}.exr", number); }
+    static std::string out(const std::string& folder, int number) {
+        return fmt::format("{}/shot.{:04}.png", folder, number);
+    }
+    [[nodiscard]] json record(const std::string& name) const {
+        return json::parse(content(path("out/shot.farm/" + name + ".json")), nullptr, false);
+    }
+    [[nodiscard]] json status() const { return json::parse(run_lines("darkroom farm status out --json").out); }
+};
+
+class CliFarm : public FarmFixture {
+  protected:
+    void make_files() override { make_frames(3); }
+};
+
+TEST_F(CliFarm, ATaskMakesWhatDevelopMakesAndWritesWhatItDid) {
+    ASSERT_EQ(run_lines("darkroom develop 'shot.####.exr' --exposure 2 -o one/").code, 0);
+    const Outcome task = run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 1-2 -- --exposure 2");
+    ASSERT_EQ(task.code, 0) << task.err;
+    EXPECT_FALSE(fs::exists(path(out("out", 0))));
+    for (const int number : {1, 2}) EXPECT_EQ(content(path(out("out", number))), content(path(out("one", number))));
+    const json did = record("1-2");
+    EXPECT_EQ(did["state"], "done");
+    EXPECT_EQ(did["done"], json::parse("[[1,2]]"));
+    EXPECT_EQ(did["tries"], 1);
+    EXPECT_EQ(did["made"], 2);
+    EXPECT_NE(task.out.find("shot.0002.exr -> out/shot.0002.png"), std::string::npos) << task.out;
+    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 1-2").code, 0);
+    EXPECT_EQ(record("1-2")["tries"], 0) << "all was there";
+    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0 -q").out, "");
+    EXPECT_EQ(record("0-0")["made"], 1);
+}
+
+TEST_F(CliFarm, AFrameThatFailsIsTriedThreeTimesMoreAndLeavesTheOthersAlone) {
+    const std::string good = content(path(in(1)));
+    write(in(1), "no picture");
+    const Outcome task = run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0-2");
+    EXPECT_EQ(task.code, 1);
+    EXPECT_TRUE(task.err.ends_with("darkroom: frames 1 failed in 4 tries: out/shot.farm/0-2.json\n")) << task.err;
+    EXPECT_EQ(record("0-2")["state"], "failed");
+    EXPECT_EQ(record("0-2")["done"], json::parse("[[0,0],[2,2]]"));
+    const std::string told = run_lines("darkroom farm status out").out;
+    EXPECT_TRUE(told.starts_with("out/shot.farm: 3 frames: 2 done, 1 failed, 0 missing\n  failed: 1 on ")) << told;
+    EXPECT_NE(told.find(", 4 tries: darkroom: shot.0001.exr: is no image file"), std::string::npos) << told;
+    write(in(1), good);
+    write(out("out", 0), "there");
+    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0-2").code, 0);
+    EXPECT_EQ(record("0-2")["state"], "done");
+    EXPECT_EQ(record("0-2")["made"], 1);
+    EXPECT_EQ(content(path(out("out", 0))), "there");
+}
+
+TEST_F(CliFarm, AScenesFramesAreThoseOfRender) {
+    write("box.scene.toml", "[entities.box]\nbounds = { min = [-1, 0, -1], max = [1, 1, 1] }\n");
+    ASSERT_EQ(run_lines("darkroom render box.scene.toml --frames 3-4 --size 32x18 --yaw 30 -o 'one/box.##.png'").code,
+              0);
+    const Outcome task =
+        run_lines("darkroom farm task box.scene.toml -o 'out/box.##.png' --frames 3-4 -- --size 32x18 --yaw 30");
+    ASSERT_EQ(task.code, 0) << task.err;
+    for (const char* const name : {"box.03.png", "box.04.png"})
+        EXPECT_EQ(content(path(std::string("out/") + name)), content(path(std::string("one/") + name)));
+    EXPECT_TRUE(fs::exists(path("out/box.farm/3-4.json")));
+}
+
+class SoakFarm : public FarmFixture {
+  protected:
+    static constexpr int count = 24;
+
+    void SetUp() override {
+        for (const char* const name : {"munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol"})
+            if (std::system(fmt::format("PATH=$PATH:/usr/sbin command -v {} >/dev/null", name).c_str()) != 0)
+                GTEST_SKIP() << name << " is not installed: slurmctld, slurmd, slurm-client and munge are needed";
+        FarmFixture::SetUp();
+        setenv("SLURM_CONF", path("cluster/slurm.conf").c_str(), 1);
+        const Outcome started = run_lines(cluster("start"));
+        ASSERT_EQ(started.code, 0) << started.err;
+    }
+    void TearDown() override {
+        if (fs::exists(path("cluster")))
+            std::ignore = run_lines("scancel --state=PENDING,RUNNING -u $(id -un) || true\n" + cluster("stop"));
+        unsetenv("SLURM_CONF");
+        FarmFixture::TearDown();
+    }
+    void make_files() override { make_frames(count); }
+    static std::string cluster(const std::string& command) {
+        return fmt::format("bash {}/tests/farm/slurm_cluster.sh {} cluster", test::quoted(test::source_folder),
+                           command);
+    }
+    static bool wait_until(const std::function<bool()>& is_so) {
+        for (int i = 0; i < 1200; ++i) {
+            if (is_so()) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+        return false;
+    }
+    [[nodiscard]] bool is_over() const { return run_lines("squeue -h").out.empty(); }
+    [[nodiscard]] bool are_there(const std::vector<int>& numbers) const {
+        return std::ranges::all_of(numbers, [&](int number) { return fs::exists(path(out("out", number))); });
+    }
+    /// A frame that comes when it is told to: until then, who reads it waits.
+    void hold_back(int number) const {
+        fs::rename(path(in(number)), path(in(number) + ".held"));
+        ASSERT_EQ(mkfifo(path(in(number)).c_str(), 0600), 0);
+    }
+    void let_come(int number) const { fs::rename(path(in(number) + ".held"), path(in(number))); }
+    /// Ends processes whose command line ends the one, and whose environment says the other.
+    void kill_processes(const std::string& words, const std::string& variable) const {
+        const auto lines = [](std::string text) {
+            std::ranges::replace(text, '\0', '\n');
+            return "\n" + text;
+        };
+        const std::string mine = "\nSLURM_CONF=" + path("cluster/slurm.conf") + "\n";
+        std::error_code error;
+        for (const auto& entry : fs::directory_iterator("/proc", error)) {
+            const std::string name = entry.path().filename().string();
+            if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+            const std::string typed = lines(content(entry.path() / "cmdline"));
+            const std::string environment = lines(content(entry.path() / "environ"));
+            if (typed.find("\n" + words + "\n") == std::string::npos || environment.find(mine) == std::string::npos ||
+                environment.find("\n" + variable + "\n") == std::string::npos)
+                continue;
+            kill(std::stoi(name), SIGKILL);
+        }
+    }
+};
+
+TEST_F(SoakFarm, WhatSurvivesAKilledTaskAndALostNodeIsByteForByteThatOfOneMachine) {
+    ASSERT_EQ(run_lines("darkroom develop 'shot.####.exr' -o one/ -q").code, 0);
+    const std::string submit = "darkroom farm slurm 'shot.####.exr' -o out/ --chunk 4";
+    for (const int number : {2, 6, 10}) hold_back(number);
+    ASSERT_EQ(run_lines(submit).out, "job 1: 24 of 24 pictures in 6 chunks; darkroom farm status out/shot.farm\n");
+    ASSERT_TRUE(wait_until([&] { return are_there({0, 1, 4, 5}); })) << "two tasks run, each half-way";
+    const bool is_first_on_n1 = record("0-3")["node"] == "n1";
+    EXPECT_EQ(record("4-7")["node"], is_first_on_n1 ? "n2" : "n1");
+    EXPECT_EQ(status()["done"], json::array()) << "a record is of what has ended";
+
+    // The first task is killed with all that it started; Slurm does not begin it anew.
+    EXPECT_EQ(run_lines("scancel --signal=KILL --full 1_0").code, 0);
+    // The node of the second one is gone, without a word. Slurm puts its task back into the queue.
+    const std::string lost = is_first_on_n1 ? "n2" : "n1";
+    EXPECT_EQ(run_lines(fmt::format("kill -9 $(cat cluster/slurmd.{0}.pid)\n"
+                                    "scontrol update nodename={0} state=down reason=lost",
+                                    lost))
+                  .code,
+              0);
+    kill_processes("farm", "SLURMD_NODENAME=" + lost);
+    kill_processes("develop", "SLURMD_NODENAME=" + lost);
+    for (const int number : {2, 6}) let_come(number);
+    // Of the third one what does the work is killed; the task begins it anew.
+    ASSERT_TRUE(wait_until([&] { return are_there({8, 9}); }));
+    let_come(10);
+    kill_processes("develop", "SLURM_ARRAY_TASK_ID=2");
+
+    ASSERT_TRUE(wait_until([&] { return is_over(); })) << run_lines("squeue; scontrol show nodes").out;
+    EXPECT_EQ(record("0-3")["state"], "begun");
+    EXPECT_EQ(record("4-7")["state"], "done");
+    EXPECT_EQ(record("4-7")["node"], is_first_on_n1 ? "n1" : "n2") << "the node that is left";
+    EXPECT_EQ(record("8-11")["tries"], 2);
+    EXPECT_EQ(status()["missing"], json::parse("[[0,3]]"));
+    EXPECT_EQ(status()["failed"], json::array());
+    EXPECT_FALSE(are_there({2}));
+
+    const Outcome again = run_lines(submit);
+    EXPECT_EQ(again.out.substr(again.out.find(':')),
+              ": 2 of 24 pictures in 1 chunks; darkroom farm status out/shot.farm\n")
+        << again.err;
+    ASSERT_TRUE(wait_until([&] { return is_over(); }));
+    EXPECT_EQ(status()["done"], json::parse("[[0,23]]"));
+    EXPECT_EQ(status()["missing"], json::array());
+    for (int number = 0; number < count; ++number)
+        EXPECT_EQ(content(path(out("out", number))), content(path(out("one", number)))) << number;
+    EXPECT_EQ(run_lines(submit).out, "all 24 pictures are there, nothing is submitted\n");
+}
+
+TEST_F(SoakFarm, WithHistoryPicturesAreWithinACode) {
+    for (const char* const name : {"recursive_blend", "frame_blend", "tonemap"})
+        if (find_effect(name) == nullptr) GTEST_SKIP() << "this build has no effect " << name;
+    write("trails.toml",
+          "format = 1\n"
+          "[[stack]]\neffect = \"tonemap\"\ncurve = \"linear\"\n"
+          "[[stack]]\neffect = \"recursive_blend\"\nweight = 0.6\n"
+          "[[stack]]\neffect = \"frame_blend\"\n");
+    ASSERT_EQ(run_lines("darkroom develop 'shot.####.exr' --look trails.toml --fps 24 -o one/ -q").code, 0);
+    const Outcome submitted =
+        run_lines("darkroom farm slurm 'shot.####.exr' --look trails.toml -o out/ --chunk 5 -- --fps 24");
+    ASSERT_EQ(submitted.code, 0) << submitted.err;
+    ASSERT_TRUE(wait_until([&] { return is_over(); }));
+    EXPECT_EQ(status()["done"], json::parse("[[0,23]]"));
+    for (int number = 0; number < count; ++number) {
+        const Picture farmed = picture(out("out", number)), whole = picture(out("one", number));
+        ASSERT_EQ(farmed.pixels.size(), whole.pixels.size());
+        float worst = 0;
+        for (std::size_t i = 0; i < whole.pixels.size(); ++i)
+            worst = std::max(worst, std::abs(farmed.pixels[i] - whole.pixels[i]));
+        EXPECT_LE(worst, 1.001f / 255) << number;
+    }
+}
+
+}  // namespace
+}  // namespace darkroom
