@@ -25,6 +25,8 @@ find_package(fmt REQUIRED)
 find_package(Vulkan REQUIRED)
 
 add_library(darkroom_options INTERFACE)
+# Of a room that is compiled as one, gcc takes the types of anonymous namespaces for those of a header.
+target_compile_options(darkroom_options INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
 # Without -fno-trapping-math and -fno-math-errno the CPU references stay scalar; neither changes a result.
 target_compile_options(darkroom_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -Wno-missing-field-initializers -fno-trapping-math -fno-math-errno)

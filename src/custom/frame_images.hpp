@@ -6,7 +6,7 @@
 #include <darkroom/effect.hpp>
 #include <string_view>
 
-#include "../effects/shared/scene_images.hpp"
+#include "shared/scene_images.hpp"
 
 namespace darkroom::custom {
 

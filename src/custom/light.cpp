@@ -12,7 +12,7 @@ namespace darkroom::custom {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> functions{"lit", "light_direction", "light_color"};
+constexpr std::array<std::string_view, 3> light_functions{"lit", "light_direction", "light_color"};
 
 /// Keeps what is lit off its own shadow.
 constexpr float depth_bias = 0.002f;
@@ -40,7 +40,7 @@ void write_light(const void*, const PassContext& context, std::span<PassVector> 
 }
 
 bool reads_light(std::string_view code, std::string_view effect) {
-    return std::ranges::any_of(functions, [&](std::string_view function) {
+    return std::ranges::any_of(light_functions, [&](std::string_view function) {
         return plan::calls_name(code, fmt::format("{}_{}", effect, function));
     });
 }

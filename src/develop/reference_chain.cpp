@@ -8,8 +8,8 @@
 #include <cmath>
 #include <deque>
 
-#include "../effects/shared/blend_modes_reference.hpp"
-#include "../effects/shared/reading_reference.hpp"
+#include "shared/blend_modes_reference.hpp"
+#include "shared/reading_reference.hpp"
 #include "compose/chain/camera_jump.hpp"
 
 namespace darkroom {

@@ -129,8 +129,8 @@ struct Presenter::State {
     void change_layout(VkImageLayout from, VkImageLayout to) const;
     Result<> end();
     Result<> check(VkResult result, const char* what) const { return context->check(result, what); }
-    VkResult make_semaphore(VkSemaphore& out, const void* next = nullptr) const {
-        const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = next};
+    VkResult make_semaphore(VkSemaphore& out, const void* chain = nullptr) const {
+        const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = chain};
         return vk.CreateSemaphore(context->device, &info, context->allocator, &out);
     }
 
@@ -251,8 +251,8 @@ VkResult Presenter::State::make_swapchain(VkExtent2D window) {
         .imageColorSpace = format.colorSpace,
         .imageExtent = extent,
         .imageArrayLayers = 1,
-        .imageUsage =
-            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | (can_copy ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : VkImageUsageFlags{0}),
+        .imageUsage = VkImageUsageFlags{VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT} |
+                      (can_copy ? VkImageUsageFlags{VK_IMAGE_USAGE_TRANSFER_SRC_BIT} : 0),
         .preTransform = can.currentTransform,
         .compositeAlpha = alpha,
         .presentMode = has_mode ? wanted : VK_PRESENT_MODE_FIFO_KHR,

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <darkroom/ui_constants.hpp>
 
-#include "../effects/shared/sample_reference.hpp"
+#include "shared/sample_reference.hpp"
 #include "compose/test_stacks/host.hpp"
 #include "develop/reference_chain.hpp"
 

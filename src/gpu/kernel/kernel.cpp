@@ -28,10 +28,11 @@ std::vector<VkDescriptorSetLayoutBinding> layout_bindings(const KernelSpec& spec
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     const auto add = [&](std::uint32_t binding, VkDescriptorType type) {
         const bool is_block = type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-        bindings.push_back({.binding = binding,
-                            .descriptorType = type,
-                            .descriptorCount = 1,
-                            .stageFlags = is_block ? block_stages(spec, stage) : stage_flag(stage)});
+        bindings.push_back(
+            {.binding = binding,
+             .descriptorType = type,
+             .descriptorCount = 1,
+             .stageFlags = is_block ? block_stages(spec, stage) : VkShaderStageFlags{stage_flag(stage)}});
     };
     if (!spec.frame.empty()) add(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
     add(1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);

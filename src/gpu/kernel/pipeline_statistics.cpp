@@ -39,16 +39,17 @@ double number_of(const VkPipelineExecutableStatisticKHR& statistic) {
 
 /// The last of a program's texts: compilers show their steps in order, machine code at the end.
 Result<std::string> machine_code(const Context& context, const VkPipelineExecutableInfoKHR& program) {
-    using Text = VkPipelineExecutableInternalRepresentationKHR;
-    const auto call = [&](std::uint32_t* count, Text* out) {
+    using Representation = VkPipelineExecutableInternalRepresentationKHR;
+    const auto call = [&](std::uint32_t* count, Representation* out) {
         return context.vk.GetPipelineExecutableInternalRepresentationsKHR(context.device, &program, count, out);
     };
-    auto texts = list(context, Text{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR}, call);
+    auto texts =
+        list(context, Representation{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INTERNAL_REPRESENTATION_KHR}, call);
     if (!texts) return failure(std::move(texts));
     if (texts->empty() || texts->back().isText == VK_FALSE) return std::string();
     // Without a place for the others they tell their sizes alone.
     std::string out(texts->back().dataSize, '\0');
-    for (Text& text : *texts) text.pData = nullptr;
+    for (Representation& text : *texts) text.pData = nullptr;
     texts->back().pData = out.data();
     auto count = static_cast<std::uint32_t>(texts->size());
     if (Result<> checked = context.check(call(&count, texts->data()), what); !checked)

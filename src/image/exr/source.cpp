@@ -29,6 +29,7 @@
 #include <thread>
 #include <tuple>
 
+#include "image/exr/write.hpp"
 #include "image/exr/zip.hpp"
 
 namespace darkroom {
@@ -61,8 +62,6 @@ std::string lower(std::string_view text) {
 SampleKind kind_of(Imf::PixelType type) {
     return type == Imf::HALF ? SampleKind::Half : type == Imf::FLOAT ? SampleKind::Float : SampleKind::Integer32;
 }
-
-Imf::PixelType type_of(SampleKind kind) { return kind == SampleKind::Half ? Imf::HALF : Imf::FLOAT; }
 
 struct Channel {
     std::string name;

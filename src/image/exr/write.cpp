@@ -64,8 +64,6 @@ void convert(const ExrChannel& channel, std::size_t first, std::size_t count, st
     }
 }
 
-Imf::PixelType type_of(SampleKind kind) { return kind == SampleKind::Half ? Imf::HALF : Imf::FLOAT; }
-
 /// `file` is an Imf::OutputFile or a part of several.
 template <class File>
 void write_pixels(File& file, const ExrPart& part) {
