@@ -10,6 +10,7 @@
 #include <darkroom/reference.hpp>
 #include <vector>
 
+#include "shared/finite_reference.hpp"
 #include "tables/evaluate.hpp"
 
 namespace darkroom {
@@ -36,14 +37,13 @@ inline TableColor arena_lookup(const std::vector<std::uint8_t>& codes, const Tab
 inline ReferenceImage arena_grade_reference(const void* parameters, const ReferenceInput& input) {
     const ArenaGrade& values = *static_cast<const ArenaGrade*>(parameters);
     const auto codes = arena_codes(values.preset, find_resource<ColorTable>(input.resources, values.table));
-    const auto finite = [](double v) { return std::isnan(v) ? 0.0 : std::clamp(v, -65504.0, 65504.0); };
     ReferenceImage out = *input.picture;
     for (Rgba& color : out.pixels) {
-        const TableColor light{finite(color.r), finite(color.g), finite(color.b)};
+        const TableColor light{finite_reference(color.r), finite_reference(color.g), finite_reference(color.b)};
         TableColor srgb{};
         for (std::size_t i = 0; i < 3; ++i) srgb[i] = arena_power(light[i]);
         const TableColor found = arena_lookup(codes, srgb);
-        const double alpha = std::clamp(finite(color.a), 0.0, 1.0);
+        const double alpha = std::clamp(finite_reference(color.a), 0.0, 1.0);
         std::array<double, 3> graded{};
         for (std::size_t i = 0; i < 3; ++i) {
             const double mixed = ((found[i] - srgb[i]) * 0.99961 + srgb[i]) * 1.3703;

@@ -10,6 +10,8 @@
 #include <darkroom/reference.hpp>
 #include <vector>
 
+#include "shared/finite_reference.hpp"
+
 namespace darkroom {
 
 inline Rgba bloom_reference_sum(const Rgba& a, const Rgba& b, double weight) {
@@ -30,8 +32,7 @@ inline Rgba bloom_reference_tap(const ReferenceImage& image, double u, double v)
 
 /// NaN is black, light is not negative, and half precision ends at 65504.
 inline Rgba bloom_reference_clean(const Rgba& color) {
-    const auto clean = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, 0.0, 65504.0); };
-    return {clean(color.r), clean(color.g), clean(color.b), 1};
+    return {finite_light_reference(color.r), finite_light_reference(color.g), finite_light_reference(color.b), 1};
 }
 
 /// The factor that the soft threshold gives to a colour whose largest channel is `brightness`.

@@ -9,6 +9,7 @@
 #include <darkroom/reference.hpp>
 
 #include "color_grade/color_grade_white.hpp"
+#include "shared/finite_reference.hpp"
 
 namespace darkroom {
 
@@ -26,7 +27,6 @@ inline double color_grade_reference_curve(const Curve& curve, double in) {
 
 inline Rgba color_grade_reference(Rgba color, const ReferencePixel&, const ColorGrade& grade) {
     using namespace color_grade;
-    const auto number = [](double v) { return std::isnan(v) ? 0.0 : std::clamp(v, -65504.0, 65504.0); };
     const auto triple = [](const auto& value) { return Triple{double{value.r}, double{value.g}, double{value.b}}; };
     const auto row = [](const Vec3& value) { return Triple{double{value.x}, double{value.y}, double{value.z}}; };
     const auto smoothstep = [](const Vec2& range, double v) {
@@ -36,7 +36,8 @@ inline Rgba color_grade_reference(Rgba color, const ReferencePixel&, const Color
 
     const Matrix3 mixer{row(grade.mixer_red), row(grade.mixer_green), row(grade.mixer_blue)};
     const Matrix3 balance = white_balance(double{grade.temperature}, double{grade.tint});
-    Triple light = product(mixer, product(balance, Triple{number(color.r), number(color.g), number(color.b)}));
+    Triple light = product(mixer, product(balance, Triple{finite_reference(color.r), finite_reference(color.g),
+                                                          finite_reference(color.b)}));
 
     const double luminance = dot(luminance_weights, light);
     const double dark = 1 - smoothstep(grade.shadows_range, luminance);

@@ -9,12 +9,10 @@
 #include <darkroom/effects/encode.hpp>
 #include <darkroom/reference.hpp>
 
-namespace darkroom {
+#include "shared/finite_reference.hpp"
+#include "shared/srgb_reference.hpp"
 
-/// IEC 61966-2-1 for [0, 1].
-inline double srgb_encoded(double light) {
-    return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055;
-}
+namespace darkroom {
 
 /// SMPTE ST 2084:2014, inverse EOTF, for [0, 1] of 10000 cd/m2.
 inline double pq_encoded(double light) {
@@ -26,8 +24,7 @@ inline double pq_encoded(double light) {
 
 inline Rgba encode_reference(Rgba color, const ReferencePixel&, const Encode& parameters) {
     const double white = parameters.white_nits, peak = parameters.peak_nits;
-    const auto finite = [](double v) { return std::isnan(v) ? 0.0 : std::clamp(v, -65504.0, 65504.0); };
-    const std::array<double, 3> light{finite(color.r), finite(color.g), finite(color.b)};
+    const std::array<double, 3> light{finite_reference(color.r), finite_reference(color.g), finite_reference(color.b)};
     const auto each = [&color](const std::array<double, 3>& values, auto function) {
         return Rgba{function(values[0]), function(values[1]), function(values[2]), color.a};
     };

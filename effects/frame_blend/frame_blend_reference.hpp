@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "shared/finite_reference.hpp"
 #include "shared/sample_reference.hpp"
 
 namespace darkroom {
 
 inline ReferenceImage frame_blend_reference_reduce(const ReferenceImage& picture, std::uint32_t side) {
-    const auto clean = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, -65504.0, 65504.0); };
     ReferenceImage out(std::max(1u, picture.width / side), std::max(1u, picture.height / side), {0, 0, 0, 1});
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x)
@@ -25,7 +25,8 @@ inline ReferenceImage frame_blend_reference_reduce(const ReferenceImage& picture
                 for (const double down : {0.25, 0.75}) {
                     const Rgba tap = sample_reference(picture, (x + right) / out.width, (y + down) / out.height);
                     Rgba& mean = out.at(x, y);
-                    mean = {mean.r + clean(tap.r) / 4, mean.g + clean(tap.g) / 4, mean.b + clean(tap.b) / 4, 1};
+                    mean = {mean.r + finite_reference(tap.r) / 4, mean.g + finite_reference(tap.g) / 4,
+                            mean.b + finite_reference(tap.b) / 4, 1};
                 }
     return out;
 }

@@ -11,6 +11,8 @@
 #include <darkroom/reference.hpp>
 #include <span>
 
+#include "shared/finite_reference.hpp"
+
 namespace darkroom {
 
 inline double fxaa_reference_luma(const Rgba& color) { return 0.299 * color.r + 0.587 * color.g + 0.114 * color.b; }
@@ -81,8 +83,7 @@ inline ReferenceImage fxaa_reference(const void* parameters, const ReferenceInpu
     const Fxaa& fxaa = *static_cast<const Fxaa*>(parameters);
     ReferenceImage out = picture;
     const auto mixed = [](double a, double b, double amount) {
-        const auto number = [](double v) { return std::isnan(v) ? 0.0 : std::clamp(v, -65504.0, 65504.0); };
-        return std::lerp(number(a), number(b), amount);
+        return std::lerp(finite_reference(a), finite_reference(b), amount);
     };
     for (std::uint32_t y = 0; y < out.height; ++y) {
         for (std::uint32_t x = 0; x < out.width; ++x) {

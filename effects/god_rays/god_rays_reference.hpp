@@ -10,6 +10,7 @@
 #include <darkroom/reference.hpp>
 
 #include "shared/camera_reference.hpp"
+#include "shared/finite_reference.hpp"
 #include "shared/sample_reference.hpp"
 
 namespace darkroom {
@@ -18,7 +19,6 @@ inline ReferenceImage god_rays_mask(const GodRays& rays, const ReferenceInput& i
     const ReferenceImage& source = *input.source;
     ReferenceImage out(std::max(source.width / 4, 1u), std::max(source.height / 4, 1u));
     const double aspect = static_cast<double>(source.width) / source.height;
-    const auto clean = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, 0.0, 65504.0); };
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x) {
             Rgba sum{0, 0, 0, 0};
@@ -26,7 +26,8 @@ inline ReferenceImage god_rays_mask(const GodRays& rays, const ReferenceInput& i
                 const std::int64_t column = std::int64_t{x} * 4 + (i & 3), row = std::int64_t{y} * 4 + (i >> 2);
                 if (input.depth != nullptr && input.depth->clamped(column, row).r < 1e9) continue;
                 const Rgba& color = source.clamped(column, row);
-                const double r = clean(color.r), g = clean(color.g), b = clean(color.b);
+                const double r = finite_light_reference(color.r), g = finite_light_reference(color.g),
+                             b = finite_light_reference(color.b);
                 const double luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
                 const double kept = std::clamp(luminance - double{rays.threshold}, 0.0, double{rays.ceiling}) /
                                     std::max(luminance, 1e-6) / 16;

@@ -8,6 +8,8 @@
 #include <darkroom/effects/hsv_adjust.hpp>
 #include <darkroom/reference.hpp>
 
+#include "shared/finite_reference.hpp"
+
 namespace darkroom {
 
 struct Hsv {
@@ -51,8 +53,7 @@ inline Rgba rgb_of(const Hsv& hsv, double alpha) {
 }
 
 inline Rgba hsv_adjust_reference(Rgba color, const ReferencePixel&, const HsvAdjust& parameters) {
-    const auto light = [](double v) { return std::isnan(v) ? 0.0 : std::clamp(v, 0.0, 65504.0); };
-    Hsv hsv = hsv_of(light(color.r), light(color.g), light(color.b));
+    Hsv hsv = hsv_of(finite_light_reference(color.r), finite_light_reference(color.g), finite_light_reference(color.b));
     hsv.hue += double{parameters.hue} / 60;
     hsv.saturation = std::min(hsv.saturation * double{parameters.saturation}, 1.0);
     hsv.value *= double{parameters.value};

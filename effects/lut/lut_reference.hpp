@@ -9,6 +9,8 @@
 #include <darkroom/effects/lut.hpp>
 #include <darkroom/reference.hpp>
 
+#include "shared/finite_reference.hpp"
+#include "shared/srgb_reference.hpp"
 #include "tables/evaluate.hpp"
 #include "tables/log_shaper.hpp"
 
@@ -97,16 +99,12 @@ inline const Gamut& gamut_of(LutSpace space) {
     }
 }
 
-/// IEC 61966-2-1.
-inline double srgb_encode(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
-inline double srgb_decode(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-
 /// The curve of one channel. ACEScct is equations 6 and 7 of S-2016-001, LogC3 has the constants for EI 800 and S-Log3
 /// those of Sony's summary.
 inline double encode(double x, LutSpace space) {
     switch (space) {
         case LutSpace::Display:
-            return srgb_encode(std::clamp(x, 0.0, 1.0));
+            return srgb_encoded(std::clamp(x, 0.0, 1.0));
         case LutSpace::SceneLinear:
             return LogShaper::encode(x);
         case LutSpace::Acescct:
@@ -123,7 +121,7 @@ inline double encode(double x, LutSpace space) {
 inline double decode(double v, LutSpace space) {
     switch (space) {
         case LutSpace::Display:
-            return srgb_decode(std::clamp(v, 0.0, 1.0));
+            return srgb_decoded(std::clamp(v, 0.0, 1.0));
         case LutSpace::SceneLinear:
             return LogShaper::decode(v);
         case LutSpace::Acescct:
@@ -139,7 +137,6 @@ inline double decode(double v, LutSpace space) {
 }
 
 /// What is no number is no light, and the rest is within half precision.
-inline double finite(double x) { return std::isnan(x) ? 0.0 : std::clamp(x, -65504.0, 65504.0); }
 
 }  // namespace lut_detail
 
@@ -147,14 +144,14 @@ inline double finite(double x) { return std::isnan(x) ? 0.0 : std::clamp(x, -655
 inline TableColor lut_encode_reference(const TableColor& light, LutSpace space) {
     using namespace lut_detail;
     TableColor out{};
-    for (std::size_t i = 0; i < 3; ++i) out[i] = finite(light[i]);
+    for (std::size_t i = 0; i < 3; ++i) out[i] = finite_reference(light[i]);
     if (&gamut_of(space) != &rec709) out = multiply(conversion(rec709, gamut_of(space)), out);
     for (double& value : out) value = encode(value, space);
     return out;
 }
 inline TableColor lut_decode_reference(TableColor value, LutSpace space) {
     using namespace lut_detail;
-    for (double& one : value) one = finite(decode(one, space));
+    for (double& one : value) one = finite_reference(decode(one, space));
     return &gamut_of(space) == &rec709 ? value : multiply(conversion(gamut_of(space), rec709), value);
 }
 

@@ -185,11 +185,9 @@ TEST(EffectLut, GpuTexelCentresAreTheirEntries) {
         ReferenceImage picture(size * size, size), expected = picture;
         for (std::uint32_t i = 0; i < size * size * size; ++i) {
             const std::array<std::uint32_t, 3> place{i % size, i / size % size, i / size / size};
-            const auto light = [&](std::size_t c) { return lut_detail::srgb_decode(place[c] / (size - 1.0)); };
+            const auto light = [&](std::size_t c) { return srgb_decoded(place[c] / (size - 1.0)); };
             picture.pixels[i] = {light(0), light(1), light(2), 1};
-            const auto entry = [&](std::size_t c) {
-                return lut_detail::srgb_decode(double{table.cube[std::size_t{i} * 3 + c]});
-            };
+            const auto entry = [&](std::size_t c) { return srgb_decoded(double{table.cube[std::size_t{i} * 3 + c]}); };
             expected.pixels[i] = {entry(0), entry(1), entry(2), 1};
         }
         for (const auto how : both)

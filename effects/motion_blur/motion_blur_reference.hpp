@@ -11,6 +11,7 @@
 #include <darkroom/reference.hpp>
 
 #include "shared/camera_reference.hpp"
+#include "shared/finite_reference.hpp"
 #include "shared/sample_reference.hpp"
 
 namespace darkroom {
@@ -66,8 +67,7 @@ inline MotionBlurMap motion_blur_reference_map(const MotionBlur& blur, const Ref
             std::array<double, 2> velocity{};
             if (input.velocity != nullptr) {
                 const Rgba& given = input.velocity->at(column, row);
-                velocity = {std::isnan(given.r) ? 0 : std::clamp(given.r, -65504.0, 65504.0),
-                            std::isnan(given.g) ? 0 : std::clamp(given.g, -65504.0, 65504.0)};
+                velocity = {finite_reference(given.r), finite_reference(given.g)};
             } else {
                 velocity = motion_blur_reference_velocity(input.camera, picture, (column + 0.5) / picture.width,
                                                           (row + 0.5) / picture.height, planar);
@@ -107,8 +107,7 @@ inline MotionBlurMap motion_blur_reference_around(const MotionBlurMap& tiles) {
 }
 
 inline Rgba motion_blur_reference_clean(const Rgba& color) {
-    const auto clean = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, -65504.0, 65504.0); };
-    return {clean(color.r), clean(color.g), clean(color.b), clean(color.a)};
+    return {finite_reference(color.r), finite_reference(color.g), finite_reference(color.b), finite_reference(color.a)};
 }
 
 inline ReferenceImage motion_blur_reference_clean(const ReferenceImage& picture) {

@@ -8,11 +8,13 @@
 #include <darkroom/effects/posterize.hpp>
 #include <darkroom/reference.hpp>
 
+#include "shared/finite_reference.hpp"
+
 namespace darkroom {
 
 inline Rgba posterize_reference(Rgba color, const ReferencePixel&, const Posterize& parameters) {
-    const auto number = [](double v) { return std::isnan(v) ? 0.0 : std::clamp(v, -65504.0, 65504.0); };
-    const double r = number(color.r), g = number(color.g), b = number(color.b), n = parameters.levels - 1;
+    const double r = finite_reference(color.r), g = finite_reference(color.g), b = finite_reference(color.b),
+                 n = parameters.levels - 1;
     const auto level = [n](double v) { return std::floor(v * n + 0.5) / n; };
     if (parameters.mode == PosterizeMode::Channel) return {level(r), level(g), level(b), color.a};
     const double luma = 0.2126 * r + 0.7152 * g + 0.0722 * b;

@@ -9,11 +9,12 @@
 #include <darkroom/effects/recursive_blend.hpp>
 #include <darkroom/reference.hpp>
 
+#include "shared/finite_reference.hpp"
+
 namespace darkroom {
 
 inline ReferenceImage recursive_blend_reference(const void* parameters, const ReferenceInput& input) {
     const RecursiveBlend& blend = *static_cast<const RecursiveBlend*>(parameters);
-    const auto clean = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, -65504.0, 65504.0); };
     const bool is_coarse = blend.precision == RecursiveBlendPrecision::EightBit;
     const ReferenceImage* past = nullptr;
     if (input.history != nullptr && input.history->contains("trail")) past = &input.history->at("trail");
@@ -22,11 +23,11 @@ inline ReferenceImage recursive_blend_reference(const void* parameters, const Re
     for (std::size_t i = 0; i < out.pixels.size(); ++i) {
         const auto mixed = [&](double Rgba::*channel) {
             const double before = past == nullptr ? 0 : past->pixels[i].*channel;
-            const double value = clean(out.pixels[i].*channel) * (1 - kept) + before * kept;
+            const double value = finite_reference(out.pixels[i].*channel) * (1 - kept) + before * kept;
             // A double is as little 9/10 as a float is: the tie is where the shader has it.
             return is_coarse ? std::floor(std::clamp(value, 0.0, 1.0) * 255 + 0.5 + 1.0 / 4096) / 255 : value;
         };
-        out.pixels[i] = {mixed(&Rgba::r), mixed(&Rgba::g), mixed(&Rgba::b), clean(out.pixels[i].a)};
+        out.pixels[i] = {mixed(&Rgba::r), mixed(&Rgba::g), mixed(&Rgba::b), finite_reference(out.pixels[i].a)};
     }
     if (input.history != nullptr) (*input.history)["trail"] = out;
     return out;

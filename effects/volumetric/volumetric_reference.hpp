@@ -14,6 +14,9 @@
 
 namespace darkroom {
 
+/// Of a cascade's range of depth: keeps what is lit off its own shadow.
+inline constexpr double volumetric_bias = 0.002;
+
 /// Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941, with g = 0.8.
 inline double volumetric_phase(double cosine) {
     constexpr double g = 0.8, pi = 3.14159265358979323846;
@@ -48,7 +51,7 @@ inline double volumetric_visible(const ReferenceLight& light, const Double3& poi
     if (!(u >= 0 && u < 1 && v >= 0 && v < 1)) return 1;
     const auto x = static_cast<std::size_t>(u * light.resolution), y = static_cast<std::size_t>(v * light.resolution);
     const double nearest = double{light.cascades[cascade][y * light.resolution + x]};
-    return std::min(place[2] - 0.002, 1.0) <= nearest ? 1 : 0;
+    return std::min(place[2] - volumetric_bias, 1.0) <= nearest ? 1 : 0;
 }
 
 /// NaN counts as sky.

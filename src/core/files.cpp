@@ -163,6 +163,12 @@ Result<std::vector<std::byte>> read_file(const fs::path& path, const ReadFileOpt
     return content;
 }
 
+FileStamp stamp_of(const std::filesystem::path& path) {
+    struct stat is {};
+    if (::stat(path.c_str(), &is) != 0) return {};
+    return {static_cast<std::uint64_t>(is.st_size), is.st_mtim.tv_sec, is.st_mtim.tv_nsec, is.st_ino};
+}
+
 Result<> write_file(const fs::path& path, std::span<const std::byte> content) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);

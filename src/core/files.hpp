@@ -25,6 +25,16 @@ struct ReadFileOptions {
 [[nodiscard]] Result<std::vector<std::byte>> read_file(const std::filesystem::path& path,
                                                        const ReadFileOptions& options = {});
 
+/// What tells one state of a file from the next: editors replace files, so its number counts, too.
+struct FileStamp {
+    std::uint64_t size = 0;
+    std::int64_t seconds = 0, nanoseconds = 0;  ///< of the last change
+    std::uint64_t number = 0;                   ///< of the file in its file system
+    friend bool operator==(const FileStamp&, const FileStamp&) = default;
+};
+/// A default one: there is no such file.
+[[nodiscard]] FileStamp stamp_of(const std::filesystem::path& path);
+
 /// Writes the file whole or not at all; on failure an existing file stays as it was. A link is followed. A target that
 /// is no regular file (a pipe, /dev/stdout) is written in place, since there is nothing to replace.
 [[nodiscard]] Result<> write_file(const std::filesystem::path& path, std::span<const std::byte> content);

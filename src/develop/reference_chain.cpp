@@ -8,27 +8,16 @@
 #include <cmath>
 #include <deque>
 
+#include "compose/chain/camera_jump.hpp"
 #include "shared/blend_modes_reference.hpp"
 #include "shared/reading_reference.hpp"
-#include "compose/chain/camera_jump.hpp"
+#include "shared/srgb_reference.hpp"
 
 namespace darkroom {
 
 namespace {
 
-double srgb_curve(double linear) {
-    // IEC 61966-2-1.
-    const double v = std::clamp(linear, 0.0, 1.0);
-    return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
-
-// The same outside [0, 1]: the power goes on above 1, the line below 0.
-double srgb_curve_unbounded(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-double srgb_light_unbounded(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
+double srgb_curve(double light) { return srgb_encoded(std::clamp(light, 0.0, 1.0)); }
 
 std::string missing_needs(const Needs& needs, const ReferenceChainInput& input) {
     std::string out;
@@ -300,9 +289,9 @@ class Chain {
         const auto each = [](ReferenceImage& image, double (*curve)(double)) {
             for (Rgba& pixel : image.pixels) pixel = {curve(pixel.r), curve(pixel.g), curve(pixel.b), pixel.a};
         };
-        each(encoded, srgb_curve_unbounded);
+        each(encoded, srgb_encoded);
         ReferenceImage out = result(info, desc, words, index, keep(std::move(encoded)));
-        each(out, srgb_light_unbounded);
+        each(out, srgb_decoded);
         return out;
     }
 

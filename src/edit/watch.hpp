@@ -2,10 +2,10 @@
 #pragma once
 // Files that may change on disk.
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
-#include <tuple>
+
+#include "core/files.hpp"
 
 namespace darkroom::edit {
 
@@ -22,11 +22,7 @@ class Watch {
     [[nodiscard]] bool take_change();
 
   private:
-    /// Size, time of the last change, number of the file.
-    using Stamp = std::tuple<std::uint64_t, std::int64_t, std::int64_t, std::uint64_t>;
-    [[nodiscard]] static Stamp stamp_of(const std::filesystem::path& file);
-
-    std::map<std::filesystem::path, Stamp> files_;
+    std::map<std::filesystem::path, FileStamp> files_;
 };
 
 }  // namespace darkroom::edit

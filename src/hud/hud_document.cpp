@@ -21,19 +21,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Template = std::shared_ptr<const SvgTemplate>;
 
-/// What tells one state of a file from the next.
-struct FileStamp {
-    std::filesystem::file_time_type time{};
-    std::uintmax_t size = 0;
-    bool operator==(const FileStamp&) const = default;
-};
-
-FileStamp stamp_of(const std::filesystem::path& path) {
-    std::error_code error;
-    const FileStamp stamp{std::filesystem::last_write_time(path, error), std::filesystem::file_size(path, error)};
-    return error ? FileStamp{} : stamp;
-}
-
 /// What a drawing is made of; two that are equal are the same picture.
 struct Wish {
     Template document;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/light/shading_test_support.hpp"
+#include "shared/srgb_reference.hpp"
 
 namespace darkroom::render {
 namespace {
@@ -24,7 +25,6 @@ std::vector<vec4> finished(const std::vector<vec4>& colors, const std::string& a
                           {colors});
 }
 
-double srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
 double narkowicz(double x) { return std::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0); }
 
 /// White need not be 1 to the last bit: powers are approximate.
@@ -77,7 +77,8 @@ TEST(RenderGpuOutput, DisplayIsToneMappedByThePublishedCurveAndEncoded) {
     colors.emplace_back(7.25F, 100, 65504, 1);
     const std::vector<vec4> out = finished(colors, ", Output_display, true");
     // The table is rounded to 5e-7, and the curve encodes the darkest 12.92 times as bright.
-    for (std::size_t i = 0; i < table.size(); ++i) EXPECT_NEAR(out[i].y, srgb(table[i][1]), 7e-6) << table[i][0];
+    for (std::size_t i = 0; i < table.size(); ++i)
+        EXPECT_NEAR(out[i].y, srgb_encoded(table[i][1]), 7e-6) << table[i][0];
     expect_near(out.back(), vec4(1));
 }
 
@@ -88,8 +89,8 @@ TEST(RenderGpuOutput, CodesAreThoseOfTheStandard) {
     for (std::size_t i = 0; i < colors.size(); ++i) {
         for (int c = 0; c < 3; ++c) {
             // A hundredth of an 8-bit code: drivers raise to powers with less than single precision.
-            EXPECT_NEAR(encoded[i][c], srgb(std::min(double(colors[i][c]), 1.0)), 0.01 / 255);
-            EXPECT_NEAR(mapped[i][c], srgb(narkowicz(colors[i][c])), 0.01 / 255);
+            EXPECT_NEAR(encoded[i][c], srgb_encoded(std::min(double(colors[i][c]), 1.0)), 0.01 / 255);
+            EXPECT_NEAR(mapped[i][c], srgb_encoded(narkowicz(colors[i][c])), 0.01 / 255);
         }
     }
     const std::vector<vec4> half = finished({vec4(0.5F)}, ", Output_display, false");

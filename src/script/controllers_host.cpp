@@ -22,12 +22,9 @@ bool RateLimit::allows(double now) {
 }
 
 bool Controllers::State::Script::look() {
-    std::error_code ignored;
-    const auto time_now = std::filesystem::last_write_time(name, ignored);
-    const std::uintmax_t size_now = std::filesystem::file_size(name, ignored);
-    const bool is_changed = time_now != time || size_now != size;
-    time = time_now;
-    size = size_now;
+    const FileStamp now = stamp_of(name);
+    const bool is_changed = now != stamp;
+    stamp = now;
     return is_changed;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/files.hpp"
 #include "script/bindings.hpp"
 
 namespace darkroom {
@@ -32,8 +33,7 @@ struct Controllers::State final : script::Host {
         std::string name;  ///< a file's path as it was given
         bool is_file = false;
         std::string text{};  ///< of scripts without a file
-        std::filesystem::file_time_type time{};
-        std::uintmax_t size = 0;
+        FileStamp stamp;
         /// Has the file changed since the last look?
         bool look();
     };

@@ -25,7 +25,6 @@ constexpr std::int64_t format = 1;
 constexpr const char* job_file = "job.json";
 // A hundred thousand frames with gaps, asked for and done, take 8 MB.
 constexpr std::size_t most_bytes = std::size_t{16} << 20;
-constexpr std::size_t most_files = 100'000;
 constexpr std::array<const char*, 3> state_names{"begun", "done", "failed"};
 
 using Ranges = std::vector<std::array<long long, 2>>;
@@ -134,9 +133,9 @@ Result<std::vector<fs::path>> record_files(const fs::path& folder) {
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
         if (entry->path().extension() == ".json" && entry->path().filename() != job_file) {
             out.push_back(entry->path());
-            if (out.size() > most_files)
+            if (out.size() > most_frames)
                 return darkroom::user_error(
-                    fmt::format("{}: allowed are {} records", printable(folder.string()), most_files));
+                    fmt::format("{}: allowed are {} records", printable(folder.string()), most_frames));
         }
     if (error)
         return darkroom::user_error(

@@ -2,6 +2,7 @@
 // Targets of another extent than the picture: the last kernel samples it into them, bilinearly.
 
 #include "compose/test_stacks/host.hpp"
+#include "shared/srgb_reference.hpp"
 
 namespace darkroom {
 namespace {
@@ -113,8 +114,7 @@ TEST_F(ComposeScaledTarget, TheLastKernelEncodesWhatItSamples) {
     frame.target = test::image_ref(target);
     test::must(host.record(composer, frame));
     ReferenceImage expected = resampled(picture, {64, 50});
-    const auto encode = [](double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055; };
-    for (Rgba& p : expected.pixels) p = {encode(p.r), encode(p.g), encode(p.b), p.a};
+    for (Rgba& p : expected.pixels) p = {srgb_encoded(p.r), srgb_encoded(p.g), srgb_encoded(p.b), p.a};
     EXPECT_LE(test::worst_difference(test::image_of(gpu::test::download(host.device.context(), target)), expected),
               0.01);
 }

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "compose/test_stacks/host.hpp"
+#include "shared/srgb_reference.hpp"
 
 namespace darkroom {
 namespace {
@@ -14,10 +15,7 @@ using test::add;
 
 class ComposeTarget : public test::StackTest {};
 
-double srgb(double v) {
-    v = std::clamp(v, 0.0, 1.0);
-    return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-}
+double srgb(double v) { return srgb_encoded(std::clamp(v, 0.0, 1.0)); }
 ReferenceImage encoded(const ReferenceImage& picture) {
     ReferenceImage out = picture;
     for (Rgba& p : out.pixels) p = {srgb(p.r), srgb(p.g), srgb(p.b), p.a};

@@ -6,6 +6,7 @@
 #include "compose/test_stacks/effects.hpp"
 #include "compose/test_stacks/random_scene.hpp"
 #include "develop/reference_chain.hpp"
+#include "shared/srgb_reference.hpp"
 
 namespace darkroom {
 namespace {
@@ -158,10 +159,7 @@ class Graph {
     [[nodiscard]] bool is_software() const { return host_.device.info().is_software; }
 
   private:
-    static double encoded(double value) {
-        const double v = std::clamp(value, 0.0, 1.0);
-        return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
-    }
+    static double encoded(double value) { return srgb_encoded(std::clamp(value, 0.0, 1.0)); }
 
     std::mt19937 random_;
     std::vector<const EffectInfo*> effects_;

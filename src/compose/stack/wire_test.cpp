@@ -6,6 +6,7 @@
 #include "compose/test_stacks/host.hpp"
 #include "compose/test_stacks/support.hpp"
 #include "develop/reference_chain.hpp"
+#include "shared/srgb_reference.hpp"
 
 namespace darkroom::test {
 namespace {
@@ -44,8 +45,7 @@ TEST_F(ComposeWires, TheAlphaOfTheSceneIsAPicture) {
         picture);
     ASSERT_EQ(out.pixels.size(), picture.pixels.size());
     for (std::size_t i = 0; i < out.pixels.size(); ++i) {
-        const double alpha = picture.pixels[i].a;
-        const double seen = alpha <= 0.0031308 ? 12.92 * alpha : 1.055 * std::pow(alpha, 1 / 2.4) - 0.055;
+        const double seen = srgb_encoded(picture.pixels[i].a);
         ASSERT_NEAR(out.pixels[i].r, seen, 1e-4) << i;
         ASSERT_NEAR(out.pixels[i].b, seen, 1e-4) << i;
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gpu/device/select_device.hpp"
 
+#include "core/text/lower.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,11 +15,6 @@
 namespace darkroom::gpu {
 
 namespace {
-
-std::string lower_case(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
 
 std::optional<std::uint32_t> as_index(const std::string& text) {
     std::uint32_t index = 0;
@@ -43,9 +40,9 @@ Result<std::size_t> select_device(std::span<const DeviceInfo> infos, const std::
         const auto found = std::ranges::find(infos, *index, &DeviceInfo::index);
         if (found != infos.end()) return place(found);
     }
-    const std::string part = lower_case(select);
+    const std::string part = lower(select);
     const auto found = std::ranges::find_if(
-        infos, [&](const DeviceInfo& info) { return lower_case(info.name).find(part) != std::string::npos; });
+        infos, [&](const DeviceInfo& info) { return lower(info.name).find(part) != std::string::npos; });
     if (found != infos.end()) return place(found);
     return user_error(fmt::format("device \"{}\": {}; there are {}", select,
                                   index ? "no device has this index or a name with this in it" : "no such device",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/srgb.hpp"
 #include "image/picture/primaries.hpp"
 #include "image/picture/resize.hpp"
 

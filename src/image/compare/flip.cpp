@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "core/srgb.hpp"
 #include "core/thread/parallel.hpp"
 
 namespace darkroom {
@@ -309,8 +310,7 @@ void raise_errors(std::vector<float>& errors, const Opponent& reference, const O
 
 float decode_srgb(float value) {
     if (!(value > 0.0f)) return 0.0f;
-    const float encoded = std::min(value, 1.0f);
-    return encoded > 0.04045f ? std::pow((encoded + 0.055f) / 1.055f, 2.4f) : encoded / 12.92f;
+    return srgb_decode(std::min(value, 1.0f));
 }
 
 /// Narkowicz, "ACES Filmic Tone Mapping Curve", 2015, with the factor 0.6 before it that the 2021 paper uses.

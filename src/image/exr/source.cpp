@@ -29,6 +29,7 @@
 #include <thread>
 #include <tuple>
 
+#include "core/text/lower.hpp"
 #include "image/exr/write.hpp"
 #include "image/exr/zip.hpp"
 
@@ -52,12 +53,6 @@ class MemoryStream final : public Imf::IStream {
     std::span<const std::byte> bytes_;
     std::size_t position_ = 0;
 };
-
-std::string lower(std::string_view text) {
-    std::string out(text);
-    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
-}
 
 SampleKind kind_of(Imf::PixelType type) {
     return type == Imf::HALF ? SampleKind::Half : type == Imf::FLOAT ? SampleKind::Float : SampleKind::Integer32;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "image/frame/channels.hpp"
+#include "core/text/lower.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,12 +12,6 @@
 
 namespace darkroom {
 namespace {
-
-std::string lower(std::string_view text) {
-    std::string result(text);
-    for (char& character : result) character = static_cast<char>(std::tolower(static_cast<unsigned char>(character)));
-    return result;
-}
 
 std::string last_component(std::string_view name) { return lower(name.substr(name.rfind('.') + 1)); }
 

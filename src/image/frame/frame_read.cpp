@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/srgb.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
 #include "image/frame/layer_read.hpp"

@@ -88,12 +88,4 @@ std::optional<ColorMatrix> to_rec709(const Chromaticities& from) {
     return multiply(xyz_to_rec709, multiply(*adapted, *rgb_to_xyz));
 }
 
-float srgb_decode(float encoded) {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
-float srgb_encode(float linear) {
-    return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
-}
-
 }  // namespace darkroom

@@ -30,8 +30,4 @@ using ColorMatrix = std::array<double, 9>;
 /// adapted. No value: the primaries span no colour space.
 [[nodiscard]] std::optional<ColorMatrix> to_rec709(const Chromaticities& from);
 
-/// The piecewise curve of IEC 61966-2-1, continued as it is above 1 and as the straight line below 0.
-[[nodiscard]] float srgb_decode(float encoded);
-[[nodiscard]] float srgb_encode(float linear);
-
 }  // namespace darkroom

@@ -13,6 +13,7 @@
 
 #include "core/assert.hpp"
 #include "core/files.hpp"
+#include "core/text/lower.hpp"
 #include "image/codec/codecs.hpp"
 #include "image/codec/png_write.hpp"
 #include "image/exr/write.hpp"
@@ -110,8 +111,7 @@ Result<> check_coding(const std::filesystem::path& path, FileKind kind, const Wr
 }  // namespace
 
 Result<FileKind> file_kind(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lower(path.extension().string());
     for (const auto& [known, kind] : extensions)
         if (extension == known) return kind;
     return user_error(fmt::format("{}: {}; .png .jpg .jpeg .tif .tiff .exr .hdr can be written", path.string(),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/srgb.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/primaries.hpp"
 #include "image/test_files.hpp"

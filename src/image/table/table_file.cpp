@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/files.hpp"
+#include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "image/codec/load_module.hpp"
 #include "image/picture/picture_numbers.hpp"
@@ -25,11 +26,7 @@ constexpr std::array<std::string_view, 5> chain_names{".3dl", ".spi1d", ".spi3d"
 /// Bytes of a file that OpenColorIO reads: it makes more than ten times as many of them.
 constexpr std::uintmax_t max_chain_file = std::uintmax_t{32} << 20;
 
-std::string extension_of(const fs::path& path) {
-    std::string out = path.extension().string();
-    for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
-}
+std::string extension_of(const fs::path& path) { return lower(path.extension().string()); }
 
 double worst_error(const ColorTable& table, const ColorChain& chain) {
     constexpr std::size_t count = 20000;

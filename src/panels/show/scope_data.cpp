@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "panels/show/scope_data.hpp"
+#include "core/srgb.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +12,6 @@ namespace {
 
 float luma(const std::array<float, 3>& rgb) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
 
-/// IEC 61966-2-1; in double precision, so that white stays white.
-float srgb_encode(double light) {
-    return static_cast<float>(light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
-}
-
 /// Encoded; nothing where a number is broken.
 std::optional<std::array<float, 3>> color_at(const ScopePicture& picture, std::size_t pixel) {
     std::array<float, 3> color{};
@@ -23,7 +19,8 @@ std::optional<std::array<float, 3>> color_at(const ScopePicture& picture, std::s
         const std::size_t place = pixel * 4 + i;
         color[i] = picture.bytes.empty() ? picture.floats[place] : static_cast<float>(picture.bytes[place]) / 255;
         if (!std::isfinite(color[i])) return std::nullopt;
-        if (picture.is_linear) color[i] = srgb_encode(color[i]);
+        if (picture.is_linear)
+            color[i] = static_cast<float>(srgb_encode(double{color[i]}));  // in float, white were not 1
     }
     return color;
 }

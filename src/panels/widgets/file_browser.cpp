@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "panels/widgets/icons.hpp"
 #include "panels/widgets/text_field.hpp"
@@ -20,11 +21,6 @@ namespace darkroom::panels {
 namespace {
 
 constexpr const char* popup = "files";
-
-std::string lower(std::string text) {
-    std::ranges::transform(text, text.begin(), [](unsigned char letter) { return std::tolower(letter); });
-    return text;
-}
 
 bool is_pressed(ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); }
 

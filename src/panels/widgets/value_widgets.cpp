@@ -10,6 +10,7 @@
 #include <cfloat>
 #include <cmath>
 
+#include "core/srgb.hpp"
 #include "core/text/param_text.hpp"
 #include "panels/widgets/slider.hpp"
 
@@ -70,19 +71,13 @@ ValueEdit choose(const ParamInfo& row, std::span<std::uint32_t> words) {
     return edit;
 }
 
-// IEC 61966-2-1: what ImGui's colours are meant to be.
-float encoded(float linear) {
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
-float decoded(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
-
 /// A swatch that opens a picker, and the linear numbers beside it. Light above 1 is picked as a colour times a factor
 /// that stays.
 ValueEdit pick_color(const ParamInfo& row, std::span<std::uint32_t> words, std::span<const std::uint32_t> defaults) {
     std::array<float, 3> linear{}, shown{};
     for (std::size_t i = 0; i < 3; ++i) linear[i] = std::bit_cast<float>(words[i]);
     const float factor = std::max({1.0f, linear[0], linear[1], linear[2]});
-    for (std::size_t i = 0; i < 3; ++i) shown[i] = encoded(std::max(0.0f, linear[i] / factor));
+    for (std::size_t i = 0; i < 3; ++i) shown[i] = srgb_encode(std::max(0.0f, linear[i] / factor));
     ValueEdit edit;
     const float width = ImGui::CalcItemWidth(), height = ImGui::GetFrameHeight();
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
@@ -99,7 +94,7 @@ ValueEdit pick_color(const ParamInfo& row, std::span<std::uint32_t> words, std::
             const auto least = static_cast<float>(row.range.min), most = static_cast<float>(row.range.max);
             for (std::size_t i = 0; i < 3; ++i)
                 words[i] = std::bit_cast<std::uint32_t>(
-                    std::clamp(static_cast<float>(four_digits(decoded(shown[i]) * factor)), least, most));
+                    std::clamp(static_cast<float>(four_digits(srgb_decode(shown[i]) * factor)), least, most));
             edit.is_changed = true;
         }
         edit.is_begun |= ImGui::IsItemActivated();

@@ -8,6 +8,7 @@
 
 #include "render/light/brdf_reference.hpp"
 #include "render/renderer_test_support.hpp"
+#include "shared/srgb_reference.hpp"
 
 namespace darkroom::render {
 namespace {
@@ -188,7 +189,7 @@ TEST(RenderGpuShadingScene, DisplayIsWithinACodeOfTheFinishedHdrPicture) {
         if (i % 4 == 3) continue;
         const double x = hdr.rgba[i];
         const double mapped = std::min(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 1.0);
-        const double encoded = mapped <= 0.0031308 ? 12.92 * mapped : 1.055 * std::pow(mapped, 1 / 2.4) - 0.055;
+        const double encoded = srgb_encoded(mapped);
         EXPECT_NEAR(display.rgba[i] * 255, encoded * 255, 1) << i / 4 << ", " << i % 4;
     }
 }

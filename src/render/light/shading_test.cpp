@@ -8,6 +8,7 @@
 
 #include "render/light/brdf_reference.hpp"
 #include "render/light/shading_test_bench.hpp"
+#include "shared/srgb_reference.hpp"
 
 namespace darkroom::render {
 namespace {
@@ -305,12 +306,11 @@ TEST(RenderGpuShading, DisplayIsTheHdrPictureFinished) {
     const Pixels hdr = bench.draw({}).color;
     const Pixels plain = bench.draw({.output = 1}).color;
     const Pixels mapped = bench.draw({.output = 1, .is_tone_mapped = 1}).color;
-    const auto encode = [](double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; };
     for (std::size_t i = 0; i < hdr.rgba.size(); ++i) {
         const double x = hdr.rgba[i];
         if (i % 4 == 3) continue;
-        EXPECT_NEAR(plain.rgba[i], encode(std::min(x, 1.0)), 1e-5);
-        EXPECT_NEAR(mapped.rgba[i], encode(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)), 1e-5);
+        EXPECT_NEAR(plain.rgba[i], srgb_encoded(std::min(x, 1.0)), 1e-5);
+        EXPECT_NEAR(mapped.rgba[i], srgb_encoded(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)), 1e-5);
     }
 }
 

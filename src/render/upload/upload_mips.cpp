@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "render/upload/upload_mips.hpp"
+#include "core/srgb.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,20 +12,12 @@ namespace {
 
 constexpr std::size_t steps = 65536;
 
-/// IEC 61966-2-1.
-float decode_srgb(float encoded) {
-    return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
-}
-float encode_srgb(float linear) {
-    return linear <= 0.0031308F ? linear * 12.92F : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
-}
-
 const std::array<float, 256>& decoded_bytes(bool is_srgb) {
     static const auto make = [](bool decodes) {
         std::array<float, 256> table{};
         for (std::size_t i = 0; i < table.size(); ++i) {
             const float value = static_cast<float>(i) / 255;
-            table[i] = decodes ? decode_srgb(value) : value;
+            table[i] = decodes ? srgb_decode(value) : value;
         }
         return table;
     };
@@ -38,7 +31,7 @@ std::uint8_t encoded_byte(float linear) {
     static const std::vector<std::uint8_t> table = [] {
         std::vector<std::uint8_t> made(steps);
         for (std::size_t i = 0; i < steps; ++i)
-            made[i] = to_byte(encode_srgb(static_cast<float>(i) / (static_cast<float>(steps) - 1)));
+            made[i] = to_byte(srgb_encode(static_cast<float>(i) / (static_cast<float>(steps) - 1)));
         return made;
     }();
     return table[static_cast<std::size_t>(std::clamp(linear, 0.0F, 1.0F) * (static_cast<float>(steps) - 1) + 0.5F)];

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <unordered_map>
 
+#include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "scene/read/scene_file.hpp"
 #include "scene/read/scene_reader.hpp"
@@ -243,11 +244,6 @@ void SceneReader::inherit_base_colors() {
 }
 
 namespace {
-
-std::string lower(std::string text) {
-    for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return text;
-}
 
 Result<Scene> scene_of_model(const std::filesystem::path& path) {
     std::error_code error;
