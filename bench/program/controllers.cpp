@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <darkroom/controllers.hpp>
+#include <darkroom/describe.hpp>
 
 #include "bench/chain/chains.hpp"
 #include "bench/chain/interface.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/arena_bloom.hpp>
 #include <string>
 
@@ -7,6 +9,10 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto arena_bloom_rows = describe(
+    field<&ArenaBloom::intensity>("How much of the glow is added.", {0, 4}).as_amount(),
+    field<&ArenaBloom::source_kind>("Whether colour is limited to a display's range and alpha masks the glow."));
 
 void build(PassBuilder& builder) {
     const auto create = [&](std::string name, std::uint32_t denominator) {

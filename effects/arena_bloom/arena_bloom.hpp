@@ -4,9 +4,11 @@
 // fixed shape, through four small pictures with weights of their own and a power that leaves only strong light. For
 // light without an upper end see bloom.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 enum class ArenaBloomSource : std::uint32_t {
     Masked,  ///< colour and alpha within [0, 1], and alpha says how much glows
@@ -17,9 +19,6 @@ struct ArenaBloom {
     float intensity = 1.0f;
     ArenaBloomSource source_kind = ArenaBloomSource::Masked;
 };
-inline constexpr auto arena_bloom_rows = describe(
-    field<&ArenaBloom::intensity>("How much of the glow is added.", {0, 4}).as_amount(),
-    field<&ArenaBloom::source_kind>("Whether colour is limited to a display's range and alpha masks the glow."));
 
 [[nodiscard]] const EffectInfo& effect_info(const ArenaBloom&);
 

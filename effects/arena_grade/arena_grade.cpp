@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/arena_grade.hpp>
 
 #include <array>
@@ -9,6 +11,10 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto arena_grade_rows =
+    describe(field<&ArenaGrade::table>("A table, read at 16 steps of each channel; without one the preset."),
+             field<&ArenaGrade::preset>("Which of the built-in tables.").at_compile());
 
 constexpr std::size_t entry_count = std::size_t{arena_edge} * arena_edge * arena_edge;
 

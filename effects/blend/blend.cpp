@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/blend.hpp>
 
 #include "blend/blend_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto blend_rows =
+    describe(field<&Blend::mode>("How the second picture goes over the picture."),
+             field<&Blend::amount>("Share of the blended picture; at 0 the picture stays as it is.", {0, 1}));
+
+}  // namespace
 
 const EffectInfo& effect_info(const Blend&) {
     static const EffectInfo info{

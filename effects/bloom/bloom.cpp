@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <bit>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/bloom.hpp>
 #include <string>
 
@@ -9,6 +11,21 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto bloom_rows = describe(
+    field<&Bloom::intensity>(
+        "How much of the glow is added; in the mode energy_conserving, how far the picture is mixed "
+        "with it, where 1 and more mean wholly.",
+        {0, 16})
+        .as_amount(),
+    field<&Bloom::threshold>("Light above this glows; not used in the mode energy_conserving.", {0, 65504}),
+    field<&Bloom::soft_threshold>("Width of the soft knee as a part of the threshold: 0 is a hard edge.", {0, 1}),
+    field<&Bloom::firefly_filter>("Averages the first level by inverse luminance, so that lone bright pixels do not "
+                                  "flicker."),
+    field<&Bloom::mode>("Whether the glow is added to the picture or mixed with it."),
+    field<&Bloom::scatter>("Weight of each wider level relative to the one below it, in the mode energy_conserving.",
+                           {0, 1}),
+    field<&Bloom::levels>("Most levels of the pyramid that are used; small pictures have fewer.", {1, 5}));
 
 constexpr std::uint32_t max_levels = 5;
 constexpr float half_max = 65504.0f;

@@ -3,9 +3,13 @@
 // Bloom: light above a threshold spreads around its source, by a pyramid of halved pictures that are filtered down,
 // then up again and added. It is a glow of a fixed shape: no diffraction spikes, no lens flares, no dirt.
 
-#include <darkroom/effect.hpp>
+#include <vulkan/vulkan.h>
+
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 enum class BloomMode : std::uint32_t {
     Additive,          ///< the glow is added to the picture
@@ -21,20 +25,6 @@ struct Bloom {
     float scatter = 0.7f;
     std::int32_t levels = 5;
 };
-inline constexpr auto bloom_rows = describe(
-    field<&Bloom::intensity>(
-        "How much of the glow is added; in the mode energy_conserving, how far the picture is mixed "
-        "with it, where 1 and more mean wholly.",
-        {0, 16})
-        .as_amount(),
-    field<&Bloom::threshold>("Light above this glows; not used in the mode energy_conserving.", {0, 65504}),
-    field<&Bloom::soft_threshold>("Width of the soft knee as a part of the threshold: 0 is a hard edge.", {0, 1}),
-    field<&Bloom::firefly_filter>("Averages the first level by inverse luminance, so that lone bright pixels do not "
-                                  "flicker."),
-    field<&Bloom::mode>("Whether the glow is added to the picture or mixed with it."),
-    field<&Bloom::scatter>("Weight of each wider level relative to the one below it, in the mode energy_conserving.",
-                           {0, 1}),
-    field<&Bloom::levels>("Most levels of the pyramid that are used; small pictures have fewer.", {1, 5}));
 
 /// Levels that a picture of `extent` has: floor(log2(shorter side)) - 3 within [0, 5], so that the last one is at least
 /// 8x8. Level i is 2^(i+1) times smaller than the picture.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/box_blur.hpp>
 #include <string>
 
@@ -7,6 +9,13 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto box_blur_rows =
+    describe(field<&BoxBlur::radius>("Half-width of the square; 0 leaves the picture as it is.", {0, 64}, unit::pixels)
+                 .as_loop_count(),
+             field<&BoxBlur::iterations>(
+                 "How many times the picture is blurred: 2 make a pyramid, 3 nearly a bell curve.", {1, 4})
+                 .at_compile());
 
 const BoxBlur& blur_of(const void* parameters) { return *static_cast<const BoxBlur*>(parameters); }
 

@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/chromatic_aberration.hpp>
 
 #include "chromatic_aberration/chromatic_aberration_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto chromatic_aberration_rows = describe(
+    field<&ChromaticAberration::chromatic_aberration>(
+        "How far red and blue part: 0.012 of the distance from the centre for each 1; 0.001 and less is none.", {0, 8})
+        .as_amount());
+
+}  // namespace
 
 const EffectInfo& effect_info(const ChromaticAberration&) {
     static const EffectInfo info{

@@ -3,17 +3,15 @@
 // Chromatic aberration of the scene: red and blue are drawn a little larger and smaller than green, as by a simple
 // lens. Three taps, no spectrum.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 struct ChromaticAberration {
     float chromatic_aberration = 0.0f;
 };
-inline constexpr auto chromatic_aberration_rows = describe(
-    field<&ChromaticAberration::chromatic_aberration>(
-        "How far red and blue part: 0.012 of the distance from the centre for each 1; 0.001 and less is none.", {0, 8})
-        .as_amount());
 
 [[nodiscard]] const EffectInfo& effect_info(const ChromaticAberration&);
 

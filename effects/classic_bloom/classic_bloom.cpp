@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <cmath>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/classic_bloom.hpp>
 
 #include "classic_bloom/classic_bloom_reference.hpp"
@@ -8,6 +10,14 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto classic_bloom_rows = describe(
+    field<&ClassicBloom::intensity>("How much of the glow is added.", {0, 16}).as_amount(),
+    field<&ClassicBloom::source_kind>("What glows; the layer is named by the entry's source, for example alpha.")
+        .at_compile(),
+    field<&ClassicBloom::threshold>("Light above this glows; not used with a layer.", {0, 65504}),
+    field<&ClassicBloom::radius>("Half-width of the glow, which is not below 7.", {1, 64}, unit::pixels)
+        .as_loop_count());
 
 constexpr std::uint32_t vectors = (classic_bloom_capacity + 3) / 4;
 

@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/contrast_gamma.hpp>
 
 #include "contrast_gamma/contrast_gamma_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto contrast_gamma_rows = describe(
+    field<&ContrastGamma::contrast>("Factor of the encoded picture.", {1, 2}).as_amount().also_named("contrast", true),
+    field<&ContrastGamma::gamma>("Exponent behind it: below 1 brightens.", {0.1, 4, Scale::Log})
+        .as_amount()
+        .also_named("gamma", true));
+
+}  // namespace
 
 const EffectInfo& effect_info(const ContrastGamma&) {
     static const EffectInfo info{

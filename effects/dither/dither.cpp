@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/dither.hpp>
 
 #include <bit>
@@ -11,6 +13,11 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto dither_rows =
+    describe(field<&Dither::intensity>(
+                 "Width of the noise, in units of the encoded range; 2/255 hides the steps of 8 bits.", {0, 1})
+                 .as_amount());
 
 static_assert(dither_tile_size == blue_noise_size);
 constexpr std::size_t texel_count = std::size_t{dither_tile_size} * dither_tile_size;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/encode.hpp>
 
 #include "encode/encode_reference.hpp"
@@ -6,6 +8,12 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto encode_rows = describe(
+    field<&Encode::transfer>("The curve of the display or file that the picture is for."),
+    field<&Encode::white_nits>("Luminance of linear 1.0; for pq and scrgb.", {1, 10000, Scale::Log}, unit::nits),
+    field<&Encode::peak_nits>("What is brighter is clipped, channel by channel; for pq and scrgb.",
+                              {1, 10000, Scale::Log}, unit::nits));
 
 bool is_none(const void* parameters) {
     return static_cast<const Encode*>(parameters)->transfer == TransferFunction::None;

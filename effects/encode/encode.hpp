@@ -3,9 +3,11 @@
 // Encode: turns linear light into the code values that a display or a file expects. It is done once, last but for
 // dither; it compresses nothing: tone map before it.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 enum class TransferFunction : std::uint32_t {
     Srgb,     ///< IEC 61966-2-1, piecewise
@@ -20,11 +22,6 @@ struct Encode {
     float white_nits = 203.0f;
     float peak_nits = 1000.0f;
 };
-inline constexpr auto encode_rows = describe(
-    field<&Encode::transfer>("The curve of the display or file that the picture is for."),
-    field<&Encode::white_nits>("Luminance of linear 1.0; for pq and scrgb.", {1, 10000, Scale::Log}, unit::nits),
-    field<&Encode::peak_nits>("What is brighter is clipped, channel by channel; for pq and scrgb.",
-                              {1, 10000, Scale::Log}, unit::nits));
 
 [[nodiscard]] const EffectInfo& effect_info(const Encode&);
 

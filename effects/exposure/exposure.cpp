@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/exposure.hpp>
 
 #include "exposure/exposure_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto exposure_rows = describe(field<&Exposure::exposure>(
+    "Multiplier of the scene's light; 2 is one stop brighter.", {0, 1024}, unit::multiplier));
+
+}  // namespace
 
 const EffectInfo& effect_info(const Exposure&) {
     static const EffectInfo info{

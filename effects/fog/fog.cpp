@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/fog.hpp>
 
 #include "fog/fog_reference.hpp"
@@ -12,6 +14,17 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto fog_rows = describe(
+    field<&Fog::color>("Colour of full fog, in the domain of the picture that the fog is laid over.", {0, 65504}),
+    field<&Fog::density>("How quickly it thickens behind `start`; 0 is none.", {0, 1000}, unit::per_metre).as_amount(),
+    field<&Fog::start>("Where it begins.", {0, 1e6}, unit::metres),
+    field<&Fog::end>("Where it is full; must lie beyond `start`.", {0.001, 1e9}, unit::metres),
+    field<&Fog::height_enabled>("Does it thin with height."),
+    field<&Fog::height_falloff>("How quickly it thins above `height_origin`.", {0, 1000}, unit::per_metre)
+        .as_amount_of<&Fog::height_enabled>(),
+    field<&Fog::height_origin>("World height up to which it has its full density.", {-1e6, 1e6}, unit::metres),
+    field<&Fog::sky>("Does it cover the sky, too: full, at every height."));
 
 const Fog& fog_of(const void* parameters) { return *static_cast<const Fog*>(parameters); }
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/frame_blend.hpp>
 #include <string>
 #include <utility>
@@ -11,6 +13,11 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto frame_blend_rows =
+    describe(field<&FrameBlend::amount>("Weight of all earlier frames together.", {0, 1}),
+             field<&FrameBlend::frames>("Length of the trail, in steps of 1/60 s.", {1, 7}),
+             field<&FrameBlend::area>("Of the picture's area, how much each earlier frame is kept at.").at_compile());
 
 constexpr std::array<const char*, frame_blend_slots> slot_names{"frame_blend_0", "frame_blend_1", "frame_blend_2",
                                                                 "frame_blend_3", "frame_blend_4", "frame_blend_5",

@@ -4,9 +4,11 @@
 // has an end, after `frames` / 60 s, and no ghost is left; it is blurred, since it is made of small pictures. A trail
 // without an end that is sharp is recursive_blend.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 /// Of the picture's area, how much a frame of the ring has.
 enum class FrameBlendArea : std::uint32_t { Quarter, Sixteenth };
@@ -16,10 +18,6 @@ struct FrameBlend {
     std::int32_t frames = 7;
     FrameBlendArea area = FrameBlendArea::Sixteenth;
 };
-inline constexpr auto frame_blend_rows =
-    describe(field<&FrameBlend::amount>("Weight of all earlier frames together.", {0, 1}),
-             field<&FrameBlend::frames>("Length of the trail, in steps of 1/60 s.", {1, 7}),
-             field<&FrameBlend::area>("Of the picture's area, how much each earlier frame is kept at.").at_compile());
 
 /// Slots of the ring: one more than the longest trail, so that a slot has no weight any more when it is written anew.
 inline constexpr std::int32_t frame_blend_slots = 8;

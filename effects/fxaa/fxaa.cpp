@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/fxaa.hpp>
 
 #include "fxaa/fxaa_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto fxaa_rows = describe(
+    field<&Fxaa::quality>("How far and how densely the ends of an edge are searched."),
+    field<&Fxaa::subpixel>("How much of single pixels and thin lines is smoothed away; 0 leaves all but edges.",
+                           {0, 1}),
+    field<&Fxaa::edge_threshold>("Contrast that makes an edge, as a part of the brightest luma around.", {0.03, 0.5}),
+    field<&Fxaa::edge_threshold_min>("Contrast in luma below which nothing is an edge: spares the dark.", {0, 0.5}));
+
+}  // namespace
 
 const EffectInfo& effect_info(const Fxaa&) {
     static const EffectInfo info{

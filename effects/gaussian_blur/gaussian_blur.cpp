@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/gaussian_blur.hpp>
 #include <string>
 
@@ -9,6 +11,15 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto gaussian_blur_rows = describe(
+    field<&GaussianBlur::radius>("Half-width of the blur; 0 leaves the picture as it is.", {0, 64}, unit::pixels)
+        .at_compile()
+        .as_loop_count(),
+    field<&GaussianBlur::sigma>("Standard deviation of the bell curve; 0 takes a third of the radius.", {0, 64},
+                                unit::pixels)
+        .at_compile(),
+    field<&GaussianBlur::resolution>("Whether a wide blur works on a smaller picture.").at_compile());
 
 constexpr std::uint32_t vectors = 1 + GaussianBlurTaps::capacity / 2;
 

@@ -6,9 +6,11 @@
 
 #include <array>
 #include <cstddef>
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 enum class GaussianBlurResolution : std::uint32_t {
     Automatic,  ///< as small a picture as the blur leaves no detail for
@@ -20,14 +22,6 @@ struct GaussianBlur {
     float sigma = 0.0f;
     GaussianBlurResolution resolution = GaussianBlurResolution::Automatic;
 };
-inline constexpr auto gaussian_blur_rows = describe(
-    field<&GaussianBlur::radius>("Half-width of the blur; 0 leaves the picture as it is.", {0, 64}, unit::pixels)
-        .at_compile()
-        .as_loop_count(),
-    field<&GaussianBlur::sigma>("Standard deviation of the bell curve; 0 takes a third of the radius.", {0, 64},
-                                unit::pixels)
-        .at_compile(),
-    field<&GaussianBlur::resolution>("Whether a wide blur works on a smaller picture.").at_compile());
 
 /// One direction of the blur as a shader sums it up: the texel itself, then pairs of texels to both sides. Pair i holds
 /// texels 2i + 1 and 2i + 2, weighed by weights[i] (1 - fractions[i]) and weights[i] fractions[i]: one bilinear tap at

@@ -4,9 +4,11 @@
 // into it. It works on the picture alone: a light outside of it, or hidden, sends nothing. For shafts in a room see
 // volumetric.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 struct GodRays {
     float intensity = 0.5f;
@@ -20,18 +22,6 @@ struct GodRays {
     std::int32_t samples = 64;
     Rgb tint = {1.0f, 1.0f, 1.0f};
 };
-inline constexpr auto god_rays_rows = describe(
-    field<&GodRays::intensity>("How much of the streaks is added.", {0, 64}).as_amount(),
-    field<&GodRays::follows_light>("Takes the place of the frame's first light; without a light `position` counts."),
-    field<&GodRays::position>("Where the light is: (0, 0) is the top left of the picture, (1, 1) the bottom right.",
-                              {-4, 5}),
-    field<&GodRays::radius>("How far around the light the sky streams, in heights of the picture.", {0.01, 16}),
-    field<&GodRays::threshold>("Sky above this luminance streams; without depth, all that is brighter.", {0, 65504}),
-    field<&GodRays::ceiling>("Luminance above the threshold counts no further than this.", {0, 65504}),
-    field<&GodRays::density>("How much of the way to the light a streak gathers from.", {0, 1}),
-    field<&GodRays::decay>("What counts of the light at the end of the way, beside 1 at its beginning.", {0.001, 1}),
-    field<&GodRays::samples>("Steps on the way. Brightness does not depend on it, smoothness does.", {1, 256}),
-    field<&GodRays::tint>("Colour that the streaks are multiplied by.", {0, 64}));
 
 /// Where the light is in the picture, and how much of it is left there: 1 inside, 0 from half a picture outside on, and
 /// behind the camera.

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/grayscale.hpp>
 
 #include "grayscale/grayscale_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto grayscale_rows =
+    describe(field<&Grayscale::amount>("How much of the colour goes; at 0 the picture stays as it is.", {0, 1}));
+
+}  // namespace
 
 const EffectInfo& effect_info(const Grayscale&) {
     static const EffectInfo info{

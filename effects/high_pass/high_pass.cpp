@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/high_pass.hpp>
 
 #include "high_pass/high_pass_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto high_pass_rows = describe(
+    field<&HighPass::threshold>("Colours of at least this luminance stay; 0 keeps all light.", {0, 65504}),
+    field<&HighPass::knee>("How far below the threshold colours begin to fade in; 0 is a hard edge.", {0, 65504}));
+
+}  // namespace
 
 const EffectInfo& effect_info(const HighPass&) {
     static const EffectInfo info{

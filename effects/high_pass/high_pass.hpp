@@ -3,17 +3,16 @@
 // High pass: keeps what is bright and turns the rest black. It is the first step of a plain bloom, with a blur and an
 // additive blend behind it; the effect `bloom` brings its own, softer threshold.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 struct HighPass {
     float threshold = 1.0f;
     float knee = 0.0f;
 };
-inline constexpr auto high_pass_rows = describe(
-    field<&HighPass::threshold>("Colours of at least this luminance stay; 0 keeps all light.", {0, 65504}),
-    field<&HighPass::knee>("How far below the threshold colours begin to fade in; 0 is a hard edge.", {0, 65504}));
 
 [[nodiscard]] const EffectInfo& effect_info(const HighPass&);
 

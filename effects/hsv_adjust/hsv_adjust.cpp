@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/hsv_adjust.hpp>
 
 #include "hsv_adjust/hsv_adjust_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto hsv_adjust_rows =
+    describe(field<&HsvAdjust::hue>("Angle by which hues turn: 120 makes red green.", {-180, 180}, unit::degrees),
+             field<&HsvAdjust::saturation>("Factor of the saturation, which stays at most 1.", {0, 8}),
+             field<&HsvAdjust::value>("Factor of the value, the largest of the channels.", {0, 8}));
+
+}  // namespace
 
 const EffectInfo& effect_info(const HsvAdjust&) {
     static const EffectInfo info{

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/kawase_blur.hpp>
 #include <string>
 #include <utility>
@@ -10,6 +12,11 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto kawase_blur_rows = describe(
+    field<&KawaseBlur::mode>("Which of the two filters.").at_compile(),
+    field<&KawaseBlur::iterations>("Halvings of dual, passes of kawase.", {1, 8}).at_compile(),
+    field<&KawaseBlur::offset>("How far the taps lie apart, to what was published; 0 leaves kawase no width.", {0, 2}));
 
 constexpr std::size_t most_iterations = 8;
 

@@ -3,9 +3,11 @@
 // Kawase's blur, and the one that grew out of it: very wide blurs by a few bilinear taps a pass. The width goes in
 // steps, and the shape is only nearly round; for a blur of a given width take gaussian_blur.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 enum class KawaseBlurMode : std::uint32_t {
     Dual,    ///< down through halved pictures and up again
@@ -17,10 +19,6 @@ struct KawaseBlur {
     std::int32_t iterations = 3;
     float offset = 1.0f;
 };
-inline constexpr auto kawase_blur_rows = describe(
-    field<&KawaseBlur::mode>("Which of the two filters.").at_compile(),
-    field<&KawaseBlur::iterations>("Halvings of dual, passes of kawase.", {1, 8}).at_compile(),
-    field<&KawaseBlur::offset>("How far the taps lie apart, to what was published; 0 leaves kawase no width.", {0, 2}));
 
 [[nodiscard]] const EffectInfo& effect_info(const KawaseBlur&);
 

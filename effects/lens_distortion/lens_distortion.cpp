@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/lens_distortion.hpp>
 
 #include "lens_distortion/lens_distortion_reference.hpp"
@@ -10,6 +12,16 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto lens_distortion_rows = describe(
+    field<&LensDistortion::lens_distortion>(
+        "Coefficient of the squared distance from the centre: above 0 a barrel, below 0 a pincushion.", {-0.3, 1}),
+    field<&LensDistortion::quartic>("Coefficient of its fourth power: bends the corners alone.", {-0.2, 1}),
+    field<&LensDistortion::dispersion>(
+        "Added to the first coefficient for red and taken from it for blue: coloured fringes.", {-0.1, 0.1}),
+    field<&LensDistortion::fill>("Whether the picture is scaled to fill its frame, no more and no less."),
+    field<&LensDistortion::evaluation>("Where the bend is worked out.").at_compile(),
+    warp_grid_field<&LensDistortion::grid>());
 
 const LensDistortion& lens_of(const void* parameters) { return *static_cast<const LensDistortion*>(parameters); }
 

@@ -3,9 +3,13 @@
 // Lens distortion: bends the picture as a lens does, into a barrel or a pincushion, each colour by a little more or
 // less. It bends what was made; it does not see more of the scene than the camera did.
 
+#include <vulkan/vulkan.h>
+
 #include <darkroom/warp_grid.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 /// Where the bend is worked out: in every pixel, or in the vertices of a grid, between which it is interpolated.
 enum class LensDistortionEvaluation : std::uint32_t { Pixel, Vertex };
@@ -18,15 +22,6 @@ struct LensDistortion {
     LensDistortionEvaluation evaluation = LensDistortionEvaluation::Pixel;
     Vec2 grid = default_warp_grid;
 };
-inline constexpr auto lens_distortion_rows = describe(
-    field<&LensDistortion::lens_distortion>(
-        "Coefficient of the squared distance from the centre: above 0 a barrel, below 0 a pincushion.", {-0.3, 1}),
-    field<&LensDistortion::quartic>("Coefficient of its fourth power: bends the corners alone.", {-0.2, 1}),
-    field<&LensDistortion::dispersion>(
-        "Added to the first coefficient for red and taken from it for blue: coloured fringes.", {-0.1, 0.1}),
-    field<&LensDistortion::fill>("Whether the picture is scaled to fill its frame, no more and no less."),
-    field<&LensDistortion::evaluation>("Where the bend is worked out.").at_compile(),
-    warp_grid_field<&LensDistortion::grid>());
 
 /// r' = scale * r (1 + k r^2 + quartic r^4), with r = 1 in a corner: where green is read for the pixel at r. For red
 /// `dispersion` is added to k, for blue it is taken from it.

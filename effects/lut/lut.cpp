@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/lut.hpp>
 
 #include <algorithm>
@@ -11,6 +13,15 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto lut_rows = describe(
+    field<&Lut::lut>("The table that colours are looked up in.").as_amount(),
+    field<&Lut::fade_to>("Another table, for the same space, to fade to."),
+    field<&Lut::fade>("How far the picture has faded to the other table.", {0, 1}),
+    field<&Lut::strength>("How much of the result goes over the picture.", {0, 1}),
+    field<&Lut::space>("What the tables are given: sRGB code values, or scene-linear light by a curve."),
+    field<&Lut::result>("What the tables give: the same as they are given, or sRGB code values for a display."),
+    field<&Lut::interpolation>("How a 3D table is read between its entries."));
 
 using Texel = std::array<float, 4>;
 

@@ -4,9 +4,11 @@
 // table knows nothing of what its numbers mean: `space` says what it expects. For arithmetic that can be written down
 // (exposure, contrast) a table is the worse choice: it is cut off at its ends and approximate between its entries.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 /// What a table is given; see lut.md for curves and primaries.
 enum class LutSpace : std::uint32_t { Display, SceneLinear, Acescct, Logc3, Slog3 };
@@ -23,14 +25,6 @@ struct Lut {
     LutResult result = LutResult::Same;
     LutInterpolation interpolation = LutInterpolation::Tetrahedral;
 };
-inline constexpr auto lut_rows = describe(
-    field<&Lut::lut>("The table that colours are looked up in.").as_amount(),
-    field<&Lut::fade_to>("Another table, for the same space, to fade to."),
-    field<&Lut::fade>("How far the picture has faded to the other table.", {0, 1}),
-    field<&Lut::strength>("How much of the result goes over the picture.", {0, 1}),
-    field<&Lut::space>("What the tables are given: sRGB code values, or scene-linear light by a curve."),
-    field<&Lut::result>("What the tables give: the same as they are given, or sRGB code values for a display."),
-    field<&Lut::interpolation>("How a 3D table is read between its entries."));
 
 [[nodiscard]] const EffectInfo& effect_info(const Lut&);
 

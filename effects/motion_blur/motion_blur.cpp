@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/motion_blur.hpp>
 #include <string>
 
@@ -10,6 +12,17 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto motion_blur_rows =
+    describe(field<&MotionBlur::shutter_angle>(
+                 "How long the shutter is open: 360 is the whole time from frame to frame.", {0, 720}, unit::degrees)
+                 .as_amount(),
+             field<&MotionBlur::max_radius>(
+                 "Farthest that a point smears to either side, in hundredths of the picture's height.", {0.1, 3}),
+             field<&MotionBlur::samples>(
+                 "Points along the way that are read for a pixel; an odd number is taken as one less.", {2, 64})
+                 .as_loop_count(),
+             field<&MotionBlur::resolution>("Size of the picture that is smeared, in each direction.").at_compile());
 
 const MotionBlur& blur_of(const void* parameters) { return *static_cast<const MotionBlur*>(parameters); }
 

@@ -3,9 +3,13 @@
 // Motion blur: what moves while the shutter is open smears along its way, by the velocity of every pixel. It knows one
 // frame: what was hidden behind a moving thing is guessed from beside it, and ways are straight.
 
-#include <darkroom/effect.hpp>
+#include <vulkan/vulkan.h>
+
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 enum class MotionBlurResolution : std::uint32_t { Half, Full };
 
@@ -15,16 +19,6 @@ struct MotionBlur {
     std::int32_t samples = 12;
     MotionBlurResolution resolution = MotionBlurResolution::Half;
 };
-inline constexpr auto motion_blur_rows =
-    describe(field<&MotionBlur::shutter_angle>(
-                 "How long the shutter is open: 360 is the whole time from frame to frame.", {0, 720}, unit::degrees)
-                 .as_amount(),
-             field<&MotionBlur::max_radius>(
-                 "Farthest that a point smears to either side, in hundredths of the picture's height.", {0.1, 3}),
-             field<&MotionBlur::samples>(
-                 "Points along the way that are read for a pixel; an odd number is taken as one less.", {2, 64})
-                 .as_loop_count(),
-             field<&MotionBlur::resolution>("Size of the picture that is smeared, in each direction.").at_compile());
 
 /// Side of the square tiles whose fastest motion is known, in pixels, for pictures of at most this extent: a multiple
 /// of 8, and at least the farthest that a point smears.

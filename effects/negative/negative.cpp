@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/negative.hpp>
 
 #include "negative/negative_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto negative_rows =
+    describe(field<&Negative::amount>("Share of the negative; at 0 the picture stays as it is.", {0, 1}));
+
+}  // namespace
 
 const EffectInfo& effect_info(const Negative&) {
     static const EffectInfo info{

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 #include <cstring>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/perturb.hpp>
 #include <numbers>
 
@@ -9,6 +11,24 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto perturb_rows = describe(
+    field<&Perturb::amount>("Scales all displacements.", {0, 8}).as_amount(),
+    field<&Perturb::strength>("Amplitude of the sines in x and y, in pixels; then their waves across the picture.",
+                              {-256, 256}),
+    field<&Perturb::time_distortion>("Phase of the sines in x and y, in turns: 0 and 1 are the same.", {0, 1}),
+    field<&Perturb::speed>("Turns of the phases, and of the distortion image, in a second.", {-16, 16}),
+    field<&Perturb::ring_strength>("Amplitude of the ring at its start; below 0 it pulls.", {-256, 256}, unit::pixels),
+    field<&Perturb::ring_center>("Where the ring starts, in uv.", {-1, 2}),
+    field<&Perturb::ring_width>("Half-width of the ring, in heights of the picture.", {0.001, 2}),
+    field<&Perturb::ring_speed>("Heights of the picture that the ring runs in a second.", {0, 16}),
+    field<&Perturb::ring_period>("Time in which the ring dies down, and after which it starts again.", {0.01, 3600},
+                                 unit::seconds),
+    field<&Perturb::distortion>("An image whose red and green displace the picture: 0.5 by nothing. It repeats.")
+        .as_picture(),
+    field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels),
+    field<&Perturb::evaluation>("Where the displacement is worked out.").at_compile(),
+    warp_grid_field<&Perturb::grid>());
 
 constexpr std::uint32_t own_vectors = 2, most_cpu_vertices = 1000, sine_entries = 256;
 

@@ -7,6 +7,8 @@
 
 namespace darkroom {
 
+struct EffectInfo;
+
 /// Where the displacement is worked out: in every pixel; there with a table in place of sin(); in the vertices of a
 /// grid, between which it is interpolated; or in those by the CPU.
 enum class PerturbEvaluation : std::uint32_t { Pixel, SineTable, Vertex, Cpu };
@@ -26,23 +28,6 @@ struct Perturb {
     PerturbEvaluation evaluation = PerturbEvaluation::Pixel;
     Vec2 grid = default_warp_grid;
 };
-inline constexpr auto perturb_rows = describe(
-    field<&Perturb::amount>("Scales all displacements.", {0, 8}).as_amount(),
-    field<&Perturb::strength>("Amplitude of the sines in x and y, in pixels; then their waves across the picture.",
-                              {-256, 256}),
-    field<&Perturb::time_distortion>("Phase of the sines in x and y, in turns: 0 and 1 are the same.", {0, 1}),
-    field<&Perturb::speed>("Turns of the phases, and of the distortion image, in a second.", {-16, 16}),
-    field<&Perturb::ring_strength>("Amplitude of the ring at its start; below 0 it pulls.", {-256, 256}, unit::pixels),
-    field<&Perturb::ring_center>("Where the ring starts, in uv.", {-1, 2}),
-    field<&Perturb::ring_width>("Half-width of the ring, in heights of the picture.", {0.001, 2}),
-    field<&Perturb::ring_speed>("Heights of the picture that the ring runs in a second.", {0, 16}),
-    field<&Perturb::ring_period>("Time in which the ring dies down, and after which it starts again.", {0.01, 3600},
-                                 unit::seconds),
-    field<&Perturb::distortion>("An image whose red and green displace the picture: 0.5 by nothing. It repeats.")
-        .as_picture(),
-    field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels),
-    field<&Perturb::evaluation>("Where the displacement is worked out.").at_compile(),
-    warp_grid_field<&Perturb::grid>());
 
 /// What the CPU adds to the parameters in a frame.
 struct PerturbFrame {

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/radial_blur.hpp>
 
 #include "radial_blur/radial_blur_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto radial_blur_rows = describe(
+    field<&RadialBlur::radial_blur>("Length and strength of the streaks; 0.001 and less is none.", {0, 4}).as_amount());
+
+}  // namespace
 
 const EffectInfo& effect_info(const RadialBlur&) {
     static const EffectInfo info{

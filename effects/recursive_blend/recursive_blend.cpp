@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/recursive_blend.hpp>
 
 #include "recursive_blend/recursive_blend_reference.hpp"
@@ -8,6 +10,11 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto recursive_blend_rows =
+    describe(field<&RecursiveBlend::weight>("What is left of the past after 1/60 s.", {0, 0.99}),
+             field<&RecursiveBlend::precision>("How the past is kept: 32-bit floats, or 8 bits that leave a ghost.")
+                 .at_compile());
 
 const RecursiveBlend& blend_of(const void* parameters) { return *static_cast<const RecursiveBlend*>(parameters); }
 

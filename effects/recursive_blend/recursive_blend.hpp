@@ -4,9 +4,11 @@
 // for ever. It costs one picture of memory however long the trail is. It knows no motion: for streaks along it there is
 // motion_blur, for a trail with an end frame_blend.
 
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 enum class RecursiveBlendPrecision : std::uint32_t {
     Float,     ///< 32 bits: trails fade to nothing
@@ -17,10 +19,6 @@ struct RecursiveBlend {
     float weight = 0.8f;
     RecursiveBlendPrecision precision = RecursiveBlendPrecision::Float;
 };
-inline constexpr auto recursive_blend_rows =
-    describe(field<&RecursiveBlend::weight>("What is left of the past after 1/60 s.", {0, 0.99}),
-             field<&RecursiveBlend::precision>("How the past is kept: 32-bit floats, or 8 bits that leave a ghost.")
-                 .at_compile());
 
 [[nodiscard]] const EffectInfo& effect_info(const RecursiveBlend&);
 

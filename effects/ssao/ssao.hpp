@@ -4,10 +4,12 @@
 // what the depth buffer holds and no more: what lies off the screen or behind something does not occlude.
 
 #include <array>
-#include <darkroom/effect.hpp>
+#include <darkroom/param.hpp>
 #include <span>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 enum class SsaoMethod : std::uint32_t {
     Hemisphere,   ///< points in a half ball over the surface, each behind the depth buffer or not
@@ -31,20 +33,6 @@ struct Ssao {
     float fade_start = 200.0f;
     float fade_end = 400.0f;
 };
-inline constexpr auto ssao_rows = describe(
-    field<&Ssao::intensity>("How much of the occlusion counts; 1 is all of it.", {0, 8}).as_amount(),
-    field<&Ssao::radius>("How far away surfaces occlude.", {0.001, 1000}, unit::metres),
-    field<&Ssao::bias>("What lies closer above a surface does not occlude it: hides the steps of the depth buffer.",
-                       {0, 100}, unit::metres),
-    field<&Ssao::thickness>(
-        "How far surfaces reach behind what is seen of them; 0 is as deep as it goes. Of ground_truth.", {0, 1000},
-        unit::metres),
-    field<&Ssao::samples>("Reads of the depth buffer for a pixel.", {1, 64}).as_loop_count(),
-    field<&Ssao::method>("How occlusion is estimated."),
-    field<&Ssao::resolution>("Of the occlusion; half is brought back to full along depth edges."),
-    field<&Ssao::merge>("How the picture takes the occlusion."),
-    field<&Ssao::fade_start>("Distance at which occlusion begins to fade.", {0, 1e9}, unit::metres),
-    field<&Ssao::fade_end>("Distance at which it is gone; must lie beyond `fade_start`.", {0.001, 1e9}, unit::metres));
 
 /// Points of the unit half ball around +z, denser toward its middle: point i of n lies on a random direction at a
 /// random share of 0.1 + 0.9 (i / n)^2 (John Chapman, "SSAO Tutorial", 2013). The same for every run.

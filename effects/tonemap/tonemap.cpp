@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/tonemap.hpp>
 
 #include "tonemap/tonemap_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+// The member cannot be called `operator`, which is a keyword of C++; files may still say it.
+constexpr auto tonemap_rows =
+    describe(field<&Tonemap::curve>("The tone mapping operator.").formerly("operator"),
+             field<&Tonemap::white>("Luminance that reinhard_extended maps to white; the other operators ignore it.",
+                                    {0.1, 1024, Scale::Log}));
+
+}  // namespace
 
 const EffectInfo& effect_info(const Tonemap&) {
     static const EffectInfo info{

@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/ui_chroma.hpp>
 
 #include "ui_chroma/ui_chroma_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto ui_chroma_rows = describe(
+    field<&UiChroma::strength>("How much the barrels of red and blue differ from green's, for 1080 lines: less on "
+                               "taller pictures.",
+                               {0, 1})
+        .as_amount()
+        .also_named("r_ui_chromatic"));
+
+}  // namespace
 
 const EffectInfo& effect_info(const UiChroma&) {
     static const EffectInfo info{

@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/ui_composite.hpp>
 
 #include "ui_composite/ui_composite_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto ui_composite_rows =
+    describe(field<&UiComposite::ui_opacity>("Of the interface; it never fades below 0.1.", {0, 1})
+                 .also_named("scr_sbaralpha", true),
+             field<&UiComposite::additive>("From laid over (0) to added as light (1), which is dimmed to 0.7.", {0, 1})
+                 .also_named("r_ui_additive"));
+
+}  // namespace
 
 const EffectInfo& effect_info(const UiComposite&) {
     static const EffectInfo info{

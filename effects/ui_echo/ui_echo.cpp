@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/ui_echo.hpp>
 
 #include "ui_echo/ui_echo_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto ui_echo_rows =
+    describe(field<&UiEcho::strength>("How bright the ghost is.", {0, 4}).as_amount().also_named("r_ui_echo"),
+             field<&UiEcho::size>("Sides of the ghost, relative to the interface's.", {0.05, 20, Scale::Log})
+                 .also_named("r_ui_echo_scale"));
+
+}  // namespace
 
 const EffectInfo& effect_info(const UiEcho&) {
     static const EffectInfo info{

@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/ui_warp.hpp>
 
 #include "ui_warp/ui_warp_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto ui_warp_rows =
+    describe(field<&UiWarp::strength>("Barrel distortion: below 0 the corners bend outward, above 0 inward.", {-4, 4})
+                 .as_amount()
+                 .also_named("r_ui_warp"),
+             field<&UiWarp::offset>("Where the layer is read, moved in uv: the interface goes the other way.", {-1, 1})
+                 .also_named("r_ui_offset"));
+
+}  // namespace
 
 const EffectInfo& effect_info(const UiWarp&) {
     static const EffectInfo info{

@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/vignette.hpp>
 
 #include "vignette/vignette_reference.hpp"
 
 namespace darkroom {
+
+namespace {
+
+constexpr auto vignette_rows = describe(
+    field<&Vignette::intensity>("How much the corners darken: the corner's factor is 1 - intensity.", {0, 1})
+        .as_amount(),
+    field<&Vignette::smoothness>("Exponent of the falloff: larger keeps more of the middle untouched.", {0.1, 16}));
+
+}  // namespace
 
 const EffectInfo& effect_info(const Vignette&) {
     static const EffectInfo info{

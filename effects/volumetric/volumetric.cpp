@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/effects/volumetric.hpp>
 #include <string>
 
@@ -13,6 +15,13 @@
 namespace darkroom {
 
 namespace {
+
+constexpr auto volumetric_rows = describe(
+    field<&Volumetric::density>("How much light the haze scatters toward the camera, in hundredths a metre.", {0, 1000})
+        .as_amount(),
+    field<&Volumetric::samples>("Steps of the march. Brightness does not depend on it, smoothness does.", {1, 256}),
+    field<&Volumetric::max_distance>("How far the march goes; the sky is marched as far.", {0.01, 1e6}, unit::metres),
+    field<&Volumetric::decay>("What is left of the light after each thirty-second of the march.", {0.01, 1}));
 
 const Volumetric& volumetric_of(const void* parameters) { return *static_cast<const Volumetric*>(parameters); }
 
@@ -56,13 +65,13 @@ Ramp world_ramp(const PassContext& context) {
     return out;
 }
 
-/// The world's ramp as u, v and depth in a cascade; 0.002 keeps what is lit off its own shadow.
+/// The world's ramp as u, v and depth in a cascade; the bias keeps what is lit off its own shadow.
 void write_cascade(const Matrix& m, const Ramp& world, std::span<PassVector> out) {
     const auto row = [&](std::size_t index, const Vector3& v) {
         return double{m[index]} * v[0] + double{m[4 + index]} * v[1] + double{m[8 + index]} * v[2];
     };
     for (std::size_t index = 0; index < 3; ++index) {
-        const double scale = index == 2 ? 1 : 0.5, offset = index == 2 ? -0.002 : 0.5;
+        const double scale = index == 2 ? 1 : 0.5, offset = index == 2 ? -volumetric_bias : 0.5;
         out[0][index] = static_cast<float>((row(index, world.start) + double{m[12 + index]}) * scale + offset);
         out[1][index] = static_cast<float>(row(index, world.slope) * scale);
         out[2][index] = static_cast<float>(row(index, world.per_x) * scale);

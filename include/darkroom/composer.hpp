@@ -25,7 +25,6 @@
 #include <cstdint>
 #include <darkroom/blend_mode.hpp>
 #include <darkroom/device.hpp>
-#include <darkroom/effect.hpp>
 #include <darkroom/frame.hpp>
 #include <darkroom/kernel_statistics.hpp>
 #include <darkroom/modulation.hpp>
@@ -41,6 +40,8 @@
 #include <vector>
 
 namespace darkroom {
+
+struct EffectInfo;
 
 inline constexpr std::uint32_t previous_pre_roll = 60;
 

@@ -52,7 +52,6 @@
 #include <cstddef>
 #include <darkroom/effect.hpp>
 #include <darkroom/result.hpp>
-#include <filesystem>
 #include <memory>
 #include <string_view>
 
@@ -65,7 +64,7 @@ class CustomEffect {
     static constexpr std::size_t most_bytes = 65536;  ///< of a file
 
     /// Errors read "name:line: ...".
-    [[nodiscard]] static Result<CustomEffect> load(const std::filesystem::path& file);
+    [[nodiscard]] static Result<CustomEffect> load(const std::string& file);
     /// `shown_name` stands for the file in errors. GLSL itself is compiled with the stack.
     [[nodiscard]] static Result<CustomEffect> parse(std::string_view text, std::string_view shown_name);
 

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <darkroom/log.hpp>
 #include <darkroom/result.hpp>
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -48,7 +47,7 @@ struct DeviceDesc {
     LogSink log;            ///< log.hpp says from which threads it is called
     /// SPIR-V (at most 128 MiB, least recently used entries go first) and pipeline caches (at most 64 MiB each), which
     /// several processes may share. Empty: the user's cache folder.
-    std::filesystem::path cache_folder;
+    std::string cache_folder;
     /// False: no file is read or written. DARKROOM_SHADER_CACHE=off does the same for all devices.
     bool caches_on_disk = true;
     /// Enabled beside the library's own, for who shows pictures in a window: what the window system asks for, and
@@ -84,9 +83,9 @@ struct AdoptDesc {
     /// VkDeviceCreateInfo::ppEnabledExtensionNames. Read on Vulkan 1.2 only.
     std::span<const char* const> enabled_device_extensions;
     PFN_vkGetInstanceProcAddr get_proc = nullptr;
-    LogSink log;                         ///< as in DeviceDesc
-    std::filesystem::path cache_folder;  ///< as in DeviceDesc
-    bool caches_on_disk = true;          ///< as in DeviceDesc
+    LogSink log;                 ///< as in DeviceDesc
+    std::string cache_folder;    ///< as in DeviceDesc
+    bool caches_on_disk = true;  ///< as in DeviceDesc
     /// The host's, which is then used instead of one of the library's: never saved, never destroyed, and not created
     /// with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT, since several threads build pipelines.
     VkPipelineCache pipeline_cache = VK_NULL_HANDLE;

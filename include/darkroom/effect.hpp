@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What an effect tells the Composer about itself, and how it declares its passes. An effect is a folder: a struct of
-// parameters with its rows, GLSL, passes, a CPU reference, tests and a page. This header is all it needs.
+// parameters, its rows (describe.hpp), GLSL, passes, a CPU reference, tests and a page.
 //
 // effects/<name>/<name>.glsl, where the effect has a pointwise end, defines
 //     vec4 <name>(vec4 color, Pixel pixel, <Struct> parameters)
@@ -43,20 +43,6 @@ enum class Touch : std::uint8_t {
     History,        ///< reads an earlier frame: passes of its own
 };
 
-/// What the numbers of the picture are. display_linear: tone-mapped, [0,1], linear light.
-enum class Domain : std::uint8_t { SceneLinear, DisplayLinear, Encoded };
-struct Domains {
-    std::uint8_t bits = 0;
-    [[nodiscard]] constexpr bool contains(Domain domain) const {
-        return (bits >> static_cast<unsigned>(domain) & 1) != 0;
-    }
-    [[nodiscard]] static constexpr Domains all() { return {7}; }
-    [[nodiscard]] static constexpr Domains only(Domain domain) {
-        return {static_cast<std::uint8_t>(1u << static_cast<unsigned>(domain))};
-    }
-    friend constexpr Domains operator|(Domains a, Domains b) { return {static_cast<std::uint8_t>(a.bits | b.bits)}; }
-};
-
 /// Inputs beyond the colour without which an effect is left out of the plan.
 struct Needs {
     bool depth = false;
@@ -73,12 +59,6 @@ struct FlatPlace {
     std::int32_t scene_linear = -1;
     bool starts_on = false;
     bool is_of_ui = false;  ///< its keys stand in the table [ui]
-};
-
-/// Extent of an effect's output relative to its input: floored, at least 1.
-struct OutputScale {
-    std::uint32_t numerator = 1;
-    std::uint32_t denominator = 1;
 };
 
 /// Values that passes may depend on while recording.

@@ -45,6 +45,26 @@ struct ImageUse {
     friend bool operator==(const ImageUse&, const ImageUse&) = default;
 };
 
+/// What the numbers of the picture are. display_linear: tone-mapped, [0,1], linear light.
+enum class Domain : std::uint8_t { SceneLinear, DisplayLinear, Encoded };
+struct Domains {
+    std::uint8_t bits = 0;
+    [[nodiscard]] constexpr bool contains(Domain domain) const {
+        return (bits >> static_cast<unsigned>(domain) & 1) != 0;
+    }
+    [[nodiscard]] static constexpr Domains all() { return {7}; }
+    [[nodiscard]] static constexpr Domains only(Domain domain) {
+        return {static_cast<std::uint8_t>(1u << static_cast<unsigned>(domain))};
+    }
+    friend constexpr Domains operator|(Domains a, Domains b) { return {static_cast<std::uint8_t>(a.bits | b.bits)}; }
+};
+
+/// Extent of an entry's output relative to its input: floored, at least 1.
+struct OutputScale {
+    std::uint32_t numerator = 1;
+    std::uint32_t denominator = 1;
+};
+
 /// What the numbers of a depth image mean.
 enum class DepthKind : std::uint32_t {
     Standard,  ///< device depth, 0 near .. 1 far

@@ -41,14 +41,8 @@ struct EntryState {
     float scale = 1.0f;
     EntryFormat format = EntryFormat::Any;
 };
-inline constexpr auto entry_rows =
-    describe(field<&EntryState::enabled>("Is the effect applied."),
-             field<&EntryState::opacity>("How much of the result goes over the input.", {0, 1}),
-             field<&EntryState::blend>("How the result goes over the input."),
-             field<&EntryState::scale>("Sides of its output, relative to its input's: the nearest fraction of two "
-                                       "numbers up to 64.",
-                                       {0.015625, 4}),
-             field<&EntryState::format>("Of the image that its output becomes."));
+/// The rows of that struct.
+extern const ParamTable entry_rows;
 
 /// A file that a parameter of kind Resource, or a wire, names: a colour table or a picture.
 struct LookResource {
@@ -81,17 +75,11 @@ struct PulseState {
     Envelope envelope = Envelope::Linear;
     float duration = 0.3f;
 };
-inline constexpr auto pulse_rows =
-    describe(field<&PulseState::envelope>("How it dies down."),
-             field<&PulseState::duration>("How long it lasts.", {0.001, 3600}, unit::seconds));
 struct LayerState {
     float weight = 0.0f;
 };
-inline constexpr auto layer_rows = describe(field<&LayerState::weight>("How much of it goes over the base.", {0, 1}));
-inline constexpr auto distance_rows =
-    describe(field<&LayerDistance::near>("Where it has its whole weight, and nearer.", {0, 1e6}, unit::metres),
-             field<&LayerDistance::far>("Where it has none, and farther.", {0, 1e6}, unit::metres),
-             field<&LayerDistance::point>("Of the world, that distances are from.", {-1e6, 1e6}, unit::metres));
+/// The rows of these two, and of LayerDistance.
+extern const ParamTable pulse_rows, layer_rows, distance_rows;
 
 /// See PulseDesc.
 struct LookPulse {

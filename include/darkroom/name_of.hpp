@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Names that the compiler knows: of members, types and enumerators, as text in constant evaluation. What param.hpp
+// Names that the compiler knows: of members, types and enumerators, as text in constant evaluation. What describe.hpp
 // derives the names of parameters and of their choices from; nothing else needs it.
 
 #include <array>
@@ -10,21 +10,37 @@
 
 namespace darkroom::detail {
 
-// The compiler knows how a template argument is spelled; asking it keeps a name from being written twice. GCC and
-// Clang; the static_asserts fail first if a compiler changes its wording.
-constexpr std::string_view last_identifier(std::string_view pretty, std::string_view key) {
-    pretty.remove_prefix(pretty.find(key) + key.size());
-    pretty = pretty.substr(0, pretty.find_first_of(";]"));
-    return pretty.substr(pretty.rfind(':') + 1);
+// The compiler knows how a template argument is spelled; asking it keeps a name from being written twice. The
+// static_asserts of describe.hpp fail first if a compiler changes its wording.
+constexpr std::string_view last_identifier(std::string_view argument) {
+    return argument.substr(argument.find_last_of(": ") + 1);
 }
+/// Of what a compiler calls name_of<A>: "... [with auto V = &darkroom::Rgb::g; ...]" (GCC), "... [V =
+/// &darkroom::Rgb::g]" (Clang), "... darkroom::detail::name_of<&darkroom::Rgb::g>(void)" (MSVC).
+constexpr std::string_view template_argument(std::string_view pretty, [[maybe_unused]] std::string_view key) {
+#ifdef _MSC_VER
+    constexpr std::string_view function = "name_of<";
+    pretty.remove_prefix(pretty.rfind(function) + function.size());
+    return pretty.substr(0, pretty.rfind(">(void)"));
+#else
+    pretty.remove_prefix(pretty.find(key) + key.size());
+    return pretty.substr(0, pretty.find_first_of(";]"));
+#endif
+}
+#ifdef _MSC_VER
+#define DARKROOM_FUNCTION __FUNCSIG__
+#else
+#define DARKROOM_FUNCTION __PRETTY_FUNCTION__
+#endif
 template <auto V>
 constexpr std::string_view name_of() {
-    return last_identifier(__PRETTY_FUNCTION__, "V = ");
+    return last_identifier(template_argument(DARKROOM_FUNCTION, "V = "));
 }
 template <class T>
 constexpr std::string_view name_of() {
-    return last_identifier(__PRETTY_FUNCTION__, "T = ");
+    return last_identifier(template_argument(DARKROOM_FUNCTION, "T = "));
 }
+#undef DARKROOM_FUNCTION
 
 /// An enumerator's name as users write it: AcesNarkowicz -> aces_narkowicz.
 struct SnakeName {
@@ -48,7 +64,7 @@ struct Enumerators {
     static constexpr std::size_t count = [] {
         std::size_t n = 0;
         [&]<std::size_t... I>(std::index_sequence<I...>) {
-            // A value without an enumerator prints as "(E)3".
+            // A value without an enumerator prints as "(E)3", or "(enum E)0x3".
             ((n += name_of<static_cast<E>(I)>().find(')') == std::string_view::npos ? 1u : 0u), ...);
         }
         (std::make_index_sequence<limit>{});

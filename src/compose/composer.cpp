@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include <darkroom/describe.hpp>
 #include "compose/composer_state.hpp"
 #include "core/text/param_text.hpp"
 

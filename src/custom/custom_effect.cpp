@@ -34,14 +34,15 @@ Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view
     return CustomEffect(std::move(state));
 }
 
-Result<CustomEffect> CustomEffect::load(const std::filesystem::path& file) {
+Result<CustomEffect> CustomEffect::load(const std::string& file) {
+    const std::filesystem::path path = file;
     // A pipe might never end.
     std::error_code error;
-    if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
-        return user_error(fmt::format("{}: is no regular file", printable(file.string())));
-    auto bytes = read_file(file, {.max_size = most_bytes});
+    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+        return user_error(fmt::format("{}: is no regular file", printable(file)));
+    auto bytes = read_file(path, {.max_size = most_bytes});
     if (!bytes) return failure(std::move(bytes));
-    return parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file.string());
+    return parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
 }
 
 }  // namespace darkroom

@@ -63,10 +63,10 @@ class CustomLook : public testing::Test {
     fs::path folder_;
 };
 
-const std::string entry = "[[stack]]\neffect = \"tint.glsl\"\n";
+const std::string tint_entry = "[[stack]]\neffect = \"tint.glsl\"\n";
 
 TEST_F(CustomLook, NamesAFileBesideIt) {
-    Look look = look_of(entry + "amount = 0.25\n" + entry + "mode = \"cold\"\nname = \"second_one\"\n");
+    Look look = look_of(tint_entry + "amount = 0.25\n" + tint_entry + "mode = \"cold\"\nname = \"second_one\"\n");
     ASSERT_EQ(look.entries.size(), 2u);
     EXPECT_EQ(entry_names(look), (std::vector<std::string>{"tint", "second_one"}));
     EXPECT_EQ(look.entries[0].effect, look.entries[1].effect) << "a file is one effect";
@@ -82,7 +82,7 @@ TEST_F(CustomLook, NamesAFileBesideIt) {
 TEST_F(CustomLook, SurvivesWriting) {
     write("a \"b\"/tint.glsl", tint);
     for (const std::string& text :
-         {entry + "amount = 0.25\nopacity = 0.5\n", "[[stack]]\neffect = 'a \"b\"/tint.glsl'\n" + entry}) {
+         {tint_entry + "amount = 0.25\nopacity = 0.5\n", "[[stack]]\neffect = 'a \"b\"/tint.glsl'\n" + tint_entry}) {
         const Look look = look_of(text);
         const std::string written = write_look(look);
         const Look again = look_of(written);
@@ -96,7 +96,7 @@ TEST_F(CustomLook, SurvivesWriting) {
 }
 
 TEST_F(CustomLook, IsRefusedUnlessTheHostAllowsIt) {
-    const Result<Look> look = read_look(write("a.toml", entry));
+    const Result<Look> look = read_look(write("a.toml", tint_entry));
     ASSERT_FALSE(look);
     EXPECT_TRUE(look.error().text.ends_with(
         "a.toml:2:10: effect = \"tint.glsl\": the effect of a file is code, which is not allowed for this look"))
@@ -111,11 +111,11 @@ TEST_F(CustomLook, ErrorsAreThoseOfOtherEffects) {
         error_of("[[stack]]\neffect = \"broken.glsl\"\n"),
         "a.toml:2:10: effect = \"broken.glsl\": broken.glsl:2: @needs money: allowed is depth, normals, velocity, "
         "shadows, ui, second");
-    EXPECT_EQ(error_of(entry + "amont = 1\n"),
+    EXPECT_EQ(error_of(tint_entry + "amont = 1\n"),
               "a.toml:3:1: unknown key 'amont' = 1, did you mean 'amount', which takes "
               "[0, 1]?");
-    EXPECT_EQ(error_of(entry + "amount = 2\n"), "a.toml:3:10: amount = 2: allowed is [0, 1]");
-    EXPECT_EQ(error_of(entry + "mode = \"hot\"\n").find("a.toml:3:8: mode = \"hot\""), 0u);
+    EXPECT_EQ(error_of(tint_entry + "amount = 2\n"), "a.toml:3:10: amount = 2: allowed is [0, 1]");
+    EXPECT_EQ(error_of(tint_entry + "mode = \"hot\"\n").find("a.toml:3:8: mode = \"hot\""), 0u);
     write("folder.glsl/x", "");
     EXPECT_EQ(error_of("[[stack]]\neffect = \"folder.glsl\"\n"),
               "a.toml:2:10: effect = \"folder.glsl\": folder.glsl: is no regular file");
@@ -123,11 +123,11 @@ TEST_F(CustomLook, ErrorsAreThoseOfOtherEffects) {
 
 TEST_F(CustomLook, ANameIsThatOfOneEffect) {
     write("copy.glsl", tint);
-    EXPECT_EQ(look_of(entry + "[[stack]]\neffect = \"copy.glsl\"\n").entries[1].effect_file, "copy.glsl");
+    EXPECT_EQ(look_of(tint_entry + "[[stack]]\neffect = \"copy.glsl\"\n").entries[1].effect_file, "copy.glsl");
     std::string other(tint);
     other.replace(other.find("0.5"), 3, "0.6");
     write("other.glsl", other);
-    EXPECT_EQ(error_of(entry + "[[stack]]\neffect = \"other.glsl\"\n"),
+    EXPECT_EQ(error_of(tint_entry + "[[stack]]\neffect = \"other.glsl\"\n"),
               "a.toml:4:10: effect = \"other.glsl\": its effect 'tint' has the name of another, that of tint.glsl");
 }
 
@@ -145,7 +145,7 @@ TEST_F(CustomLook, KeysOfAnEntryAreNoParameters) {
 }
 
 TEST_F(CustomLook, OverridesReachItsParameters) {
-    Look look = look_of(entry + entry);
+    Look look = look_of(tint_entry + tint_entry);
     ASSERT_TRUE(override_look(
         look, std::array{LookOverride{"tint_amount", "0.75", ""}, LookOverride{"tint#2.mode", "cold", ""}}));
     EXPECT_EQ(format(*look.entries[0].effect->parameters.find("amount"), look.entries[0].words), "0.75");

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <darkroom/describe.hpp>
 #include <darkroom/look.hpp>
 #include <functional>
 #include <string>

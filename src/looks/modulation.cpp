@@ -59,17 +59,17 @@ void write_modulation(std::string& out, const Look& look) {
     for (const LookPulse& pulse : look.pulses) {
         out += fmt::format("\n[[pulse]]\nevent = {}\nparameter = {}\namount = {}\n", toml_string(pulse.event),
                            toml_string(fmt::format("{}.{}", pulse.entry, pulse.parameter)), amount_text(look, pulse));
-        write_rows(out, pulse_rows.table(), words_of(pulse.state), "\n");
+        write_rows(out, pulse_rows, words_of(pulse.state), "\n");
         out += '\n';
     }
     for (const LookLayer& layer : look.layers) {
         out += fmt::format("\n[[layer]]\nname = {}\n", toml_string(layer.name));
         if (!layer.file.empty()) out += fmt::format("look = {}\n", toml_string(layer.file));
-        write_rows(out, layer_rows.table(), words_of(layer.state), "\n");
+        write_rows(out, layer_rows, words_of(layer.state), "\n");
         out += '\n';
         if (layer.distance) {
             out += "distance = { ";
-            write_rows(out, distance_rows.table(), words_of(*layer.distance), ", ");
+            write_rows(out, distance_rows, words_of(*layer.distance), ", ");
             out += " }\n";
         }
         if (!layer.file.empty()) continue;

@@ -5,6 +5,7 @@
 
 #include <darkroom/composer.hpp>
 #include <darkroom/console.hpp>
+#include <darkroom/describe.hpp>
 #include <string>
 #include <vector>
 

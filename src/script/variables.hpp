@@ -4,6 +4,7 @@
 // stored here; the Composer has the values.
 
 #include <darkroom/composer.hpp>
+#include <darkroom/effect.hpp>
 #include <optional>
 #include <string>
 #include <string_view>

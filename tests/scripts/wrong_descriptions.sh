@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 
 # compiles FLAG ROWS
 compiles() {
-    printf '%s\n' '#include <darkroom/param.hpp>' 'using namespace darkroom;' \
+    printf '%s\n' '#include <darkroom/describe.hpp>' 'using namespace darkroom;' \
         'struct Wrong { float amount = 0.5f; std::int32_t steps = 4; };' \
         "constexpr auto rows = describe($2);" >"$work/wrong.cpp"
     "$compiler" -std=c++20 "$1" -fsyntax-only -I "$tree/include" "$work/wrong.cpp" >"$work/log" 2>&1

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <darkroom/describe.hpp>
 #include "compose/test_stacks/host.hpp"
 
 namespace darkroom {

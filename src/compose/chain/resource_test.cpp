@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <darkroom/describe.hpp>
 #include "compose/test_stacks/host.hpp"
 #include "compose/test_stacks/support.hpp"
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <darkroom/custom_effect.hpp>
+#include <darkroom/describe.hpp>
 #include <thread>
 
 #include "compose/test_stacks/random_stack.hpp"

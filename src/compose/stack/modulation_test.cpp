@@ -3,6 +3,7 @@
 
 #include <bit>
 
+#include <darkroom/describe.hpp>
 #include "compose/test_stacks/host.hpp"
 #include "develop/reference_chain.hpp"
 

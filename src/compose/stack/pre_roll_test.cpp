@@ -4,6 +4,7 @@
 #include <bit>
 #include <limits>
 
+#include <darkroom/describe.hpp>
 #include "compose/test_stacks/host.hpp"
 #include "plan/program.hpp"
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <darkroom/describe.hpp>
 #include <darkroom/effect.hpp>
 
 namespace darkroom::test {

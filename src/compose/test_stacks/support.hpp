@@ -5,6 +5,7 @@
 
 #include <array>
 #include <darkroom/composer.hpp>
+#include <darkroom/effect.hpp>
 #include <darkroom/reference.hpp>
 #include <functional>
 #include <span>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/text/param_text.hpp"
+#include <darkroom/describe.hpp>
 
 #include <gtest/gtest.h>
 

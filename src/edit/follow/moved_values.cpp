@@ -60,8 +60,7 @@ Moved moved(const Look& look, std::string_view entry, std::string_view parameter
     const auto at = static_cast<std::size_t>(std::ranges::find(names, entry) - names.begin());
     if (at == names.size()) return {};
     const LookEntry& of = look.entries[at];
-    if (const ParamInfo* const row = entry_rows.table().find(parameter))
-        return {row, part_of(state_words(of.state), *row)};
+    if (const ParamInfo* const row = entry_rows.find(parameter)) return {row, part_of(state_words(of.state), *row)};
     const ParamInfo* const row = of.effect->parameters.find(parameter);
     return row == nullptr ? Moved{} : Moved{row, part_of(of.words, *row)};
 }
@@ -94,12 +93,12 @@ std::vector<MovedValue> values_of(const Look& look, Mover mover) {
         const ParamInfo amount = amount_row(look, pulse);
         out.push_back(
             {amount, part_of(words_of(pulse.amount), amount), std::vector<std::uint32_t>(amount.words), {}, {}});
-        add_rows(out, pulse_rows.table(), pulse.state, "");
+        add_rows(out, pulse_rows, pulse.state, "");
         return out;
     }
     const LookLayer& layer = look.layers[mover.number];
-    add_rows(out, layer_rows.table(), layer.state, "");
-    if (layer.distance) add_rows(out, distance_rows.table(), *layer.distance, "distance");
+    add_rows(out, layer_rows, layer.state, "");
+    if (layer.distance) add_rows(out, distance_rows, *layer.distance, "distance");
     if (!layer.file.empty()) return out;
     for (const LookLayer::Value& value : layer.values)
         if (Moved of = moved(look, value.entry, value.parameter); of.row != nullptr)
@@ -126,12 +125,12 @@ Result<> set_moved(Look& look, Mover mover, std::size_t value, Words words) {
             for (std::size_t i = 0; i < pulse.amount.size(); ++i)
                 pulse.amount[i] = std::bit_cast<float>(words[std::min(i, words.size() - 1)]);
         else
-            set_row(pulse_rows.table(), pulse.state, --value, words);
+            set_row(pulse_rows, pulse.state, --value, words);
         return {};
     }
     LookLayer& layer = look.layers[mover.number];
-    if (set_row(layer_rows.table(), layer.state, value, words)) return {};
-    if (layer.distance && set_row(distance_rows.table(), *layer.distance, value, words)) {
+    if (set_row(layer_rows, layer.state, value, words)) return {};
+    if (layer.distance && set_row(distance_rows, *layer.distance, value, words)) {
         if (layer.distance->near < layer.distance->far) return {};
         return user_error(fmt::format("{}: near = {} and far = {}: allowed is near < far", shown, layer.distance->near,
                                       layer.distance->far));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "looks/apply/look_stack.hpp"
+#include <darkroom/describe.hpp>
 
 #include <fmt/format.h>
 

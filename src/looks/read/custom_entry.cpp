@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <darkroom/custom_effect.hpp>
+#include <darkroom/describe.hpp>
 #include <darkroom/look.hpp>
 
 #include "core/text/param_text.hpp"

@@ -123,7 +123,7 @@ class ModulationReader {
 
     void read_pulse(const toml::table& table) {
         LookPulse pulse{.event = text_of(table, "a pulse", "event", true)};
-        take_rows(table, pulse_rows.table(), pulse.state, {"event", "parameter", "amount"});
+        take_rows(table, pulse_rows, pulse.state, {"event", "parameter", "amount"});
         const std::string key = text_of(table, "a pulse", "parameter", false);
         const auto target = key.empty() ? std::nullopt : target_of(*table.get("parameter"), key);
         if (pulse.event.empty() || !target) return;
@@ -159,7 +159,7 @@ class ModulationReader {
                                 *const distance = table.get("distance");
         // What a distance alone drives is all there near its point.
         if (distance != nullptr) layer.state.weight = 1;
-        take_rows(table, layer_rows.table(), layer.state, {"name", "look", "values", "distance"});
+        take_rows(table, layer_rows, layer.state, {"name", "look", "values", "distance"});
         if (distance != nullptr) read_distance(*distance, layer);
         if ((file == nullptr) == (values == nullptr)) return wrong(table, "a layer has either a 'look' or 'values'");
         if (file != nullptr)
@@ -176,7 +176,7 @@ class ModulationReader {
         if (table == nullptr)
             return wrong(node, fmt::format("distance = {}: expected {{ near, far, point }}", show(node)));
         layer.distance.emplace();
-        take_rows(*table, distance_rows.table(), *layer.distance, {});
+        take_rows(*table, distance_rows, *layer.distance, {});
         if (!(layer.distance->near < layer.distance->far))
             wrong(node, fmt::format("distance: near = {} and far = {}: allowed is near < far", layer.distance->near,
                                     layer.distance->far));

@@ -134,7 +134,7 @@ void draw_state_row(PanelState& state, const LookEntry& entry, const std::string
     const std::string place = fmt::format("{}.{}", name, row.name);
     const RowLine line{.row = &row,
                        .words = std::span(words).subspan(row.word, row.words),
-                       .defaults = std::span(entry_rows.defaults).subspan(row.word, row.words),
+                       .defaults = entry_rows.defaults.subspan(row.word, row.words),
                        .place = place,
                        .flag = fmt::format("--set {}={}", place, flag_text(row, std::span(words).subspan(row.word, 1))),
                        .toml = fmt::format("{} = {}", row.name, format(row, words))};

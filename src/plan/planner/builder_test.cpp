@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include <darkroom/describe.hpp>
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_run.hpp"
 
