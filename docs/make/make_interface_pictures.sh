@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes docs/pictures/interface_*.jpg, the visor's states, for docs/interface.md: docs/make_interface_pictures.sh [DARKROOM].
+# Makes docs/pictures/interface_*.jpg, the visor's states, for docs/interface.md: docs/make/make_interface_pictures.sh [DARKROOM].
 # What happens to it is said by events, and done by the controller that ships.
 set -euo pipefail
-cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 darkroom=${1:-./darkroom}
 work=$(mktemp -d looks/visor.XXXX)
 trap 'rm -rf "$work"' EXIT

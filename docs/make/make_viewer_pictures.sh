@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes docs/pictures/viewer_*.jpg for docs/viewer.md: docs/make_viewer_pictures.sh [DARKROOM [SIZE [FOLDER]]]. The
+# Makes docs/pictures/viewer_*.jpg for docs/viewer.md: docs/make/make_viewer_pictures.sh [DARKROOM [SIZE [FOLDER]]]. The
 # windows open in a display of its own (Xvfb, openbox), whose mouse and keys are moved by xdotool.
 set -euo pipefail
-cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 darkroom=$(realpath -- "${1:-./darkroom}") size=${2:-1280x720} scenes=$PWD/scenes
 out=$(realpath -- "${3:-docs/pictures}")
 for tool in Xvfb openbox xdotool oiiotool; do

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes the pictures of the documents from samples/window.exr: docs/make_pictures.sh [DARKROOM]. Dither is off, because a
+# Makes the pictures of the documents from samples/window.exr: docs/make/make_pictures.sh [DARKROOM]. Dither is off, because a
 # PNG of noise is large.
 set -euo pipefail
-cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 darkroom=${1:-./darkroom}
 
 develop() { "$darkroom" develop samples/window.exr "$@"; }

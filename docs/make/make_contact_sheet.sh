@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # One picture of all models (.glb, .gltf) below a folder, row by row in the order of the list that it prints:
-# docs/make_contact_sheet.sh FOLDER OUT.png [DARKROOM]. A model that cannot be rendered is told and left out.
+# docs/make/make_contact_sheet.sh FOLDER OUT.png [DARKROOM]. A model that cannot be rendered is told and left out.
 set -euo pipefail
-root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.." && pwd)
 folder=${1:?a folder of models} out=${2:?the picture to write} darkroom=${3:-$root/darkroom}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes docs/pictures/effects/: every effect off and on, for docs/effects.md: docs/make_effect_pictures.sh [DARKROOM
+# Makes docs/pictures/effects/: every effect off and on, for docs/effects.md: docs/make/make_effect_pictures.sh [DARKROOM
 # [EFFECT ...]]. Without names all are made.
 # docs/pictures/ssao_truth.jpg is of rays that a test traces: DARKROOM_PICTURES=docs/pictures
 # build/bin/darkroom_tests --gtest_filter=SoakGpuSsaoTruth.Strip
 set -euo pipefail
-cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/../.."
 darkroom=${1:-./darkroom}
 names=" ${*:2} "
 out=docs/pictures/effects
