@@ -87,13 +87,14 @@ function(darkroom_embed path shown out)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
 endfunction()
 
-# Gives the module of the calling folder FILE, an initialiser of a row for each of its shaders/*.glsl: name and text.
+# Gives the module of the calling folder FILE, an initialiser of a row for each file of its shaders/ and their rooms: name
+# (with the room) and text.
 function(darkroom_embed_shaders name file)
-  file(GLOB shaders CONFIGURE_DEPENDS shaders/*.glsl)
+  set(folder ${CMAKE_CURRENT_SOURCE_DIR}/shaders)
+  file(GLOB shaders RELATIVE ${folder} CONFIGURE_DEPENDS ${folder}/*.glsl ${folder}/*/*.glsl)
   set(texts "")
   foreach(shader ${shaders})
-    cmake_path(GET shader FILENAME shown)
-    darkroom_embed(${shader} ${shown} text)
+    darkroom_embed(${folder}/${shader} ${shader} text)
     string(APPEND texts "${text}")
   endforeach()
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${file} CONTENT "@texts@" @ONLY)

@@ -18,16 +18,16 @@ struct Frame {
 #include "render/shaders/frame_block.glsl"
 };
 struct Lights {
-#include "render/shaders/light_block.glsl"
+#include "render/shaders/light/light_block.glsl"
 };
 struct Shadows {
-#include "render/shaders/shadow_block.glsl"
+#include "render/shaders/light/shadow_block.glsl"
 };
 struct Instance {
-#include "render/shaders/instance_block.glsl"
+#include "render/shaders/mesh/instance_block.glsl"
 };
 struct Material {
-#include "render/shaders/material_block.glsl"
+#include "render/shaders/mesh/material_block.glsl"
 };
 }  // namespace blocks
 

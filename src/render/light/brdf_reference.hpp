@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The formulas of shaders/brdf.glsl and shaders/lights.glsl in double precision, as they were published: what the
-// shaders are compared with, and what is integrated to see that no energy is made. Not for drawing.
+// The formulas of shaders/light/brdf.glsl and shaders/light/lights.glsl in double precision, as they were published:
+// what the shaders are compared with, and what is integrated to see that no energy is made. Not for drawing.
 
 #include <algorithm>
 #include <cmath>

@@ -72,7 +72,7 @@ struct Lookups {
         const gpu::Pipeline pipeline = must(gpu::Pipeline::create(
             stage.context, {.name = "environment lookups",
                             .vertex = shader_text("sky_vertex.glsl"),
-                            .fragment = shader_text("frame.glsl") + test::shader_part("environment.glsl") + main,
+                            .fragment = shader_text("frame.glsl") + test::shader_part("light/environment.glsl") + main,
                             .sets = {stage.setup().frame_layout},
                             .colors = stage.formats.colors({}, TargetFormats::Layers::Written),
                             .depth = stage.formats.depth}));

@@ -37,7 +37,7 @@ vec3 pixel(const Picture& picture, std::uint32_t x, std::uint32_t y) {
     return {at[0], at[1], at[2]};
 }
 
-/// The sum of the harmonics, as shaders/environment.glsl has it.
+/// The sum of the harmonics, as shaders/light/environment.glsl has it.
 vec3 irradiance(const std::array<vec3, 9>& c, vec3 n) {
     return c[0] * 0.282095F + (c[1] * n.y + c[2] * n.z + c[3] * n.x) * 0.488603F +
            (c[4] * n.x * n.y + c[5] * n.y * n.z + c[7] * n.x * n.z) * 1.092548F +

@@ -21,8 +21,8 @@ std::string lights_body(const std::string& shade) {
     return test::frame_stand_in() +
            "float shadow_visibility(uint light, vec3 position, vec3 normal, float distance) {\n"
            "    return 0.25 + float(light) * 0.1;\n}\n" +
-           test::shader_part("brdf.glsl") + test::shader_part("lights.glsl") + "vec4 shade(Pixel pixel) {\n" + shade +
-           "}\n";
+           test::shader_part("light/brdf.glsl") + test::shader_part("light/lights.glsl") +
+           "vec4 shade(Pixel pixel) {\n" + shade + "}\n";
 }
 
 TEST(RenderLights, AttenuationIsTheWindowedInverseSquare) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// For tests only: shaders/mesh_fragment.glsl drawn with frame, lights and one material of a test's choice on one of two
-// shapes, seen from where their closed forms are simple, without the passes that draw scenes.
+// For tests only: shaders/mesh/mesh_fragment.glsl drawn with frame, lights and one material of a test's choice on one
+// of two shapes, seen from where their closed forms are simple, without the passes that draw scenes.
 
 #include <array>
 #include <cstring>
@@ -220,8 +220,8 @@ inline FragmentBench::Targets FragmentBench::draw(const Switches& switches) {
     if (pipeline.handle == VK_NULL_HANDLE) {
         pipeline = gpu::test::must(gpu::Pipeline::create(
             context, {.name = "fragment bench",
-                      .vertex = shader_text("mesh_varyings_out.glsl") + bench_vertex,
-                      .fragment = shader_text("mesh_fragment.glsl"),
+                      .vertex = shader_text("mesh/mesh_varyings_out.glsl") + bench_vertex,
+                      .fragment = shader_text("mesh/mesh_fragment.glsl"),
                       .sets = {sets.layouts.begin(), sets.layouts.end()},
                       .push_constant_size = sizeof push,
                       .specialization = {switches.has_textures, switches.has_shadows, switches.has_environment,

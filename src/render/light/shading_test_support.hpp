@@ -34,7 +34,7 @@ inline std::string shader_part(std::string_view name) {
 inline std::string frame_stand_in() {
     return "const uint Output_hdr = 0u;\nconst uint Output_display = 1u;\nstruct FrameBlock {\n" +
            shader_part("frame_block.glsl") + "};\nFrameBlock frame;\nstruct LightBlock {\n" +
-           shader_part("light_block.glsl") + "};\nLightBlock lights;\n";
+           shader_part("light/light_block.glsl") + "};\nLightBlock lights;\n";
 }
 
 /// `body` is that of a kernel (gpu/kernel/kernel.hpp) whose images are input_0, input_1, ...; all inputs are equally

@@ -21,7 +21,7 @@ using scene::vec4;
 
 constexpr std::uint32_t vertices_a_square = 6;
 
-/// One instance, as shaders/billboard_vertex.glsl takes it.
+/// One instance, as shaders/sprite/billboard_vertex.glsl takes it.
 struct Square {
     vec3 position{0};
     float width = 0;
@@ -65,7 +65,7 @@ std::vector<VkVertexInputAttributeDescription> square_attributes() {
 }
 
 gpu::PipelineDesc pipeline_desc(Kind kind, const PassSetup& setup, const GpuScene& scene) {
-    gpu::PipelineDesc desc{.vertex = shader_text("billboard_vertex.glsl"),
+    gpu::PipelineDesc desc{.vertex = shader_text("sprite/billboard_vertex.glsl"),
                            .bindings = {{0, sizeof(Square), VK_VERTEX_INPUT_RATE_INSTANCE}},
                            .attributes = square_attributes(),
                            .sets = {setup.frame_layout, scene.billboard_layout.handle},
@@ -75,7 +75,7 @@ gpu::PipelineDesc pipeline_desc(Kind kind, const PassSetup& setup, const GpuScen
         gpu::ColorTarget opaque;
         if (setup.formats.has_alpha_layer) opaque.writes = color_without_alpha;
         desc.name = "sprites";
-        desc.fragment = shader_text("sprite_fragment.glsl");
+        desc.fragment = shader_text("sprite/sprite_fragment.glsl");
         desc.colors = setup.formats.colors(opaque, TargetFormats::Layers::Written);
         return desc;
     }
@@ -86,7 +86,7 @@ gpu::PipelineDesc pipeline_desc(Kind kind, const PassSetup& setup, const GpuScen
         .destination = is_additive ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
         .writes = color_without_alpha};
     desc.name = is_additive ? "additive particles" : "alpha particles";
-    desc.fragment = shader_text("particle_fragment.glsl");
+    desc.fragment = shader_text("sprite/particle_fragment.glsl");
     desc.colors = setup.formats.colors(blended, TargetFormats::Layers::Kept);
     desc.writes_depth = false;
     return desc;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Meshes: opaque and masked, transparent by their blend, wireframes, normal arrows, and depth alone for shadow maps.
-// One vertex shader places them all (shaders/mesh_vertex.glsl), so that every pass agrees on where a vertex is.
+// One vertex shader places them all (shaders/mesh/mesh_vertex.glsl), so that every pass agrees on where a vertex is.
 
 #include <memory>
 

@@ -70,9 +70,9 @@ gpu::PipelineDesc MeshPipelines::describe(const MeshVariant& variant) const {
 void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant& variant) const {
     const bool is_transparent = is_blend(variant.blend);
     desc.name = "mesh";
-    desc.vertex = shader_text("mesh_vertex.glsl");
-    desc.fragment = shader_text("mesh_fragment.glsl");
-    // As shaders/mesh_fragment.glsl numbers them.
+    desc.vertex = shader_text("mesh/mesh_vertex.glsl");
+    desc.fragment = shader_text("mesh/mesh_fragment.glsl");
+    // As shaders/mesh/mesh_fragment.glsl numbers them.
     desc.specialization[0] = word(variant.has_textures);
     desc.specialization[1] = word(setup_.shadow_maps > 0);
     desc.specialization[2] = word(setup_.has_environment);
@@ -95,7 +95,7 @@ void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant&
 void MeshPipelines::describe_lines(gpu::PipelineDesc& desc, const MeshVariant& variant) const {
     const bool are_arrows = variant.kind == MeshKind::NormalArrows, are_all = variant.kind == MeshKind::Edges;
     desc.name = are_arrows ? "normal arrows" : "edges of meshes";
-    desc.vertex = shader_text(are_arrows ? "normal_arrows_vertex.glsl" : "wireframe_vertex.glsl");
+    desc.vertex = shader_text(are_arrows ? "mesh/normal_arrows_vertex.glsl" : "mesh/wireframe_vertex.glsl");
     desc.fragment = shader_text("line_fragment.glsl");
     // Lines need no texture coordinates, and edges no normals.
     std::erase_if(desc.attributes, [&](const VkVertexInputAttributeDescription& attribute) {

@@ -18,17 +18,17 @@ layout(set = 0, binding = 0, std140) uniform FrameBlock {
 #include "frame_block.glsl"
 } frame;
 layout(set = 0, binding = 1, std140) uniform LightBlock {
-#include "light_block.glsl"
+#include "light/light_block.glsl"
 } lights;
 layout(set = 0, binding = 2, std140) uniform ShadowBlock {
-#include "shadow_block.glsl"
+#include "light/shadow_block.glsl"
 } shadows;
 struct Instance {
-#include "instance_block.glsl"
+#include "mesh/instance_block.glsl"
 };
 layout(set = 0, binding = 3, std430) readonly buffer Instances { Instance instances[]; };
 struct Material {
-#include "material_block.glsl"
+#include "mesh/material_block.glsl"
 };
 layout(set = 0, binding = 4, std430) readonly buffer Materials { Material materials[]; };
 // Two matrices a joint: now, a moment ago.

@@ -4,7 +4,7 @@ layout(constant_id = 0) const bool has_environment = true;
 layout(constant_id = 1) const uint output_mode = 0u;
 
 #include "frame.glsl"
-#include "environment.glsl"
+#include "light/environment.glsl"
 #include "output.glsl"
 
 layout(location = 0) in vec2 clip_place;

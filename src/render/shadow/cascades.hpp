@@ -12,8 +12,8 @@
 
 namespace darkroom::render {
 
-/// The last part of each cascade that is blended into the next, which covers it too; shaders/shadow.glsl has it as
-/// well.
+/// The last part of each cascade that is blended into the next, which covers it too; shaders/light/shadow.glsl has it
+/// as well.
 inline constexpr float cascade_blend = 0.1F;
 
 struct CascadeDesc {
@@ -26,7 +26,7 @@ struct CascadeDesc {
 
 struct Cascades {
     std::uint32_t count = 0;
-    std::array<scene::mat4, most_cascades> world_to_cascade{};  ///< see shaders/shadow_block.glsl
+    std::array<scene::mat4, most_cascades> world_to_cascade{};  ///< see shaders/light/shadow_block.glsl
     std::array<float, most_cascades> splits{};                  ///< far view distance of each
     std::array<float, most_cascades> texel{};                   ///< world size of a texel
 };

@@ -21,7 +21,7 @@ constexpr VkFormat map_format = VK_FORMAT_D32_SFLOAT;
 /// Steps of depth, and texels of slope, that casters lie deeper than they are. The filter compares groups of 2x2 texels
 /// with one depth each, which is wrong by half a texel's slope in both directions.
 constexpr float bias_constant = 2, bias_slope = 2;
-/// Inputs of shaders/mesh_place.glsl.
+/// Inputs of shaders/mesh/mesh_place.glsl.
 constexpr std::uint32_t normal_location = 1, tangent_location = 2;
 /// How many times the depth range casters are looked for in front of it, where clamping lets them cast from there.
 constexpr float clamped_reach = 1e4F;
@@ -174,8 +174,8 @@ struct ShadowPass::State {
         });
         gpu::PipelineDesc pipeline{
             .name = "shadow map",
-            .vertex = shader_text("depth_vertex.glsl"),
-            .fragment = variant.is_masked ? shader_text("masked_depth_fragment.glsl") : std::string(),
+            .vertex = shader_text("mesh/depth_vertex.glsl"),
+            .fragment = variant.is_masked ? shader_text("mesh/masked_depth_fragment.glsl") : std::string(),
             .bindings = input.bindings,
             .attributes = input.attributes,
             .sets = {frame_layout},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // For tests only: snapshots of boxes and one directional light or more, and a rig that draws their shadow maps and then
-// evaluates shaders/shadow.glsl on a grid of points, without anything else of the renderer.
+// evaluates shaders/light/shadow.glsl on a grid of points, without anything else of the renderer.
 
 #include <array>
 #include <cmath>
@@ -151,7 +151,7 @@ class ShadowRig {
         gpu::PipelineDesc desc{.name = "shadow evaluation"};
         desc.vertex = R"(#version 460
             void main() { gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0, 0, 1); })";
-        desc.fragment = shader_text("shadow.glsl") + R"(
+        desc.fragment = shader_text("light/shadow.glsl") + R"(
             layout(push_constant) uniform Push { vec4 first; vec4 right; vec4 down; vec4 normal; uint light; };
             layout(location = 0) out vec2 visibility;
             void main() {

@@ -24,8 +24,8 @@ struct GpuMesh {
     std::uint32_t morph_targets = 0;
 };
 
-/// Vertex input of pipelines with shaders/mesh_vertex.glsl: binding 0 scene::Vertex, binding 1 scene::VertexSkin (a
-/// single one where the mesh is not skinned).
+/// Vertex input of pipelines with shaders/mesh/mesh_vertex.glsl: binding 0 scene::Vertex, binding 1 scene::VertexSkin
+/// (a single one where the mesh is not skinned).
 struct MeshInput {
     std::vector<VkVertexInputBindingDescription> bindings;
     std::vector<VkVertexInputAttributeDescription> attributes;

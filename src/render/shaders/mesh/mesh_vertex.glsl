@@ -1,6 +1,6 @@
 // Vertices of meshes, for the picture.
-#include "mesh_place.glsl"
-#include "mesh_varyings_out.glsl"
+#include "mesh/mesh_place.glsl"
+#include "mesh/mesh_varyings_out.glsl"
 
 invariant gl_Position;
 

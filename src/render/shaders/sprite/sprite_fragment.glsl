@@ -1,7 +1,7 @@
 // Sprites: unlit, opaque where their texture is, and like any surface in depth, normals and motion.
 #include "frame.glsl"
-#include "billboard_varyings.glsl"
-#include "billboard_texture.glsl"
+#include "sprite/billboard_varyings.glsl"
+#include "sprite/billboard_texture.glsl"
 #include "output.glsl"
 
 layout(location = 0) in Varyings square;

@@ -1,6 +1,6 @@
 // One square that faces the camera, six vertices of an instance.
 #include "frame.glsl"
-#include "billboard_varyings.glsl"
+#include "sprite/billboard_varyings.glsl"
 
 layout(location = 0) in vec4 place;           // world position of the anchor; w: width
 layout(location = 1) in vec4 previous_place;  // a moment ago; w: height

@@ -1,4 +1,4 @@
-// What shaders/mesh_vertex.glsl gives to shaders of fragments; mesh_varyings_in.glsl is the other end.
+// What shaders/mesh/mesh_vertex.glsl gives to shaders of fragments; mesh_varyings_in.glsl is the other end.
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;   // not normalised
 layout(location = 2) out vec4 world_tangent;  // w: handedness; xyz 0: none given

@@ -2,8 +2,8 @@
 layout(constant_id = 0) const bool has_textures = true;
 
 #include "frame.glsl"
-#include "mesh_varyings_in.glsl"
-#include "surface.glsl"
+#include "mesh/mesh_varyings_in.glsl"
+#include "mesh/surface.glsl"
 
 void main() {
     if (surface_base_color().a < materials[material_index].emissive.w) discard;

@@ -1,5 +1,5 @@
-// Vertices of meshes for shadow maps: where they are, and what shaders/masked_depth_fragment.glsl needs of them.
-#include "mesh_place.glsl"
+// Vertices of meshes for shadow maps: where they are, and what shaders/mesh/masked_depth_fragment.glsl needs of them.
+#include "mesh/mesh_place.glsl"
 
 layout(location = 3) out vec4 uv;
 layout(location = 4) out vec4 vertex_color;

@@ -1,6 +1,6 @@
 // Edges of meshes: in the material's colour for rooms, which are nothing but edges, and for the view of all edges;
 // white over the picture.
-#include "mesh_place.glsl"
+#include "mesh/mesh_place.glsl"
 
 layout(constant_id = 0) const bool is_overlay = false;
 layout(constant_id = 1) const bool encodes = false;

@@ -10,12 +10,12 @@ layout(constant_id = 6) const bool is_tone_mapped = true;
 layout(constant_id = 7) const bool is_transparent = false;  // alpha is the material's, for blending or as all there is
 
 #include "frame.glsl"
-#include "mesh_varyings_in.glsl"
-#include "brdf.glsl"
-#include "environment.glsl"
-#include "shadow.glsl"
-#include "lights.glsl"
-#include "surface.glsl"
+#include "mesh/mesh_varyings_in.glsl"
+#include "light/brdf.glsl"
+#include "light/environment.glsl"
+#include "light/shadow.glsl"
+#include "light/lights.glsl"
+#include "mesh/surface.glsl"
 #include "output.glsl"
 
 layout(location = 0) out vec4 out_color;

@@ -1,7 +1,7 @@
 // Particles: unlit and blended; without a texture a soft round disc.
 #include "frame.glsl"
-#include "billboard_varyings.glsl"
-#include "billboard_texture.glsl"
+#include "sprite/billboard_varyings.glsl"
+#include "sprite/billboard_texture.glsl"
 #include "output.glsl"
 
 layout(location = 0) in Varyings square;

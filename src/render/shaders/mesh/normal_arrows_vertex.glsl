@@ -1,6 +1,6 @@
 // A line of two vertices along the normal of every vertex of a mesh: here mesh vertices are instances, and the instance
 // is pushed.
-#include "mesh_place.glsl"
+#include "mesh/mesh_place.glsl"
 
 layout(push_constant) uniform Push { uint instance_index; };
 layout(location = 0) flat out vec4 line_color;
