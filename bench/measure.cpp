@@ -13,7 +13,7 @@ namespace darkroom::bench {
 
 namespace {
 
-Sample clocks() {
+Sample read_clocks() {
     timespec cpu{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
     const auto wall = std::chrono::steady_clock::now().time_since_epoch();
@@ -23,10 +23,10 @@ Sample clocks() {
 
 }  // namespace
 
-Stopwatch::Stopwatch() : start_(clocks()) {}
+Stopwatch::Stopwatch() : start_(read_clocks()) {}
 
 Sample Stopwatch::elapsed() const {
-    const Sample now = clocks();
+    const Sample now = read_clocks();
     return {.cpu_ms = now.cpu_ms - start_.cpu_ms, .wall_ms = now.wall_ms - start_.wall_ms};
 }
 

@@ -66,7 +66,7 @@ void edit_once(std::mt19937& random, edit::LookDocument& document) {
     }
 }
 
-struct Times {
+struct FrameTimes {
     std::vector<double> own, steady, after_a_plan;  ///< milliseconds
     std::uint32_t plans = 0, refused = 0;
 };
@@ -92,7 +92,7 @@ struct Session {
 };
 
 /// `random`: null for a frame without an edit.
-Result<> show_frame(Session& session, std::mt19937* random, Times& times) {
+Result<> show_frame(Session& session, std::mt19937* random, FrameTimes& times) {
     const double begin = thread_ms();
     if (random != nullptr) edit_once(*random, session.document);
     if (!session.follow()) ++times.refused;
@@ -133,7 +133,7 @@ Result<std::vector<Figure>> edit_figures(Device& device, std::uint32_t edits) {
     Session session{**bed, composer, **submitter, edit::LookDocument(*look), *look, desc};
     session.version = session.document.version();
     std::mt19937 random(29);
-    Times times;
+    FrameTimes times;
     for (std::uint32_t i = 0; i < edits; ++i) {
         Result<> shown = show_frame(session, &random, times);
         // Every other edit comes while the plan of the one before is still being made.

@@ -77,7 +77,7 @@ TEST(EffectRecursiveBlend, LooksTheSameAtAnyFrameRate) {
 TEST(EffectRecursiveBlend, EightBitsLeaveAGhostAndFloatsDoNot) {
     constexpr std::pair<float, int> ghosts[] = {{0.5f, 1}, {0.8f, 2}, {0.9f, 5}, {0.95f, 10}};
     for (const auto& [weight, code] : ghosts) {
-        const auto left = [&](RecursiveBlendPrecision precision) {
+        const auto left = [weight = weight](RecursiveBlendPrecision precision) {
             const RecursiveBlend blend{.weight = weight, .precision = precision};
             return developed_sequence(stack_of(blend), changing(white, black, 400)).back().at(2, 2).r * 255;
         };

@@ -5,7 +5,6 @@
 
 #include <darkroom/effect.hpp>
 #include <darkroom/reference.hpp>
-#include <ranges>
 #include <span>
 
 #include "shared/sample_reference.hpp"
@@ -36,8 +35,8 @@ inline ReferenceImage read_reference(const ReferenceImage& picture, std::span<co
     for (std::uint32_t y = 0; y < height; ++y) {
         for (std::uint32_t x = 0; x < width; ++x) {
             ReferencePlace place{.u = (x + 0.5) / width, .v = (y + 0.5) / height, .height = height};
-            for (const ReadingStep& step : std::views::reverse(steps))
-                if (step.map != nullptr) place = step.map(step.parameters, place);
+            for (auto step = steps.rbegin(); step != steps.rend(); ++step)
+                if (step->map != nullptr) place = step->map(step->parameters, place);
             const auto at = [&](std::size_t channel) {
                 const ReferenceUv uv = barrel_reference(place.u, place.v, place.barrel[channel]);
                 return read(uv.u, uv.v);

@@ -14,7 +14,8 @@
 namespace darkroom {
 namespace {
 
-constexpr std::uint32_t width = 320, height = 180, left = 320, top = 180;  // of 960x540, pixel by pixel
+constexpr std::uint32_t strip_width = 320, strip_height = 180, strip_left = 320,
+                        strip_top = 180;  // of 960x540, pixel by pixel
 
 ReferenceImage occlusion_of(const test::BoxView& view, const Ssao& ssao) {
     return test::develop([&](Composer& composer) { composer.add(ssao); }, test::uniform(960, 540, {1, 1, 1, 1}),
@@ -23,12 +24,12 @@ ReferenceImage occlusion_of(const test::BoxView& view, const Ssao& ssao) {
 
 /// What is lit from above and a little from the side, times `visibility`, as code values.
 void paint(Picture& strip, std::uint32_t column, std::uint32_t row, const test::BoxView& view, const auto& visibility) {
-    for (std::uint32_t y = 0; y < height; ++y)
-        for (std::uint32_t x = 0; x < width; ++x) {
-            const Rgba& normal = view.normals.at(left + x, top + y);
+    for (std::uint32_t y = 0; y < strip_height; ++y)
+        for (std::uint32_t x = 0; x < strip_width; ++x) {
+            const Rgba& normal = view.normals.at(strip_left + x, strip_top + y);
             const double light = 0.6 + 0.25 * normal.g + 0.1 * normal.r;
-            const auto code = static_cast<float>(std::pow(light * visibility(left + x, top + y), 1 / 2.2));
-            float* const out = strip.at(column * width + x, row * height + y);
+            const auto code = static_cast<float>(std::pow(light * visibility(strip_left + x, strip_top + y), 1 / 2.2));
+            float* const out = strip.at(column * strip_width + x, row * strip_height + y);
             std::fill_n(out, 3, code);
             out[3] = 1;
         }
@@ -38,7 +39,7 @@ TEST(SoakGpuSsaoTruth, Strip) {
     const char* const folder = std::getenv("DARKROOM_PICTURES");
     if (folder == nullptr) GTEST_SKIP() << "DARKROOM_PICTURES names no folder to write ssao_truth.jpg into";
     const std::array scenes{test::corner_scene(), test::courtyard_scene(), test::stairs_scene()};
-    Picture strip(4 * width, static_cast<std::uint32_t>(scenes.size()) * height);
+    Picture strip(4 * strip_width, static_cast<std::uint32_t>(scenes.size()) * strip_height);
     constexpr float radius = 1;
     for (std::uint32_t row = 0; row < scenes.size(); ++row) {
         const test::BoxView view = test::view_of(scenes[row], 960, 540);

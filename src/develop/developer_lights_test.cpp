@@ -14,7 +14,7 @@
 namespace darkroom {
 namespace {
 
-constexpr std::uint32_t width = 48, height = 32;
+constexpr std::uint32_t frame_width = 48, frame_height = 32;
 constexpr double wall = 10;  // metres
 
 /// Stripes of light, `stripe` texels wide and others in each cascade, for a box around the view.
@@ -43,12 +43,12 @@ class ComposeDeveloperLights : public testing::Test {
     void SetUp() override {
         effect_ = find_effect("volumetric");
         if (effect_ == nullptr) GTEST_SKIP() << "this build has no effect volumetric";
-        for (std::uint32_t i = 0; i < width * height; ++i) {
-            const float shade = static_cast<float>(i % width) / 64;  // halves, all of them
+        for (std::uint32_t i = 0; i < frame_width * frame_height; ++i) {
+            const float shade = static_cast<float>(i % frame_width) / 64;  // halves, all of them
             color_.insert(color_.end(), {shade, shade / 2, 0.25F, 1});
             depth_.push_back(static_cast<float>(wall) + static_cast<float>(i % 7) / 3);
         }
-        camera_ = test::look_at({0, 0, 0}, {0, 0, -1}, 1, double{width} / height);
+        camera_ = test::look_at({0, 0, 0}, {0, 0, -1}, 1, double{frame_width} / frame_height);
         // One without shadows lies between those that have some.
         lights_ = {striped_light(16, 3, 2), {.light = {.volumetric_intensity = 9}}, striped_light(5, 1, 1)};
         lights_[2].light.volumetric_color = {0, 1, 0};
@@ -57,7 +57,11 @@ class ComposeDeveloperLights : public testing::Test {
         test::must(composer_.set(composer_.entry(0), "density", 40));
     }
     [[nodiscard]] DevelopInput input(std::span<const ReferenceLight> lights) const {
-        return {.extent = {width, height}, .color = color_, .depth = depth_, .lights = lights, .camera = camera_};
+        return {.extent = {frame_width, frame_height},
+                .color = color_,
+                .depth = depth_,
+                .lights = lights,
+                .camera = camera_};
     }
     [[nodiscard]] std::vector<float> developed(std::span<const ReferenceLight> lights) {
         const Result<DevelopedPicture> picture = developer_.develop(composer_, input(lights));
@@ -79,12 +83,12 @@ TEST_F(ComposeDeveloperLights, ThoseOfTheDeviceComeBackAndGiveTheSamePicture) {
     const auto upload = [&](const std::vector<float>& values, std::size_t channels, VkFormat format) {
         return gpu::test::upload(
             context,
-            gpu::test::make_pixels(width, height,
+            gpu::test::make_pixels(frame_width, frame_height,
                                    [&](std::uint32_t x, std::uint32_t y) {
                                        std::array<float, 4> texel{0, 0, 0, 1};
-                                       std::copy_n(
-                                           values.begin() + static_cast<std::ptrdiff_t>((y * width + x) * channels),
-                                           channels, texel.begin());
+                                       std::copy_n(values.begin() +
+                                                       static_cast<std::ptrdiff_t>((y * frame_width + x) * channels),
+                                                   channels, texel.begin());
                                        return texel;
                                    }),
             format);
@@ -129,7 +133,7 @@ TEST_F(ComposeDeveloperLights, AreTheReferencesLight) {
     ASSERT_EQ(developer_.plan().left_out.size(), 1U);
     EXPECT_EQ(developer_.plan().left_out[0], "volumetric: needs shadows, which the frame does not have");
     const auto picture_of = [](const std::vector<float>& values, std::size_t channels) {
-        ReferenceImage out(width, height);
+        ReferenceImage out(frame_width, frame_height);
         for (std::size_t i = 0; i < out.pixels.size(); ++i)
             out.pixels[i] = channels == 1 ? Rgba{values[i]} : Rgba{values[i * 4], values[i * 4 + 1], values[i * 4 + 2]};
         return out;
@@ -150,7 +154,7 @@ TEST_F(ComposeDeveloperLights, AreTheReferencesLight) {
         EXPECT_TRUE(developer_.plan().left_out.empty());
         const ReferenceChainOutput expected = reference(lights);
         double brightest = 0, worst = 0, sum = 0;
-        for (std::size_t i = 0; i < width * height; ++i) {
+        for (std::size_t i = 0; i < frame_width * frame_height; ++i) {
             const Rgba& p = expected.picture.pixels[i];
             std::size_t channel = 0;
             for (const double value : {p.r, p.g, p.b}) {
@@ -164,7 +168,7 @@ TEST_F(ComposeDeveloperLights, AreTheReferencesLight) {
         EXPECT_GT(brightest, 0.5);
         // As the effect's own: single precision finds another texel at the edge of a stripe here and there.
         EXPECT_LT(worst, brightest * 0.01);
-        EXPECT_LT(sum / (width * height * 3), brightest * 0.001);
+        EXPECT_LT(sum / (frame_width * frame_height * 3), brightest * 0.001);
     }
 }
 

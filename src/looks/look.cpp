@@ -45,11 +45,11 @@ std::vector<const LookEntry*> ordered(const Look& look) {
         std::ranges::stable_sort(out, {}, rank);
         return out;
     }
-    const auto ui = std::ranges::stable_partition(out, std::not_fn(&LookEntry::is_of_ui));
-    std::ranges::stable_sort(ui, {}, rank);
-    auto place = ui.begin();
+    const auto ui = std::stable_partition(out.begin(), out.end(), std::not_fn(&LookEntry::is_of_ui));
+    std::ranges::stable_sort(ui, out.end(), {}, rank);
+    auto place = ui;
     while (place != out.begin() && is_noise(**(place - 1))) --place;
-    std::rotate(place, ui.begin(), out.end());
+    std::rotate(place, ui, out.end());
     return out;
 }
 

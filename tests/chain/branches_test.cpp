@@ -29,7 +29,7 @@ effect = "tonemap"
 effect = "encode"
 )";
 
-const Branches all[] = {
+const Branches branched_stacks[] = {
     {"the article's example", 3, 7, R"(
 [[stack]]
 effect = "gaussian_blur"
@@ -165,7 +165,7 @@ ReferenceImage branch_picture(std::uint32_t width, std::uint32_t height) {
 TEST_F(ChainBranches, PassesAreSavedAndThePictureStays) {
     const ReferenceImage picture = branch_picture(52, 36);
     const test::Host host(picture, VK_FORMAT_R16G16B16A16_SFLOAT);
-    for (const Branches& branches : all) {
+    for (const Branches& branches : branched_stacks) {
         SCOPED_TRACE(branches.name);
         const auto look = parse_look(branches.stack + std::string(tail), branches.name, {.is_strict = true});
         ASSERT_TRUE(look) << look.error().text;

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using test::content;
 using test::Outcome;
 
-const fs::path examples = fs::path(test::source_folder) / "examples";
+const fs::path shipped_examples = fs::path(test::source_folder) / "examples";
 
 class CliCustomEffects : public test::CliFixture {
   protected:
@@ -32,7 +32,7 @@ class CliCustomEffects : public test::CliFixture {
     }
     void make_files() override {
         for (const char* const name : {"duotone.glsl", "two_pass_blur.glsl", "feedback_trail.glsl"})
-            fs::copy_file(examples / name, path(name));
+            fs::copy_file(shipped_examples / name, path(name));
         for (int number = 0; number < frames; ++number) make_frame(number);
         write("all.toml",
               "[[stack]]\neffect = \"two_pass_blur.glsl\"\nradius = 2\n[[stack]]\neffect = \"tonemap\"\n"

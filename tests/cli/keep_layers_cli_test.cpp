@@ -23,10 +23,10 @@ class CliKeepLayers : public test::CliFixture {
     inline static const std::vector<std::string> channels{"R", "G", "B", "Z", "matte00.R", "matte00.G", "note"};
 
     void make_files() override {
-        const float infinity = std::numeric_limits<float>::infinity();
+        using Limits = std::numeric_limits<float>;
         for (std::size_t i = 0; i < width * height; ++i) {
             const auto step = static_cast<float>(i);
-            const float odd = i % 3 == 0 ? infinity : i % 3 == 1 ? -1e30f : std::numeric_limits<float>::quiet_NaN();
+            const float odd = i % 3 == 0 ? Limits::infinity() : i % 3 == 1 ? -1e30f : Limits::quiet_NaN();
             values.insert(values.end(), {step / 40, 0.5f, 0.25f, 1 + step, step * 1e20f, odd, 0.1f + step});
         }
         test::store_floats(path("frame.exr"), channels, width, values);

@@ -328,7 +328,7 @@ TEST_F(CliRenderPixels, CamerasSeeWhatTheirRaysMeet) {
         const Result<FrameFile> frame = read_frame(path("f.exr"));
         ASSERT_TRUE(frame && frame->depth && frame->normals);
         std::size_t boxes = 0;
-        for_every_pixel([&](std::uint32_t x, std::uint32_t y) {
+        for_every_pixel([&, &eye = eye](std::uint32_t x, std::uint32_t y) {
             const std::optional<Hit> hit = eye.inner(x, y);
             if (!hit) return;
             const float found = *frame->depth->at(x, y);

@@ -62,12 +62,10 @@ Result<darkroom::scene::vec3> parse_vec3(std::string_view flag, const std::strin
 
 }  // namespace
 
-void SceneFlags::add_to(CLI::App& command, VkExtent2D default_extent, const std::string& seed_group) {
-    default_extent_ = default_extent;
-    width_.add_to(command, "Of the picture")->type_name("PIXELS")->default_str(fmt::format("{}", default_extent.width));
-    height_.add_to(command, "Of the picture")
-        ->type_name("PIXELS")
-        ->default_str(fmt::format("{}", default_extent.height));
+void SceneFlags::add_to(CLI::App& command, VkExtent2D usual_extent, const std::string& seed_group) {
+    default_extent_ = usual_extent;
+    width_.add_to(command, "Of the picture")->type_name("PIXELS")->default_str(fmt::format("{}", usual_extent.width));
+    height_.add_to(command, "Of the picture")->type_name("PIXELS")->default_str(fmt::format("{}", usual_extent.height));
     command.add_option("--size", size_, "Both at once")->type_name("WxH");
     command.add_option("--schemas", schemas_, "Taken for the sake of old command lines; there is nothing to check")
         ->expected(1)

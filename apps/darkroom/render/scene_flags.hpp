@@ -17,8 +17,8 @@ namespace app {
 
 class SceneFlags {
   public:
-    /// `default_extent`: of the picture, where the flags say none.
-    void add_to(CLI::App& command, VkExtent2D default_extent, const std::string& seed_group);
+    /// `usual_extent`: of the picture, where the flags say none.
+    void add_to(CLI::App& command, VkExtent2D usual_extent, const std::string& seed_group);
     [[nodiscard]] darkroom::Result<darkroom::scene::OrbitOverride> orbit() const;
     /// Without `output`: that is for the look to say.
     [[nodiscard]] darkroom::Result<darkroom::render::RenderDesc> desc() const;

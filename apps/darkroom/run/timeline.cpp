@@ -170,7 +170,9 @@ class TimelineReader {
     Result<> read_value(const std::string& key, const toml::node& node, Timeline::Event& event) {
         const Result<LookTarget> target = darkroom::find_target(look_, key, printable(key));
         if (!target) return failure(at(node, target.error().text));
-        const auto& [entry, row, is_state, wire] = *target;
+        const darkroom::LookEntry* const entry = target->entry;
+        const darkroom::ParamInfo* const row = target->row;
+        const bool is_state = target->is_state;
         const bool is_own = is_state && row->name != "enabled" && row->name != "opacity";
         if (row == nullptr || is_own || row->kind == darkroom::Kind::Resource)
             return failure(at(node, fmt::format("{}: it belongs to the plan; allowed are parameters, `enabled` and "

@@ -47,7 +47,7 @@ void CameraRig::move(const Window& window, const Input& input, const scene::Snap
     head_.delta_time = input.delta_time;
     if (camera_) head_.yaw = static_cast<double>(camera_->yaw);
     const auto look = [&] {
-        if (x != 0 || y != 0) scene::look_around(taken(seen), -degrees_a_pixel * right, degrees_a_pixel * down);
+        if (right != 0 || down != 0) scene::look_around(taken(seen), -degrees_a_pixel * right, degrees_a_pixel * down);
     };
     if (kind_ == Kind::Walk) {
         if (window.is_cursor_captured()) look();

@@ -8,7 +8,7 @@
 namespace darkroom {
 namespace {
 
-constexpr VkExtent2D extent{24, 18};
+constexpr VkExtent2D frame_extent{24, 18};
 
 constexpr EffectFile files[] = {
     {"reader.glsl",
@@ -66,11 +66,11 @@ class ComposeFrameCheck : public ::testing::Test {
         test::must(composer.compile(compile_desc()));
     }
 
-    test::Host host{ReferenceImage(extent.width, extent.height, {0.5, 0.25, 0.125, 1})};
-    gpu::test::Picture depth = gpu::test::blank(context(), extent, VK_FORMAT_R32_SFLOAT);
-    gpu::test::Picture normals = gpu::test::blank(context(), extent, VK_FORMAT_R16G16B16A16_SFLOAT);
-    gpu::test::Picture velocity = gpu::test::blank(context(), extent, VK_FORMAT_R16G16_SFLOAT);
-    gpu::test::Picture ui = gpu::test::blank(context(), extent, VK_FORMAT_R8G8B8A8_UNORM);
+    test::Host host{ReferenceImage(frame_extent.width, frame_extent.height, {0.5, 0.25, 0.125, 1})};
+    gpu::test::Picture depth = gpu::test::blank(context(), frame_extent, VK_FORMAT_R32_SFLOAT);
+    gpu::test::Picture normals = gpu::test::blank(context(), frame_extent, VK_FORMAT_R16G16B16A16_SFLOAT);
+    gpu::test::Picture velocity = gpu::test::blank(context(), frame_extent, VK_FORMAT_R16G16_SFLOAT);
+    gpu::test::Picture ui = gpu::test::blank(context(), frame_extent, VK_FORMAT_R8G8B8A8_UNORM);
     gpu::Image shadow_map = test::upload_shadow_map(context(), striped());
     std::array<Light, 2> lights;  ///< the first casts no shadow
     Composer composer{host.device};

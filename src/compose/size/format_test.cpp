@@ -76,8 +76,8 @@ class ComposeFormat : public test::StackTest {
     Device device = test::must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
 };
 
-constexpr VkFormat half = VK_FORMAT_R16G16B16A16_SFLOAT, whole = VK_FORMAT_R32G32B32A32_SFLOAT,
-                   packed = VK_FORMAT_B10G11R11_UFLOAT_PACK32, single = VK_FORMAT_R32_SFLOAT;
+constexpr VkFormat half_format = VK_FORMAT_R16G16B16A16_SFLOAT, whole_format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                   packed_format = VK_FORMAT_B10G11R11_UFLOAT_PACK32, single_format = VK_FORMAT_R32_SFLOAT;
 constexpr VkFormatFeatureFlags storage = VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT,
                                filter = VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
 
@@ -85,17 +85,17 @@ TEST_F(ComposeFormat, WhatCannotBeLoadedIsSampled) {
     ReferenceImage expected;
     for (const bool is_missing : {false, true}) {
         renew();
-        if (is_missing) fake.missing[half] = storage;
-        test::Host host(picture(), half, whole, device);
+        if (is_missing) fake.missing[half_format] = storage;
+        test::Host host(picture(), half_format, whole_format, device);
         Composer composer(device, {.frames_in_flight = 1});
         fill(composer);
         CompileDesc desc = host.compile_desc();
         desc.color.usage |= VK_IMAGE_USAGE_STORAGE_BIT;
-        desc.intermediate = half;
+        desc.intermediate = half_format;
         test::must(composer.compile(desc));
         const ReferenceImage out = host.run(composer);
-        EXPECT_EQ(fake.loaded.contains(half), !is_missing);
-        EXPECT_TRUE(fake.sampled.contains(half) || !is_missing);
+        EXPECT_EQ(fake.loaded.contains(half_format), !is_missing);
+        EXPECT_TRUE(fake.sampled.contains(half_format) || !is_missing);
         if (!is_missing) expected = out;
         EXPECT_EQ(test::worst_difference(out, expected), 0);
     }
@@ -106,7 +106,8 @@ TEST_F(ComposeFormat, DepthIsNoTargetThoughADeviceStoresIt) {
     Composer composer(device);
     fill(composer);
     const ImageUse depth{VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT};
-    const CompileDesc good{.max_extent = {40, 33}, .color = {half}, .target = {half, VK_IMAGE_USAGE_STORAGE_BIT}};
+    const CompileDesc good{
+        .max_extent = {40, 33}, .color = {half_format}, .target = {half_format, VK_IMAGE_USAGE_STORAGE_BIT}};
     CompileDesc bad = good, badly_watched = good;
     bad.target = depth;
     badly_watched.watches = {{.id = 1, .target = depth}};
@@ -122,12 +123,12 @@ TEST_F(ComposeFormat, DepthIsNoTargetThoughADeviceStoresIt) {
 TEST_F(ComposeFormat, AnExtendedFormatIsLoadedOnlyWhereTheFeatureIsEnabled) {
     for (const bool has_feature : {true, false}) {
         device.context().traits.has_extended_storage_formats = has_feature;
-        for (const VkFormat intermediate : {half, packed}) {
+        for (const VkFormat intermediate : {half_format, packed_format}) {
             Composer composer(device);
             fill(composer);
             const auto plan =
                 composer.compile({.max_extent = {40, 33},
-                                  .color = {packed, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
+                                  .color = {packed_format, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
                                   .intermediate = intermediate});
             EXPECT_TRUE(plan) << plan.error().text;
         }
@@ -136,23 +137,23 @@ TEST_F(ComposeFormat, AnExtendedFormatIsLoadedOnlyWhereTheFeatureIsEnabled) {
 
 /// A picture of 32 bits, with depth of 32 bits, on a larger target.
 ReferenceImage ComposeFormat::enlarged() {
-    test::Host host(picture(), whole, whole, device);
+    test::Host host(picture(), whole_format, whole_format, device);
     const gpu::test::Picture depth = gpu::test::upload(
         device.context(),
         gpu::test::make_pixels(40, 33,
                                [](std::uint32_t x, std::uint32_t y) {
                                    return std::array{0.5F + static_cast<float>(x * y % 7), 0.0F, 0.0F, 0.0F};
                                }),
-        single, VK_IMAGE_LAYOUT_GENERAL);
+        single_format, VK_IMAGE_LAYOUT_GENERAL);
     Composer composer(device, {.frames_in_flight = 1});
     if (find_effect("ssao") != nullptr) test::add(composer, "ssao");
     if (find_effect("god_rays") != nullptr) test::add(composer, "god_rays");
     fill(composer);
     CompileDesc desc = host.compile_desc();
     desc.color.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-    desc.depth = {single};
+    desc.depth = {single_format};
     desc.target_extent = {80, 50};
-    const gpu::test::Picture large = gpu::test::blank(device.context(), desc.target_extent, whole);
+    const gpu::test::Picture large = gpu::test::blank(device.context(), desc.target_extent, whole_format);
     test::must(composer.compile(desc));
     Frame frame = host.frame();
     frame.depth = test::image_ref(depth);
@@ -164,14 +165,14 @@ ReferenceImage ComposeFormat::enlarged() {
 
 TEST_F(ComposeFormat, WhatCannotBeFilteredTheKernelsFilter) {
     const ReferenceImage expected = enlarged();
-    EXPECT_TRUE(fake.filtered.contains(whole));
+    EXPECT_TRUE(fake.filtered.contains(whole_format));
     renew();
-    fake.missing[whole] = fake.missing[single] = filter;
+    fake.missing[whole_format] = fake.missing[single_format] = filter;
     EXPECT_LE(test::worst_difference(enlarged(), expected), 1e-4 + 2 * gpu::test::filter_step());
-    EXPECT_TRUE(fake.sampled.contains(whole) && fake.sampled.contains(single));
-    EXPECT_FALSE(fake.filtered.contains(whole));
-    EXPECT_FALSE(fake.filtered.contains(single));
-    EXPECT_TRUE(fake.filtered.contains(half)) << "what can be filtered is";
+    EXPECT_TRUE(fake.sampled.contains(whole_format) && fake.sampled.contains(single_format));
+    EXPECT_FALSE(fake.filtered.contains(whole_format));
+    EXPECT_FALSE(fake.filtered.contains(single_format));
+    EXPECT_TRUE(fake.filtered.contains(half_format)) << "what can be filtered is";
 }
 
 TEST_F(ComposeFormat, DepthIsNeverFiltered) {
@@ -180,7 +181,7 @@ TEST_F(ComposeFormat, DepthIsNeverFiltered) {
     for (const VkFormat format : {VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT_S8_UINT,
                                   VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_X8_D24_UNORM_PACK32}) {
         if (!device.context().supports(format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT)) continue;
-        const test::Host host(picture(), half, whole, device);
+        const test::Host host(picture(), half_format, whole_format, device);
         gpu::Context& context = device.context();
         const gpu::Image depth = test::must(
             gpu::Image::create(context, {.name = "depth",

@@ -42,8 +42,8 @@ std::string shown(const Composer& composer) {
         const auto values = composer.values_at(handle, 1, {});
         out += fmt::format(" moved {} {}", values.is_enabled, values.opacity);
         for (const ParamInfo& row : composer.info(handle)->parameters.rows)
-            for (std::uint32_t i = 0; i < row.words && row.kind != Kind::Resource; ++i)
-                out += fmt::format(" {}", values.words[row.word + i]);
+            for (std::uint32_t part = 0; part < row.words && row.kind != Kind::Resource; ++part)
+                out += fmt::format(" {}", values.words[row.word + part]);
         out += '\n';
     }
     for (const std::string& name : composer.layer_names()) out += "layer " + name + '\n';

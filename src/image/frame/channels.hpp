@@ -4,6 +4,7 @@
 // those of Darkroom, Blender and V-Ray are known, a caller's mapping goes before them.
 
 #include <array>
+#include <cstdint>
 #include <darkroom/result.hpp>
 #include <map>
 #include <optional>
@@ -14,6 +15,9 @@
 #include "image/codec/decoder.hpp"
 
 namespace darkroom {
+
+/// Samples of an image that is read: 4 GiB, what a picture of four channels may have.
+inline constexpr std::uint64_t most_samples = std::uint64_t{1} << 30;
 
 /// Channels of one part, by their index there; -1: none. Colour: red, green, blue, alpha. Depth: the first only.
 struct ChannelSet {

@@ -13,9 +13,6 @@
 namespace darkroom {
 namespace {
 
-/// 4 GiB of numbers: what a picture of four channels may have.
-constexpr std::uint64_t most_values = std::uint64_t{1} << 30;
-
 class Reader {
   public:
     Reader(Decoder& decoder, const ChannelSet& color, KeptLayers& layers)
@@ -67,9 +64,9 @@ class Reader {
             return {};
         }
         const std::uint64_t pixels = std::uint64_t{layers_.width} * layers_.height;
-        if (pixels * layers_.channels.size() > most_values)
+        if (pixels * layers_.channels.size() > most_samples)
             return user_error(fmt::format("{} layers of {}x{}: at most {} numbers can be kept", layers_.channels.size(),
-                                          layers_.width, layers_.height, most_values));
+                                          layers_.width, layers_.height, most_samples));
         for (std::size_t i = first_kept; i < layers_.channels.size(); ++i) layers_.channels[i].values.resize(pixels);
         const auto count = static_cast<std::uint32_t>(part.channels.size());
         return decoder_.read(

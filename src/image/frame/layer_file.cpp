@@ -136,16 +136,14 @@ Result<LayerSamples> LayerFile::read(const FileLayer& layer) {
         return error(fmt::format("the layer {} has 32-bit integers; numbers of at most 16 bits, half or float are read",
                                  one_printable_line(layer.name)));
     const auto count = static_cast<std::uint32_t>(layer.channels.size());
-    // As much as a picture of four channels may have: 4 GiB here.
-    constexpr std::uint64_t most_values = std::uint64_t{1} << 30;
-    if (std::uint64_t{part.display_width} * part.display_height > most_values / std::max(count, 4U))
+    if (std::uint64_t{part.display_width} * part.display_height > most_samples / std::max(count, 4U))
         return error(fmt::format("the layer {} is {}x{} with {} channels, at most {} samples are allowed",
                                  one_printable_line(layer.name), part.display_width, part.display_height, count,
-                                 most_values));
+                                 most_samples));
     LayerSamples out{.width = part.display_width, .height = part.display_height, .channels = count};
     out.values.resize(std::size_t{out.width} * out.height * count);
-    const auto [first, last] = std::ranges::minmax(layer.channels);
-    const std::uint32_t read_count = last - first + 1;
+    const auto range = std::ranges::minmax(layer.channels);
+    const std::uint32_t first = range.min, read_count = range.max - first + 1;
     const std::int64_t left = std::max<std::int64_t>(0, -std::int64_t{part.x});
     const std::int64_t right = std::min<std::int64_t>(part.width, std::int64_t{part.display_width} - part.x);
     const auto place = [&](std::uint32_t row, std::uint32_t rows, std::span<const float> samples) {

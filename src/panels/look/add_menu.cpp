@@ -49,9 +49,10 @@ const char* text_of(const EffectInfo& effect) {
 
 bool is_wanted(const EffectInfo& effect, std::string_view filter) {
     const auto has = [&](std::string_view text) {
-        return std::ranges::search(text, filter, [](char a, char b) {
-                   return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-               }).begin() != text.end();
+        const auto is_alike = [](char a, char b) {
+            return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+        };
+        return std::search(text.begin(), text.end(), filter.begin(), filter.end(), is_alike) != text.end();
     };
     return filter.empty() || has(shown_name(effect.name)) || has(effect.doc);
 }

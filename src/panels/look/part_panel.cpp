@@ -134,7 +134,7 @@ void draw_interface(PanelState& state) {
         if (ImGui::IsItemActivated()) state.document->end_merge();
         if (is_changed)
             edit_interface(
-                state, fmt::format("game {}", name), [name, value](LookUi& own) { own.game[name] = value; },
+                state, fmt::format("game {}", name), [name = name, value](LookUi& own) { own.game[name] = value; },
                 fmt::format("game/{}", name));
     }
 }

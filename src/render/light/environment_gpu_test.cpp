@@ -50,7 +50,7 @@ vec4 texel(const Pixels& pixels, std::uint32_t x, std::uint32_t y) {
 }
 
 constexpr VkExtent2D extent{32, 16};
-constexpr float roughness = 0.3F;
+constexpr float sky_roughness = 0.3F;
 
 /// Pixels are directions as in a skybox, and n.v and roughness of the table.
 struct Lookups {
@@ -100,7 +100,7 @@ TEST(RenderGpuEnvironment, ShadersReadWhatWasMade) {
     const std::array<vec3, 9> c = irradiance_harmonics(sky);
     const std::vector<Picture> levels = prefilter(sky, 64, lookups.stage.environment.levels);
     const Picture table = split_sum_table(64);
-    const float level = roughness * static_cast<float>(levels.size() - 1);
+    const float level = sky_roughness * static_cast<float>(levels.size() - 1);
     const auto low = static_cast<std::size_t>(level);
     for (std::uint32_t y = 0; y < extent.height; ++y)
         for (std::uint32_t x = 0; x < extent.width; ++x) {

@@ -261,14 +261,15 @@ Result<std::vector<std::uint32_t>> read_corners(Document& document, const tinygl
 void check_names(Document& document, const tinygltf::Primitive& source, const std::string& pointer) {
     static constexpr std::array<std::string_view, 3> plain{"POSITION", "NORMAL", "TANGENT"};
     static constexpr std::array<std::string_view, 4> numbered{"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"};
-    for (const auto& [name, accessor] : source.attributes) {
+    for (const auto& attribute : source.attributes) {
+        const std::string& name = attribute.first;
         const bool is_plain = std::find(plain.begin(), plain.end(), name) != plain.end() || name.starts_with('_');
         const bool is_numbered = std::any_of(numbered.begin(), numbered.end(), [&](std::string_view start) {
             return name.starts_with(start) && name.size() > start.size();
         });
         if (!is_plain && !is_numbered)
             document.faults().warn(fmt::format("{}/attributes/{}: no attribute of this name exists", pointer, name));
-        if (document.model().accessors[static_cast<std::size_t>(accessor)].componentType ==
+        if (document.model().accessors[static_cast<std::size_t>(attribute.second)].componentType ==
             TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
             document.faults().warn(fmt::format("{}/attributes/{}: has 32-bit integers", pointer, name));
     }

@@ -96,11 +96,11 @@ void PrefabExpander::add_entity(const Level& level, const toml::key& key, const 
         return report_.error(place, [&] {
             return fmt::format("entity '{}': a name has [1, {}] bytes", printable(raw.name), longest_name);
         });
-    const auto [known, is_new] = names_.try_emplace(raw.name, entities_.size());
-    if (!is_new)
+    const auto known = names_.try_emplace(raw.name, entities_.size());
+    if (!known.second)
         return report_.error(place, [&] {
             return fmt::format("entity '{}' is there already, from {}", printable(raw.name),
-                               report_.show(entities_[known->second].place));
+                               report_.show(entities_[known.first->second].place));
         });
     raw.table = trees_.build(node, level.file, prefix);
     if (prefix != nullptr)

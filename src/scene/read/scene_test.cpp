@@ -175,7 +175,7 @@ max = [1, 1, 1]
 
 // The layout of the volumetric dungeon demo, as its file has it.
 TEST(Scene, ADemoSceneOpensWithOneWarningForEachUnknownComponent) {
-    constexpr std::string_view text = R"(
+    constexpr std::string_view demo = R"(
 [scene]
 name = "Volumetric Dungeon"
 version = "1.0"
@@ -235,7 +235,7 @@ volumetric_intensity = 4
 volumetric_color = [1, 0.88, 0.6]
 )";
     std::vector<std::string> warnings;
-    const Result<Scene> scene = parse_scene(text, "a.toml", {.warnings = &warnings});
+    const Result<Scene> scene = parse_scene(demo, "a.toml", {.warnings = &warnings});
     ASSERT_TRUE(scene) << scene.error().text;
     EXPECT_EQ(names_of(*scene), (Names{"player", "floor", "ceiling", "sun"}));
     EXPECT_EQ(scene->camera.field_of_view, 80);
@@ -300,15 +300,15 @@ TEST(Scene, AModelFileIsASceneOfItself) {
 }
 
 TEST(Scene, TenThousandEntitiesParseInASecond) {
-    std::string text;
+    std::string many;
     for (int i = 0; i < 10000; ++i)
-        text += fmt::format(
+        many += fmt::format(
             "[entities.box{0}]\narchetype = \"wall\"\n[entities.box{0}.transform]\nposition = [1, 2, 3]\n"
             "[entities.box{0}.bounds]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n[entities.box{0}.material]\ncolor = [1, 0, "
             "0]\n",
             i);
     const std::clock_t start = std::clock();
-    const Scene scene = scene_of(text);
+    const Scene scene = scene_of(many);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     EXPECT_EQ(scene.entities.size(), 10000U);
     EXPECT_EQ(scene.entities.back().name, "box9999");
