@@ -244,10 +244,10 @@ TEST_F(FarmFiles, StatusIsToldFromRecordsAlone) {
               "  begun: 16-20 on n1 at 2026-01-02T03:04:05Z, not ended\n"
               "  missing: 16-24\n"
               "  6 pictures in 9.0 s of tasks, 1.50 s each\n");
-    const auto json = nlohmann::json::parse(farm("status out/shot.farm/ --json").out);
-    EXPECT_EQ(json["failed"], nlohmann::json::parse("[[12,12],[14,14]]"));
-    EXPECT_EQ(json["missing"], nlohmann::json::parse("[[16,24]]"));
-    EXPECT_EQ(json["chunks"].size(), 3U) << "what an earlier job did counts for nothing";
+    const auto told = nlohmann::json::parse(farm("status out/shot.farm/ --json").out);
+    EXPECT_EQ(told["failed"], nlohmann::json::parse("[[12,12],[14,14]]"));
+    EXPECT_EQ(told["missing"], nlohmann::json::parse("[[16,24]]"));
+    EXPECT_EQ(told["chunks"].size(), 3U) << "what an earlier job did counts for nothing";
     record("12-14", "done", "[[12,14]]", "");
     EXPECT_EQ(farm("status out").out.substr(0, 54), "out/shot.farm: 24 frames: 15 done, 0 failed, 9 missing");
 }
