@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # What ./darkroom and ./test share: installing missing packages, configuring, building. Sourced, with `root` set to the
-# folder of the tree. All it says goes to standard error, and what the compiler says to FOLDER/build.log.
+# folder of the tree and `yes` to 1 where packages are installed without asking. All it says goes to standard error, and
+# what the compiler says to FOLDER/build.log.
 
 say() { printf 'darkroom: %s\n' "$*" >&2; }
 die() {
@@ -21,24 +22,35 @@ missing_packages() {
     done
 }
 
-# Installs what is missing. Where that is not possible the build is tried all the same: the libraries may have come
-# another way, and if not, what CMake says names the first one.
+# Installs what is missing, but not unasked. Root without a terminal, as in containers, is not asked, since nobody is there
+# to answer; another user without one gets the command to run.
 install_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         say "no apt-get here; if the build fails, these packages (names of Debian 12) are needed:" $(wanted_packages)
         return
     fi
     local missing as_root=()
-    missing=$(missing_packages)
+    missing=$(missing_packages | xargs)
     [[ -n $missing ]] || return 0
-    if [[ $(id -u) != 0 ]]; then
-        if ! command -v sudo >/dev/null; then
-            say "neither root nor sudo; these packages are missing and must be installed by hand:" $missing
-            return
+    [[ $(id -u) == 0 ]] || as_root=(sudo)
+    local install="${as_root[*]} apt-get install -y --no-install-recommends $missing"
+    install=${install# }
+    say "missing packages: $missing"
+    if [[ $yes != 1 ]]; then
+        if [[ -t 0 && -t 2 ]]; then
+            local answer
+            read -r -p "darkroom: install them${as_root:+ by sudo}? [Y/n] " answer || answer=n
+            [[ -z $answer || ${answer,,} =~ ^y(es)?$ ]] || die "nothing was installed; they are by: $install"
+        elif [[ -n ${as_root:-} ]]; then
+            die "nothing was installed (--yes or DARKROOM_YES=1 installs them); they are by: $install"
         fi
-        as_root=(sudo)
     fi
-    say "installing" $missing
+    if [[ -n ${as_root:-} ]] && ! command -v sudo >/dev/null; then
+        # The libraries may have come another way, and if not, what CMake says names the first one.
+        say "neither root nor sudo: building without them"
+        return
+    fi
+    say "installing them"
     local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
     "${apt[@]}" update >>"$log" 2>&1 || say "apt-get update failed; going on with the package lists that are there"
     # Word by word: $missing is a list.

@@ -3,7 +3,7 @@
 # launcher.sh TREE: when ./darkroom builds, when it does not, and what it says, in a small tree with a CMake that only
 # pretends. Nothing is compiled or installed.
 set -euo pipefail
-unset DARKROOM_BUILD XDG_RUNTIME_DIR
+unset DARKROOM_BUILD DARKROOM_YES XDG_RUNTIME_DIR
 work=$(mktemp -d)
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 tree="$work/a tree"
@@ -32,7 +32,12 @@ cat >"$work/bin/apt-get" <<'STUB'
 #!/usr/bin/env bash
 echo "apt-get $*" >>"$STUB_LOG"
 STUB
-printf '#!/usr/bin/env bash\nexec "$@"\n' >"$work/bin/sudo"
+cat >"$work/bin/sudo" <<'STUB'
+#!/usr/bin/env bash
+echo "sudo" >>"$STUB_LOG"
+exec "$@"
+STUB
+printf '#!/usr/bin/env bash\necho "${STUB_USER:-0}"\n' >"$work/bin/id"
 printf '#!/usr/bin/env bash\necho "ctest $*"\n' >"$work/bin/ctest"
 chmod +x "$work/bin/"*
 export PATH="$work/bin:$PATH" STUB_LOG="$work/calls"
@@ -86,13 +91,49 @@ STUB_FAILS=1 "$tree/darkroom" >"$work/out" 2>"$work/said" || status=$?
 [[ $status == 2 && ! -s $work/out ]] && grep -q 'it is broken' "$work/said" || fail "a failing build"
 rebuilds "a build that failed"
 
-# What is missing is installed, and nothing else is.
-touch "$tree/src/three.cpp"
-STUB_LACKS=libfmt-dev "$tree/darkroom" >"$work/out" 2>"$work/said"
-grep -qE '^apt-get .*install -y --no-install-recommends libfmt-dev$' "$STUB_LOG" || fail "the missing package is not installed"
+# What is missing is installed, and nothing else is; not unasked. lacking USER ANSWER COMMAND...: COMMAND where one package
+# is missing, for user number USER (0 is root), with ANSWER typed on a terminal, or without a terminal where it is "none".
+lacking() {
+    local user=$1 answer=$2
+    shift 2
+    status=0
+    : >"$STUB_LOG"
+    touch "$tree/src/three.cpp"
+    if [[ $answer == none ]]; then
+        STUB_LACKS=libfmt-dev STUB_USER=$user "$@" </dev/null >"$work/out" 2>"$work/said" || status=$?
+    else
+        STUB_LACKS=libfmt-dev STUB_USER=$user script -qec "$(printf '%q ' "$@")" /dev/null <<<"$answer" >"$work/said" || status=$?
+    fi
+}
+command='apt-get install -y --no-install-recommends libfmt-dev'
+installed() {
+    [[ $status == 0 ]] && grep -qE '^apt-get .*install -y --no-install-recommends libfmt-dev$' "$STUB_LOG" || fail "not installed: $1"
+}
+refused() {
+    [[ $status == 2 ]] && ! grep -q '^apt-get' "$STUB_LOG" && grep -q "they are by: $command" <(tr -d '\r' <"$work/said") ||
+        fail "not refused: $1"
+}
+lacking 0 none "$tree/darkroom" && installed "root without a terminal"
+! grep -q '^sudo' "$STUB_LOG" || fail "root needs no sudo"
+lacking 0 n "$tree/darkroom" && refused "root says no on a terminal"
+lacking 0 y "$tree/darkroom" && installed "root says yes on a terminal"
+grep -q 'missing packages: libfmt-dev' "$work/said" && grep -q 'install them?' "$work/said" || fail "root is not asked"
+command="sudo $command"
+lacking 1 none "$tree/darkroom" && refused "a user without a terminal"
+lacking 1 n "$tree/darkroom" && refused "a user says no"
+lacking 1 "" "$tree/test" && installed "a user presses return"
+grep -q 'install them by sudo?' "$work/said" && grep -q '^sudo' "$STUB_LOG" || fail "a user is not asked"
+lacking 1 none env DARKROOM_YES=1 "$tree/darkroom" && installed "DARKROOM_YES=1"
+lacking 1 none env DARKROOM_YES=0 "$tree/darkroom" && refused "DARKROOM_YES=0"
+lacking 1 n "$tree/darkroom" --yes a --yes && installed "--yes"
+! grep -q 'install them' "$work/said" || fail "--yes is asked all the same"
+grep -qF "<a><--yes>" "$work/said" || fail "the first --yes is handed on, or the second is not"
+lacking 1 none "$tree/darkroom" a --yes && refused "--yes behind another argument"
+lacking 1 none "$tree/test" --yes -R Bloom && installed "./test --yes"
+[[ $(<"$work/out") == *"-LE ^soak$ -R Bloom" ]] || fail "./test hands --yes on"
 
 # A folder that cannot be written is named, and so is the way out. Root can write everywhere.
-if [[ $(id -u) != 0 ]]; then
+if [[ $EUID != 0 ]]; then
     status=0
     chmod u-w "$work/elsewhere"
     DARKROOM_BUILD=$work/elsewhere/build "$tree/darkroom" 2>"$work/said" || status=$?
