@@ -19,8 +19,8 @@ struct FullHost : test::Host {
     FullHost(std::uint32_t width, std::uint32_t height)
         : Host(test::round_to_float(test::random_display(width, height, 4))) {
         gpu::Context& context = device.context();
-        const auto upload = [&](const Rgba& color, VkFormat format) {
-            return gpu::test::upload(context, test::pixels_of(test::uniform(width, height, color)), format,
+        const auto upload = [&](const Rgba& value, VkFormat format) {
+            return gpu::test::upload(context, test::pixels_of(test::uniform(width, height, value)), format,
                                      VK_IMAGE_LAYOUT_GENERAL);
         };
         depth = upload({5, 0, 0, 1}, VK_FORMAT_R32_SFLOAT);

@@ -19,8 +19,8 @@ using test::content;
 using test::Outcome;
 
 TEST(VideoFrame, RatesAreThoseOfFilmAndTelevision) {
-    const auto rate = [](double rate) {
-        const FrameRate found = frame_rate(rate);
+    const auto rate = [](double hertz) {
+        const FrameRate found = frame_rate(hertz);
         return fmt::format("{}:{}", found.numerator, found.denominator);
     };
     EXPECT_EQ(rate(24), "24:1");

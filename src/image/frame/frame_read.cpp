@@ -182,7 +182,7 @@ std::optional<ColorMatrix> FrameReader::conversion_of_color() {
     if (values.size() != 8) {
         const std::string& red = part(found_.color).channels[static_cast<std::size_t>(found_.color.channels[0])];
         if (red.ends_with("X") || red.ends_with("x"))
-            frame_.warnings.push_back(
+            frame_.warnings.emplace_back(
                 "the color is in X, Y, Z and no chromaticities are given: taken as linear Rec. 709");
         return {};
     }
@@ -192,7 +192,7 @@ std::optional<ColorMatrix> FrameReader::conversion_of_color() {
                                    .blue = {values[4], values[5]},
                                    .white = {values[6], values[7]}};
     const auto matrix = to_rec709(primaries);
-    if (!matrix) frame_.warnings.push_back("the chromaticities span no color space: taken as linear Rec. 709");
+    if (!matrix) frame_.warnings.emplace_back("the chromaticities span no color space: taken as linear Rec. 709");
     // Not even the sign of a zero may change in a picture that is in our primaries.
     if (!matrix || *matrix == ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) return {};
     return *matrix;
@@ -266,7 +266,7 @@ Result<> FrameReader::make_normals() {
     if (is_vray_ && !options_.names.contains("normals")) {
         vray_normals_ = world_to_camera();
         if (!vray_normals_) {
-            frame_.warnings.push_back(
+            frame_.warnings.emplace_back(
                 "V-Ray normals without cameraTransform cannot be turned to world space: left out");
             return {};
         }
