@@ -63,16 +63,23 @@ failed() {
     die "$1 failed; the lines above are the end of $log"
 }
 
-# On a terminal, the number of steps done, for as long as process $1 lives.
+# How far the build in folder $1 is, for as long as process $2 lives: on a terminal one line that renews itself, and
+# elsewhere a line every ten percent.
 show_progress() {
-    local steps
-    while kill -0 "$1" 2>/dev/null; do
-        steps=$(grep -ao '^\[[0-9]*/[0-9]*\]' "$log" | tail -n 1) || true
-        [[ -t 2 && -n $steps ]] && printf '\r\033[Kdarkroom: building %s' "$steps" >&2
+    local folder=$1 builder=$2 started=$SECONDS said=0 now percent seconds
+    while kill -0 "$builder" 2>/dev/null; do
+        now=$(awk -v elapsed=$((SECONDS - started)) -f "$root/scripts/progress.awk" part=last "$folder/.last_log" \
+            part=plan "$folder/.plan" part=now "$log") || true
+        read -r percent seconds <<<"$now" || true
+        if [[ -n $percent && -t 2 ]]; then
+            printf '\r\033[Kdarkroom: building: %d %%, about %d s left' "$percent" "$seconds" >&2
+        elif [[ -n $percent && $((percent / 10)) -gt $said ]]; then
+            said=$((percent / 10))
+            say "building: $percent %, about $seconds s left"
+        fi
         sleep 0.2
     done
-    [[ -t 2 ]] && printf '\r\033[K' >&2
-    return 0
+    [[ ! -t 2 ]] || printf '\r\033[K' >&2
 }
 
 # What the program is made of. A folder counts as well as the files in it: one that came or went changed it.
@@ -121,12 +128,15 @@ build() {
     [[ -x $folder/bin/darkroom ]] || say "building in $folder, some minutes the first time"
     printf '%s' "$root" >"$folder/.building"
     cmake -S "$root" -B "$folder" -G Ninja "$@" >>"$log" 2>&1 || failed "configuring"
+    # What progress is measured by; ninja writes its log anew as it builds.
+    ninja -C "$folder" -n "$target" >"$folder/.plan" 2>/dev/null || true
+    cp "$folder/.ninja_log" "$folder/.last_log" 2>/dev/null || : >"$folder/.last_log"
     # Without the lock, which a compiler cache's server would keep.
     rm -f "$folder/.ccache"
     CCACHE_STATSLOG=$(cd "$folder" && pwd)/.ccache cmake --build "$folder" --target "$target" >>"$log" 2>&1 9>&- &
     local builder=$!
     trap 'kill "$builder" 2>/dev/null; exit 130' INT TERM
-    show_progress "$builder"
+    show_progress "$folder" "$builder"
     wait "$builder" || failed "building"
     trap - INT TERM
     mv "$folder/.building" "$folder/.built"

@@ -156,6 +156,28 @@ status=0
 "$tree/test" --thread --all 2>"$work/said" || status=$?
 [[ $status == 2 ]] && grep -q 'one of them' "$work/said" || fail "./test --thread --all"
 
+# A build says how far it is, here as far as five of ten equal steps, and goes on when that was said.
+cat >"$work/bin/ninja" <<'STUB'
+#!/usr/bin/env bash
+[[ -z ${STUB_STEPS:-} ]] || printf '[%d/10] Building x.o%s\n' {1,1,2,2,3,3,4,4,5,5,6,6,7,7,8,8,9,9,10,10}
+STUB
+cat >>"$work/bin/cmake" <<'STUB'
+[[ -z ${STUB_STEPS:-} || $1 != --build ]] || {
+    printf '[%d/10] Building x.o%s\n' {1,1,2,2,3,3,4,4,5,5}
+    for _ in {1..100}; do grep -q "$STUB_STEPS" "$STUB_SAID" && break || sleep 0.1; done
+    # Time to say it twice, which would be wrong.
+    sleep 0.6
+}
+STUB
+chmod +x "$work/bin/ninja"
+export STUB_SAID=$work/said
+touch "$tree/src/three.cpp"
+STUB_STEPS='50 %' "$tree/darkroom" >"$work/out" 2>"$work/said"
+[[ $(grep -cE '^darkroom: building: 50 %, about [0-9]+ s left$' "$work/said") == 1 ]] || fail "progress without a terminal"
+touch "$tree/src/three.cpp"
+STUB_STEPS='50 %.*50 %' script -qefc "$(printf '%q' "$tree/darkroom")" "$work/said" </dev/null >"$work/out"
+grep -qE $'\r\033\\[Kdarkroom: building: 50 %, about [0-9]+ s left\r' "$work/said" || fail "progress on a terminal"
+
 # How much came from the compiler's cache is said in one line, where something was compiled.
 cat >>"$work/bin/cmake" <<'STUB'
 [[ -z ${STUB_HITS:-} || $1 != --build ]] ||
