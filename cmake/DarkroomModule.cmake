@@ -80,23 +80,17 @@ function(darkroom_module name)
   target_link_libraries(darkroom_${name} PUBLIC ${ARGN} PRIVATE darkroom_options)
 endfunction()
 
-# Sets `out` to a C++ initialiser {"shown", R"(text of path)"}, and configures again when the file changes.
-function(darkroom_embed path shown out)
-  file(READ ${path} text)
-  set(${out} "    {\"${shown}\", R\"embedded(${text})embedded\"},\n" PARENT_SCOPE)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
-endfunction()
-
-# Gives the module of the calling folder FILE, an initialiser of a row for each file of its shaders/ and their rooms: name
-# (with the room) and text.
-function(darkroom_embed_shaders name file)
-  set(folder ${CMAKE_CURRENT_SOURCE_DIR}/shaders)
-  file(GLOB shaders RELATIVE ${folder} CONFIGURE_DEPENDS ${folder}/*.glsl ${folder}/*/*.glsl)
-  set(texts "")
-  foreach(shader ${shaders})
-    darkroom_embed(${folder}/${shader} ${shader} text)
-    string(APPEND texts "${text}")
-  endforeach()
-  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${file} CONTENT "@texts@" @ONLY)
-  target_include_directories(darkroom_${name} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
+# Has `output` made, a C++ initialiser for each file that matches one of PATTERNS below `folder`: its name there, behind
+# `prefix`, and its text. It is made again when one of them changes, without configuring.
+function(darkroom_embed target output folder prefix)
+  list(TRANSFORM ARGN PREPEND ${folder}/)
+  file(GLOB files RELATIVE ${folder} CONFIGURE_DEPENDS ${ARGN})
+  set(paths ${files})
+  list(TRANSFORM paths PREPEND ${folder}/)
+  list(JOIN files "," names)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/DarkroomEmbed.cmake)
+  add_custom_command(OUTPUT ${output} DEPENDS ${paths} ${script} VERBATIM
+    COMMENT "Embedding ${names}"
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DFOLDER=${folder} -DPREFIX=${prefix} -DFILES=${names} -P ${script})
+  target_sources(${target} PRIVATE ${output})
 endfunction()

@@ -266,7 +266,7 @@ TEST(EffectColorGrade, GpuSurvivesEverything) {
         const ReferenceImage out = test::develop(
             [&](Composer& composer) {
                 const Handle entry = composer.add(ColorGrade{});
-                for (const ParamInfo& row : color_grade_rows.table().rows)
+                for (const ParamInfo& row : effect_info(ColorGrade{}).parameters.rows)
                     EXPECT_TRUE(
                         composer.set_override(entry, row.name, "test", std::span(words).subspan(row.word, row.words)));
             },

@@ -4,6 +4,7 @@
 // into it. It works on the picture alone: a light outside of it, or hidden, sends nothing. For shafts in a room see
 // volumetric.
 
+#include <darkroom/frame.hpp>
 #include <darkroom/param.hpp>
 
 namespace darkroom {

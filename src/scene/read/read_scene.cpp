@@ -269,12 +269,12 @@ Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& fi
 }
 
 bool is_model_path(const std::filesystem::path& path) {
-    const std::string extension = reading::lower(path.extension().string());
+    const std::string extension = lower(path.extension().string());
     return extension == ".glb" || extension == ".gltf";
 }
 
 Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& options) {
-    const std::string extension = reading::lower(path.extension().string());
+    const std::string extension = lower(path.extension().string());
     if (is_model_path(path)) return reading::scene_of_model(path);
     if (!extension.empty() && extension != ".toml")
         return user_error(
