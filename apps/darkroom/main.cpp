@@ -11,62 +11,17 @@
 #include <optional>
 
 #include "apps/darkroom/effects/named_effects.hpp"
+#include "apps/darkroom/flags/program.hpp"
 #include "apps/darkroom/help/help.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "commands.hpp"
 #include "core/files.hpp"
-#include "core/text/param_text.hpp"
 
 namespace {
 
-// The flags and commands that an unknown argument may have been meant to be.
-std::vector<std::string> known_names(const CLI::App& command) {
-    std::vector<std::string> names;
-    for (const CLI::Option* const option : command.get_options())
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    for (const CLI::App* const child : command.get_subcommands({})) names.push_back(child->get_name());
-    return names;
-}
-
-// The first argument nobody took.
-std::string unknown_argument(const CLI::App& program) {
-    for (const CLI::App* const command : program.get_subcommands()) {
-        const std::vector<std::string> rest = command->remaining();
-        if (rest.empty()) continue;
-        const std::string name = rest.front().substr(0, rest.front().find('='));
-        return fmt::format("{}: unknown argument '{}'{}", command->get_name(), darkroom::printable(rest.front()),
-                           darkroom::suggestion(name, known_names(*command)));
-    }
-    std::vector<std::string> commands;
-    for (const CLI::App* const command : program.get_subcommands({})) commands.push_back(command->get_name());
-    const std::vector<std::string> rest = program.remaining();
-    if (rest.empty()) return fmt::format("a command is needed: {}", fmt::join(commands, ", "));
-    return fmt::format("unknown command '{}': allowed is {}{}", darkroom::printable(rest.front()),
-                       fmt::join(commands, ", "), darkroom::suggestion(rest.front(), known_names(program)));
-}
-
-// An option whose value is an empty text, which names nothing. Those without a type are values of the look, which say
-// themselves what they allow.
-std::optional<std::string> empty_option(const CLI::App& command) {
-    for (const CLI::Option* const option : command.get_options()) {
-        if (option->get_type_name().empty()) continue;
-        for (const std::string& value : option->results())
-            if (value.empty()) return option->get_name();
-    }
-    return std::nullopt;
-}
-
-void add_voice(CLI::App& command) {
-    command.add_flag_callback(
-        "-q,--quiet", [] { app::set_voice(app::Voice::Quiet); }, "Says nothing but warnings and errors");
-    command.add_flag_callback(
-        "-v,--verbose", [] { app::set_voice(app::Voice::Verbose); },
-        "Says more: the device, and all that is left out with the reason");
-}
-
 /// The command that is called `asked`, or all of them where none is. Flags of all effects in seven commands take longer
 /// to make than everything else before the work.
-std::vector<app::Command> add_commands(CLI::App& program, std::span<const darkroom::LookEntry> named,
+std::vector<app::Command> add_commands(app::CommandFlags program, std::span<const darkroom::LookEntry> named,
                                        std::string_view asked) {
     using Commands = std::vector<app::Command>;
     struct Adding {
@@ -102,48 +57,18 @@ std::vector<app::Command> add_commands(CLI::App& program, std::span<const darkro
 }
 
 int run(int argc, char** argv) {
-    CLI::App program("Renders scenes, and develops raw HDR frames into finished pictures.", "darkroom");
-    program.set_version_flag("--version", "darkroom " DARKROOM_VERSION);
-    program.require_subcommand(1);
-    program.footer(
-        "darkroom render scene.toml --size 640x360 -o picture.png\n"
-        "darkroom develop frame.exr --exposure 2 --vignette-intensity 0.3 -o picture.png\n"
-        "darkroom develop --help bloom");
-    app::add_help_flags(program);
-    const std::vector<darkroom::LookEntry> named = app::effects_named_by({argv, static_cast<std::size_t>(argc)});
-    const std::vector<app::Command> commands = add_commands(program, named, argc > 1 ? argv[1] : "");
-    for (const app::Command& command : commands) add_voice(*command.app);
-    if (const std::optional<int> code = app::answer_help(program, {argv, static_cast<std::size_t>(argc)})) return *code;
-    // CLI11 would take the next argument for the value.
-    for (int i = 1; i < argc; ++i) {
-        const std::string_view argument = argv[i];
-        if (argument.starts_with("--") && argument.ends_with('=') && argument.find('=') == argument.size() - 1)
-            return app::fail_user(
-                fmt::format("{}: one value is needed", darkroom::printable(argument.substr(0, argument.size() - 1))));
-    }
-    try {
-        program.parse(argc, argv);
-    } catch (const CLI::Success& done) {  // --version
-        return program.exit(done);
-    } catch (const CLI::ExtrasError&) {
-        return app::fail_user(unknown_argument(program));
-    } catch (const CLI::ArgumentMismatch& error) {
-        const std::string text = error.what();
-        return app::fail_user(
-            fmt::format("{}: one value is needed", darkroom::printable(text.substr(0, text.find(':')))));
-    } catch (const CLI::RequiredError& error) {
-        for (const CLI::App* const command : program.get_subcommands())
-            if (command->get_require_subcommand_min() > 0 && command->get_subcommands().empty())
-                return app::fail_user(fmt::format("{}: {}", command->get_name(), unknown_argument(*command)));
-        return app::fail_user(program.get_subcommands().empty() ? unknown_argument(program)
-                                                                : std::string(error.what()));
-    } catch (const CLI::ParseError& error) {
-        return app::fail_user(darkroom::printable(error.what()));
-    }
-    const auto chosen = std::find_if(commands.begin(), commands.end(),
-                                     [](const app::Command& command) { return command.app->parsed(); });
-    if (const std::optional<std::string> name = empty_option(*chosen->app))
-        return app::fail_user(fmt::format("{}: one value is needed", *name));
+    const app::Program program;
+    const std::span<char* const> arguments(argv, static_cast<std::size_t>(argc));
+    app::add_help_flags(program.flags().parser());
+    const std::vector<darkroom::LookEntry> named = app::effects_named_by(arguments);
+    const std::vector<app::Command> commands = add_commands(program.flags(), named, argc > 1 ? argv[1] : "");
+    for (const app::Command& command : commands) app::add_voice(command.flags);
+    if (const std::optional<int> code = app::answer_help(program.flags().parser(), arguments)) return *code;
+    const darkroom::Result<std::optional<int>> answered = program.parse(arguments);
+    if (!answered) return app::fail(answered.error());
+    if (*answered) return **answered;
+    const auto chosen = std::ranges::find_if(commands, app::is_asked, &app::Command::flags);
+    if (const darkroom::Result<> done = app::check_values(chosen->flags); !done) return app::fail(done.error());
     return chosen->run();
 }
 

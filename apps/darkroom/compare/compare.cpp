@@ -164,29 +164,29 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_compare(CLI::App& program) {
-    CLI::App* const command = program.add_subcommand(
+Command add_compare(CommandFlags program) {
+    const CommandFlags command = program.add_command(
         "compare", "Compares pictures, folders or sequences: errors, PSNR and FLIP; exit code 3: they differ");
     const auto options = std::make_shared<Options>();
-    command->footer(
+    command.examples(
         "darkroom compare frame.exr frame.exr --fail-max 0\n"
         "darkroom compare reference.png changed.png --fail-flip 0.9 --diff difference.png\n"
         "darkroom compare expected/ pictures/ --fail-max 0 --sheet worst.png");
-    command->add_option("A", options->a, "The reference: a file, a folder or a sequence")->required();
-    command->add_option("B", options->b, "What is under test, of the same kind")->required();
-    options->fail_max.add_to(*command, "Fails if a channel is further apart anywhere")->type_name("X");
-    options->fail_psnr.add_to(*command, "Fails if the PSNR is below this")->type_name("DB");
-    options->fail_flip.add_to(*command, "Fails if the mean FLIP is above this")->type_name("X");
-    options->fail_above.add_to(*command, "Another name of --fail-flip")->type_name("X");
+    command.add_option("A", options->a, "The reference: a file, a folder or a sequence").required();
+    command.add_option("B", options->b, "What is under test, of the same kind").required();
+    options->fail_max.add_to(command, "Fails if a channel is further apart anywhere").type_name("X");
+    options->fail_psnr.add_to(command, "Fails if the PSNR is below this").type_name("DB");
+    options->fail_flip.add_to(command, "Fails if the mean FLIP is above this").type_name("X");
+    options->fail_above.add_to(command, "Another name of --fail-flip").type_name("X");
     command
-        ->add_option("--layers", options->layers,
-                     "color, depth, normals, velocity, layers or channels as the file names them, or all")
-        ->type_name("LIST");
-    command->add_option("--diff", options->diff, "Writes the FLIP errors of two files as a picture")
-        ->type_name("OUT.png");
-    command->add_option("--sheet", options->sheet, "Writes the worst: reference, test and FLIP errors side by side")
-        ->type_name("OUT.png");
-    command->add_flag("--json", options->is_json, "For programs");
+        .add_option("--layers", options->layers,
+                    "color, depth, normals, velocity, layers or channels as the file names them, or all")
+        .type_name("LIST");
+    command.add_option("--diff", options->diff, "Writes the FLIP errors of two files as a picture")
+        .type_name("OUT.png");
+    command.add_option("--sheet", options->sheet, "Writes the worst: reference, test and FLIP errors side by side")
+        .type_name("OUT.png");
+    command.add_flag("--json", options->is_json, "For programs");
     return {command, [options] { return run(*options); }};
 }
 

@@ -366,38 +366,37 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_develop(CLI::App& program, std::span<const darkroom::LookEntry> named) {
-    CLI::App* const command = program.add_subcommand("develop", "Develops HDR frames into finished pictures");
+Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags command = program.add_command("develop", "Develops HDR frames into finished pictures");
     const auto options = std::make_shared<Options>();
-    command->footer(
+    command.examples(
         "darkroom develop frame.exr --look my.toml --exposure 2 -o picture.png\n"
         "darkroom develop 'shot.####.exr' --frames 1-2 -o 'out.####.png'\n"
         "darkroom develop frame.exr --ssao --no-bloom --tonemap-curve agx -o picture.exr");
     command
-        ->add_option("INPUT", options->inputs,
-                     "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.%04d.exr or shot.####.exr stands for all that match")
-        ->required();
+        .add_option("INPUT", options->inputs,
+                    "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.%04d.exr or shot.####.exr stands for all that match")
+        .required();
     command
-        ->add_option("-o,--output,--out", options->out,
-                     "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d, #### or "
-                     "{name}; - is standard output, with --format")
-        ->type_name("OUT")
-        ->required();
-    command->add_option("--size", options->size, "Develops at this size; the frame is resampled first")
-        ->type_name("WxH");
-    command->add_flag("--keep-layers", options->keeps_layers,
-                      "Puts the frame's other layers, as they are, beside the picture in an .exr file");
-    command->add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
-    command->add_option("--frames", options->frames, "Of the inputs those with these numbers")->type_name("A-B");
-    options->time.add_to(*command, "For effects that move; default: what the frame says, or 0")->type_name("S");
+        .add_option("-o,--output,--out", options->out,
+                    "The picture: .png .jpg .tif .exr .hdr. For several inputs a folder, or a name with %04d, #### or "
+                    "{name}; - is standard output, with --format")
+        .type_name("OUT")
+        .required();
+    command.add_option("--size", options->size, "Develops at this size; the frame is resampled first").type_name("WxH");
+    command.add_flag("--keep-layers", options->keeps_layers,
+                     "Puts the frame's other layers, as they are, beside the picture in an .exr file");
+    command.add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
+    command.add_option("--frames", options->frames, "Of the inputs those with these numbers").type_name("A-B");
+    options->time.add_to(command, "For effects that move; default: what the frame says, or 0").type_name("S");
     options->frames_per_second
-        .add_to(*command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")
-        ->type_name("N");
-    options->frame.add_to(*command);
-    options->write.add_to(*command);
-    options->run.add_to(*command);
-    options->device.add_to(*command);
-    options->look.add_to(*command, true, named);
+        .add_to(command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")
+        .type_name("N");
+    options->frame.add_to(command);
+    options->write.add_to(command);
+    options->run.add_to(command);
+    options->device.add_to(command);
+    options->look.add_to(command, true, named);
     return {command, [options] { return run(*options); },
             [options]() -> Result<> {
                 const Result<Job> job = job_of(*options);

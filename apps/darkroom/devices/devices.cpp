@@ -31,9 +31,9 @@ int list() {
 
 }  // namespace
 
-Command add_devices(CLI::App& program) {
-    CLI::App* const command = program.add_subcommand("devices", "Lists the Vulkan devices, best first");
-    command->footer(
+Command add_devices(CommandFlags program) {
+    const CommandFlags command = program.add_command("devices", "Lists the Vulkan devices, best first");
+    command.examples(
         "darkroom devices\n"
         "darkroom develop frame.exr --device 0 -o picture.png\n"
         "DARKROOM_VALIDATE=1 darkroom develop frame.exr -o picture.png");

@@ -131,18 +131,18 @@ int show(const Options& options) {
 
 }  // namespace
 
-Command add_effects(CLI::App& program) {
-    CLI::App* const command = program.add_subcommand("effects", "Lists the effects, or shows the page of one");
-    command->footer(
+Command add_effects(CommandFlags program) {
+    const CommandFlags command = program.add_command("effects", "Lists the effects, or shows the page of one");
+    command.examples(
         "darkroom effects\n"
         "darkroom effects tonemap\n"
         "darkroom effects tonemap --json");
     const auto options = std::make_shared<Options>();
     std::vector<std::string_view> names;
     for (const EffectInfo* const effect : darkroom::all_effects()) names.push_back(effect->name);
-    command->add_option("NAME", options->name, "An effect, or the file of one (.glsl); its page is shown")
-        ->option_text(fmt::format("{}", fmt::join(names, "|")));
-    command->add_flag("--json", options->is_json, "For programs: parameters, flags and what effects need");
+    command.add_option("NAME", options->name, "An effect, or the file of one (.glsl); its page is shown")
+        .option_text(fmt::format("{}", fmt::join(names, "|")));
+    command.add_flag("--json", options->is_json, "For programs: parameters, flags and what effects need");
     return {command, [options] {
                 if (!options->name.empty()) return show(*options);
                 return options->is_json ? print_json(darkroom::all_effects()) : list();

@@ -4,14 +4,14 @@
 
 namespace app {
 
-std::vector<Command> add_farm(CLI::App& program, std::span<const darkroom::LookEntry> named) {
-    CLI::App* const farm = program.add_subcommand("farm", "Makes the pictures of a sequence on many machines");
-    farm->require_subcommand(1);
-    farm->footer(
+std::vector<Command> add_farm(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags farm = program.add_command("farm", "Makes the pictures of a sequence on many machines");
+    farm.require_command();
+    farm.examples(
         "darkroom farm slurm 'shot.####.exr' --look my.toml -o . --chunk 1 --dry-run\n"
         "darkroom farm task 'shot.####.exr' --look my.toml -o . --frames 1-2\n"
         "darkroom farm status .");
-    return {add_farm_slurm(*farm, named), add_farm_task(*farm), add_farm_status(*farm)};
+    return {add_farm_slurm(farm, named), add_farm_task(farm), add_farm_status(farm)};
 }
 
 }  // namespace app

@@ -128,15 +128,15 @@ Result<> run(const StatusOptions& options) {
 
 }  // namespace
 
-Command add_farm_status(CLI::App& farm) {
-    CLI::App* const command = farm.add_subcommand("status", "Tells what is done, failed and missing");
-    command->footer(
+Command add_farm_status(CommandFlags farm) {
+    const CommandFlags command = farm.add_command("status", "Tells what is done, failed and missing");
+    command.examples(
         "darkroom farm status .\n"
         "darkroom farm status shot.farm\n"
         "darkroom farm status shot.farm --json");
     const auto options = std::make_shared<StatusOptions>();
-    command->add_option("FOLDER", options->folder, "Where the pictures are, or NAME.farm in it")->required();
-    command->add_flag("--json", options->is_json, "One document for programs");
+    command.add_option("FOLDER", options->folder, "Where the pictures are, or NAME.farm in it").required();
+    command.add_flag("--json", options->is_json, "One document for programs");
     return {command, [options] {
                 const Result<> done = run(*options);
                 return done ? exit_ok : fail(done.error());

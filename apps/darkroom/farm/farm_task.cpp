@@ -129,15 +129,15 @@ int run(const FarmFlags& flags) {
 
 }  // namespace
 
-Command add_farm_task(CLI::App& farm) {
-    CLI::App* const command =
-        farm.add_subcommand("task", "Makes one chunk, tried again three times at most, and writes a record of it");
-    command->footer(
+Command add_farm_task(CommandFlags farm) {
+    const CommandFlags command =
+        farm.add_command("task", "Makes one chunk, tried again three times at most, and writes a record of it");
+    command.examples(
         "darkroom farm task 'shot.####.exr' -o . --frames 1-1\n"
         "darkroom farm task 'shot.####.exr' --look my.toml -o . --frames 1-2 -- --exposure 2\n"
         "darkroom farm task scene.toml -o 'scene.####.png' --frames 0-1 -- --size 64x36");
     const auto flags = std::make_shared<FarmFlags>();
-    flags->add_to(*command, "The chunk");
+    flags->add_to(command, "The chunk");
     return {command, [flags] { return run(*flags); }};
 }
 

@@ -7,6 +7,7 @@
 
 #include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/effects/named_effects.hpp"
+#include "apps/darkroom/flags/program.hpp"
 #include "apps/darkroom/run/outputs.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/sequence.hpp"
@@ -31,26 +32,19 @@ fs::path farm_folder(const fs::path& first, const fs::path& other) {
     return first.parent_path() / ((name.empty() ? "frames" : name) + farm_suffix);
 }
 
-std::vector<std::string> names_of(const CLI::App& command) {
-    std::vector<std::string> names;
-    for (const CLI::Option* const option : command.get_options())
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    return names;
-}
-
 }  // namespace
 
-void FarmFlags::add_to(CLI::App& command, const std::string& frames_doc) {
+void FarmFlags::add_to(CommandFlags command, const std::string& frames_doc) {
     command.add_option("INPUT", input_, "A sequence (shot.%04d.exr or shot.####.exr), or a scene or a model")
-        ->required();
+        .required();
     command.add_option("MORE", more_, "Behind --: flags of develop for a sequence, of render for a scene");
     command
         .add_option("-o,--output,--out", out_,
                     "The pictures: a folder for those of a sequence, or a name with %04d, #### or {name}")
-        ->type_name("OUT")
-        ->required();
-    command.add_option("--look", look_, "As for develop and render")->type_name("FILE");
-    command.add_option("--frames", frames_, frames_doc)->type_name("A-B");
+        .type_name("OUT")
+        .required();
+    command.add_option("--look", look_, "As for develop and render").type_name("FILE");
+    command.add_option("--frames", frames_, frames_doc).type_name("A-B");
     command.add_flag("--allow-custom-effects", allows_custom_effects_,
                      "Lets the look name files of effects, which are code, and --effect bring some");
 }
@@ -144,25 +138,14 @@ Result<FarmWork> FarmFlags::work() const {
 // The command itself reads the arguments: what it would refuse is refused here, once, instead of by every task.
 // For two frames, because what is right for one may be wrong for several; of more, all names would be tried.
 Result<> FarmFlags::check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const {
-    CLI::App program;
-    const Command command = is_scene() ? add_render(program, named) : add_develop(program, named);
+    const Trial trial;
+    const Command command = is_scene() ? add_render(trial.program(), named) : add_develop(trial.program(), named);
     const long long first = work.frames.front().number, last = std::min(first + 1, work.frames.back().number);
-    std::vector<std::string> arguments = this->command(fmt::format("{}-{}", first, last));
-    std::ranges::reverse(arguments);  // as CLI11 takes them
-    try {
-        program.parse(arguments);
-    } catch (const CLI::ExtrasError&) {
-        const CLI::App& checked = *command.app;
-        const std::string argument = checked.remaining().empty() ? std::string() : checked.remaining().front();
-        return user_error(fmt::format("{}: unknown argument '{}'{}", checked.get_name(), printable(argument),
-                                      darkroom::suggestion(argument.substr(0, argument.find('=')), names_of(checked))));
-    } catch (const CLI::ParseError& problem) {
-        return user_error(fmt::format("{}: {}", command.app->get_name(), printable(problem.what())));
-    }
-    const CLI::Option* const input = command.app->get_option_no_throw("INPUT");
-    if (input != nullptr && input->count() > 1)
-        return user_error(fmt::format("unexpected '{}': allowed behind -- are flags of {}",
-                                      printable(input->results().back()), command.app->get_name()));
+    if (Result<> parsed = trial.parse(this->command(fmt::format("{}-{}", first, last)), command.flags); !parsed)
+        return parsed;
+    if (const std::vector<std::string> inputs = command.flags.typed("INPUT"); inputs.size() > 1)
+        return user_error(fmt::format("unexpected '{}': allowed behind -- are flags of {}", printable(inputs.back()),
+                                      command.flags.name()));
     if (!allows_custom_effects_)
         for (const std::string& argument : more_)
             if (argument == "--effect" || argument.starts_with("--effect="))

@@ -3,7 +3,6 @@
 // What a farm is asked for: a sequence to be developed or a scene to be rendered, as `develop` and `render` have it,
 // which do the work. Their own flags stand behind "--" and are handed on as they are.
 
-#include <CLI/CLI.hpp>
 #include <darkroom/look.hpp>
 #include <darkroom/result.hpp>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/darkroom/flags/flags.hpp"
 #include "apps/darkroom/flags/run_flags.hpp"
 #include "farm_record.hpp"
 
@@ -28,7 +28,7 @@ struct FarmWork {
 
 class FarmFlags {
   public:
-    void add_to(CLI::App& command, const std::string& frames_doc);
+    void add_to(CommandFlags command, const std::string& frames_doc);
     /// Errors: no sequence and no scene, no frame, no such folder.
     [[nodiscard]] darkroom::Result<FarmWork> work() const;
     /// All that `develop` or `render` would refuse before it reads a frame or a scene, of flags and look.

@@ -14,15 +14,15 @@ namespace app {
 using darkroom::Result;
 using darkroom::user_error;
 
-void DeviceFlags::add_to(CLI::App& command) {
+void DeviceFlags::add_to(CommandFlags command) {
     const std::string group = "The device";
     command.add_option("--device", device_, "Name (or a part of it) or index; see `darkroom devices`")
-        ->type_name("NAME|INDEX")
-        ->group(group);
+        .type_name("NAME|INDEX")
+        .group(group);
     command.add_option("--kernels", kernels_, "Which stage runs the kernels")
-        ->type_name("auto|compute|raster")
-        ->group(group);
-    command.add_flag("--no-fuse", is_unfused_, "Every effect in a pass of its own")->group(group);
+        .type_name("auto|compute|raster")
+        .group(group);
+    command.add_flag("--no-fuse", is_unfused_, "Every effect in a pass of its own").group(group);
 }
 
 Result<darkroom::KernelStage> DeviceFlags::stage() const {

@@ -2,12 +2,12 @@
 #pragma once
 // The flags that say where and how the work is done, and texts of flags to values.
 
-#include <CLI/CLI.hpp>
 #include <darkroom/device.hpp>
 #include <optional>
 #include <string>
 
 #include "develop/developer.hpp"
+#include "flags.hpp"
 #include "image/picture/video_frame.hpp"
 #include "image/picture/write.hpp"
 
@@ -15,7 +15,7 @@ namespace app {
 
 class DeviceFlags {
   public:
-    void add_to(CLI::App& command);
+    void add_to(CommandFlags command);
     [[nodiscard]] darkroom::Result<darkroom::KernelStage> stage() const;
     [[nodiscard]] darkroom::Result<darkroom::Device> create() const;
     /// For what runs no kernel: an assumed device, unless --device names one.

@@ -5,17 +5,14 @@ namespace app {
 
 using darkroom::Result;
 
-void FrameFlags::add_to(CLI::App& command) {
+void FrameFlags::add_to(CommandFlags command) {
     const std::string group = "The frame";
     command.add_option("--map", maps_, "What a layer is called in the file: depth=NAME, normals=, velocity=, color=")
-        ->type_name("LAYER=NAME")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->group(group);
-    fov_.add_to(command, "Vertical field of view, where the file has no projection")
-        ->type_name("DEGREES")
-        ->group(group);
-    command.add_option("--camera", camera_, "A camera file (TOML)")->type_name("FILE")->group(group);
+        .type_name("LAYER=NAME")
+        .repeated()
+        .group(group);
+    fov_.add_to(command, "Vertical field of view, where the file has no projection").type_name("DEGREES").group(group);
+    command.add_option("--camera", camera_, "A camera file (TOML)").type_name("FILE").group(group);
 }
 
 Result<darkroom::FrameOptions> FrameFlags::options() const {

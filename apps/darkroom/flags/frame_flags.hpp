@@ -2,11 +2,11 @@
 #pragma once
 // The flags that say what is in the file of a frame where the file does not: names of layers, the camera.
 
-#include <CLI/CLI.hpp>
 #include <darkroom/result.hpp>
 #include <string>
 #include <vector>
 
+#include "flags.hpp"
 #include "image/frame/frame_file.hpp"
 #include "number_flag.hpp"
 
@@ -15,7 +15,7 @@ namespace app {
 /// --map, --fov, --camera.
 class FrameFlags {
   public:
-    void add_to(CLI::App& command);
+    void add_to(CommandFlags command);
     [[nodiscard]] darkroom::Result<darkroom::FrameOptions> options() const;
 
   private:

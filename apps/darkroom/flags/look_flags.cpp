@@ -69,31 +69,29 @@ LookFlags::Value& LookFlags::add_value(std::string key, std::string flag) {
     return *values_.emplace_back(std::make_unique<Value>(Value{.key = std::move(key), .flag = std::move(flag)}));
 }
 
-void LookFlags::add_flag(CLI::App& command, const std::string& key, const std::string& value, const std::string& help,
-                         const std::string& group) {
+void LookFlags::add_flag(CommandFlags command, const std::string& key, const std::string& value,
+                         const std::string& help, const std::string& group) {
     // Of an effect of a file that has the name of another flag; --set reaches it still.
-    if (command.get_option_no_throw(darkroom::flag_name(key)) != nullptr) return;
+    if (command.has(darkroom::flag_name(key))) return;
     Value& to = add_value(key, darkroom::flag_name(key));
-    to.option =
-        command.add_option(to.flag, to.text, help)->group(group)->type_name("")->option_text(value)->expected(1);
-    to.option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    to.option = command.add_option(to.flag, to.text, help).group(group).type_name("").option_text(value).last_counts();
 }
 
-void LookFlags::add_switch(CLI::App& command, const darkroom::EffectInfo& effect, const std::string& group) {
+void LookFlags::add_switch(CommandFlags command, const darkroom::EffectInfo& effect, const std::string& group) {
     const std::string on = darkroom::flag_name(effect.name), off = "--no-" + on.substr(2);
     // A parameter that bears its effect's name (--exposure 2) has the name to itself.
     const bool is_value = std::ranges::any_of(effect.parameters.rows, [&](const darkroom::ParamInfo& row) {
         return darkroom::flat_key(effect.name, row.name) == effect.name;
     });
     std::string names;
-    if (!is_value && command.get_option_no_throw(on) == nullptr) names = on;
-    if (command.get_option_no_throw(off) == nullptr) names += (names.empty() ? "!" : ",!") + off;
+    if (!is_value && !command.has(on)) names = on;
+    if (!command.has(off)) names += (names.empty() ? "!" : ",!") + off;
     if (names.empty()) return;
     Value& to = add_value(darkroom::flat_key(effect.name, "enabled"), names.starts_with('!') ? off : on);
-    to.option = command.add_flag(names, to.text, "Switches it on or off")->group(group)->type_name("");
+    to.option = command.add_flag(names, to.text, "Switches it on or off").group(group).type_name("");
 }
 
-void LookFlags::add_effect(CLI::App& command, const darkroom::EffectInfo& effect) {
+void LookFlags::add_effect(CommandFlags command, const darkroom::EffectInfo& effect) {
     const std::string title = effect_group(effect.name, effect.doc);
     add_switch(command, effect, title);
     add_flag(command, darkroom::flat_key(effect.name, "enabled"), "on|off", "The same", title);
@@ -104,57 +102,51 @@ void LookFlags::add_effect(CLI::App& command, const darkroom::EffectInfo& effect
                  title);
 }
 
-void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const darkroom::LookEntry> named) {
-    command_ = &command;
+void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const darkroom::LookEntry> named) {
+    command_ = command;
     const std::string group = "The look";
     if (has_look_flag)
         command
             .add_option("--look", file,
                         "A look file (TOML), or a scene (.scene.toml) for the look in it. Default: the scene's own, or "
                         "the flat table at its defaults")
-            ->type_name("FILE")
-            ->group(group);
+            .type_name("FILE")
+            .group(group);
     command
         .add_option("--ui", ui_file_,
                     "The interface over the picture: an image with alpha, or an SVG document; --ui-... and "
                     "--contrast-gamma-... are for it")
-        ->type_name("FILE")
-        ->group(group);
+        .type_name("FILE")
+        .group(group);
     command.add_option("--game", game_, "What a document's binding {{NAME}} shows: health=80")
-        ->type_name("NAME=VALUE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->group(group);
+        .type_name("NAME=VALUE")
+        .repeated()
+        .group(group);
     if (has_look_flag)
         command.add_option("--events", events, "What happens to the look: a file of [[event]]s (TOML)")
-            ->type_name("FILE")
-            ->group(group);
-    command.add_option("--order", order_, "Order of the flat table")
-        ->type_name("documented|scene_linear")
-        ->group(group);
+            .type_name("FILE")
+            .group(group);
+    command.add_option("--order", order_, "Order of the flat table").type_name("documented|scene_linear").group(group);
     command
         .add_option("--set", sets_, "Any parameter of an entry, by its name: bloom#2.intensity=0.3, bloom.opacity=0.5")
-        ->type_name("ENTRY.PARAM=VALUE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->group(group);
-    command.add_flag("--strict", is_strict_, "Unknown keys and values out of range in a look are errors")->group(group);
-    command
-        .add_flag("--no-postprocess", is_off_, "Tone mapping and encoding at their defaults, whatever the look says")
-        ->group(group);
+        .type_name("ENTRY.PARAM=VALUE")
+        .repeated()
+        .group(group);
+    command.add_flag("--strict", is_strict_, "Unknown keys and values out of range in a look are errors").group(group);
+    command.add_flag("--no-postprocess", is_off_, "Tone mapping and encoding at their defaults, whatever the look says")
+        .group(group);
     command
         .add_option(
             "--effect", effect_files_,
             "An effect of your own, behind the last place in the look where the picture is what it accepts; its "
             "parameters are flags, too")
-        ->type_name("FILE.glsl")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->group(group);
+        .type_name("FILE.glsl")
+        .repeated()
+        .group(group);
     command
         .add_flag(no_custom_effects, has_no_custom_effects_,
                   "Refuses a look that names the file of an effect: such files are code")
-        ->group(group);
+        .group(group);
     for (const darkroom::EffectInfo* const effect : darkroom::all_effects()) add_effect(command, *effect);
     for (const darkroom::LookEntry& entry : named) add_effect(command, *entry.effect);
 }
@@ -162,12 +154,9 @@ void LookFlags::add_to(CLI::App& command, bool has_look_flag, std::span<const da
 Result<std::vector<LookOverride>> LookFlags::overrides() const {
     std::vector<const Value*> typed;
     for (const std::unique_ptr<Value>& value : values_)
-        if (value->option->count() > 0) typed.push_back(value.get());
+        if (value->option.count() > 0) typed.push_back(value.get());
     // What was typed last counts, also among flags that say the same in two ways.
-    const std::vector<CLI::Option*>& order = command_->parse_order();
-    std::ranges::sort(typed, {}, [&](const Value* value) {
-        return std::ranges::find(order.rbegin(), order.rend(), value->option).base() - order.begin();
-    });
+    std::ranges::sort(typed, {}, [&](const Value* value) { return command_->place(value->option); });
     std::vector<LookOverride> out;
     for (const Value* const value : typed) out.push_back({value->key, value->text, value->flag});
     for (const std::string& set : sets_) {
@@ -246,7 +235,7 @@ darkroom::LookOptions LookFlags::options(std::vector<std::string>* warnings) con
 
 bool LookFlags::change_anything() const {
     return !ui_file_.empty() || !game_.empty() || !order_.empty() || !sets_.empty() || !effect_files_.empty() ||
-           std::ranges::any_of(values_, [](const auto& value) { return value->option->count() > 0; });
+           std::ranges::any_of(values_, [](const auto& value) { return value->option.count() > 0; });
 }
 
 Result<> LookFlags::change(Look& look, bool keeps_what_is_off) const {

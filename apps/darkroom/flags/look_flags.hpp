@@ -3,13 +3,14 @@
 // The flags that say what is done to the picture: the look, its order, and one flag for every parameter of every
 // effect, made from the effects' descriptions.
 
-#include <CLI/CLI.hpp>
 #include <darkroom/look.hpp>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "flags.hpp"
 
 namespace app {
 
@@ -19,7 +20,7 @@ void resolve_ui(darkroom::Look& look, const std::filesystem::path& folder);
 class LookFlags {
   public:
     /// `has_look_flag`: false where the look is a positional argument. `named`: effects of files.
-    void add_to(CLI::App& command, bool has_look_flag, std::span<const darkroom::LookEntry> named);
+    void add_to(CommandFlags command, bool has_look_flag, std::span<const darkroom::LookEntry> named);
     /// Reads the look and applies the flags. Prints warnings. Without a file of its own it is that of the scene. The
     /// document of its interface is as it can be opened.
     [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& scene = {}) const;
@@ -42,15 +43,15 @@ class LookFlags {
         std::string key;
         std::string flag;
         std::string text;
-        CLI::Option* option = nullptr;
+        Flag option;
     };
-    void add_effect(CLI::App& command, const darkroom::EffectInfo& effect);
+    void add_effect(CommandFlags command, const darkroom::EffectInfo& effect);
     Value& add_value(std::string key, std::string flag);
     /// `value`: what it takes, as help shows it.
-    void add_flag(CLI::App& command, const std::string& key, const std::string& value, const std::string& help,
+    void add_flag(CommandFlags command, const std::string& key, const std::string& value, const std::string& help,
                   const std::string& group);
     /// --bloom and --no-bloom.
-    void add_switch(CLI::App& command, const darkroom::EffectInfo& effect, const std::string& group);
+    void add_switch(CommandFlags command, const darkroom::EffectInfo& effect, const std::string& group);
     [[nodiscard]] darkroom::Result<std::vector<darkroom::LookOverride>> overrides() const;
     /// Puts those of --effect behind the look's entries, at their defaults.
     [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
@@ -60,7 +61,7 @@ class LookFlags {
     std::string order_, ui_file_;
     std::vector<std::string> sets_, effect_files_, game_;
     std::vector<std::unique_ptr<Value>> values_;  // CLI11 keeps references to the texts
-    const CLI::App* command_ = nullptr;           // knows in which order they were typed
+    std::optional<CommandFlags> command_;         // knows in which order they were typed
     bool is_strict_ = false;
     bool has_no_custom_effects_ = false;
     bool is_off_ = false;

@@ -22,7 +22,7 @@ std::string interval(const NumberRange& range) {
 
 }  // namespace
 
-CLI::Option* NumberFlag::add_to(CLI::App& command, const std::string& doc) {
+Flag NumberFlag::add_to(CommandFlags command, const std::string& doc) {
     return command.add_option(name_, text_, fmt::format("{}, {}", doc, interval(range_)));
 }
 

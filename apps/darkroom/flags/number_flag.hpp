@@ -3,12 +3,13 @@
 // A flag that takes one number of a range. The command line's parser hands over its text, so that a wrong one is
 // refused in the words that every other value is: flag, value, what is allowed.
 
-#include <CLI/CLI.hpp>
 #include <darkroom/result.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+
+#include "flags.hpp"
 
 namespace app {
 
@@ -27,7 +28,7 @@ class NumberFlag {
     NumberFlag& operator=(const NumberFlag&) = delete;
 
     /// The help says `doc` and the range.
-    CLI::Option* add_to(CLI::App& command, const std::string& doc);
+    Flag add_to(CommandFlags command, const std::string& doc);
     [[nodiscard]] bool is_given() const { return text_.has_value(); }
     /// Nothing where the flag was not given.
     [[nodiscard]] darkroom::Result<std::optional<double>> value() const;

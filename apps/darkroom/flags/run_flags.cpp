@@ -27,23 +27,23 @@ constexpr std::array<std::string_view, 3> format_names{"y4m", "rgb24", "rgba64le
 
 }  // namespace
 
-void WriteFlags::add_to(CLI::App& command) {
+void WriteFlags::add_to(CommandFlags command) {
     const std::string group = "The files";
-    command.add_option("--bits", bits_, "Samples of the file")->type_name("8|16|half|float")->group(group);
-    command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque")->group(group);
+    command.add_option("--bits", bits_, "Samples of the file").type_name("8|16|half|float").group(group);
+    command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque").group(group);
     command
         .add_option("--compression", compression_,
                     "EXR: none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab; TIFF: none, packbits, lzw or zip; "
                     "PNG: [0, 12]")
-        ->type_name("NAME")
-        ->group(group);
+        .type_name("NAME")
+        .group(group);
     command
         .add_option(
             "--format", format_,
             "Of -o -, which sends the pictures to another program: 8 bits, BT.709 in limited range; 8 bits; 16 bits")
-        ->type_name(fmt::format("{}", fmt::join(format_names, "|")))
-        ->group(group);
-    quality_.add_to(command, "Of JPEG files")->type_name("N")->default_str("95")->group(group);
+        .type_name(fmt::format("{}", fmt::join(format_names, "|")))
+        .group(group);
+    quality_.add_to(command, "Of JPEG files").type_name("N").default_str("95").group(group);
 }
 
 Result<darkroom::WriteOptions> WriteFlags::options() const {
@@ -103,22 +103,22 @@ Result<FrameRange> parse_frames(const std::string& text) {
     return range;
 }
 
-void RunFlags::add_to(CLI::App& command) {
+void RunFlags::add_to(CommandFlags command) {
     const std::string group = "The work";
     jobs_.add_to(command, "Threads that decode and encode files; the pictures are the same whatever it is")
-        ->type_name("N")
-        ->default_str("processors")
-        ->group(group);
+        .type_name("N")
+        .default_str("processors")
+        .group(group);
     command.add_flag("--skip-existing", skips_existing_, "Pictures that are there already stay as they are")
-        ->group(group);
+        .group(group);
     command
         .add_flag("--keep-going", keeps_going, "A frame that fails does not stop the others; all are listed at the end")
-        ->group(group);
+        .group(group);
     command
         .add_flag(
             "--timings", has_timings,
             "Prints the GPU milliseconds of every pass, and of several frames what each stage took and waited for")
-        ->group(group);
+        .group(group);
 }
 
 Result<std::size_t> RunFlags::jobs() const {

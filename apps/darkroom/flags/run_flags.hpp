@@ -2,7 +2,6 @@
 #pragma once
 // The flags of commands that make many pictures: what kind of files they are, and how the work is spread.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <string>
 
 #include "apps/darkroom/run/picture_stream.hpp"
+#include "flags.hpp"
 #include "image/picture/write.hpp"
 #include "number_flag.hpp"
 
@@ -19,7 +19,7 @@ namespace app {
 /// --bits, --alpha, --compression, --quality, --format.
 class WriteFlags {
   public:
-    void add_to(CLI::App& command);
+    void add_to(CommandFlags command);
     [[nodiscard]] darkroom::Result<darkroom::WriteOptions> options() const;
     /// What `out` asks for if it is standard output, else nothing. Errors: it and --format must go together, other
     /// flags of files say nothing of a stream, and a terminal shows no pictures.
@@ -48,7 +48,7 @@ inline constexpr std::size_t most_frames = 100'000;  ///< that are asked for at 
 /// --jobs, --skip-existing, --keep-going, --timings.
 class RunFlags {
   public:
-    void add_to(CLI::App& command);
+    void add_to(CommandFlags command);
     /// 0: as many as there are processors.
     [[nodiscard]] darkroom::Result<std::size_t> jobs() const;
     /// Is this file there and not empty, and should it stay?

@@ -292,17 +292,17 @@ int run(const CLI::App& program, const Options& options) {
 
 }  // namespace
 
-Command add_completion(CLI::App& program) {
-    CLI::App* const command =
-        program.add_subcommand("completion", "Prints what makes a shell complete commands and flags");
-    command->footer(
+Command add_completion(CommandFlags program) {
+    const CommandFlags command =
+        program.add_command("completion", "Prints what makes a shell complete commands and flags");
+    command.examples(
         "darkroom completion bash --output darkroom.bash\n"
         "darkroom completion zsh --output _darkroom\n"
         "darkroom completion fish > darkroom.fish");
     const auto options = std::make_shared<Options>();
-    command->add_option("SHELL", options->shell, "bash, fish or zsh")->required()->option_text("bash|fish|zsh");
-    command->add_option("-o,--output", options->out, "A file instead of standard output")->type_name("OUT");
-    return {command, [options, &program] { return run(program, *options); }};
+    command.add_option("SHELL", options->shell, "bash, fish or zsh").required().option_text("bash|fish|zsh");
+    command.add_option("-o,--output", options->out, "A file instead of standard output").type_name("OUT");
+    return {command, [options, program] { return run(program.parser(), *options); }};
 }
 
 }  // namespace app

@@ -3,9 +3,10 @@
 // What the commands take, as data: read from the parser itself, so that help, completions and manual pages offer
 // exactly what is parsed.
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "apps/darkroom/flags/flags.hpp"
 
 namespace app {
 

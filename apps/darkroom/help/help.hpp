@@ -3,9 +3,10 @@
 // Help is short: what a command does, three examples, its own flags. Those of the effects, of which there are hundreds,
 // are told effect by effect, or all at once.
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <span>
+
+#include "apps/darkroom/flags/flags.hpp"
 
 namespace app {
 

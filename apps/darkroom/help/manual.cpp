@@ -111,19 +111,19 @@ int run(const CLI::App& program, const std::string& name, const std::string& fol
 
 }  // namespace
 
-Command add_man(CLI::App& program) {
+Command add_man(CommandFlags program) {
     struct Options {
         std::string name, folder;
     };
-    CLI::App* const command = program.add_subcommand("man", "Prints the manual page of a command, or writes all");
-    command->footer(
+    const CommandFlags command = program.add_command("man", "Prints the manual page of a command, or writes all");
+    command.examples(
         "darkroom man\n"
         "darkroom man develop > darkroom-develop.1\n"
         "darkroom man --output .");
     const auto options = std::make_shared<Options>();
-    command->add_option("NAME", options->name, "A command (\"lut export\"); without it the page of the program");
-    command->add_option("-o,--output", options->folder, "The folder that all pages go to")->type_name("DIR");
-    return {command, [options, &program] { return run(program, options->name, options->folder); }};
+    command.add_option("NAME", options->name, "A command (\"lut export\"); without it the page of the program");
+    command.add_option("-o,--output", options->folder, "The folder that all pages go to").type_name("DIR");
+    return {command, [options, program] { return run(program.parser(), options->name, options->folder); }};
 }
 
 }  // namespace app

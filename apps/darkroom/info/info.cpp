@@ -138,18 +138,18 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_info(CLI::App& program) {
-    CLI::App* const command = program.add_subcommand(
+Command add_info(CommandFlags program) {
+    const CommandFlags command = program.add_command(
         "info", "Tells what is in files: pictures and frames, models, scenes, looks and colour tables");
     const auto options = std::make_shared<Options>();
-    command->footer(
+    command.examples(
         "darkroom info frame.exr\n"
         "darkroom info scene.toml my.toml\n"
         "darkroom info frame.exr --json");
-    command->add_option("FILE", options->files, "Files of any known kind, which is told by their content")->required();
-    command->add_flag("--json", options->is_json, "For programs: a document, or an array of them for several files");
-    command->add_flag(no_custom_effects, options->has_no_custom_effects,
-                      "Refuses a look that names the file of an effect");
+    command.add_option("FILE", options->files, "Files of any known kind, which is told by their content").required();
+    command.add_flag("--json", options->is_json, "For programs: a document, or an array of them for several files");
+    command.add_flag(no_custom_effects, options->has_no_custom_effects,
+                     "Refuses a look that names the file of an effect");
     return {command, [options] { return run(*options); }};
 }
 

@@ -32,9 +32,9 @@ Result<> write(const std::string& path, const darkroom::TableFile& file) {
     return darkroom::write_file(path, std::as_bytes(std::span(*text)));
 }
 
-CLI::App* add(CLI::App& lut, const char* name, const char* help, std::string& out) {
-    CLI::App* const command = lut.add_subcommand(name, help);
-    command->add_option("-o,--output,--out", out, "The table: .cube")->type_name("OUT")->required();
+CommandFlags add(CommandFlags lut, const char* name, const char* help, std::string& out) {
+    const CommandFlags command = lut.add_command(name, help);
+    command.add_option("-o,--output,--out", out, "The table: .cube").type_name("OUT").required();
     return command;
 }
 
@@ -50,14 +50,14 @@ Result<> convert(const std::string& from, const std::string& to) {
     return write(to, file);
 }
 
-Command add_convert(CLI::App& lut) {
+Command add_convert(CommandFlags lut) {
     struct Options {
         std::string from, to;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App* const command = add(lut, "convert", "Writes a table of any kind as .cube", options->to);
-    command->add_option("FILE", options->from, "A table: .cube .3dl .spi1d .spi3d .csp .clf, a strip or a HaldCLUT")
-        ->required();
+    const CommandFlags command = add(lut, "convert", "Writes a table of any kind as .cube", options->to);
+    command.add_option("FILE", options->from, "A table: .cube .3dl .spi1d .spi3d .csp .clf, a strip or a HaldCLUT")
+        .required();
     return {command, [options] {
                 const Result<> done = convert(options->from, options->to);
                 return done ? exit_ok : fail(done.error());
@@ -74,16 +74,16 @@ Result<> export_to(const std::string& to, const LookFlags& flags) {
     return write(to, exported->file);
 }
 
-Command add_export(CLI::App& lut, std::span<const darkroom::LookEntry> named) {
+Command add_export(CommandFlags lut, std::span<const darkroom::LookEntry> named) {
     struct Options {
         std::string to;
         LookFlags look;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App* const command =
+    const CommandFlags command =
         add(lut, "export", "Writes what a look does to colours as a table of 65 steps over 16.5 stops", options->to);
-    command->add_option("LOOK", options->look.file, "A look file (TOML), or a scene; default: the flat table");
-    options->look.add_to(*command, false, named);
+    command.add_option("LOOK", options->look.file, "A look file (TOML), or a scene; default: the flat table");
+    options->look.add_to(command, false, named);
     return {command, [options] {
                 const Result<> done = export_to(options->to, options->look);
                 return done ? exit_ok : fail(done.error());
@@ -92,23 +92,23 @@ Command add_export(CLI::App& lut, std::span<const darkroom::LookEntry> named) {
 
 }  // namespace
 
-std::vector<Command> add_lut(CLI::App& program, std::span<const darkroom::LookEntry> named) {
-    CLI::App* const lut = program.add_subcommand("lut", "Colour tables: tells of them, converts them, makes them");
-    lut->require_subcommand(1);
-    lut->footer(
+std::vector<Command> add_lut(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags lut = program.add_command("lut", "Colour tables: tells of them, converts them, makes them");
+    lut.require_command();
+    lut.examples(
         "darkroom lut info film.cube\n"
         "darkroom lut convert film.cube -o copy.cube\n"
         "darkroom lut export my.toml -o my.cube");
-    const Command info = add_info(*lut), convert = add_convert(*lut), exported = add_export(*lut, named);
-    info.app->footer(
+    const Command info = add_info(lut), convert = add_convert(lut), exported = add_export(lut, named);
+    info.flags.examples(
         "darkroom lut info film.cube\n"
         "darkroom lut info film.cube bright.cube\n"
         "darkroom lut info film.cube --json");
-    convert.app->footer(
+    convert.flags.examples(
         "darkroom lut convert film.cube -o copy.cube\n"
         "darkroom lut convert strip.png -o film.cube\n"
         "darkroom lut convert film.spi1d -o film.cube");
-    exported.app->footer(
+    exported.flags.examples(
         "darkroom lut export my.toml -o my.cube\n"
         "darkroom lut export --exposure 2 -o bright.cube\n"
         "darkroom lut export my.toml --no-tonemap -o linear.cube");

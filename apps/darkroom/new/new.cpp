@@ -179,18 +179,18 @@ Result<> make(const Options& options) {
 
 }  // namespace
 
-Command add_new(CLI::App& program) {
-    CLI::App* const command =
-        program.add_subcommand("new", "Writes an effect, a look or a scene to begin with, with comments");
-    command->footer(
+Command add_new(CommandFlags program) {
+    const CommandFlags command =
+        program.add_command("new", "Writes an effect, a look or a scene to begin with, with comments");
+    command.examples(
         "darkroom new effect tinted_shadows\n"
         "darkroom new look evening\n"
         "darkroom new scene room --force");
     const auto options = std::make_shared<Options>();
-    command->add_option("KIND", options->kind, "effect, look or scene")->required()->option_text("effect|look|scene");
-    command->add_option("NAME", options->name, "Of what is made, and of its file: NAME.glsl, .toml or .scene.toml")
-        ->required();
-    command->add_flag("--force", options->is_forced, "Replaces a file that is there already");
+    command.add_option("KIND", options->kind, "effect, look or scene").required().option_text("effect|look|scene");
+    command.add_option("NAME", options->name, "Of what is made, and of its file: NAME.glsl, .toml or .scene.toml")
+        .required();
+    command.add_flag("--force", options->is_forced, "Replaces a file that is there already");
     return {command, [options] {
                 const Result<> done = make(*options);
                 return done ? exit_ok : fail(done.error());

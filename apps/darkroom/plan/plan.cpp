@@ -93,33 +93,33 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_plan(CLI::App& program, std::span<const darkroom::LookEntry> named) {
-    CLI::App* const command = program.add_subcommand(
+Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags command = program.add_command(
         "plan", "Shows what the planner makes of a look: kernels, what fused and why not, bytes, memory");
-    command->footer(
+    command.examples(
         "darkroom plan my.toml\n"
         "darkroom plan my.toml --input frame.exr --size 3840x2160\n"
         "darkroom plan --bloom-intensity 0.2 --json");
     const auto options = std::make_shared<Options>();
-    command->add_option("LOOK", options->look.file, "A look file (TOML). Default: the flat table at its defaults");
-    command->add_flag("--json", options->is_json, "For programs");
-    command->add_option("--size", options->size, "Size of the picture, default 1920x1080 or that of --input")
-        ->type_name("WxH");
-    command->add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")
-        ->type_name("FRAME");
-    command->add_option("--bits", options->bits, "Samples of the target")->type_name("8|16|half|float");
-    CLI::Option* const statistics =
-        command->add_flag("--statistics", options->wants_statistics,
-                          "What the device's compiler makes of each kernel: registers, waves, instructions, cycles");
-    command->add_option("--chip", options->chip, "With --statistics: the graphics card that milliseconds are of")
-        ->type_name("NAME")
-        ->needs(statistics);
-    command->add_option("--loops", options->loops, "With --statistics: how often the loops of a kernel run")
-        ->type_name("KERNEL=N,...")
-        ->allow_extra_args(false)
-        ->needs(statistics);
-    options->device.add_to(*command);
-    options->look.add_to(*command, false, named);
+    command.add_option("LOOK", options->look.file, "A look file (TOML). Default: the flat table at its defaults");
+    command.add_flag("--json", options->is_json, "For programs");
+    command.add_option("--size", options->size, "Size of the picture, default 1920x1080 or that of --input")
+        .type_name("WxH");
+    command.add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")
+        .type_name("FRAME");
+    command.add_option("--bits", options->bits, "Samples of the target").type_name("8|16|half|float");
+    const Flag statistics =
+        command.add_flag("--statistics", options->wants_statistics,
+                         "What the device's compiler makes of each kernel: registers, waves, instructions, cycles");
+    command.add_option("--chip", options->chip, "With --statistics: the graphics card that milliseconds are of")
+        .type_name("NAME")
+        .needs(statistics);
+    command.add_option("--loops", options->loops, "With --statistics: how often the loops of a kernel run")
+        .type_name("KERNEL=N,...")
+        .one_value()
+        .needs(statistics);
+    options->device.add_to(command);
+    options->look.add_to(command, false, named);
     return {command, [options] { return run(*options); }};
 }
 

@@ -347,28 +347,25 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_probe(CLI::App& program, std::span<const darkroom::LookEntry> named) {
-    CLI::App* const command =
-        program.add_subcommand("probe", "Tells what every effect of a look makes of pixels of a frame");
+Command add_probe(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags command =
+        program.add_command("probe", "Tells what every effect of a look makes of pixels of a frame");
     const auto options = std::make_shared<Options>();
-    command->footer(
+    command.examples(
         "darkroom probe frame.exr --at 12,4\n"
         "darkroom probe frame.exr --look my.toml --at 12,4 --at 3,3\n"
         "darkroom probe frame.exr --at 12,4 --json");
-    command->add_option("FRAME", options->input, "A frame (EXR, HDR, PNG, JPEG, TIFF)")->required();
-    command
-        ->add_option("--at", options->at, "A pixel of the picture, from its top left corner; may stand several times")
-        ->type_name("X,Y")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->required();
-    command->add_flag("--json", options->is_json, "For programs");
-    command->add_option("--size", options->size, "Develops at this size; the frame is resampled first")
-        ->type_name("WxH");
-    options->time.add_to(*command, "For effects that move; default: what the frame says, or 0")->type_name("S");
-    options->frame.add_to(*command);
-    options->device.add_to(*command);
-    options->look.add_to(*command, true, named);
+    command.add_option("FRAME", options->input, "A frame (EXR, HDR, PNG, JPEG, TIFF)").required();
+    command.add_option("--at", options->at, "A pixel of the picture, from its top left corner; may stand several times")
+        .type_name("X,Y")
+        .repeated()
+        .required();
+    command.add_flag("--json", options->is_json, "For programs");
+    command.add_option("--size", options->size, "Develops at this size; the frame is resampled first").type_name("WxH");
+    options->time.add_to(command, "For effects that move; default: what the frame says, or 0").type_name("S");
+    options->frame.add_to(command);
+    options->device.add_to(command);
+    options->look.add_to(command, true, named);
     return {command, [options] { return run(*options); }};
 }
 

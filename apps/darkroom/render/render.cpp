@@ -365,14 +365,14 @@ int run(const RenderFlags& flags) {
 
 }  // namespace
 
-Command add_render(CLI::App& program, std::span<const darkroom::LookEntry> named) {
-    CLI::App* const command = program.add_subcommand("render", "Renders a scene and post-processes it");
-    command->footer(
+Command add_render(CommandFlags program, std::span<const darkroom::LookEntry> named) {
+    const CommandFlags command = program.add_command("render", "Renders a scene and post-processes it");
+    command.examples(
         "darkroom render scene.toml --size 640x360 -o picture.png\n"
         "darkroom render scene.toml --frames 0-1 --fps 24 --size 64x36 -o 'out.####.png'\n"
         "darkroom render scene.toml --size 64x36 --yaw 200 --save-frame frame.exr -o picture.png");
     const auto flags = std::make_shared<RenderFlags>();
-    flags->add_to(*command, named);
+    flags->add_to(command, named);
     return {command, [flags] { return run(*flags); }, [flags] { return Render(*flags).check(); }};
 }
 

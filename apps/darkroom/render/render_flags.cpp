@@ -28,18 +28,18 @@ constexpr const char* moment_group = "The moment";
 
 }  // namespace
 
-void RenderFlags::add_to(CLI::App& command, std::span<const darkroom::LookEntry> named) {
-    command.add_option("SCENE", scene, "A scene (.toml) or a model (.glb, .gltf)")->required();
+void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEntry> named) {
+    command.add_option("SCENE", scene, "A scene (.toml) or a model (.glb, .gltf)").required();
     command
         .add_option("-o,--output,--out", out_,
                     "The picture: .png .jpg .tif .exr .hdr; for several frames a name with %04d; - is standard output, "
                     "with --format")
-        ->type_name("OUT")
-        ->capture_default_str();
+        .type_name("OUT")
+        .capture_default();
     command
         .add_option("--save-frame,--frame", frame_,
                     "The raw frame, too: linear light, depth, normals, motion and camera (.exr)")
-        ->type_name("OUT.exr");
+        .type_name("OUT.exr");
     add_moments(command);
     drawn.add_to(command, default_extent, moment_group);
     write.add_to(command);
@@ -48,18 +48,18 @@ void RenderFlags::add_to(CLI::App& command, std::span<const darkroom::LookEntry>
     look.add_to(command, true, named);
 }
 
-void RenderFlags::add_moments(CLI::App& command) {
+void RenderFlags::add_moments(CommandFlags command) {
     const std::string group = moment_group;
     time_.add_to(command, "Since the scene's beginning, default: what the scene says, or 0")
-        ->type_name("S")
-        ->group(group);
+        .type_name("S")
+        .group(group);
     command.add_option("--frames", frames_, "Several frames; the time of a frame is its number / fps")
-        ->type_name("A-B")
-        ->group(group);
+        .type_name("A-B")
+        .group(group);
     frames_per_second_.add_to(command, "Frames a second, for --frames and for motion")
-        ->type_name("N")
-        ->default_str(fmt::format("{}", default_frames_per_second))
-        ->group(group);
+        .type_name("N")
+        .default_str(fmt::format("{}", default_frames_per_second))
+        .group(group);
 }
 
 Result<std::vector<Shot>> RenderFlags::shots() const {

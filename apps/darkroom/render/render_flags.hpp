@@ -3,7 +3,6 @@
 // The flags of `render` and what they ask for: moments, files, and what all that draw scenes have. Everything that can
 // be known without the scene and without a device is checked here.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "apps/darkroom/flags/device_flags.hpp"
+#include "apps/darkroom/flags/flags.hpp"
 #include "apps/darkroom/flags/look_flags.hpp"
 #include "apps/darkroom/flags/number_flag.hpp"
 #include "apps/darkroom/flags/run_flags.hpp"
@@ -43,7 +43,7 @@ struct RenderJob {
 
 class RenderFlags {
   public:
-    void add_to(CLI::App& command, std::span<const darkroom::LookEntry> named);
+    void add_to(CommandFlags command, std::span<const darkroom::LookEntry> named);
     [[nodiscard]] darkroom::Result<RenderJob> job() const;
 
     SceneFlags drawn;
@@ -56,7 +56,7 @@ class RenderFlags {
     bool has_time() const { return time_.is_given() || frames_; }
 
   private:
-    void add_moments(CLI::App& command);
+    void add_moments(CommandFlags command);
     [[nodiscard]] darkroom::Result<std::vector<Shot>> shots() const;
     /// What becomes of the pictures: files or a stream.
     [[nodiscard]] darkroom::Result<> set_target(RenderJob& job) const;

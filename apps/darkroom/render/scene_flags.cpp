@@ -62,18 +62,16 @@ Result<darkroom::scene::vec3> parse_vec3(std::string_view flag, const std::strin
 
 }  // namespace
 
-void SceneFlags::add_to(CLI::App& command, VkExtent2D usual_extent, const std::string& seed_group) {
+void SceneFlags::add_to(CommandFlags command, VkExtent2D usual_extent, const std::string& seed_group) {
     default_extent_ = usual_extent;
-    width_.add_to(command, "Of the picture")->type_name("PIXELS")->default_str(fmt::format("{}", usual_extent.width));
-    height_.add_to(command, "Of the picture")->type_name("PIXELS")->default_str(fmt::format("{}", usual_extent.height));
-    command.add_option("--size", size_, "Both at once")->type_name("WxH");
+    width_.add_to(command, "Of the picture").type_name("PIXELS").default_str(fmt::format("{}", usual_extent.width));
+    height_.add_to(command, "Of the picture").type_name("PIXELS").default_str(fmt::format("{}", usual_extent.height));
+    command.add_option("--size", size_, "Both at once").type_name("WxH");
     command.add_option("--schemas", schemas_, "Taken for the sake of old command lines; there is nothing to check")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->type_name("DIR")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    seed_.add_to(command, "Of the particles")->type_name("N")->default_str("0")->group(seed_group);
+        .repeated()
+        .type_name("DIR")
+        .repeated();
+    seed_.add_to(command, "Of the particles").type_name("N").default_str("0").group(seed_group);
     add_camera(command);
     add_drawing(command);
 }
@@ -124,35 +122,35 @@ Result<darkroom::render::RenderDesc> SceneFlags::desc() const {
     return out;
 }
 
-void SceneFlags::add_camera(CLI::App& command) {
+void SceneFlags::add_camera(CommandFlags command) {
     const std::string group = "The camera, each on top of the scene's own";
-    distance_.add_to(command, "From the target")->type_name("METRES")->group(group);
-    yaw_.add_to(command, "Around the target")->type_name("DEGREES")->group(group);
-    pitch_.add_to(command, "Above the target")->type_name("DEGREES")->group(group);
+    distance_.add_to(command, "From the target").type_name("METRES").group(group);
+    yaw_.add_to(command, "Around the target").type_name("DEGREES").group(group);
+    pitch_.add_to(command, "Above the target").type_name("DEGREES").group(group);
     command.add_option("--target", target_, "What is looked at; the camera moves with it")
-        ->type_name("X,Y,Z")
-        ->group(group);
-    field_of_view_.add_to(command, "Vertical field of view")->type_name("DEGREES")->group(group);
+        .type_name("X,Y,Z")
+        .group(group);
+    field_of_view_.add_to(command, "Vertical field of view").type_name("DEGREES").group(group);
 }
 
-void SceneFlags::add_drawing(CLI::App& command) {
+void SceneFlags::add_drawing(CommandFlags command) {
     const std::string group = "What is drawn";
-    command.add_flag("--no-grid", has_no_grid_, "No grid on the ground")->group(group);
+    command.add_flag("--no-grid", has_no_grid_, "No grid on the ground").group(group);
     command.add_option("--debug-mode", debug_mode_, "Instead of the picture; neither tone-mapped nor post-processed")
-        ->type_name("wireframe|normals|depth|uv|unlit|metalrough")
-        ->group(group);
-    command.add_flag("--wireframe-overlay", has_wireframe_overlay_, "Edges of all triangles on top")->group(group);
-    command.add_flag("--show-normals", has_normal_arrows_, "An arrow for the normal of every vertex")->group(group);
-    command.add_flag("--no-tonemapping", has_no_tone_mapping_, "Light above 1 is cut off")->group(group);
-    command.add_flag("--no-shadows", has_no_shadows_, "No light casts shadows")->group(group);
+        .type_name("wireframe|normals|depth|uv|unlit|metalrough")
+        .group(group);
+    command.add_flag("--wireframe-overlay", has_wireframe_overlay_, "Edges of all triangles on top").group(group);
+    command.add_flag("--show-normals", has_normal_arrows_, "An arrow for the normal of every vertex").group(group);
+    command.add_flag("--no-tonemapping", has_no_tone_mapping_, "Light above 1 is cut off").group(group);
+    command.add_flag("--no-shadows", has_no_shadows_, "No light casts shadows").group(group);
     shadow_resolution_.add_to(command, "Of each cascade of a shadow map")
-        ->type_name("TEXELS")
-        ->default_str(fmt::format("{}", darkroom::render::RenderDesc().cascades.resolution))
-        ->group(group);
+        .type_name("TEXELS")
+        .default_str(fmt::format("{}", darkroom::render::RenderDesc().cascades.resolution))
+        .group(group);
     samples_.add_to(command, "Samples a pixel, of the counts that the device has")
-        ->type_name("N")
-        ->default_str(fmt::format("{}", darkroom::render::RenderDesc().samples))
-        ->group(group);
+        .type_name("N")
+        .default_str(fmt::format("{}", darkroom::render::RenderDesc().samples))
+        .group(group);
 }
 
 Result<std::uint64_t> SceneFlags::seed() const {

@@ -3,12 +3,12 @@
 // The flags of commands that draw scenes: size, camera, what is drawn. Everything that can be known without the scene
 // and without a device is checked here.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/darkroom/flags/flags.hpp"
 #include "apps/darkroom/flags/number_flag.hpp"
 #include "render/renderer.hpp"
 #include "scene/pose/snapshot.hpp"
@@ -18,7 +18,7 @@ namespace app {
 class SceneFlags {
   public:
     /// `usual_extent`: of the picture, where the flags say none.
-    void add_to(CLI::App& command, VkExtent2D usual_extent, const std::string& seed_group);
+    void add_to(CommandFlags command, VkExtent2D usual_extent, const std::string& seed_group);
     [[nodiscard]] darkroom::Result<darkroom::scene::OrbitOverride> orbit() const;
     /// Without `output`: that is for the look to say.
     [[nodiscard]] darkroom::Result<darkroom::render::RenderDesc> desc() const;
@@ -28,8 +28,8 @@ class SceneFlags {
     void warn_of_what_is_ignored() const;
 
   private:
-    void add_camera(CLI::App& command);
-    void add_drawing(CLI::App& command);
+    void add_camera(CommandFlags command);
+    void add_drawing(CommandFlags command);
     [[nodiscard]] darkroom::Result<VkExtent2D> extent() const;
 
     VkExtent2D default_extent_{};

@@ -29,44 +29,43 @@ bool is_scene(const std::string& input) { return input.ends_with(".toml") || dar
 
 }  // namespace
 
-void ViewFlags::add_to(CLI::App& command, bool is_edit, std::span<const darkroom::LookEntry> named) {
+void ViewFlags::add_to(CommandFlags command, bool is_edit, std::span<const darkroom::LookEntry> named) {
     is_edit_ = is_edit;
     command.add_option("INPUT", inputs_,
                        "A scene (.toml), a model (.glb, .gltf), a frame or picture, or a sequence: shot.####.exr");
     const std::string group = "The window";
-    command.add_flag("--fullscreen", is_fullscreen_, "The whole screen")->group(group);
+    command.add_flag("--fullscreen", is_fullscreen_, "The whole screen").group(group);
     command.add_option("--present", presentation_, "With the display; with it, the newest frame; at once")
-        ->type_name("vsync|mailbox|immediate")
-        ->capture_default_str()
-        ->group(group);
-    frames_.add_to(command, "Shows so many frames, 1 / fps seconds apart, and ends")->type_name("N")->group(group);
+        .type_name("vsync|mailbox|immediate")
+        .capture_default()
+        .group(group);
+    frames_.add_to(command, "Shows so many frames, 1 / fps seconds apart, and ends").type_name("N").group(group);
     frames_per_second_.add_to(command, "Of --frames, and of a sequence")
-        ->type_name("N")
-        ->default_str(fmt::format("{}", usual_frames_per_second))
-        ->group(group);
+        .type_name("N")
+        .default_str(fmt::format("{}", usual_frames_per_second))
+        .group(group);
     time_.add_to(command, "The scene's time at the first frame, default: what the scene says, or 0")
-        ->type_name("S")
-        ->group(group);
-    command.add_flag("--paused", is_paused_, "The time stands still until P is pressed")->group(group);
+        .type_name("S")
+        .group(group);
+    command.add_flag("--paused", is_paused_, "The time stands still until P is pressed").group(group);
     command.add_option("--screenshot", screenshot_, "Stores the last frame's picture, and ends (--frames 1)")
-        ->type_name("OUT")
-        ->group(group);
+        .type_name("OUT")
+        .group(group);
     command.add_option("--window-screenshot", window_screenshot_, "The same of the window, with all that lies over it")
-        ->type_name("OUT")
-        ->group(group);
+        .type_name("OUT")
+        .group(group);
     command
         .add_flag("--commands", obeys_input_,
                   "Obeys the console's commands from standard input, a line each, and prints what they answer")
-        ->group(group);
-    command.add_flag("--help-keys", asks_for_keys_, "What keys and mouse do")->group(group);
-    if (is_edit) command.add_flag("--auto-orbit", turns_, "The camera goes round by itself")->group(group);
+        .group(group);
+    command.add_flag("--help-keys", asks_for_keys_, "What keys and mouse do").group(group);
+    if (is_edit) command.add_flag("--auto-orbit", turns_, "The camera goes round by itself").group(group);
     const std::string frame_group = "A stored frame";
     command.add_option("--map", maps_, "Where a layer is: depth=NAME, normals=PREFIX, velocity=PREFIX, color=PREFIX")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->type_name("LAYER=NAME")
-        ->group(frame_group);
-    command.add_option("--camera", camera_, "A camera file (TOML)")->type_name("FILE")->group(frame_group);
+        .repeated()
+        .type_name("LAYER=NAME")
+        .group(frame_group);
+    command.add_option("--camera", camera_, "A camera file (TOML)").type_name("FILE").group(frame_group);
     drawn_.add_to(command, is_edit ? edit_extent : play_extent, group);
     device_.add_to(command);
     look_.add_to(command, true, named);

@@ -2,13 +2,13 @@
 #pragma once
 // The flags of `play` and `edit`: what is shown, how the window is, and all of the look.
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "apps/darkroom/flags/device_flags.hpp"
+#include "apps/darkroom/flags/flags.hpp"
 #include "apps/darkroom/flags/look_flags.hpp"
 #include "apps/darkroom/flags/number_flag.hpp"
 #include "apps/darkroom/render/scene_flags.hpp"
@@ -18,7 +18,7 @@ namespace app {
 
 class ViewFlags {
   public:
-    void add_to(CLI::App& command, bool is_edit, std::span<const darkroom::LookEntry> named);
+    void add_to(CommandFlags command, bool is_edit, std::span<const darkroom::LookEntry> named);
     [[nodiscard]] darkroom::Result<ViewerJob> job() const;
     [[nodiscard]] bool asks_for_keys() const { return asks_for_keys_; }
 

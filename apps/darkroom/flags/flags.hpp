@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The door to CLI11, which parses the command line: flags of a command, and what was typed of them. Its headers are all
+// templates and take longer to compile than a command does, so only the files here that name them and those of help/
+// include them.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace app {
+
+/// One flag or argument of a command. A handle: the command owns what it stands for.
+class Flag {
+  public:
+    Flag() = default;
+    explicit Flag(CLI::Option* option) : option_(option) {}
+
+    Flag& required();
+    /// What it takes, as help shows it: "OUT".
+    Flag& type_name(const std::string& name);
+    /// The same of an argument, or of a flag whose values may be empty.
+    Flag& option_text(const std::string& text);
+    /// What help says of the default.
+    Flag& default_str(const std::string& text);
+    /// What it is set to now is the default that help tells of.
+    Flag& capture_default();
+    /// The title it stands under in help.
+    Flag& group(const std::string& title);
+    /// May stand several times, with one value each.
+    Flag& repeated();
+    /// May stand several times; the last one counts.
+    Flag& last_counts();
+    /// One value each time, although there is room for several.
+    Flag& one_value();
+    Flag& needs(const Flag& other);
+    [[nodiscard]] std::size_t count() const;
+
+  private:
+    friend class CommandFlags;
+    CLI::Option* option_ = nullptr;
+};
+
+/// The flags of a command. A handle, too. What flags write to stays where it is until the command has run.
+class CommandFlags {
+  public:
+    explicit CommandFlags(CLI::App& app) : app_(&app) {}
+
+    /// A command below this one.
+    [[nodiscard]] CommandFlags add_command(const std::string& name, const std::string& doc) const;
+    /// `names`: "-o,--output", or "INPUT" of an argument that has a place instead.
+    Flag add_option(const std::string& names, std::string& to, const std::string& doc) const;
+    Flag add_option(const std::string& names, std::optional<std::string>& to, const std::string& doc) const;
+    Flag add_option(const std::string& names, std::vector<std::string>& to, const std::string& doc) const;
+    Flag add_flag(const std::string& names, bool& to, const std::string& doc) const;
+    /// Its text is "true" or "false", or what was typed behind "=". A name behind "!" says the opposite.
+    Flag add_flag(const std::string& names, std::string& to, const std::string& doc) const;
+    /// Whole command lines, one a line.
+    void examples(const std::string& lines) const;
+    /// It only holds others, one of which is asked for.
+    void require_command() const;
+
+    [[nodiscard]] bool has(const std::string& name) const;
+    [[nodiscard]] std::string name() const;
+    /// What was typed for a flag or an argument; nothing where there is none of that name.
+    [[nodiscard]] std::vector<std::string> typed(const std::string& name) const;
+    /// Larger for what was typed later; 0 for what was not. Of several times the last counts.
+    [[nodiscard]] std::size_t place(const Flag& flag) const;
+    [[nodiscard]] CLI::App& parser() const { return *app_; }
+
+  private:
+    CLI::App* app_;
+};
+
+}  // namespace app
