@@ -2,6 +2,7 @@
 // What flags refuse, and in which words: one line that names flag, value and what is allowed.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -74,7 +75,7 @@ class NumberFlagTest : public testing::Test {
     [[nodiscard]] static std::string read(const app::NumberRange& range, std::vector<std::string> arguments) {
         CLI::App program;
         app::NumberFlag flag("--flag", range);
-        flag.add_to(program, "A number");
+        flag.add_to(app::CommandFlags(program), "A number");
         std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
         program.parse(arguments);
         const Result<std::optional<double>> value = flag.value();

@@ -56,7 +56,7 @@ Json json_of(const EffectInfo& effect, const darkroom::ParamInfo& row) {
              {"flag", darkroom::flag_name(key)},
              {"type", type_of(row.kind)},
              {"doc", row.doc},
-             {"default", Json::parse(darkroom::format(row, effect.parameters.defaults))},
+             {"default", Json::value_or_text(darkroom::format(row, effect.parameters.defaults))},
              {"switches_effect", row.is_amount || row.switched_word < effect.parameters.words()},
              {"at_compile", row.is_at_compile}};
     if (row.kind == darkroom::Kind::Choice)

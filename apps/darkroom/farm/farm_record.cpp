@@ -44,34 +44,30 @@ struct Wrong {
     std::string text;
 };
 
-const Json& member(const Json& json, const char* key, Json::value_t kind) {
-    const auto found = json.find(key);
-    if (found == json.end()) throw Wrong{fmt::format("{} is missing", key)};
-    const bool is_number = kind == Json::value_t::number_float && found->is_number();
-    const bool is_whole = kind == Json::value_t::number_integer && found->is_number_integer();
-    if (!is_number && !is_whole && found->type() != kind) throw Wrong{fmt::format("{} is of another kind", key)};
+const Json& member(const Json& json, const char* key, bool (Json::*is_kind)() const) {
+    const Json* const found = json.find(key);
+    if (found == nullptr) throw Wrong{fmt::format("{} is missing", key)};
+    if (!(found->*is_kind)()) throw Wrong{fmt::format("{} is of another kind", key)};
     return *found;
 }
 
-std::string text_of(const Json& json, const char* key) {
-    return member(json, key, Json::value_t::string).get<std::string>();
-}
+std::string text_of(const Json& json, const char* key) { return member(json, key, &Json::is_text).text(); }
 
 std::vector<std::string> texts_of(const Json& json, const char* key) {
     std::vector<std::string> out;
-    for (const Json& text : member(json, key, Json::value_t::array)) {
-        if (!text.is_string()) throw Wrong{fmt::format("{} are no texts", key)};
-        out.push_back(text.get<std::string>());
+    for (const Json& text : member(json, key, &Json::is_array).elements()) {
+        if (!text.is_text()) throw Wrong{fmt::format("{} are no texts", key)};
+        out.push_back(text.text());
     }
     return out;
 }
 
 FrameNumbers numbers_of(const Json& json, const char* key) {
     FrameNumbers out;
-    for (const Json& range : member(json, key, Json::value_t::array)) {
-        if (!range.is_array() || range.size() != 2 || !range[0].is_number_integer() || !range[1].is_number_integer())
+    for (const Json& range : member(json, key, &Json::is_array).elements()) {
+        if (!range.is_array() || range.size() != 2 || !std::ranges::all_of(range.elements(), &Json::is_whole))
             throw Wrong{fmt::format("{} are no pairs of frames", key)};
-        const auto first = range[0].get<std::int64_t>(), last = range[1].get<std::int64_t>();
+        const std::int64_t first = range.elements()[0].whole(), last = range.elements()[1].whole();
         const bool is_behind = out.empty() || first > *out.rbegin();
         if (first < 0 || last < first || !is_behind ||
             static_cast<std::size_t>(last - first) >= most_frames - out.size())
@@ -85,9 +81,9 @@ ChunkRecord record_of(const Json& json) {
     ChunkRecord out{.name = text_of(json, "chunk"),
                     .frames = numbers_of(json, "frames"),
                     .done = numbers_of(json, "done"),
-                    .tries = member(json, "tries", Json::value_t::number_integer).get<std::int64_t>(),
-                    .made = member(json, "made", Json::value_t::number_integer).get<std::int64_t>(),
-                    .seconds = member(json, "seconds", Json::value_t::number_float).get<double>(),
+                    .tries = member(json, "tries", &Json::is_whole).whole(),
+                    .made = member(json, "made", &Json::is_whole).whole(),
+                    .seconds = member(json, "seconds", &Json::is_number).number(),
                     .node = text_of(json, "node"),
                     .job = text_of(json, "job"),
                     .begun = text_of(json, "begun"),
@@ -110,11 +106,12 @@ auto read(const fs::path& path, Read read_from) -> Result<decltype(read_from(Jso
     const auto bytes = darkroom::read_file(path, {.max_size = most_bytes});
     if (!bytes) return failure(bytes.error());
     std::string problem = "is not JSON";
-    const Json json = Json::parse(bytes->begin(), bytes->end(), nullptr, false);
-    if (!json.is_discarded()) try {
-            const auto found = json.find("format");
-            if (found == json.end() || *found != format) throw Wrong{fmt::format("allowed is format = {}", format)};
-            return read_from(json);
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    if (const std::optional<Json> json = Json::parse(text)) try {
+            const Json* const found = json->find("format");
+            if (found == nullptr || !found->is_number() || found->number() != format)
+                throw Wrong{fmt::format("allowed is format = {}", format)};
+            return read_from(*json);
         } catch (const Wrong& wrong) {
             problem = wrong.text;
         }
@@ -123,7 +120,7 @@ auto read(const fs::path& path, Read read_from) -> Result<decltype(read_from(Jso
 
 // Text that is no UTF-8, as names of files may be, is written with a sign in its place.
 Result<> write(const fs::path& path, const Json& json) {
-    const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string text = json.dump(1) + "\n";
     return darkroom::write_file(path, std::as_bytes(std::span(text)));
 }
 

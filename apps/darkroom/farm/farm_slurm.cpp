@@ -123,9 +123,7 @@ Result<std::string> script_of(const SlurmOptions& options, const FarmWork& work,
 }
 
 /// The text with which a file of other arguments is told from one of these: what is no UTF-8 is alike in both.
-std::string comparable(const std::vector<std::string>& arguments) {
-    return Json(arguments).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string comparable(const std::vector<std::string>& arguments) { return Json(arguments).dump(); }
 
 bool is_number(const std::string& id) { return !id.empty() && id.find_first_not_of("0123456789") == std::string::npos; }
 

@@ -120,9 +120,7 @@ Result<> run(const StatusOptions& options) {
         else
             print(*status);
     }
-    if (options.is_json)
-        answer((documents.size() == 1 ? documents.front() : documents)
-                   .dump(1, ' ', false, Json::error_handler_t::replace));
+    if (options.is_json) answer((documents.size() == 1 ? documents.elements().front() : documents).dump(1));
     return {};
 }
 

@@ -131,8 +131,8 @@ int run(const Options& options) {
         documents.push_back(std::move(document));
     }
     if (!options.is_json || documents.empty()) return code;
-    const Json& out = options.files.size() > 1 ? documents : documents.front();
-    fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
+    const Json& out = options.files.size() > 1 ? documents : documents.elements().front();
+    fmt::print("{}\n", out.dump(2));
     return code;
 }
 

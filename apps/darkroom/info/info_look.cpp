@@ -22,7 +22,7 @@ void add_values(Json& out, const darkroom::LookEntry& entry) {
     for (const darkroom::ParamInfo& row : entry.effect->parameters.rows) {
         const std::string value = darkroom::value_text(entry, row);
         if (value != darkroom::format(row, entry.effect->parameters.defaults))
-            out[std::string(row.name)] = Json::parse(value, nullptr, false);
+            out[std::string(row.name)] = Json::value_or_text(value);
     }
 }
 
@@ -56,8 +56,8 @@ Json entries_of(const darkroom::Look& look) {
         if (entry->state.opacity != 1) values["opacity"] = entry->state.opacity;
         const darkroom::EntryState plain;
         if (entry->state.blend != plain.blend)
-            values["blend"] =
-                Json::parse(darkroom::format(*darkroom::entry_rows.find("blend"), darkroom::state_words(entry->state)));
+            values["blend"] = Json::value_or_text(
+                darkroom::format(*darkroom::entry_rows.find("blend"), darkroom::state_words(entry->state)));
         const bool is_on =
             entry->state.enabled.on != 0 && (effect.is_identity == nullptr || !effect.is_identity(entry->words.data()));
         if (look.is_flat && !is_on && values.empty()) continue;
