@@ -2,9 +2,7 @@
 # custom, libdarkroom_looks.so, which reads looks (TOML) and table files, and libdarkroom_script.so, a console and
 # controllers in Lua; or libdarkroom.a, which is the first as an archive (DARKROOM_STATIC). In the tree and installed they
 # are Darkroom::darkroom, Darkroom::looks, Darkroom::script and Darkroom::static. Included after the folders they are made
-# of.
-
-include(CMakePackageConfigHelpers)
+# of; installed by cmake/install/library.
 
 # Objects, not archives: all of a folder goes in, and what it links comes from the folder's own target. The names of
 # this project are dropped from that list, their objects are already there.
@@ -28,8 +26,7 @@ function(darkroom_shared_library name)
     $<BUILD_INTERFACE:${DARKROOM_GENERATED}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${name} INTERFACE cxx_std_20)
   add_library(Darkroom::${library_EXPORT} ALIAS ${name})
-  install(TARGETS ${name} EXPORT DarkroomTargets
-    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  set_property(GLOBAL APPEND PROPERTY DARKROOM_LIBRARIES ${name})
 endfunction()
 
 set(DARKROOM_PARTS core gpu graph plan compose effects custom)
@@ -46,52 +43,4 @@ if(TARGET darkroom_script)
 endif()
 if(DARKROOM_STATIC)
   include(DarkroomStatic)
-endif()
-
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/darkroom DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/looks/ DESTINATION ${CMAKE_INSTALL_DATADIR}/darkroom/looks
-  FILES_MATCHING PATTERN "*.toml")
-if(TARGET darkroom_script)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/controllers/ DESTINATION ${CMAKE_INSTALL_DATADIR}/darkroom/controllers
-    FILES_MATCHING PATTERN "*.lua")
-endif()
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
-
-# Before 1.0 a minor version may change the interface, a patch version may not.
-set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Darkroom)
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/DarkroomConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/DarkroomConfig.cmake.in ${CMAKE_BINARY_DIR}/DarkroomConfig.cmake
-  INSTALL_DESTINATION ${package_folder} PATH_VARS CMAKE_INSTALL_DATADIR
-  NO_SET_AND_CHECK_MACRO)
-install(FILES ${CMAKE_BINARY_DIR}/DarkroomConfig.cmake ${CMAKE_BINARY_DIR}/DarkroomConfigVersion.cmake
-  DESTINATION ${package_folder})
-install(EXPORT DarkroomTargets NAMESPACE Darkroom:: DESTINATION ${package_folder})
-
-function(darkroom_pkg_config name description requires library)
-  set(text "prefix=\${pcfiledir}/@DARKROOM_UP@
-libdir=\${prefix}/${CMAKE_INSTALL_LIBDIR}
-includedir=\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}
-
-Name: ${name}
-Description: ${description}
-Version: ${PROJECT_VERSION}
-${requires}
-Libs: -L\${libdir} -l${library}
-Cflags: -I\${includedir}
-")
-  # From <prefix>/lib/<machine>/pkgconfig up to <prefix>, so that an installed tree can be moved.
-  file(RELATIVE_PATH up /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
-  string(REPLACE "@DARKROOM_UP@" "${up}" text "${text}")
-  string(REPLACE "//" "/" text "${text}")
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/${name}.pc CONTENT "${text}" @ONLY)
-  install(FILES ${CMAKE_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-endfunction()
-# Only the headers of Vulkan are needed to compile; `Requires` would bring its loader in as well.
-darkroom_pkg_config(darkroom "${PROJECT_DESCRIPTION}" "Requires.private: vulkan" darkroom)
-if(TARGET darkroom_looks)
-  darkroom_pkg_config(darkroom-looks "Looks (TOML) and table files for Darkroom" "Requires: darkroom" darkroom_looks)
-endif()
-if(TARGET darkroom_script)
-  darkroom_pkg_config(darkroom-script "A console and controllers in Lua for Darkroom" "Requires: darkroom" darkroom_script)
 endif()

@@ -39,4 +39,4 @@ target_include_directories(darkroom_static INTERFACE $<BUILD_INTERFACE:${PROJECT
 target_compile_features(darkroom_static INTERFACE cxx_std_20)
 target_link_libraries(darkroom_static INTERFACE Vulkan::Headers Threads::Threads ${CMAKE_DL_LIBS})
 add_library(Darkroom::static ALIAS darkroom_static)
-install(TARGETS darkroom_static EXPORT DarkroomTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set_property(GLOBAL APPEND PROPERTY DARKROOM_LIBRARIES darkroom_static)

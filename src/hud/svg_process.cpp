@@ -12,9 +12,9 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <string>
 
+#include "core/program_module.hpp"
 #include "core/text/param_text.hpp"
 #include "hud/svg_messages.hpp"
 
@@ -63,9 +63,7 @@ int lifted(int descriptor) {
 
 Result<> SvgProcess::start() {
     if (process_ >= 0) return {};
-    std::error_code ignored;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const std::string path = (program.parent_path() / "../lib/darkroom/darkroom_svg").string();
+    const std::string path = program_module("darkroom_svg").string();
     int ends[2] = {-1, -1};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return failed("making a socket");
     const int other = lifted(ends[1]);

@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # install.sh TREE BUILD COMPILER plain|sanitize: what is installed can be moved, found by CMake and by pkg-config, compiled
-# against and run.
+# against, run and removed; in other folders than the usual ones, too, and where the program alone was built.
 set -euo pipefail
 tree=$1 build=$2 compiler=$3 kind=$4
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+# What was installed from here before stays known to the target uninstall.
+mkdir "$work/lists"
+cp "$build"/install_manifest*.txt "$work/lists/" 2>/dev/null || true
+trap 'rm -f "$build"/install_manifest*.txt; cp "$work/lists/"* "$build/" 2>/dev/null || true; rm -rf "$work"' EXIT
 flags=(-O0)
 kept=""
 if [[ $kind == sanitize ]]; then
@@ -42,3 +45,30 @@ eval "'$compiler' -std=c++20 ${flags[*]} '$tree/tests/package/main.cpp' $kept $(
 "$prefix/bin/darkroom" --version
 # The module for other files than OpenEXR is found beside the program, wherever that was moved.
 "$prefix/bin/darkroom" info "$tree/tests/goldens/forge.png" >/dev/null
+
+# What was installed can be removed, and nothing else is.
+DESTDIR=$work/stage cmake --install "$build" --prefix /opt/darkroom >"$work/log"
+touch "$work/stage/opt/darkroom/share/darkroom/looks/mine.toml"
+DESTDIR=$work/stage cmake --build "$build" --target uninstall >"$work/log" || { cat "$work/log" && exit 1; }
+left=$(cd "$work/stage/opt/darkroom" && find . -type f -o -path '*[dD]arkroom*' -type d -empty)
+[[ $left == ./share/darkroom/looks/mine.toml ]] || { echo "removing left: $left" && exit 1; }
+
+# Another build folder, of which the program alone was built, with folders of its own. The program is linked again, and
+# only what knows these folders is compiled.
+option=$([[ $kind == sanitize ]] && echo ON || echo OFF)
+cmake -S "$tree" -B "$work/second" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER="$compiler" \
+    -DDARKROOM_SANITIZE="$option" -DDARKROOM_TESTS=OFF -DCMAKE_INSTALL_LIBDIR=lib64/x -DCMAKE_INSTALL_BINDIR=sbin \
+    >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
+object=src/core/CMakeFiles/darkroom_core.dir/program_module.cpp.o
+cmake --build "$work/second" --target "$object" >"$work/log" || { cat "$work/log" && exit 1; }
+mkdir -p "$work/second/bin"
+link=$(ninja -C "$build" -t commands bin/darkroom | tail -n 1)
+(cd "$build" && eval "${link/ -o bin\/darkroom / -o '$work/second/bin/darkroom' '$work/second/$object' }")
+cp -r "$build/lib" "$work/second/"
+cp -r "$build/apps/darkroom/help" "$work/second/apps/darkroom/"
+cmake --install "$work/second" --prefix "$work/there" >"$work/log" || { cat "$work/log" && exit 1; }
+mv "$work/there" "$work/moved again"
+rm -rf "$work/second"
+"$work/moved again/sbin/darkroom" info "$tree/tests/goldens/forge.png" >/dev/null
+[[ -x $work/moved\ again/lib64/x/darkroom/darkroom_svg && ! -e $work/moved\ again/include ]] ||
+    { echo "a program alone is installed otherwise" && exit 1; }

@@ -4,16 +4,12 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <system_error>
+#include "core/program_module.hpp"
 
 namespace darkroom {
 
 Result<const void*> load_module(const char* file, const char* symbol, const char* library) {
-    std::error_code ignored;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const std::filesystem::path path = program.parent_path() / "../lib/darkroom" / file;
-    void* const module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* const module = dlopen(program_module(file).c_str(), RTLD_NOW | RTLD_LOCAL);
     if (module == nullptr) return machine_error(fmt::format("{} cannot be loaded: {}", library, dlerror()));
     using Get = const void* (*)();
     const auto get = reinterpret_cast<Get>(dlsym(module, symbol));

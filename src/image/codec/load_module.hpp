@@ -7,8 +7,8 @@
 
 namespace darkroom {
 
-/// What function `symbol` of lib/darkroom/<file> gives, beside the program, in the build tree and installed. The module
-/// stays loaded: such libraries have threads and caches of their own. The error is the machine's and names `library`.
+/// What function `symbol` of the program's module `file` gives (core/program_module.hpp). The module stays loaded: such
+/// libraries have threads and caches of their own. The error is the machine's and names `library`.
 [[nodiscard]] Result<const void*> load_module(const char* file, const char* symbol, const char* library);
 
 }  // namespace darkroom

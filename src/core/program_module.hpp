@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What belongs to the program and is no part of its file: libraries that it loads and programs that it starts when they
+// are first needed.
+
+#include <filesystem>
+
+namespace darkroom {
+
+/// Where `file` of <library folder>/darkroom is: where it was installed, seen from the running program, so that the
+/// whole may be moved; else where it is in a build folder.
+[[nodiscard]] std::filesystem::path program_module(const char* file);
+
+}  // namespace darkroom
