@@ -83,7 +83,7 @@ show_progress() {
 }
 
 # What the program is made of. A folder counts as well as the files in it: one that came or went changed it.
-program_sources=(CMakeLists.txt packages.txt cmake include src effects apps samples scenes looks)
+program_sources=(CMakeLists.txt CMakePresets.json packages.txt cmake include src effects apps samples scenes looks)
 
 # Was `program` built in folder $1 from what the tree holds now? It costs one walk over the sources and starts no CMake.
 # The stamp is as old as the start of that build, so a file saved while it ran is newer. Pictures in samples/, and models
@@ -127,7 +127,7 @@ build() {
     fi
     [[ -x $folder/bin/darkroom ]] || say "building in $folder, some minutes the first time"
     printf '%s' "$root" >"$folder/.building"
-    cmake -S "$root" -B "$folder" -G Ninja "$@" >>"$log" 2>&1 || failed "configuring"
+    cmake -S "$root" -B "$folder" "$@" >>"$log" 2>&1 || failed "configuring"
     # What progress is measured by; ninja writes its log anew as it builds.
     ninja -C "$folder" -n "$target" >"$folder/.plan" 2>/dev/null || true
     cp "$folder/.ninja_log" "$folder/.last_log" 2>/dev/null || : >"$folder/.last_log"

@@ -10,7 +10,7 @@ tree="$work/a tree"
 mkdir -p "$tree" "$work/bin" "$work/elsewhere"
 cp -rL "$1/darkroom" "$1/test" "$1/scripts" "$1/packages.txt" "$tree/"
 mkdir -p "$tree"/{cmake,include,src,effects,apps,samples,scenes/models,looks}
-touch "$tree/CMakeLists.txt" "$tree/src/one.cpp" "$tree/samples/a.exr" "$tree/scenes/models/a.glb"
+touch "$tree"/{CMakeLists.txt,CMakePresets.json} "$tree/src/one.cpp" "$tree/samples/a.exr" "$tree/scenes/models/a.glb"
 
 # A build that counts itself, and a machine that has every package.
 cat >"$work/bin/cmake" <<'STUB'
@@ -147,10 +147,10 @@ DARKROOM_BUILD=$work/other "$tree/darkroom" >"$work/out" 2>"$work/said"
 [[ $("$tree/test" -R Bloom 2>/dev/null) == "ctest --test-dir $tree/build "*" -LE ^soak$ -R Bloom" ]] || fail "./test -R"
 [[ $("$tree/test" --all 2>/dev/null) != *"-LE"* ]] || fail "./test --all"
 [[ $("$tree/test" --sanitize 2>/dev/null) == "ctest --test-dir $tree/build-sanitize "*" -L ^(fast|gpu)$" ]] || fail "./test --sanitize"
-grep -q 'DARKROOM_SANITIZE=ON' "$STUB_LOG" || fail "./test --sanitize configures without sanitizers"
+grep -q -- '--preset sanitize' "$STUB_LOG" || fail "./test --sanitize configures without sanitizers"
 out=$("$tree/test" --thread 2>/dev/null)
 [[ $out == "ctest --test-dir $tree/build-thread "*" -L ^(fast|gpu)$" ]] || fail "./test --thread: $out"
-grep -q 'DARKROOM_SANITIZE=thread .*DARKROOM_TEST_FOLDERS=' "$STUB_LOG" || fail "./test --thread: no sanitizer"
+grep -q -- '--preset thread' "$STUB_LOG" || fail "./test --thread: no sanitizer"
 grep -qF -- "--build $tree/build-thread --target darkroom_tests" "$STUB_LOG" || fail "./test --thread: what is built"
 status=0
 "$tree/test" --thread --all 2>"$work/said" || status=$?
