@@ -9,7 +9,12 @@ die() {
     exit 2
 }
 
-wanted_packages() { sed 's/#.*//; s/[[:space:]]//g; /^$/d' "$root/packages.txt"; }
+# What packages.txt names, and what the caller has in `extra_packages`.
+extra_packages=()
+wanted_packages() {
+    sed 's/#.*//; s/[[:space:]]//g; /^$/d' "$root/packages.txt"
+    [[ ${#extra_packages[@]} == 0 ]] || printf '%s\n' "${extra_packages[@]}"
+}
 
 missing_packages() {
     local -A installed=()
@@ -106,7 +111,8 @@ say_cache_hits() {
     say "$hits of $((hits + misses)) compiled files from the cache"
 }
 
-# build FOLDER TARGET CMAKE_OPTION...: configures and builds TARGET. One build at a time in a folder.
+# build FOLDER TARGET CMAKE_OPTION...: configures and builds TARGET. One build at a time in a folder. The environment has
+# further options in DARKROOM_CMAKE_OPTIONS, parted by blanks.
 build() {
     local folder=$1 target=$2
     shift 2
@@ -127,7 +133,7 @@ build() {
     fi
     [[ -x $folder/bin/darkroom ]] || say "building in $folder, some minutes the first time"
     printf '%s' "$root" >"$folder/.building"
-    cmake -S "$root" -B "$folder" "$@" >>"$log" 2>&1 || failed "configuring"
+    cmake -S "$root" -B "$folder" "$@" ${DARKROOM_CMAKE_OPTIONS:-} >>"$log" 2>&1 || failed "configuring"
     # What progress is measured by; ninja writes its log anew as it builds.
     ninja -C "$folder" -n "$target" >"$folder/.plan" 2>/dev/null || true
     cp "$folder/.ninja_log" "$folder/.last_log" 2>/dev/null || : >"$folder/.last_log"

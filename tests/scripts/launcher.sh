@@ -3,12 +3,12 @@
 # launcher.sh TREE: when ./darkroom builds, when it does not, and what it says, in a small tree with a CMake that only
 # pretends. Nothing is compiled or installed.
 set -euo pipefail
-unset DARKROOM_BUILD DARKROOM_YES XDG_RUNTIME_DIR
+unset DARKROOM_BUILD DARKROOM_CMAKE_OPTIONS DARKROOM_YES XDG_RUNTIME_DIR XDG_STATE_HOME
 work=$(mktemp -d)
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 tree="$work/a tree"
 mkdir -p "$tree" "$work/bin" "$work/elsewhere"
-cp -rL "$1/darkroom" "$1/test" "$1/scripts" "$1/packages.txt" "$tree/"
+cp -rL "$1/.ci" "$1/darkroom" "$1/test" "$1/scripts" "$1/packages.txt" "$tree/"
 mkdir -p "$tree"/{cmake,include,src,effects,apps,samples,scenes/models,looks}
 touch "$tree"/{CMakeLists.txt,CMakePresets.json} "$tree/src/one.cpp" "$tree/samples/a.exr" "$tree/scenes/models/a.glb"
 
@@ -187,4 +187,26 @@ STUB_HITS=1 "$tree/test" -R Bloom >"$work/out" 2>"$work/said"
 grep -qxF 'darkroom: 1 of 2 compiled files from the cache' "$work/said" || fail "the cache's hits are not said"
 "$tree/test" -R Bloom >"$work/out" 2>"$work/said"
 ! grep -q 'cache' "$work/said" || fail "hits of a build that compiled nothing"
+
+# CI: a warning is an error in its three builds, and what it leaves out stands before the closing lines of CTest.
+printf '#!/usr/bin/env bash\n%s\n' 'echo "100% tests passed"; echo "Total Test time"; [[ $* != *${STUB_RED:-none}* ]]' >"$work/bin/ctest"
+export HOME=$work/home
+: >"$STUB_LOG"
+"$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run"
+[[ $(grep -c 'preset .*-DCMAKE_COMPILE_WARNING_AS_ERROR=ON' "$STUB_LOG") == 3 ]] || fail ".ci/run: warnings"
+[[ $(tail -n 3 "$work/out" | xargs) == *"(.ci/more): never on this machine 100% tests passed Total Test time" ]] ||
+    fail ".ci/run: closing lines: $(<"$work/out")"
+: >"$STUB_LOG"
+"$tree/.ci/more" >"$work/out" 2>"$work/said" || fail ".ci/more"
+[[ $(grep -oE 'preset (clang|plain|release)' "$STUB_LOG" | xargs) == "preset clang preset plain preset release" ]] ||
+    fail ".ci/more: builds"
+! STUB_RED=build-thread "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run passes where a test fails"
+[[ $("$tree/.ci/more" --last) == "last ran "*": passed" ]] || fail ".ci/more --last"
+"$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run again"
+grep -q '(.ci/more): last ran .*: passed' "$work/out" || fail ".ci/run says when .ci/more ran"
+STUB_LACKS=clang "$tree/.ci/more" >"$work/out" 2>"$work/said" </dev/null || fail ".ci/more without clang"
+grep -qE '^apt-get .*install .* clang$' "$STUB_LOG" || fail ".ci/more installs no clang"
+status=0
+STUB_FAILS=1 "$tree/.ci/more" >"$work/out" 2>"$work/said" || status=$?
+[[ $status != 0 && $(tail -n 1 "$work/out") == *": failed: clang plain soak" ]] || fail ".ci/more that failed"
 echo "launcher: all as it should be"
