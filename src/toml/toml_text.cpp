@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// The code of toml++, which stands here alone, is compiled with what its headers define.
+#define TOML_IMPLEMENTATION
 #include "toml/toml_text.hpp"
 
 #include <fmt/format.h>

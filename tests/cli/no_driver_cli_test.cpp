@@ -57,9 +57,9 @@ TEST_F(CliNoDriver, PlansForAnAssumedDeviceAndSaysSo) {
         EXPECT_EQ(text.err, "");
         EXPECT_NE(text.out.find("\nremark: planned without a device: "), std::string::npos) << text.out;
         arguments.emplace_back("--json");
-        const Outcome json = run(arguments);
-        EXPECT_EQ(json.code, 0) << json.err;
-        EXPECT_NE(json.out.find("\"planned without a device: "), std::string::npos) << json.out;
+        const Outcome as_json = run(arguments);
+        EXPECT_EQ(as_json.code, 0) << as_json.err;
+        EXPECT_NE(as_json.out.find("\"planned without a device: "), std::string::npos) << as_json.out;
     }
     expect_refused({"plan", "--size", "99999x2"}, 1, "allows 1x1 to 16384x16384");
 }

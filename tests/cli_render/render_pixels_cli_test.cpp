@@ -17,7 +17,7 @@ using scene::vec2;
 using scene::vec3;
 using test::Outcome;
 
-constexpr std::uint32_t wide = 96, high = 64;
+constexpr std::uint32_t wide = 96, tall = 64;
 constexpr scene::Box floor_box{{-3, 0.01F, -3}, {3, 0.05F, 3}}, box{{-0.6F, 0.05F, -0.6F}, {0.6F, 1.2F, 0.6F}};
 
 /// Nothing spreads light from pixel to pixel: without bloom and occlusion a picture is its light through one curve.
@@ -68,7 +68,7 @@ Hit trace(const scene::Box& target, vec3 from, vec3 direction) {
     return {enter, normal};
 }
 
-const vec2 middle = 0.5F * vec2(wide, high);
+const vec2 middle = 0.5F * vec2(wide, tall);
 vec2 center(std::uint32_t x, std::uint32_t y) { return {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F}; }
 
 /// The camera that the documentation describes.
@@ -85,7 +85,7 @@ struct Eye {
     [[nodiscard]] vec3 right() const { return glm::normalize(glm::cross(forward(), vec3(0, 1, 0))); }
     [[nodiscard]] vec3 up() const { return glm::cross(right(), forward()); }
     /// Metres a pixel, at one metre.
-    [[nodiscard]] float step() const { return 2 * std::tan(glm::radians(fov_degrees) / 2) / static_cast<float>(high); }
+    [[nodiscard]] float step() const { return 2 * std::tan(glm::radians(fov_degrees) / 2) / static_cast<float>(tall); }
 
     /// One metre of planar distance along the ray through a place of the picture, in pixels.
     [[nodiscard]] vec3 ray(vec2 pixel) const {
@@ -124,7 +124,7 @@ bool is_shaded(vec3 point, float margin) {
 }
 
 void for_every_pixel(const std::function<void(std::uint32_t, std::uint32_t)>& check) {
-    for (std::uint32_t y = 0; y < high; ++y)
+    for (std::uint32_t y = 0; y < tall; ++y)
         for (std::uint32_t x = 0; x < wide; ++x) check(x, y);
 }
 
@@ -216,7 +216,7 @@ TEST_F(CliRenderPixels, SamplesSmoothEdgesAlone) {
     for_every_pixel([&](std::uint32_t x, std::uint32_t y) {
         if (eye.inner(x, y)) {
             EXPECT_LE(codes_apart(one, four, x, y), 1.001F) << x << ", " << y;
-        } else if (x > 0 && y > 0 && x + 1 < wide && y + 1 < high && is_between(x, y)) {
+        } else if (x > 0 && y > 0 && x + 1 < wide && y + 1 < tall && is_between(x, y)) {
             ++smoothed;
         }
     });
