@@ -118,7 +118,8 @@ TEST(Documents, EveryFlagIsRunByATest) {
         run.insert({name, "--no-" + name.substr(2), name + "-enabled"});
         for (const ParamInfo& row : effect->parameters.rows) run.insert(flag_name(flat_key(effect->name, row.name)));
     }
-    const std::string tests = all_text({"tests", "src"}, "_test.cpp") + test::content(source / "docs/recipes.md");
+    const std::string tests = all_text({"tests", "src"}, "_test.cpp") + all_text({"tests/scripts"}, ".sh") +
+                              test::content(source / "docs/recipes.md");
     std::string pages = test::content(source / "README.md");
     for (const auto& page : fs::directory_iterator(source / "docs"))
         // Architecture tells of programs of its own.

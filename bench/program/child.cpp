@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +12,7 @@
 #include <string_view>
 
 #include "core/files.hpp"
+#include "core/spawn.hpp"
 
 namespace darkroom::bench {
 
@@ -34,17 +34,12 @@ std::string last_line(const std::filesystem::path& path) {
 }  // namespace
 
 Result<std::optional<Sample>> run_program(std::vector<std::string> arguments, const std::filesystem::path& log) {
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
     const Stopwatch watch;
     pid_t child = 0;
-    const int error = posix_spawnp(&child, pointers[0], &actions, nullptr, pointers.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
+    const int error = Spawn()
+                          .open(STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600)
+                          .give(STDOUT_FILENO, STDERR_FILENO)
+                          .start(child, arguments[0], arguments);
     if (error == ENOENT) return std::optional<Sample>();
     if (error != 0) return machine_error(fmt::format("{}: starting it failed: {}", arguments[0], std::strerror(error)));
     int status = 0;

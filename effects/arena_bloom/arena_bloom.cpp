@@ -33,8 +33,8 @@ void build(PassBuilder& builder) {
         combine.inputs.push_back({.name = "arena_bloom_level_" + number, .image = image});
     }
     const PassImage glow = builder.add({.name = "double",
-                                        .shader = "arena_bloom_double.glsl",
-                                        .inputs = {{.name = "arena_bloom_small", .image = builder.add(combine)}},
+                                        .shader = "shared/double.glsl",
+                                        .inputs = {{.name = "double_input", .image = builder.add(combine)}},
                                         .output = create("glow", 2)});
     builder.side("arena_bloom_glow", glow, {0, 0, 0, 0});
 }

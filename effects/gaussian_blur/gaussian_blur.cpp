@@ -110,8 +110,8 @@ void build(PassBuilder& builder) {
     for (std::uint32_t i = level; i-- > 1;) {
         const std::string name = "double " + std::to_string(i);
         image = builder.add({.name = name,
-                             .shader = "gaussian_blur_double.glsl",
-                             .inputs = {{.name = "gaussian_blur_small", .image = image}},
+                             .shader = "shared/double.glsl",
+                             .inputs = {{.name = "double_input", .image = image}},
                              .output = builder.create({.name = name, .denominator = 1u << i})});
     }
     if (level > 0)

@@ -4,17 +4,18 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string>
 
 #include "core/program_module.hpp"
+#include "core/spawn.hpp"
 #include "core/text/param_text.hpp"
 #include "hud/svg_messages.hpp"
 
@@ -78,17 +79,14 @@ Result<> SvgProcess::start() {
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &most, sizeof most);
     setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
 
-    posix_spawn_file_actions_t actions{};
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, other, STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, memory_, svg_memory_descriptor);
-    posix_spawn_file_actions_addclosefrom_np(&actions, svg_memory_descriptor + 1);
-    std::string name = "darkroom_svg";
-    char* arguments[] = {name.data(), nullptr};
-    const int reason = posix_spawn(&process_, path.c_str(), &actions, nullptr, arguments, environ);
-    posix_spawn_file_actions_destroy(&actions);
+    const std::array arguments{std::string("darkroom_svg")};
+    const int reason = Spawn()
+                           .give(other, STDIN_FILENO)
+                           .open(STDOUT_FILENO, "/dev/null", O_WRONLY)
+                           .open(STDERR_FILENO, "/dev/null", O_WRONLY)
+                           .give(memory_, svg_memory_descriptor)
+                           .close_from(svg_memory_descriptor + 1)
+                           .start(process_, path, arguments);
     close(other);
     if (reason == 0) return {};
     process_ = -1;

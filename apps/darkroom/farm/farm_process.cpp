@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/spawn.hpp"
 #include "core/text/param_text.hpp"
 
 extern char** environ;
@@ -93,23 +93,18 @@ void read_all(Pipe& out, Pipe& errors, ProcessOutput output, ProcessOutcome& out
 }  // namespace
 
 Result<ProcessOutcome> run_process(const std::vector<std::string>& arguments, ProcessOutput output) {
-    std::vector<char*> pointers;
-    for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
-    pointers.push_back(nullptr);
     Pipe out, errors;
     const auto cannot_be_run = [&](int reason) {
         return darkroom::machine_error(fmt::format("{}: cannot be run: {}", darkroom::printable(arguments[0]),
                                                    std::generic_category().message(reason)));
     };
     if (out.read_end() < 0 || errors.read_end() < 0) return cannot_be_run(errno);
-    posix_spawn_file_actions_t actions{};
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    if (output == ProcessOutput::Kept) posix_spawn_file_actions_adddup2(&actions, out.write_end(), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, errors.write_end(), STDERR_FILENO);
+    darkroom::Spawn spawn;
+    spawn.open(STDIN_FILENO, "/dev/null", O_RDONLY);
+    if (output == ProcessOutput::Kept) spawn.give(out.write_end(), STDOUT_FILENO);
+    spawn.give(errors.write_end(), STDERR_FILENO);
     pid_t process = -1;
-    const int reason = posix_spawnp(&process, pointers[0], &actions, nullptr, pointers.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
+    const int reason = spawn.start(process, arguments[0], arguments);
     if (reason != 0) return cannot_be_run(reason);
     out.close_end(1);
     errors.close_end(1);

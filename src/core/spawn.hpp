@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Starting another program, with files of the caller's choice in the place of its own.
+
+#include <spawn.h>
+#include <sys/types.h>
+
+#include <span>
+#include <string>
+
+namespace darkroom {
+
+class Spawn {
+  public:
+    Spawn();
+    Spawn(const Spawn&) = delete;
+    Spawn& operator=(const Spawn&) = delete;
+    ~Spawn();
+
+    /// Descriptor `to` of the program is this file.
+    Spawn& open(int to, const char* path, int flags, mode_t mode = 0);
+    /// Descriptor `to` of the program is our `from`.
+    Spawn& give(int from, int to);
+    /// The program has no descriptor from this one on.
+    Spawn& close_from(int first);
+
+    /// Starts `program`, looked for in PATH unless it has a slash. 0, or why it failed, as errno has it.
+    [[nodiscard]] int start(pid_t& process, const std::string& program, std::span<const std::string> arguments) const;
+
+  private:
+    posix_spawn_file_actions_t actions_{};
+};
+
+}  // namespace darkroom
