@@ -46,6 +46,10 @@ eval "'$compiler' -std=c++20 ${flags[*]} '$tree/tests/package/main.cpp' $kept $(
 # The module for other files than OpenEXR is found beside the program, wherever that was moved.
 "$prefix/bin/darkroom" info "$tree/tests/goldens/forge.png" >/dev/null
 
+# The tool alone.
+cmake --install "$build" --component tool --prefix "$work/tool" >"$work/log" || { cat "$work/log" && exit 1; }
+[[ -x $work/tool/bin/darkroom && ! -e $work/tool/include ]] || { echo "the component tool: $(ls "$work/tool")" && exit 1; }
+
 # What was installed can be removed, and nothing else is.
 DESTDIR=$work/stage cmake --install "$build" --prefix /opt/darkroom >"$work/log"
 touch "$work/stage/opt/darkroom/share/darkroom/looks/mine.toml"
