@@ -14,7 +14,11 @@ namespace {
 
 using Parsed = nlohmann::ordered_json;
 
-Json json_of(const Parsed& parsed) {
+// Ours are read and destroyed by recursion, which a file of brackets alone would lead through the stack's end.
+constexpr int max_depth = 64;
+
+std::optional<Json> json_of(const Parsed& parsed, int depth = 0) {
+    if (depth > max_depth) return std::nullopt;
     switch (parsed.type()) {
         case Parsed::value_t::boolean:
             return parsed.get<bool>();
@@ -30,16 +34,24 @@ Json json_of(const Parsed& parsed) {
             return parsed.get_ref<const std::string&>();
         case Parsed::value_t::array: {
             Json out = Json::array();
-            for (const Parsed& item : parsed) out.push_back(json_of(item));
+            for (const Parsed& item : parsed) {
+                std::optional<Json> found = json_of(item, depth + 1);
+                if (!found) return std::nullopt;
+                out.push_back(std::move(*found));
+            }
             return out;
         }
         case Parsed::value_t::object: {
             Json out = Json::object();
-            for (const auto& [key, value] : parsed.items()) out[key] = json_of(value);
+            for (const auto& [key, value] : parsed.items()) {
+                std::optional<Json> found = json_of(value, depth + 1);
+                if (!found) return std::nullopt;
+                out[key] = std::move(*found);
+            }
             return out;
         }
         default:
-            return nullptr;
+            return Json();
     }
 }
 

@@ -46,7 +46,7 @@ class Json {
 
     [[nodiscard]] static Json array();
     [[nodiscard]] static Json object();
-    /// Nothing where it is not JSON.
+    /// Nothing where it is not JSON, or nests deeper than 64 times.
     [[nodiscard]] static std::optional<Json> parse(std::string_view text);
     /// What is no JSON becomes a text.
     [[nodiscard]] static Json value_or_text(std::string_view text);
