@@ -134,8 +134,10 @@ build() {
     [[ -x $folder/bin/darkroom ]] || say "building in $folder, some minutes the first time"
     printf '%s' "$root" >"$folder/.building"
     cmake -S "$root" -B "$folder" "$@" ${DARKROOM_CMAKE_OPTIONS:-} >>"$log" 2>&1 || failed "configuring"
-    # What progress is measured by; ninja writes its log anew as it builds.
-    ninja -C "$folder" -n "$target" >"$folder/.plan" 2>/dev/null || true
+    # What progress is measured by; ninja writes its log anew as it builds. Of build.ninja itself a dry run plans no more
+    # than to look for new files, as CMake wants that done first, so it reads a copy.
+    cp "$folder/build.ninja" "$folder/.plan.ninja" 2>/dev/null || true
+    ninja -C "$folder" -f .plan.ninja -n "$target" >"$folder/.plan" 2>/dev/null || true
     cp "$folder/.ninja_log" "$folder/.last_log" 2>/dev/null || : >"$folder/.last_log"
     # Without the lock, which a compiler cache's server would keep.
     rm -f "$folder/.ccache"

@@ -9,6 +9,7 @@ trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 tree="$work/a tree"
 mkdir -p "$tree" "$work/bin" "$work/elsewhere"
 cp -rL "$1/.ci" "$1/darkroom" "$1/test" "$1/scripts" "$1/packages.txt" "$tree/"
+cp -L "$1/CMakePresets.json" "$work/presets"
 mkdir -p "$tree"/{cmake,include,src,effects,apps,samples,scenes/models,looks}
 touch "$tree"/{CMakeLists.txt,CMakePresets.json} "$tree/src/one.cpp" "$tree/samples/a.exr" "$tree/scenes/models/a.glb"
 
@@ -40,6 +41,7 @@ STUB
 printf '#!/usr/bin/env bash\necho "${STUB_USER:-0}"\n' >"$work/bin/id"
 printf '#!/usr/bin/env bash\necho "ctest $*"\n' >"$work/bin/ctest"
 chmod +x "$work/bin/"*
+real_path=$PATH
 export PATH="$work/bin:$PATH" STUB_LOG="$work/calls"
 
 fail() {
@@ -177,6 +179,27 @@ STUB_STEPS='50 %' "$tree/darkroom" >"$work/out" 2>"$work/said"
 touch "$tree/src/three.cpp"
 STUB_STEPS='50 %.*50 %' script -qefc "$(printf '%q' "$tree/darkroom")" "$work/said" </dev/null >"$work/out"
 grep -qE $'\r\033\\[Kdarkroom: building: 50 %, about [0-9]+ s left\r' "$work/said" || fail "progress on a terminal"
+
+# So it does with CMake and ninja as they are, which look for new files before they build: three of five steps are done.
+real="$work/a real tree"
+mkdir "$real" "$work/packages"
+cp -r "$tree/darkroom" "$tree/scripts" "$tree/packages.txt" "$real/"
+cp "$work/presets" "$real/CMakePresets.json"
+cp "$work/bin/"{dpkg-query,apt-get,id} "$work/packages/"
+cat >"$real/CMakeLists.txt" <<'LISTS'
+cmake_minimum_required(VERSION 3.25)
+project(small NONE)
+file(GLOB sources CONFIGURE_DEPENDS *.txt)
+foreach(step RANGE 1 3)
+  add_custom_command(OUTPUT ${step} COMMAND true)
+endforeach()
+set(wait "for i in $(seq 100)\; do grep -q 'building: 60 %' \"$STUB_SAID\" && break || sleep 0.1\; done")
+add_custom_command(OUTPUT 4 DEPENDS 1 2 3 COMMAND sh -c ${wait} VERBATIM)
+add_custom_command(OUTPUT bin/darkroom DEPENDS 4 COMMAND mkdir -p bin COMMAND ln -sf /bin/true bin/darkroom)
+add_custom_target(darkroom_program DEPENDS bin/darkroom)
+LISTS
+PATH="$work/packages:$real_path" "$real/darkroom" >"$work/out" 2>"$work/said" || fail "a build by CMake: $(<"$work/said")"
+grep -qE '^darkroom: building: 60 %, about [0-9]+ s left$' "$work/said" || fail "progress by ninja: $(<"$work/said")"
 
 # How much came from the compiler's cache is said in one line, where something was compiled.
 cat >>"$work/bin/cmake" <<'STUB'
