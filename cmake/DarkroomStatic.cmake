@@ -15,7 +15,8 @@ if(type STREQUAL STATIC_LIBRARY)
 endif()
 set(objects "")
 foreach(part ${DARKROOM_PARTS})
-  list(APPEND objects $<TARGET_OBJECTS:darkroom_${part}>)
+  # A precompiled header counts among them.
+  list(APPEND objects "$<FILTER:$<TARGET_OBJECTS:darkroom_${part}>,EXCLUDE,\\.gch$>")
 endforeach()
 
 # Groups are dissolved: the linker would throw a group away where the host has one of the same name, and with it code
