@@ -23,12 +23,16 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "files are little-endian, and read in place");
 
+#ifdef _MSC_VER
+// No vector extensions there: every byte is left to undo_differences().
+std::size_t undo_blocks(std::uint8_t*, std::size_t, std::uint8_t&) { return 0; }
+#else
 using Block = std::uint8_t __attribute__((vector_size(16)));
 
-// Each byte is the difference to the one before, plus 128: the sums, sixteen at a time.
-void undo_differences(std::uint8_t* bytes, std::size_t count) {
+/// Sums sixteen at a time; `last` is the byte before. Returns how many bytes are done.
+std::size_t undo_blocks(std::uint8_t* bytes, std::size_t count, std::uint8_t& last) {
     const Block zero{}, middle = zero + 128;
-    Block before = middle;
+    Block before = zero + last;
     std::size_t i = 0;
     for (; i + sizeof(Block) <= count; i += sizeof(Block)) {
         Block sums;
@@ -40,9 +44,17 @@ void undo_differences(std::uint8_t* bytes, std::size_t count) {
         sums += __builtin_shufflevector(zero, sums, 0, 0, 0, 0, 0, 0, 0, 0, 16, 17, 18, 19, 20, 21, 22, 23);
         sums += before;
         std::memcpy(bytes + i, &sums, sizeof sums);
-        before = zero + bytes[i + sizeof(Block) - 1];
+        last = bytes[i + sizeof(Block) - 1];
+        before = zero + last;
     }
-    for (std::uint8_t last = before[0]; i < count; ++i)
+    return i;
+}
+#endif
+
+/// Each byte is the difference to the one before, plus 128.
+void undo_differences(std::uint8_t* bytes, std::size_t count) {
+    std::uint8_t last = 128;
+    for (std::size_t i = undo_blocks(bytes, count, last); i < count; ++i)
         bytes[i] = last = static_cast<std::uint8_t>(last + bytes[i] - 128);
 }
 
