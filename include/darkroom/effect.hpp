@@ -238,4 +238,9 @@ struct EffectInfo {
     std::weak_ptr<const void> owner{};
 };
 
+/// Every effect of this build, by name.
+[[nodiscard]] std::span<const EffectInfo* const> all_effects();
+/// The effect of that name; null: none.
+[[nodiscard]] const EffectInfo* find_effect(std::string_view name);
+
 }  // namespace darkroom

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 #include <functional>
 #include <map>
 

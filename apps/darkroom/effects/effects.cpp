@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <darkroom/custom_effect.hpp>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 #include <memory>
 #include <optional>
 

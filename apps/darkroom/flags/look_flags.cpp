@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 
 #include "apps/darkroom/effects/named_effects.hpp"
 #include "apps/darkroom/help/describe.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <darkroom/custom_effect.hpp>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 #include <filesystem>
 #include <memory>
 #include <span>

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 
 namespace app {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 
 #include "core/text/param_text.hpp"
 #include "looks/look_parts.hpp"

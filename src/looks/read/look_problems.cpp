@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 #include <map>
 
 #include "core/text/param_text.hpp"

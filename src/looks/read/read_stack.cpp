@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 #include <map>
 #include <optional>
 #include <system_error>

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <cfloat>
 #include <cmath>
-#include <darkroom/effects.hpp>
+#include <darkroom/effect.hpp>
 
 #include "edit/edits.hpp"
 #include "panels/panel_state.hpp"
