@@ -5,6 +5,13 @@
 
 #include <filesystem>
 
+/// Before the one function by which a library of the program is reached.
+#ifdef _MSC_VER
+#define DARKROOM_MODULE_EXPORT __declspec(dllexport)
+#else
+#define DARKROOM_MODULE_EXPORT __attribute__((visibility("default")))
+#endif
+
 namespace darkroom {
 
 /// Where `file` of <library folder>/darkroom is: where it was installed, seen from the running program, so that the

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/program_module.hpp"
 #include "core/text/param_text.hpp"
 #include "image/table/color_chain.hpp"
 
@@ -202,7 +203,7 @@ Result<std::unique_ptr<ColorChain>> open(const std::filesystem::path& path) {
 }  // namespace
 }  // namespace darkroom
 
-extern "C" __attribute__((visibility("default"))) const darkroom::ColorChains* darkroom_ocio_chains() {
+extern "C" DARKROOM_MODULE_EXPORT const darkroom::ColorChains* darkroom_ocio_chains() {
     static const darkroom::ColorChains chains{.open = darkroom::open};
     return &chains;
 }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "core/program_module.hpp"
 #include "image/codec/codecs.hpp"
 
 namespace darkroom {
@@ -242,7 +243,7 @@ T guarded(T (*work)(Arguments...), std::string_view doing, std::type_identity_t<
 }  // namespace
 }  // namespace darkroom
 
-extern "C" __attribute__((visibility("default"))) const darkroom::Codecs* darkroom_oiio_codecs() {
+extern "C" DARKROOM_MODULE_EXPORT const darkroom::Codecs* darkroom_oiio_codecs() {
     using namespace darkroom;
     static const Codecs codecs{
         .open =

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/srgb.hpp"
 #include "core/thread/parallel.hpp"
 #include "image/picture/picture_source.hpp"
 #include "scene/assets.hpp"
@@ -24,8 +25,7 @@ constexpr std::size_t pixels_per_byte = 64;
 // IEC 61966-2-1: colour textures are decoded as sRGB where they are used.
 std::uint8_t encoded(float linear) {
     if (!(linear > 0)) return 0;
-    const float value = linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
-    return static_cast<std::uint8_t>(std::lround(std::min(value, 1.0F) * 255));
+    return static_cast<std::uint8_t>(std::lround(std::min(srgb_encode(linear), 1.0F) * 255));
 }
 
 std::uint8_t unencoded(float value) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/effects/named_effects.hpp"
 #include "apps/darkroom/run/report.hpp"
+#include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "info_documents.hpp"
 
@@ -97,10 +97,9 @@ Result<Head> head_of(const fs::path& path) {
     if (!fs::is_regular_file(path, error)) return user_error(fmt::format("{}: is no regular file", shown));
     std::ifstream stream(path, std::ios::binary);
     if (!stream) return user_error(fmt::format("{}: cannot be opened", shown));
-    Head head{.start = std::string(4096, '\0'), .extension = path.extension().string()};
+    Head head{.start = std::string(4096, '\0'), .extension = darkroom::lower(path.extension().string())};
     stream.read(head.start.data(), static_cast<std::streamsize>(head.start.size()));
     head.start.resize(static_cast<std::size_t>(stream.gcount()));
-    for (char& c : head.extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return head;
 }
 

@@ -8,6 +8,7 @@
 #include <charconv>
 
 #include "apps/darkroom/run/json.hpp"
+#include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 
 namespace app {
@@ -20,12 +21,6 @@ using darkroom::KernelCost;
 using darkroom::KernelStatistics;
 using darkroom::PlanPass;
 using darkroom::Result;
-
-std::string lower_case(std::string_view text) {
-    std::string out(text);
-    std::ranges::transform(out, out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return out;
-}
 
 double pixels_of(VkExtent2D extent) { return static_cast<double>(extent.width) * extent.height; }
 
@@ -183,7 +178,7 @@ Result<const Chip*> chip_named(const std::string& name, const DeviceInfo& device
     const std::string_view family = darkroom::amd_family(device.name);
     const auto chips = darkroom::chips();
     const auto found = std::ranges::find_if(chips, [&](const Chip& chip) {
-        return name.empty() ? chip.family == family : lower_case(chip.name) == lower_case(name);
+        return name.empty() ? chip.family == family : darkroom::lower(chip.name) == darkroom::lower(name);
     });
     if (found == chips.end()) {
         if (name.empty()) return nullptr;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/primaries.hpp"
 #include "core/srgb.hpp"
-#include "image/picture/primaries.hpp"
 #include "image/picture/resize.hpp"
 
 namespace darkroom {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "image/picture/primaries.hpp"
+#include "core/primaries.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {

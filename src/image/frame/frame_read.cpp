@@ -7,11 +7,11 @@
 #include <limits>
 #include <numbers>
 
+#include "core/primaries.hpp"
 #include "core/srgb.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
 #include "image/frame/layer_read.hpp"
-#include "image/picture/primaries.hpp"
 
 namespace darkroom {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/primaries.hpp"
 #include "core/srgb.hpp"
 #include "image/frame/frame_file.hpp"
-#include "image/picture/primaries.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {

@@ -1,4 +1,5 @@
 // From the light that reaches the camera to what is written. Needs frame.glsl before it.
+#include "srgb.glsl"
 
 // The largest finite half float.
 const float brightest = 65504.0;
@@ -12,12 +13,6 @@ vec3 finite_light(vec3 light) {
 // effects looks like one with all of them neutral.
 vec3 tone_map(vec3 light) {
     return light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14);
-}
-
-// IEC 61966-2-1; `linear` is in [0, 1].
-vec3 srgb_encode(vec3 linear) {
-    vec3 power = 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055;
-    return mix(power, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
 }
 
 // What is stored for light: linear HDR, or the finished picture.

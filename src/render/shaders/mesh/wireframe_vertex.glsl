@@ -1,6 +1,7 @@
 // Edges of meshes: in the material's colour for rooms, which are nothing but edges, and for the view of all edges;
 // white over the picture.
 #include "mesh/mesh_place.glsl"
+#include "srgb.glsl"
 
 layout(constant_id = 0) const bool is_overlay = false;
 layout(constant_id = 1) const bool encodes = false;
@@ -9,15 +10,9 @@ layout(location = 0) flat out vec4 line_color;
 
 invariant gl_Position;
 
-/// IEC 61966-2-1.
-vec3 encode_srgb(vec3 linear) {
-    linear = clamp(linear, 0.0, 1.0);
-    return mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
-}
-
 void main() {
     Instance instance = instances[gl_InstanceIndex];
     gl_Position = frame.view_projection * place_vertex(instance, uint(gl_VertexIndex)).position;
     line_color = is_overlay ? vec4(1, 1, 1, 0.6) : materials[instance.links.x].base_color;
-    if (encodes) line_color.rgb = encode_srgb(line_color.rgb);
+    if (encodes) line_color.rgb = srgb_encode(clamp(line_color.rgb, 0.0, 1.0));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "image/picture/primaries.hpp"
+#include "core/primaries.hpp"
 
 #include <cmath>
 
@@ -8,17 +8,12 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-ColorMatrix multiply(const ColorMatrix& a, const ColorMatrix& b) {
-    ColorMatrix product{};
+ColorMatrix product(const ColorMatrix& a, const ColorMatrix& b) {
+    ColorMatrix out{};
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 3; ++column)
-            for (std::size_t i = 0; i < 3; ++i) product[row * 3 + column] += a[row * 3 + i] * b[i * 3 + column];
-    return product;
-}
-
-Vector apply(const ColorMatrix& m, const Vector& v) {
-    return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
-            m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
+            for (std::size_t i = 0; i < 3; ++i) out[row * 3 + column] += a[row * 3 + i] * b[i * 3 + column];
+    return out;
 }
 
 std::optional<ColorMatrix> inverse(const ColorMatrix& m) {
@@ -47,7 +42,7 @@ std::optional<ColorMatrix> to_xyz(const Chromaticities& c) {
                                 1 - c.blue.x - c.blue.y};
     const auto inverted = inverse(primaries);
     if (!inverted) return std::nullopt;
-    const Vector scale = apply(*inverted, {c.white.x / c.white.y, 1.0, (1 - c.white.x - c.white.y) / c.white.y});
+    const Vector scale = multiply(*inverted, {c.white.x / c.white.y, 1.0, (1 - c.white.x - c.white.y) / c.white.y});
     ColorMatrix result = primaries;
     for (std::size_t i = 0; i < 9; ++i) result[i] *= scale[i % 3];
     return result;
@@ -56,14 +51,14 @@ std::optional<ColorMatrix> to_xyz(const Chromaticities& c) {
 // Lam, K. M., Metamerism and Colour Constancy (1985): the Bradford cone responses, scaled from one white to the other.
 std::optional<ColorMatrix> adaptation(const Chromaticity& from, const Chromaticity& to) {
     constexpr ColorMatrix bradford{0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
-    const Vector source = apply(bradford, {from.x / from.y, 1.0, (1 - from.x - from.y) / from.y});
-    const Vector target = apply(bradford, {to.x / to.y, 1.0, (1 - to.x - to.y) / to.y});
+    const Vector source = multiply(bradford, {from.x / from.y, 1.0, (1 - from.x - from.y) / from.y});
+    const Vector target = multiply(bradford, {to.x / to.y, 1.0, (1 - to.x - to.y) / to.y});
     ColorMatrix scaled = bradford;
     for (std::size_t row = 0; row < 3; ++row) {
         if (!(std::abs(source[row]) > 1e-9)) return std::nullopt;
         for (std::size_t column = 0; column < 3; ++column) scaled[row * 3 + column] *= target[row] / source[row];
     }
-    return multiply(*inverse(bradford), scaled);
+    return product(*inverse(bradford), scaled);
 }
 
 bool is_near(const Chromaticity& a, const Chromaticity& b) {
@@ -72,20 +67,32 @@ bool is_near(const Chromaticity& a, const Chromaticity& b) {
 
 }  // namespace
 
+std::array<double, 3> multiply(const ColorMatrix& m, const std::array<double, 3>& v) {
+    return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
+            m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
+}
+
+std::optional<ColorMatrix> conversion(const Chromaticities& from, const Chromaticities& to) {
+    const auto rgb_to_xyz = to_xyz(from), target_to_xyz = to_xyz(to);
+    if (!rgb_to_xyz || !target_to_xyz) return std::nullopt;
+    const auto xyz_to_rgb = inverse(*target_to_xyz);
+    if (!xyz_to_rgb) return std::nullopt;
+    if (is_near(from.white, to.white)) return product(*xyz_to_rgb, *rgb_to_xyz);
+    const auto adapted = adaptation(from.white, to.white);
+    if (!adapted) return std::nullopt;
+    return product(*xyz_to_rgb, product(*adapted, *rgb_to_xyz));
+}
+
 std::optional<ColorMatrix> to_rec709(const Chromaticities& from) {
     const Chromaticities rec709;
-    // Exactly nothing to do: files keep the numbers of the standard in 32 bits, and a frame must come back as it was.
     if (is_near(from.red, rec709.red) && is_near(from.green, rec709.green) && is_near(from.blue, rec709.blue) &&
         is_near(from.white, rec709.white))
         return ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1};
-    const auto rgb_to_xyz = to_xyz(from);
-    if (!rgb_to_xyz) return std::nullopt;
-    const ColorMatrix xyz_to_rec709 = *inverse(*to_xyz(rec709));
-    const bool is_tristimulus = is_near(from.red, {1, 0}) && is_near(from.green, {0, 1}) && is_near(from.blue, {0, 0});
-    if (is_tristimulus || is_near(from.white, rec709.white)) return multiply(xyz_to_rec709, *rgb_to_xyz);
-    const auto adapted = adaptation(from.white, rec709.white);
-    if (!adapted) return std::nullopt;
-    return multiply(xyz_to_rec709, multiply(*adapted, *rgb_to_xyz));
+    if (!is_near(from.red, {1, 0}) || !is_near(from.green, {0, 1}) || !is_near(from.blue, {0, 0}))
+        return conversion(from, rec709);
+    const auto tristimulus = to_xyz(from);
+    if (!tristimulus) return std::nullopt;
+    return product(*inverse(*to_xyz(rec709)), *tristimulus);
 }
 
 }  // namespace darkroom
