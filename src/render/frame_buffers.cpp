@@ -40,11 +40,39 @@ Result<FrameBuffers> FrameBuffers::create(gpu::Context& context, SetAllocator& s
     if (!set) return failure(std::move(set));
     out.set = *set;
     constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
-    Result<> made = out.frame_.reserve(context, sizeof(blocks::Frame), usage, "frame block");
+    Result<> made =
+        out.frame_.reserve(context, sizeof(blocks::Frame), usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, "frame block");
     if (made) made = out.lights_.reserve(context, sizeof(blocks::Lights), usage, "light block");
     if (made) made = out.shadows_.reserve(context, sizeof(blocks::Shadows), usage, "shadow block");
     if (!made) return failure(std::move(made));
     return out;
+}
+
+Result<> FrameBuffers::reserve_positions(gpu::Context& context, std::size_t count) {
+    return positions_.reserve(context, count * sizeof(blocks::Frame), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                              "frame blocks of positions");
+}
+
+void FrameBuffers::use_position(const gpu::Context& context, VkCommandBuffer commands, std::size_t index) const {
+    constexpr VkPipelineStageFlags2 readers =
+        VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    const auto barrier = [&](const VkMemoryBarrier2& memory) {
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &memory};
+        context.vk.CmdPipelineBarrier2(commands, &dependency);
+    };
+    barrier({.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+             .srcStageMask = readers | VK_PIPELINE_STAGE_2_COPY_BIT,
+             .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+             .dstStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+             .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT});
+    const VkBufferCopy copy{index * sizeof(blocks::Frame), 0, sizeof(blocks::Frame)};
+    context.vk.CmdCopyBuffer(commands, positions_.info().buffer, frame_.info().buffer, 1, &copy);
+    barrier({.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+             .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
+             .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+             .dstStageMask = readers,
+             .dstAccessMask = VK_ACCESS_2_UNIFORM_READ_BIT});
 }
 
 Result<> FrameBuffers::reserve(gpu::Context& context, const Counts& counts) {

@@ -48,6 +48,12 @@ class FrameBuffers {
     void write_set(const gpu::Context& context, const GpuScene& scene, const ShadowPass& shadows,
                    const GpuEnvironment& environment) const;
 
+    /// Before reserve(): room for so many frame blocks beside the frame's own, which use_position() puts in its place.
+    Result<> reserve_positions(gpu::Context& context, std::size_t count);
+    [[nodiscard]] blocks::Frame& position(std::size_t index) const { return positions_.as<blocks::Frame>()[index]; }
+    /// Outside rendering: what is drawn from here on, and nothing before, sees this block.
+    void use_position(const gpu::Context& context, VkCommandBuffer commands, std::size_t index) const;
+
     [[nodiscard]] blocks::Frame& frame() const { return *frame_.as<blocks::Frame>(); }
     [[nodiscard]] blocks::Lights& lights() const { return *lights_.as<blocks::Lights>(); }
     [[nodiscard]] blocks::Shadows& shadows() const { return *shadows_.as<blocks::Shadows>(); }
@@ -59,7 +65,7 @@ class FrameBuffers {
     VkDescriptorSet set = VK_NULL_HANDLE;
 
   private:
-    HostBuffer frame_, lights_, shadows_, instances_, materials_, joints_, weights_;
+    HostBuffer frame_, positions_, lights_, shadows_, instances_, materials_, joints_, weights_;
 };
 
 /// Descriptors of one set of create_frame_layout().

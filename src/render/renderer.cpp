@@ -11,6 +11,7 @@
 
 #include "core/assert.hpp"
 #include "render/frame_buffers.hpp"
+#include "render/pass/accumulate.hpp"
 #include "render/pass/billboard_pass.hpp"
 #include "render/pass/mesh_pass.hpp"
 #include "render/pass/resolve.hpp"
@@ -55,6 +56,9 @@ Result<> check(const gpu::Context& context, const RenderDesc& desc) {
     if (!std::has_single_bit(desc.samples) || (desc.samples & counts) == 0)
         return user_error(
             fmt::format("samples {}: {} has {}", desc.samples, context.info.name, counts_of(context.traits)));
+    if (desc.positions < 1 || desc.positions > scene::most_samples)
+        return user_error(
+            fmt::format("positions in a pixel: {}, [1, {}] are allowed", desc.positions, scene::most_samples));
     return check(context, desc.draw, desc.output);
 }
 
@@ -79,7 +83,8 @@ struct Renderer::State {
     std::optional<SkyPass> sky;
     std::optional<BillboardPass> billboards;
     Targets targets;
-    std::optional<Resolve> resolve;  ///< Output::Hdr
+    std::optional<Resolve> resolve;        ///< Output::Hdr
+    std::optional<Accumulate> accumulate;  ///< where there is more than one position
     std::vector<FrameBuffers> slots;
 
     // Of the prepared frame.
@@ -100,6 +105,9 @@ struct Renderer::State {
     Result<> fill_buffers(FrameBuffers& buffers);
     void fill_frame();
     Result<> record(VkCommandBuffer commands);
+    /// From every position, the centre last, so that depth, normals and velocity are of it.
+    Result<> record_positions(VkCommandBuffer commands);
+    Result<> record_position(VkCommandBuffer commands);
     Result<> record_scene(VkCommandBuffer commands);
 
     [[nodiscard]] TargetFormats formats() const;
@@ -109,6 +117,11 @@ struct Renderer::State {
         return desc.draw.debug == DebugView::None || desc.draw.debug == DebugView::Unlit;
     }
     [[nodiscard]] ResolveUse resolve_use() const { return resolve ? resolve->use() : ResolveUse{}; }
+    /// The linear picture, as record() leaves it.
+    [[nodiscard]] ImageRef drawn_color() const {
+        return accumulate ? targets.written(targets.color, accumulate->use())
+                          : targets.drawn(targets.color, resolve->use());
+    }
 };
 
 Result<> Renderer::State::create() {
@@ -119,6 +132,8 @@ Result<> Renderer::State::create() {
     apply(desc.draw);
     if (desc.output == Output::Hdr) {
         Result<> made = take(Resolve::create(*context, formats(), desc.frames_in_flight), resolve);
+        if (!made) return made;
+        if (desc.positions > 1) made = take(Accumulate::create(*context, formats().color, desc.positions), accumulate);
         if (!made) return made;
     }
     if (Result<> done = create_targets(desc.extent); !done) return done;
@@ -164,10 +179,13 @@ TargetFormats Renderer::State::formats() const {
 }
 
 Result<> Renderer::State::create_targets(VkExtent2D extent) {
-    Result<> made = take(Targets::create(*context, {.extent = extent, .formats = formats()}), targets);
-    if (!made) return made;
+    Result<Targets> made = Targets::create(*context, {.extent = extent, .formats = formats()});
+    if (!made) return failure(std::move(made));
+    if (accumulate)
+        if (Result<> resized = accumulate->resize(*made); !resized) return resized;
+    targets = std::move(*made);
     desc.extent = settings.extent = extent;
-    picture = resolve ? targets.drawn(targets.color, resolve->use()) : targets.copied_picture();
+    picture = resolve ? drawn_color() : targets.copied_picture();
     frame = {};
     snapshot = nullptr;
     return {};
@@ -235,6 +253,11 @@ Result<> Renderer::State::fill_buffers(FrameBuffers& buffers) {
     if (Result<> done = buffers.reserve(*context, counts); !done) return done;
 
     buffers.frame() = frame_block(*snapshot, settings);
+    if (accumulate) {
+        if (Result<> done = buffers.reserve_positions(*context, desc.positions); !done) return done;
+        for (std::uint32_t i = 0; i < desc.positions; ++i)
+            buffers.position(i) = moved_block(buffers.frame(), position_in_pixel(i));
+    }
     buffers.lights() = light_block(*snapshot, shadows->casting_lights());
     shadows->fill(buffers.shadows());
     std::ranges::transform(snapshot->materials, buffers.materials(), material_block);
@@ -286,7 +309,7 @@ void Renderer::State::fill_frame() {
         ++map;
     }
     const ResolveUse use = resolve->use();
-    frame = {.color = targets.drawn(targets.color, use),
+    frame = {.color = drawn_color(),
              .depth = targets.drawn(targets.planar_depth, use),
              .normals = targets.drawn(targets.normals, use),
              .velocity = targets.drawn(targets.velocity, use),
@@ -302,20 +325,33 @@ Result<> Renderer::State::record(VkCommandBuffer commands) {
     gpu::begin_label(*context, commands, "scene");
     const auto first_caster = static_cast<std::uint32_t>(list.order.size());
     Result<> done = shadows->record(commands, slots[slot].set, *snapshot, scene->meshes, first_caster);
-    if (done) {
-        // A display picture is cleared to what has no code of its own; the sky pass fills it.
-        const scene::vec3 clear = desc.output == Output::Hdr ? settings.environment.background : scene::vec3(0);
-        targets.begin(commands, {clear.r, clear.g, clear.b, scene->has_alpha_layer ? 0.0F : 1.0F}, resolve_use());
-        done = record_scene(commands);
-        if (resolve) {
-            targets.end_for_resolve(commands, resolve->use());
-            resolve->record(commands, targets, slot);
-            ++counters.resolves;
-        } else {
-            targets.end_for_copy(commands);
-        }
-    }
+    if (done) done = accumulate ? record_positions(commands) : record_position(commands);
     gpu::end_label(*context, commands);
+    return done;
+}
+
+Result<> Renderer::State::record_positions(VkCommandBuffer commands) {
+    for (std::uint32_t i = 0; i < desc.positions; ++i) {
+        slots[slot].use_position(*context, commands, desc.positions - 1 - i);
+        if (Result<> done = record_position(commands); !done) return done;
+        accumulate->record(commands, targets.color, targets.drawn(targets.color, resolve->use()).layout, i);
+    }
+    accumulate->record_mean(commands, targets.color);
+    return {};
+}
+
+Result<> Renderer::State::record_position(VkCommandBuffer commands) {
+    // A display picture is cleared to what has no code of its own; the sky pass fills it.
+    const scene::vec3 clear = desc.output == Output::Hdr ? settings.environment.background : scene::vec3(0);
+    targets.begin(commands, {clear.r, clear.g, clear.b, scene->has_alpha_layer ? 0.0F : 1.0F}, resolve_use());
+    Result<> done = record_scene(commands);
+    if (resolve) {
+        targets.end_for_resolve(commands, resolve->use());
+        resolve->record(commands, targets, slot);
+        ++counters.resolves;
+    } else {
+        targets.end_for_copy(commands);
+    }
     return done;
 }
 

@@ -72,6 +72,18 @@ blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& 
     return block;
 }
 
+blocks::Frame moved_block(const blocks::Frame& frame, scene::vec2 pixels) {
+    blocks::Frame moved = frame;
+    const scene::vec2 clip = 2.0F * pixels * scene::vec2(frame.target_size.z, frame.target_size.w);
+    for (int column = 0; column < 4; ++column) {
+        moved.projection[column].x -= clip.x * frame.projection[column].w;
+        moved.projection[column].y -= clip.y * frame.projection[column].w;
+    }
+    moved.view_projection = moved.projection * frame.view;
+    moved.inverse_view_projection = glm::inverse(moved.view_projection);
+    return moved;
+}
+
 blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps) {
     blocks::Lights block;
     std::size_t i = 0;

@@ -24,6 +24,8 @@ struct FrameSettings {
 };
 
 [[nodiscard]] blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& settings);
+/// The same frame, drawn so that the centres of pixels see what lies `pixels` beside them, x right and y down.
+[[nodiscard]] blocks::Frame moved_block(const blocks::Frame& frame, scene::vec2 pixels);
 /// `shadow_maps`: of the first that many casting directional lights.
 [[nodiscard]] blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps);
 [[nodiscard]] blocks::Material material_block(const scene::SnapshotMaterial& material);

@@ -130,6 +130,12 @@ inline Shot shoot(Renderer& renderer, const scene::Snapshot& snapshot) {
     return shot;
 }
 
+inline scene::Scene dark_scene() {
+    scene::Scene scene;
+    scene.environment.background = vec3(0);
+    return scene;
+}
+
 /// Without a grid, which is only in the way.
 inline Renderer renderer_for(RenderDesc desc, const scene::Assets& assets = {}, const scene::Scene& scene = {}) {
     desc.draw.has_grid = false;

@@ -72,6 +72,14 @@ VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layo
 
 }  // namespace
 
+ResolveUse use_of(const gpu::Kernel& kernel) {
+    if (kernel.stage() == gpu::Stage::Raster) return {};
+    return {.stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+            .write_stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+            .write_access = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+            .write_layout = VK_IMAGE_LAYOUT_GENERAL};
+}
+
 Result<Targets> Targets::create(gpu::Context& context, const TargetsDesc& desc) {
     const TargetFormats& formats = desc.formats;
     const bool has_layers = formats.has_layers, has_many = formats.samples != VK_SAMPLE_COUNT_1_BIT;
@@ -182,7 +190,14 @@ void Targets::end_for_copy(VkCommandBuffer commands) const {
 }
 
 ImageRef Targets::drawn(const gpu::Image& image, const ResolveUse& resolve) const {
-    const bool is_resolved = is_multi_sampled() || image.handle == planar_depth.handle;
+    return drawn(image, resolve, is_multi_sampled() || image.handle == planar_depth.handle);
+}
+
+ImageRef Targets::written(const gpu::Image& image, const ResolveUse& writer) const {
+    return drawn(image, writer, true);
+}
+
+ImageRef Targets::drawn(const gpu::Image& image, const ResolveUse& resolve, bool is_resolved) const {
     return {.image = image.handle,
             .view = image.view,
             .format = image.info.format,

@@ -6,6 +6,7 @@
 
 #include <darkroom/frame.hpp>
 
+#include "gpu/kernel/kernel.hpp"
 #include "gpu/resource/resources.hpp"
 #include "render/frame_set.hpp"
 
@@ -16,13 +17,15 @@ struct TargetsDesc {
     TargetFormats formats;  ///< without layers: a display picture
 };
 
-/// How the resolve uses its images.
+/// How a kernel of the renderer uses its images.
 struct ResolveUse {
     VkPipelineStageFlags2 stage = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;  ///< that reads
     VkPipelineStageFlags2 write_stage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
     VkAccessFlags2 write_access = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
     VkImageLayout write_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
 };
+
+[[nodiscard]] ResolveUse use_of(const gpu::Kernel& kernel);
 
 class Targets {
   public:
@@ -47,9 +50,13 @@ class Targets {
 
     /// The images as end_for_resolve() and the resolve leave them.
     [[nodiscard]] ImageRef drawn(const gpu::Image& image, const ResolveUse& resolve) const;
+    /// One that a kernel wrote behind the resolve.
+    [[nodiscard]] ImageRef written(const gpu::Image& image, const ResolveUse& writer) const;
     [[nodiscard]] ImageRef copied_picture() const;
 
   private:
+    [[nodiscard]] ImageRef drawn(const gpu::Image& image, const ResolveUse& resolve, bool is_resolved) const;
+
     gpu::Context* context_ = nullptr;
     TargetsDesc desc_;
 };

@@ -147,12 +147,15 @@ struct Entity {
     std::string place;  ///< "file:line:column" where a file first names it, for messages
 };
 
+inline constexpr std::uint32_t most_samples = 1024;  ///< of Scene::samples
+
 struct Scene {
     std::string name, description;
     std::filesystem::path file;    ///< for messages
     std::filesystem::path folder;  ///< that assets are relative to
     std::uint64_t file_bytes = 0;  ///< of the scene and of its prefabs
     double time = 0;               ///< [scene] time: of a picture when no other time is asked for, seconds
+    std::uint32_t samples = 0;     ///< [scene] samples: places within a pixel that a picture is made of; 0: not said
     bool has_grid = true;          ///< [scene] grid
     bool has_alpha_layer = false;  ///< [scene] alpha_layer: alpha is cleared to 0 and only Writes::Alpha draws write it
     Camera camera;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which pixels the flags of `darkroom render` change, and to what: a yard of two boxes is traced by rays, so that for
 // every pixel it is known what it shows, whether the sun reaches it and what lies beside it.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -132,6 +133,8 @@ class CliRenderPixels : public test::CliFixture {
   protected:
     void make_files() override { write("yard.scene.toml", yard); }
     [[nodiscard]] Picture rendered(std::vector<std::string> flags, const std::string& out = "out.png") const {
+        for (const char* const smoothing : {"--samples", "--msaa"})
+            if (!std::ranges::count(flags, smoothing)) flags.insert(flags.end(), {smoothing, "1"});
         flags.insert(flags.begin(), {"render", path("yard.scene.toml"), "-o", path(out), "--size", "96x64"});
         const Outcome outcome = run(flags);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -197,9 +200,11 @@ TEST_F(CliRenderPixels, ShadowsDarkenWhatTheBoxHidesFromTheSun) {
     EXPECT_GT(coarser, 5U);
 }
 
-TEST_F(CliRenderPixels, SamplesSmoothEdgesAlone) {
+class CliRenderSamples : public CliRenderPixels, public testing::WithParamInterface<const char*> {};
+
+TEST_P(CliRenderSamples, SmoothEdgesAlone) {
     const Picture one = rendered({"--no-grid", "--no-shadows"});
-    const Picture four = rendered({"--no-grid", "--no-shadows", "--msaa", "4"});
+    const Picture four = rendered({"--no-grid", "--no-shadows", GetParam(), "4"});
     const Eye eye;
     // At an edge a mean of what lies on its sides, which no pixel there was before.
     const auto is_between = [&](std::uint32_t x, std::uint32_t y) {
@@ -221,6 +226,28 @@ TEST_F(CliRenderPixels, SamplesSmoothEdgesAlone) {
         }
     });
     EXPECT_GT(smoothed, 60U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, CliRenderSamples, testing::Values("--msaa", "--samples"));
+
+TEST_F(CliRenderPixels, SamplesAreThoseOfTheFlagThenOfTheScene) {
+    const auto picture_of = [&](std::string_view scene_samples, const char* flag) {
+        std::string text = yard;
+        if (!scene_samples.empty()) text.insert(text.find("[scene]") + 8, scene_samples);
+        std::vector<std::string> words{"render", write("s.scene.toml", text), "-o", path("s.png"), "--size", "96x64"};
+        if (flag != nullptr) words.insert(words.end(), {"--samples", flag});
+        const Outcome outcome = run(words);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return content(path("s.png"));
+    };
+    const std::string usual = picture_of("", nullptr), one = picture_of("", "1"), seven = picture_of("", "7");
+    EXPECT_EQ(usual, picture_of("", "4"));
+    EXPECT_NE(usual, one);
+    EXPECT_EQ(picture_of("samples = 7\n", nullptr), seven);
+    EXPECT_EQ(picture_of("samples = 7\n", "1"), one);
+    const Outcome refused = run({"render", path("yard.scene.toml"), "--samples", "1025"});
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_NE(refused.err.find("--samples = 1025: allowed is [1, 1024]"), std::string::npos) << refused.err;
 }
 
 TEST_F(CliRenderPixels, TheOverlayIsTheEdgesOfTriangles) {

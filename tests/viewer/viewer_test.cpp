@@ -23,7 +23,8 @@ class CliViewer : public ViewerFixture {};
 TEST_F(CliViewer, APictureIsThatOfRender) {
     for (const auto& [scene, size] : {std::pair("dungeon", "320x180"), std::pair("showcase", "333x217")}) {
         const std::string file = scenes + scene + ".scene.toml";
-        const Outcome rendered = run({"render", file, "--size", size, "--fps", "60", "-o", path("render.png")});
+        const Outcome rendered = run(
+            {"render", file, "--size", size, "--fps", "60", "--samples", "1", "--msaa", "4", "-o", path("render.png")});
         ASSERT_EQ(rendered.code, 0) << rendered.err;
         const Outcome shown = run({"play", file, "--size", size, "--screenshot", path("shown.png")});
         ASSERT_EQ(shown.code, 0) << shown.err;
@@ -184,8 +185,8 @@ TEST_F(CliViewer, SurvivesAStormOfSizes) {
     ASSERT_EQ(shell(command), 0);
     ASSERT_EQ(shell(fmt::format("xdotool windowsize --sync {} 301 203", window())), 0);
     EXPECT_TRUE(wait_until([&] { return shot().width == 301; }, 60));
-    const Outcome rendered =
-        run({"render", scenes + "showcase.scene.toml", "--size", "301x203", "--fps", "60", "-o", path("render.png")});
+    const Outcome rendered = run({"render", scenes + "showcase.scene.toml", "--size", "301x203", "--fps", "60",
+                                  "--samples", "1", "--msaa", "4", "-o", path("render.png")});
     ASSERT_EQ(rendered.code, 0);
     const Picture expected = picture("render.png");
     // The plan for this very size comes when the size has settled.

@@ -222,11 +222,16 @@ class Render {
         const bool has_frames = !job_.shots.back().frame.empty();
         if (way_ == Way::Display) {
             desc.output = render::Output::Display;
+            // Its own shaders encode it, so the rasteriser smooths its edges.
+            if (desc.draw.debug == render::DebugView::None && !flags_.drawn.has_msaa()) desc.samples = usual_msaa;
             // What the file holds more of than eight bits: half floats have eleven, and no range to leave.
             if (develop_.target != DevelopTarget::Encoded8) desc.display_format = VK_FORMAT_R16G16B16A16_SFLOAT;
             if (Result<> done = make_renderer(desc, display_); !done) return done;
         }
         if (way_ != Way::Display || has_frames) {
+            const Result<std::uint32_t> samples = flags_.samples(scene_.samples);
+            if (!samples) return failure(samples.error());
+            desc.positions = *samples;
             desc.output = render::Output::Hdr;
             desc.draw.debug = render::DebugView::None;
             if (Result<> done = make_renderer(desc, hdr_); !done) return done;

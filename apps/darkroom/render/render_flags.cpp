@@ -25,6 +25,7 @@ namespace {
 constexpr VkExtent2D default_extent{1920, 1080};
 constexpr double default_frames_per_second = 24;
 constexpr const char* moment_group = "The moment";
+constexpr std::uint32_t usual_samples = 4;
 
 }  // namespace
 
@@ -41,7 +42,11 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
                     "The raw frame, too: linear light, depth, normals, motion and camera (.exr)")
         .type_name("OUT.exr");
     add_moments(command);
-    drawn.add_to(command, default_extent, moment_group);
+    drawn.add_to(command, default_extent, 1, moment_group);
+    samples_.add_to(command, "Places within a pixel that its light is the mean of; on top of --msaa")
+        .type_name("N")
+        .default_str(fmt::format("what the scene says, or {}", usual_samples))
+        .group(SceneFlags::drawing_group);
     write.add_to(command);
     run.add_to(command);
     device.add_to(command);
@@ -125,6 +130,12 @@ Result<> RenderFlags::set_target(RenderJob& job) const {
     if (!samples) return failure(samples.error());
     job.target = target_for(*samples);
     return {};
+}
+
+Result<std::uint32_t> RenderFlags::samples(std::uint32_t of_scene) const {
+    std::uint32_t samples = of_scene > 0 ? of_scene : usual_samples;
+    if (Result<> done = samples_.read_to(samples); !done) return failure(std::move(done));
+    return samples;
 }
 
 Result<RenderJob> RenderFlags::job() const {

@@ -62,8 +62,10 @@ Result<darkroom::scene::vec3> parse_vec3(std::string_view flag, const std::strin
 
 }  // namespace
 
-void SceneFlags::add_to(CommandFlags command, VkExtent2D usual_extent, const std::string& seed_group) {
+void SceneFlags::add_to(CommandFlags command, VkExtent2D usual_extent, std::uint32_t msaa,
+                        const std::string& seed_group) {
     default_extent_ = usual_extent;
+    usual_msaa_ = msaa;
     width_.add_to(command, "Of the picture").type_name("PIXELS").default_str(fmt::format("{}", usual_extent.width));
     height_.add_to(command, "Of the picture").type_name("PIXELS").default_str(fmt::format("{}", usual_extent.height));
     command.add_option("--size", size_, "Both at once").type_name("WxH");
@@ -108,7 +110,8 @@ Result<darkroom::render::RenderDesc> SceneFlags::desc() const {
     if (!size) return failure(size.error());
     out.extent = *size;
     if (Result<> done = shadow_resolution_.read_to(out.cascades.resolution); !done) return failure(std::move(done));
-    if (Result<> done = samples_.read_to(out.samples); !done) return failure(std::move(done));
+    out.samples = usual_msaa_;
+    if (Result<> done = msaa_.read_to(out.samples); !done) return failure(std::move(done));
     if (debug_mode_) {
         const Result<DebugView> view = parse_debug_mode(*debug_mode_);
         if (!view) return failure(view.error());
@@ -134,7 +137,7 @@ void SceneFlags::add_camera(CommandFlags command) {
 }
 
 void SceneFlags::add_drawing(CommandFlags command) {
-    const std::string group = "What is drawn";
+    const std::string group = drawing_group;
     command.add_flag("--no-grid", has_no_grid_, "No grid on the ground").group(group);
     command.add_option("--debug-mode", debug_mode_, "Instead of the picture; neither tone-mapped nor post-processed")
         .type_name("wireframe|normals|depth|uv|unlit|metalrough")
@@ -147,9 +150,9 @@ void SceneFlags::add_drawing(CommandFlags command) {
         .type_name("TEXELS")
         .default_str(fmt::format("{}", darkroom::render::RenderDesc().cascades.resolution))
         .group(group);
-    samples_.add_to(command, "Samples a pixel, of the counts that the device has")
+    msaa_.add_to(command, "Samples of the rasteriser a pixel, of the counts that the device has")
         .type_name("N")
-        .default_str(fmt::format("{}", darkroom::render::RenderDesc().samples))
+        .default_str(fmt::format("{}", usual_msaa_))
         .group(group);
 }
 

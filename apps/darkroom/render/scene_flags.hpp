@@ -15,14 +15,20 @@
 
 namespace app {
 
+/// Samples of the rasteriser, of which every device has four: where light is not accumulated.
+inline constexpr std::uint32_t usual_msaa = 4;
+
 class SceneFlags {
   public:
-    /// `usual_extent`: of the picture, where the flags say none.
-    void add_to(CommandFlags command, VkExtent2D usual_extent, const std::string& seed_group);
+    static constexpr const char* drawing_group = "What is drawn";
+
+    /// `usual_extent`, `msaa`: where the flags say none.
+    void add_to(CommandFlags command, VkExtent2D usual_extent, std::uint32_t usual_msaa, const std::string& seed_group);
     [[nodiscard]] darkroom::Result<darkroom::scene::OrbitOverride> orbit() const;
     /// Without `output`: that is for the look to say.
     [[nodiscard]] darkroom::Result<darkroom::render::RenderDesc> desc() const;
     [[nodiscard]] darkroom::Result<std::uint64_t> seed() const;
+    [[nodiscard]] bool has_msaa() const { return msaa_.is_given(); }
     [[nodiscard]] bool is_tone_mapped() const { return !has_no_tone_mapping_; }
     /// Says what is taken and changes nothing.
     void warn_of_what_is_ignored() const;
@@ -33,6 +39,7 @@ class SceneFlags {
     [[nodiscard]] darkroom::Result<VkExtent2D> extent() const;
 
     VkExtent2D default_extent_{};
+    std::uint32_t usual_msaa_ = 1;
     // Optional, so that an empty text is a wrong value, not a missing one.
     std::optional<std::string> size_, target_, debug_mode_;
     std::vector<std::string> schemas_;
@@ -47,7 +54,7 @@ class SceneFlags {
     NumberFlag field_of_view_{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
     NumberFlag shadow_resolution_{"--shadow-resolution",
                                   {.least = 16, .most = 16384, .is_whole = true, .unit = "texels"}};
-    NumberFlag samples_{"--msaa", {.least = 1, .most = 64, .is_whole = true}};
+    NumberFlag msaa_{"--msaa", {.least = 1, .most = 64, .is_whole = true}};
     bool has_no_grid_ = false, has_wireframe_overlay_ = false, has_normal_arrows_ = false;
     bool has_no_tone_mapping_ = false, has_no_shadows_ = false;
 };

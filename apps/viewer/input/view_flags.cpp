@@ -66,7 +66,7 @@ void ViewFlags::add_to(CommandFlags command, bool is_edit, std::span<const darkr
         .type_name("LAYER=NAME")
         .group(frame_group);
     command.add_option("--camera", camera_, "A camera file (TOML)").type_name("FILE").group(frame_group);
-    drawn_.add_to(command, is_edit ? edit_extent : play_extent, group);
+    drawn_.add_to(command, is_edit ? edit_extent : play_extent, usual_msaa, group);
     device_.add_to(command);
     look_.add_to(command, true, named);
 }

@@ -85,30 +85,20 @@ Result<Resolve> Resolve::create(gpu::Context& context, const TargetFormats& form
     return out;
 }
 
-ResolveUse Resolve::use() const {
-    if (kernel_->stage() == gpu::Stage::Raster) return {};
-    return {.stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-            .write_stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-            .write_access = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-            .write_layout = VK_IMAGE_LAYOUT_GENERAL};
-}
+ResolveUse Resolve::use() const { return use_of(*kernel_); }
 
 void Resolve::prepare(const scene::CameraState& camera, const Targets& targets, std::uint32_t slot) {
     const std::array<std::array<float, 4>, 1> custom{std::array{
         camera.near_distance, camera.far_distance, camera.kind == scene::Projection::Perspective ? 1.0F : 0.0F, 0.0F}};
-    const std::vector<gpu::Binding> inputs = inputs_of(targets);
+    const std::vector<gpu::Binding> inputs = inputs_of(targets), outputs = outputs_of(targets);
+    const gpu::Kernel::Block own{blocks_.handle, slot * block_stride_, gpu::own_block_size(kernel_->spec())};
     gpu::write_own_block(kernel_->spec(), whole(targets), inputs, custom, {},
-                         {blocks_.memory.mapped + slot * block_stride_, gpu::own_block_size(kernel_->spec())});
+                         {blocks_.memory.mapped + own.offset, own.size});
+    kernel_->write_set({.set = sets_.sets[slot], .own = own, .images = inputs, .outputs = outputs});
 }
 
 void Resolve::record(VkCommandBuffer commands, const Targets& targets, std::uint32_t slot) const {
-    const std::vector<gpu::Binding> inputs = inputs_of(targets), outputs = outputs_of(targets);
-    const VkDescriptorSet set = sets_.sets[slot];
-    kernel_->write_set({.set = set,
-                        .own = {blocks_.handle, slot * block_stride_, gpu::own_block_size(kernel_->spec())},
-                        .images = inputs,
-                        .outputs = outputs});
-    kernel_->record(commands, set, outputs);
+    kernel_->record(commands, sets_.sets[slot], outputs_of(targets));
 }
 
 }  // namespace darkroom::render

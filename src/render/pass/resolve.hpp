@@ -17,8 +17,9 @@ class Resolve {
     [[nodiscard]] static Result<Resolve> create(gpu::Context& context, const TargetFormats& formats,
                                                 std::uint32_t slots);
     [[nodiscard]] ResolveUse use() const;
-    /// Writes what the shader needs of the camera; slot `slot` is not in use by the device.
+    /// Writes what the shader needs of camera and targets; slot `slot` is not in use by the device.
     void prepare(const scene::CameraState& camera, const Targets& targets, std::uint32_t slot);
+    /// Any number of times behind prepare().
     void record(VkCommandBuffer commands, const Targets& targets, std::uint32_t slot) const;
 
   private:

@@ -25,12 +25,6 @@ scene::Snapshot half_covered(float brightness) {
     return snapshot;
 }
 
-scene::Scene dark_scene() {
-    scene::Scene scene;
-    scene.environment.background = vec3(0);
-    return scene;
-}
-
 TEST(RenderGpuResolve, OneSampleHasHardEdges) {
     Renderer renderer = renderer_for({.extent = resolved_extent}, {}, dark_scene());
     const Shot shot = shoot(renderer, half_covered(4));

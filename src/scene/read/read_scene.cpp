@@ -84,6 +84,7 @@ void SceneReader::read_scene_table(const Value& value) {
     table.text("name", scene_.name);
     table.text("description", scene_.description, most_toml_bytes);
     table.number("time", scene_.time, {.low = 0, .high = 1e9, .unit = "s"});
+    table.count("samples", scene_.samples, 1, most_samples);
     table.flag("grid", scene_.has_grid);
     table.flag("alpha_layer", scene_.has_alpha_layer);
     table.pass_over("version");

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "render/pass/accumulate.hpp"
+
+#include <cmath>
+
+#include "core/assert.hpp"
+#include "render/shader_text.hpp"
+
+namespace darkroom::render {
+
+namespace {
+
+constexpr VkFormat sum_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+gpu::KernelSpec accumulating(std::vector<std::string> images, VkFormat output, std::string_view shade) {
+    // shader_text() begins with a version line, which kernels have of their own.
+    const std::string text = shader_text("accumulate.glsl");
+    gpu::KernelSpec spec{.name = "scene accumulation",
+                         .images = {},
+                         .outputs = {output},
+                         .is_whole = true,
+                         .frame = {},
+                         .members = {},
+                         .custom_vectors = 1,
+                         .body = text.substr(text.find("#line"))};
+    for (std::string& name : images) spec.images.push_back({.name = std::move(name)});
+    spec.body += "vec4 shade(Pixel pixel) { return ";
+    spec.body += shade;
+    spec.body += "; }\n";
+    return spec;
+}
+
+gpu::Region whole(const gpu::Image& image) {
+    const VkExtent2D size{image.info.extent.width, image.info.extent.height};
+    return {.extent = size, .image = size};
+}
+
+gpu::Binding bound(const gpu::Image& image) { return {.view = image.view, .region = whole(image), .is_nearest = true}; }
+
+}  // namespace
+
+scene::vec2 position_in_pixel(std::uint32_t index) {
+    // The plastic number's powers, the plane's golden ratio.
+    constexpr double along = 0.7548776662466927, down = 0.5698402909980532;
+    const auto place = [&](double step) { return static_cast<float>(std::fmod(0.5 + index * step, 1.0) - 0.5); };
+    return {place(along), place(down)};
+}
+
+Result<Accumulate> Accumulate::create(gpu::Context& context, VkFormat color, std::uint32_t positions) {
+    DARKROOM_ASSERT(positions >= 2 && positions <= scene::most_samples);
+    Accumulate out;
+    out.context_ = &context;
+    out.positions_ = positions;
+    const auto make = [&](std::unique_ptr<gpu::Kernel>& kernel, gpu::KernelSpec spec) -> Result<> {
+        spec.workgroup = gpu::usual_workgroup(context);
+        Result<std::unique_ptr<gpu::Kernel>> made =
+            gpu::Kernel::create(context, spec, gpu::preferred_stage(context, spec));
+        if (!made) return failure(std::move(made));
+        kernel = std::move(*made);
+        return {};
+    };
+    const std::string drawn = "drawn_color", sum = "sum";
+    Result<> made = make(out.first_, accumulating({drawn}, sum_format, "weighed(load(drawn_color, pixel.texel))"));
+    if (made)
+        made = make(out.next_, accumulating({drawn, sum}, sum_format,
+                                            "load(sum, pixel.texel) + weighed(load(drawn_color, pixel.texel))"));
+    if (made) made = make(out.mean_, accumulating({sum}, color, "unweighed(load(sum, pixel.texel))"));
+    if (!made) return failure(std::move(made));
+    const std::array layouts{out.first_->set_layout(), out.next_->set_layout(), out.next_->set_layout(),
+                             out.mean_->set_layout()};
+    Result<gpu::DescriptorSets> sets = gpu::DescriptorSets::create(context, layouts);
+    if (!sets) return failure(std::move(sets));
+    out.sets_ = std::move(*sets);
+    const VkDeviceSize alignment = context.traits.uniform_alignment;
+    // That of the form with the most images is the largest.
+    out.block_stride_ = (gpu::own_block_size(out.next_->spec()) + alignment - 1) / alignment * alignment;
+    Result<gpu::Buffer> blocks =
+        gpu::Buffer::create(context, out.block_stride_ * layouts.size(), gpu::block_usage, gpu::Memory::Kind::Constants,
+                            "blocks of the scene's accumulation");
+    if (!blocks) return failure(std::move(blocks));
+    out.blocks_ = std::move(*blocks);
+    return out;
+}
+
+Result<> Accumulate::resize(const Targets& targets) {
+    const VkExtent3D extent = targets.color.info.extent;
+    VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    if (context_->supports(sum_format, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT)) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+    std::array<gpu::Image, 2> larger;
+    for (gpu::Image& sum : larger) {
+        Result<gpu::Image> made = gpu::Image::create(
+            *context_, {.name = "scene sum", .format = sum_format, .extent = extent, .usage = usage});
+        if (!made) return failure(std::move(made));
+        sum = std::move(*made);
+    }
+    sums_ = std::move(larger);
+    const gpu::Binding color = bound(targets.color);
+    const std::array sums{bound(sums_[0]), bound(sums_[1])};
+    const std::array<std::array<float, 4>, 1> custom{std::array{1 / static_cast<float>(positions_), 0.0F, 0.0F, 0.0F}};
+    const auto write = [&](const gpu::Kernel& kernel, std::size_t set, std::span<const gpu::Binding> images,
+                           const gpu::Binding& output) {
+        const gpu::Kernel::Block block{blocks_.handle, set * block_stride_, gpu::own_block_size(kernel.spec())};
+        gpu::write_own_block(kernel.spec(), output.region, images, custom, {},
+                             {blocks_.memory.mapped + block.offset, block.size});
+        kernel.write_set({.set = sets_.sets[set], .own = block, .images = images, .outputs = {&output, 1}});
+    };
+    write(*first_, 0, {&color, 1}, sums[0]);
+    write(*next_, 1, std::array{color, sums[1]}, sums[0]);
+    write(*next_, 2, std::array{color, sums[0]}, sums[1]);
+    write(*mean_, 3, {&sums[(positions_ - 1) % 2], 1}, color);
+    return {};
+}
+
+void Accumulate::record(VkCommandBuffer commands, const gpu::Image& color, VkImageLayout from,
+                        std::uint32_t place) const {
+    const gpu::Kernel& kernel = place == 0 ? *first_ : *next_;
+    const gpu::Image& to = sums_[place % 2];
+    gpu::transition(*context_, commands, color, from, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    gpu::transition(*context_, commands, to, VK_IMAGE_LAYOUT_UNDEFINED, use_of(kernel).write_layout);
+    kernel.record(commands, sets_.sets[place == 0 ? 0 : 1 + place % 2], std::array{bound(to)});
+    gpu::transition(*context_, commands, to, use_of(kernel).write_layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+}
+
+void Accumulate::record_mean(VkCommandBuffer commands, const gpu::Image& color) const {
+    gpu::transition(*context_, commands, color, VK_IMAGE_LAYOUT_UNDEFINED, use().write_layout);
+    mean_->record(commands, sets_.sets[3], std::array{bound(color)});
+}
+
+ResolveUse Accumulate::use() const { return use_of(*mean_); }
+
+}  // namespace darkroom::render

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "render/pass/accumulate.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "render/renderer_test_support.hpp"
+
+namespace darkroom::render {
+namespace {
+
+using namespace test;
+
+constexpr VkExtent2D corner_extent{64, 48};
+/// Where the wall of a_corner() begins, in pixels from the top left.
+constexpr float left_edge = 20.3F, top_edge = 15.8F;
+constexpr float wall_light = 4;
+
+/// A bright wall that fills the picture to the right of left_edge and below top_edge: at distance 4 there are 6 pixels
+/// a metre.
+scene::Snapshot a_corner() {
+    scene::Snapshot snapshot = snapshot_of(corner_extent);
+    scene::Instance& wall = add_box(snapshot, {(left_edge - 32) / 6, -30, -5}, {30, (24 - top_edge) / 6, -4},
+                                    plain({wall_light, wall_light, wall_light, 1}));
+    wall.previous_world = glm::translate(mat4(1), {0.25F, 0, 0}) * wall.world;
+    return snapshot;
+}
+
+Shot shot_of(RenderDesc desc) {
+    desc.extent = corner_extent;
+    Renderer renderer = renderer_for(desc, {}, dark_scene());
+    return shoot(renderer, a_corner());
+}
+
+/// Light of a pixel, whose own positions are counted: weighed, added up, unweighed.
+float expected(std::uint32_t positions, std::uint32_t x, std::uint32_t y) {
+    float sum = 0;
+    for (std::uint32_t i = 0; i < positions; ++i) {
+        const vec2 place = vec2(x, y) + 0.5F + position_in_pixel(i);
+        if (place.x > left_edge && place.y > top_edge) sum += wall_light / (1 + wall_light);
+    }
+    const float mean = sum / static_cast<float>(positions);
+    return mean / (1 - mean);
+}
+
+TEST(RenderAccumulate, PositionsCoverThePixelEvenly) {
+    EXPECT_EQ(position_in_pixel(0), vec2(0));
+    std::array<int, 16> cells{};
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        const vec2 place = position_in_pixel(i) + 0.5F;
+        ASSERT_TRUE(place.x >= 0 && place.x < 1 && place.y >= 0 && place.y < 1) << i;
+        ++cells[static_cast<std::size_t>(place.x * 4) + 4 * static_cast<std::size_t>(place.y * 4)];
+    }
+    // Random ones would stray by 8.
+    for (const int count : cells) EXPECT_NEAR(count, 16, 3);
+}
+
+TEST(RenderGpuAccumulate, EdgesAreTheMeanOfThePositions) {
+    for (const std::uint32_t positions : {2U, 5U, 32U}) {
+        const Shot shot = shot_of({.positions = positions});
+        for (const auto& [x, y] : {std::pair(20U, 30U), {40U, 15U}, {20U, 15U}, {19U, 30U}, {40U, 14U}, {21U, 16U}})
+            EXPECT_NEAR(shot.color.at(x, y)[0], expected(positions, x, y), 4e-3F) << positions << ": " << x << ' ' << y;
+    }
+}
+
+TEST(RenderGpuAccumulate, TheLayersAreThoseOfTheCentre) {
+    const Shot one = shot_of({}), many = shot_of({.positions = 7});
+    EXPECT_EQ(one.depth.rgba, many.depth.rgba);
+    EXPECT_EQ(one.normals.rgba, many.normals.rgba);
+    EXPECT_EQ(one.velocity.rgba, many.velocity.rgba);
+    EXPECT_NE(one.color.rgba, many.color.rgba);
+}
+
+TEST(RenderGpuAccumulate, WhatIsOnlyDrawnOnceIsLeftAlone) {
+    const Shot shot = shot_of({.positions = 1});
+    EXPECT_EQ(shot.color.at(19, 30)[0], 0);
+    EXPECT_EQ(shot.color.at(20, 30)[0], wall_light);
+}
+
+TEST(RenderGpuAccumulate, TwoFramesOfAStillSceneAreEqual) {
+    Renderer renderer =
+        renderer_for({.extent = corner_extent, .positions = 3, .frames_in_flight = 2}, {}, dark_scene());
+    const scene::Snapshot snapshot = a_corner();
+    const Shot first = shoot(renderer, snapshot);
+    must(renderer.resize({corner_extent.width / 2, corner_extent.height / 2}));
+    shoot(renderer, snapshot);
+    must(renderer.resize(corner_extent));
+    for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(shoot(renderer, snapshot).color.rgba, first.color.rgba);
+}
+
+TEST(RenderGpuAccumulate, SamplesOfTheRasteriserAddToThePositions) {
+    if ((gpu::test::context().traits.sample_counts & VK_SAMPLE_COUNT_4_BIT) == 0)
+        GTEST_SKIP() << "the device has no 4 samples";
+    // Of two positions alone the coverage is a multiple of one half.
+    const float found = shot_of({.samples = 4, .positions = 2}).color.at(20, 30)[0];
+    const float mean = found / (1 + found) * (1 + wall_light) / wall_light;
+    EXPECT_NEAR(mean, 0.7F, 0.13F);
+    EXPECT_GT(std::abs(mean - 0.5F), 0.05F);
+    EXPECT_GT(std::abs(mean - 1), 0.05F);
+}
+
+TEST(RenderGpuAccumulate, AlphaIsAPlainMean) {
+    scene::Scene scene = dark_scene();
+    scene.has_alpha_layer = true;
+    scene::Snapshot snapshot = a_corner();
+    snapshot.materials[0].writes = scene::Writes::Alpha;
+    Renderer renderer = renderer_for({.extent = corner_extent, .positions = 16}, {}, scene);
+    const Pixels color = shoot(renderer, snapshot).color;
+    int covered = 0;
+    for (std::uint32_t i = 0; i < 16; ++i) covered += 20.5F + position_in_pixel(i).x > left_edge;
+    EXPECT_EQ(color.at(40, 30)[3], 1);
+    EXPECT_NEAR(color.at(20, 30)[3], static_cast<float>(covered) / 16, 1e-3F);
+}
+
+TEST(RenderGpuAccumulate, AnUnusualNumberIsRefused) {
+    for (const std::uint32_t positions : {0U, 1025U}) {
+        const auto made =
+            Renderer::create(gpu::test::device(), {}, {}, {.extent = corner_extent, .positions = positions});
+        ASSERT_FALSE(made);
+        EXPECT_EQ(made.error().text, fmt::format("positions in a pixel: {}, [1, 1024] are allowed", positions));
+    }
+}
+
+}  // namespace
+}  // namespace darkroom::render
