@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render/upload/gpu_scene_textures.hpp"
 
+#include <map>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -27,6 +29,20 @@ std::set<TextureKey> used_textures(const scene::Assets& assets) {
     for (std::uint32_t image = 0; image < assets.images.size(); ++image)
         keys.insert({scene::no_index, image, Transfer::Srgb});
     return keys;
+}
+
+/// Of textures that mask a surface: the least cutoff of the materials that have it.
+std::map<TextureKey, float> alpha_cutoffs(const scene::Assets& assets) {
+    std::map<TextureKey, float> cutoffs;
+    for (std::uint32_t model = 0; model < assets.models.size(); ++model)
+        for (const scene::ModelMaterial& material : assets.models[model].materials) {
+            if (material.blend != scene::SurfaceBlend::Mask) continue;
+            const TextureKey key{model, material.base_color_texture.image, Transfer::Srgb};
+            const float cutoff = std::max(material.alpha_cutoff, 1.0F / 255);
+            const auto [found, is_new] = cutoffs.emplace(key, cutoff);
+            if (!is_new) found->second = std::min(found->second, cutoff);
+        }
+    return cutoffs;
 }
 
 const scene::Image* image_of(const scene::Assets& assets, const TextureKey& key) {
@@ -85,10 +101,13 @@ Result<> GpuTextures::create_constant(std::array<std::uint8_t, 4> rgba, Uploader
 
 Result<> GpuTextures::create_textures(const scene::Assets& assets, std::span<const TextureKey> keys,
                                       Uploader& uploader) {
+    const std::map<TextureKey, float> cutoffs = alpha_cutoffs(assets);
     std::vector<std::vector<MipLevel>> chains(keys.size());
     parallel_for(keys.size(), 0, [&](std::size_t i) {
         const scene::Image& image = *image_of(assets, keys[i]);
-        chains[i] = mip_levels(image.width, image.height, image.rgba, keys[i].transfer == Transfer::Srgb);
+        const auto cutoff = cutoffs.find(keys[i]);
+        chains[i] = mip_levels(image.width, image.height, image.rgba, keys[i].transfer == Transfer::Srgb,
+                               cutoff == cutoffs.end() ? std::nullopt : std::optional(cutoff->second));
     });
     const std::uint32_t limit = context_->traits.max_image_dimension;
     for (std::size_t i = 0; i < keys.size(); ++i) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "render/upload/upload_mips.hpp"
-#include "core/srgb.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "core/srgb.hpp"
 
 namespace darkroom::render {
 
@@ -79,6 +80,25 @@ LinearLevel halved(std::uint32_t width, std::uint32_t height, const Source& sour
     return out;
 }
 
+/// Share of the pixels whose alpha, scaled, reaches the cutoff.
+float coverage(const LinearLevel& level, float cutoff, float scale) {
+    std::size_t covered = 0;
+    for (std::size_t i = 3; i < level.values.size(); i += 4) covered += level.values[i] * scale >= cutoff ? 1 : 0;
+    return static_cast<float>(covered) / static_cast<float>(level.values.size() / 4);
+}
+
+/// By halving: the largest scale at which no more than this share is covered, or where there is none, none is.
+void scale_alpha(LinearLevel& level, float cutoff, float wanted) {
+    float low = 0, high = 8;
+    for (int i = 0; i < 16; ++i) {
+        const float middle = (low + high) / 2;
+        (coverage(level, cutoff, middle) > wanted ? high : low) = middle;
+    }
+    // Of the two sides of the step the one that is nearer.
+    const float scale = wanted - coverage(level, cutoff, low) < coverage(level, cutoff, high) - wanted ? low : high;
+    for (std::size_t i = 3; i < level.values.size(); i += 4) level.values[i] = std::min(level.values[i] * scale, 1.0F);
+}
+
 MipLevel encoded(const LinearLevel& level, bool is_srgb) {
     MipLevel out{.width = level.width, .height = level.height, .rgba = {}};
     out.rgba.resize(level.values.size());
@@ -90,19 +110,29 @@ MipLevel encoded(const LinearLevel& level, bool is_srgb) {
 }  // namespace
 
 std::vector<MipLevel> mip_levels(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba,
-                                 bool is_srgb) {
+                                 bool is_srgb, std::optional<float> alpha_cutoff) {
     std::vector<MipLevel> levels;
     if (width <= 1 && height <= 1) return levels;
     const std::array<float, 256>& color = decoded_bytes(is_srgb);
     const std::array<float, 256>& alpha = decoded_bytes(false);
+    std::size_t covered = 0;
+    if (alpha_cutoff)
+        for (std::size_t i = 3; i < rgba.size(); i += 4) covered += alpha[rgba[i]] >= *alpha_cutoff ? 1 : 0;
+    const float wanted = static_cast<float>(covered) / static_cast<float>(std::size_t{width} * height);
     LinearLevel level = halved(
         width, height, [&](std::size_t place) { return place % 4 == 3 ? alpha[rgba[place]] : color[rgba[place]]; });
-    levels.push_back(encoded(level, is_srgb));
-    while (level.width > 1 || level.height > 1) {
+    while (true) {
+        if (alpha_cutoff) {
+            // The next level is made of what is measured, not of what was scaled.
+            LinearLevel scaled = level;
+            scale_alpha(scaled, *alpha_cutoff, wanted);
+            levels.push_back(encoded(scaled, is_srgb));
+        } else {
+            levels.push_back(encoded(level, is_srgb));
+        }
+        if (level.width == 1 && level.height == 1) return levels;
         level = halved(level.width, level.height, [&](std::size_t place) { return level.values[place]; });
-        levels.push_back(encoded(level, is_srgb));
     }
-    return levels;
 }
 
 }  // namespace darkroom::render

@@ -4,6 +4,7 @@
 // sRGB-encoded. On the CPU, so that every device shows the same textures.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,8 +16,11 @@ struct MipLevel {
 };
 
 /// Levels 1, 2, ... down to 1x1 of level 0 in `rgba`, four bytes a pixel; alpha is linear always. Odd sizes are
-/// filtered by three taps (Guthe and Heckbert, "Non-Power-of-Two Mipmapping", 2005).
+/// filtered by three taps (Guthe and Heckbert, "Non-Power-of-Two Mipmapping", 2005). With a cutoff, alpha of each level
+/// is scaled so that as large a share of its pixels reaches the cutoff as of level 0, else what is masked thins out far
+/// away (Ignacio Castano, "Computing Alpha Mipmaps", 2010).
 [[nodiscard]] std::vector<MipLevel> mip_levels(std::uint32_t width, std::uint32_t height,
-                                               std::span<const std::uint8_t> rgba, bool is_srgb);
+                                               std::span<const std::uint8_t> rgba, bool is_srgb,
+                                               std::optional<float> alpha_cutoff = {});
 
 }  // namespace darkroom::render

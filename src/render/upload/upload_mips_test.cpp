@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -51,6 +52,40 @@ TEST(RenderMips, OddSizesKeepTheMean) {
         double half_sum = 0;
         for (std::uint32_t x = 0; x < first.width; ++x) half_sum += first.rgba[4 * x];
         EXPECT_NEAR(half_sum / first.width, sum / width, 1) << width << ": every pixel weighs the same";
+    }
+}
+
+TEST(RenderMips, MaskedTexturesKeepTheirCoverage) {
+    // One pixel in five, here and there: a mean alpha of 0.2, which reaches the cutoff nowhere after two levels.
+    const auto grass = picture(80, 64, [](std::uint32_t x, std::uint32_t y) {
+        return (x * 2654435761U ^ y * 2246822519U) % 1021 % 5 == 0 ? 255 : 0;
+    });
+    constexpr float cutoff = 0.5F;
+    const auto covered = [](const MipLevel& level) {
+        std::size_t count = 0;
+        for (std::size_t i = 3; i < level.rgba.size(); i += 4) count += level.rgba[i] >= 128 ? 1 : 0;
+        return static_cast<double>(count) / (level.width * level.height);
+    };
+    const std::vector<MipLevel> plain = mip_levels(80, 64, grass, true), kept = mip_levels(80, 64, grass, true, cutoff);
+    ASSERT_EQ(kept.size(), plain.size());
+    EXPECT_LT(covered(plain[2]), 0.02);
+    // Of few alphas that there are one is the nearest.
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(covered(kept[i]), 0.2, 0.06) << i;
+    // A smooth edge has a pixel for every share.
+    const auto leaf = picture(64, 64, [](std::uint32_t x, std::uint32_t y) {
+        return std::clamp(255 - 7 * std::hypot(x - 31.5, y - 31.5) + 64 * ((x + y) % 2), 0.0, 255.0);
+    });
+    std::size_t first = 0;
+    for (std::size_t i = 3; i < leaf.size(); i += 4) first += leaf[i] >= 128 ? 1 : 0;
+    const std::vector<MipLevel> leaves = mip_levels(64, 64, leaf, true, cutoff);
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(covered(leaves[i]), static_cast<double>(first) / (64 * 64), 0.07) << i;
+    // Colour is left alone.
+    const std::vector<MipLevel> unscaled = mip_levels(64, 64, leaf, true);
+    for (std::size_t i = 0; i < leaves[0].rgba.size(); ++i) {
+        if (i % 4 != 3) {
+            ASSERT_EQ(leaves[0].rgba[i], unscaled[0].rgba[i]);
+        }
     }
 }
 
