@@ -93,7 +93,8 @@ struct Sprite {
     std::filesystem::path texture;
     float width = 1, height = 1;
     std::uint32_t frame = 0, frames_x = 1, frames_y = 1;
-    float anchor_y = 0;  ///< 0: stands on its origin, 1: hangs from it
+    float anchor_y = 0;   ///< 0: stands on its origin, 1: hangs from it
+    float intensity = 1;  ///< multiplies the texture's linear light
     bool is_visible = true;
 };
 

@@ -100,6 +100,7 @@ std::vector<Pending> gather(const scene::Snapshot& snapshot) {
                                   .width = sprite.size.x,
                                   .previous_position = sprite.previous_position,
                                   .height = sprite.size.y,
+                                  .tint = vec4(vec3(sprite.intensity), 1),
                                   .uv = sprite.uv,
                                   .anchor_y = sprite.anchor_y}});
     for (const scene::ParticleState& emitter : snapshot.emitters)

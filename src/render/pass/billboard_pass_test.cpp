@@ -138,6 +138,13 @@ TEST(RenderGpuBillboards, TexturesAreUprightAndDecoded) {
     expect_color(test.pixel(30, 30), {0.50289F, 0.50289F, 0.50289F, 1});
 }
 
+TEST(RenderGpuBillboards, SpritesGlowAboveOne) {
+    Billboards test;
+    test.snapshot.sprites = {{.image = Grey, .size = {8, 8}, .anchor_y = 0.5F, .intensity = 8}};
+    test.draw();
+    expect_color(test.pixel(30, 30), {8 * 0.50289F, 8 * 0.50289F, 8 * 0.50289F, 1});
+}
+
 TEST(RenderGpuBillboards, AnAtlasFrameShowsNothingOfItsNeighbours) {
     Billboards test;
     // The second frame of two columns and two rows: green alone.

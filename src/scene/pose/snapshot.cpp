@@ -179,7 +179,8 @@ class Builder {
                                .previous_position = vec3(previous_worlds_[entity][3]),
                                .size = vec2(sprite.width, sprite.height) * scale,
                                .anchor_y = sprite.anchor_y,
-                               .uv = frame_rectangle(sprite.frame, sprite.frames_x, sprite.frames_y)});
+                               .uv = frame_rectangle(sprite.frame, sprite.frames_x, sprite.frames_y),
+                               .intensity = sprite.intensity});
     }
 
     const Scene& scene_;

@@ -61,6 +61,7 @@ struct SpriteState {
     vec2 size{1};
     float anchor_y = 0;
     vec4 uv{0, 0, 1, 1};  ///< of the frame: left, top, right, bottom
+    float intensity = 1;
 };
 
 struct Particle {

@@ -190,6 +190,7 @@ void read_sprite(TableReader& table, EntityDraft& draft) {
         sprite.frame = 0;
     }
     table.number("anchor_y", sprite.anchor_y);
+    table.number("intensity", sprite.intensity, light_values);
     table.flag("visible", sprite.is_visible);
     table.pass_over("fullbright");  // sprites are never lit
     draft.entity.sprite = std::move(sprite);
