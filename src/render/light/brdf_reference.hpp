@@ -36,10 +36,14 @@ inline double ggx_distribution(double n_dot_h, double alpha) {
     return square / (std::numbers::pi * denominator * denominator);
 }
 
-/// One of the two factors of Karis, "Real Shading in Unreal Engine 4", 2013, equation 4.
-inline double smith_factor(double cosine, double roughness) {
-    const double k = (roughness + 1) * (roughness + 1) / 8;
-    return cosine / (cosine * (1 - k) + k);
+/// Height-correlated masking and shadowing over 4 n.v n.l: Heitz, "Understanding the Masking-Shadowing Function in
+/// Microfacet-Based BRDFs", 2014, equations 72 and 99.
+inline double smith_visibility(double n_dot_v, double n_dot_l, double alpha) {
+    const auto lambda = [&](double cosine) {
+        return (std::sqrt(1 + alpha * alpha * (1 - cosine * cosine) / (cosine * cosine)) - 1) / 2;
+    };
+    if (n_dot_v <= 0 || n_dot_l <= 0) return 0;
+    return 1 / (1 + lambda(n_dot_v) + lambda(n_dot_l)) / (4 * n_dot_v * n_dot_l);
 }
 
 /// Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, equation 15.
@@ -57,10 +61,11 @@ inline Brdf brdf(const Reflectance& surface, const dvec3& n, const dvec3& v, con
     const double n_dot_l = std::max(glm::dot(n, l), 0.0);
     const dvec3 h = glm::normalize(v + l);
     const dvec3 fresnel = fresnel_schlick(surface.f0, glm::dot(v, h));
-    const double distribution = ggx_distribution(glm::dot(n, h), surface.roughness * surface.roughness);
-    const double shadowing = smith_factor(n_dot_v, surface.roughness) * smith_factor(n_dot_l, surface.roughness);
-    return {.diffuse = (dvec3(1) - fresnel) * surface.diffuse / std::numbers::pi,
-            .specular = fresnel * (distribution * shadowing / (4 * n_dot_v * n_dot_l + 1e-4))};
+    const double alpha = surface.roughness * surface.roughness;
+    // Shirley, Smits, Hu and Lafortune, "A Practitioners' Assessment of Light Reflection Models", 1997.
+    const double enters = (1 - std::pow(1 - n_dot_v, 5)) * (1 - std::pow(1 - n_dot_l, 5));
+    return {.diffuse = surface.diffuse * (dvec3(1) - surface.f0) * (1.05 * enters / std::numbers::pi),
+            .specular = fresnel * ggx_distribution(glm::dot(n, h), alpha) * smith_visibility(n_dot_v, n_dot_l, alpha)};
 }
 
 /// What leaves toward `v` of light of unit radiance from `l`.

@@ -26,10 +26,13 @@ float ggx_distribution(vec3 n, vec3 h, float alpha) {
     return square / (pi * denominator * denominator);
 }
 
-// Schlick's form of Smith's shadowing with Karis' k for lights without size.
-float smith_shadowing(float n_dot_v, float n_dot_l, float roughness) {
-    float k = (roughness + 1.0) * (roughness + 1.0) / 8.0;
-    return n_dot_v / (n_dot_v * (1.0 - k) + k) * (n_dot_l / (n_dot_l * (1.0 - k) + k));
+// Masking and shadowing over 4 n.v n.l, height-correlated (Heitz, "Understanding the Masking-Shadowing Function in
+// Microfacet-Based BRDFs", 2014, eq. 99): the light of the surroundings has the same (render/light/environment.cpp).
+float smith_visibility(float n_dot_v, float n_dot_l, float alpha) {
+    float square = alpha * alpha;
+    float masked = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - square) + square);
+    float shadowed = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - square) + square);
+    return n_dot_v > 0.0 ? 0.5 / max(masked + shadowed, 1e-6) : 0.0;
 }
 
 // Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, equation 15.
@@ -37,6 +40,15 @@ vec3 fresnel_schlick(vec3 f0, float v_dot_h) {
     float c = clamp(1.0 - v_dot_h, 0.0, 1.0);
     float square = c * c;
     return f0 + (1.0 - f0) * (square * square * c);
+}
+
+// What a matte base gives back under a layer that reflects more the more grazing the light goes in or out, so that no more
+// light leaves than comes: Shirley, Smits, Hu and Lafortune, "A Practitioners' Assessment of Light Reflection Models",
+// 1997.
+vec3 coupled_diffuse(Reflectance surface, float n_dot_v, float n_dot_l) {
+    vec2 rest = 1.0 - clamp(vec2(n_dot_v, n_dot_l), 0.0, 1.0), square = rest * rest;
+    vec2 enters = 1.0 - square * square * rest;
+    return surface.diffuse * (1.0 - surface.f0) * (1.05 / pi * enters.x * enters.y);
 }
 
 // What leaves toward v of light of unit radiance from l: the BRDF times n.l. All directions are normalised and point
@@ -47,9 +59,9 @@ vec3 reflected(Reflectance surface, vec3 n, vec3 v, vec3 l) {
     vec3 half_vector = v + l;
     vec3 h = half_vector * inversesqrt(max(dot(half_vector, half_vector), 1e-12));
     vec3 fresnel = fresnel_schlick(surface.f0, dot(v, h));
-    float specular = ggx_distribution(n, h, surface.roughness * surface.roughness) *
-                     smith_shadowing(n_dot_v, n_dot_l, surface.roughness) / (4.0 * n_dot_v * n_dot_l + 1e-4);
-    return ((1.0 - fresnel) * surface.diffuse / pi + fresnel * specular) * n_dot_l;
+    float alpha = surface.roughness * surface.roughness;
+    float specular = ggx_distribution(n, h, alpha) * smith_visibility(n_dot_v, n_dot_l, alpha);
+    return (coupled_diffuse(surface, n_dot_v, n_dot_l) + fresnel * specular) * n_dot_l;
 }
 
 // What leaves of light from everywhere: `irradiance` over pi, `reflection` from the mirrored direction, as blurred as
