@@ -223,6 +223,23 @@ std::vector<vec2> column_profile() {
     return profile;
 }
 
+/// A wall of its own thickness, so that it may be glass.
+std::vector<vec2> vase_profile() {
+    return {{0, 0},          {0.09F, 0},     {0.09F, 0},      {0.13F, 0.08F},  {0.14F, 0.16F},  {0.09F, 0.27F},
+            {0.075F, 0.32F}, {0.1F, 0.38F},  {0.1F, 0.38F},   {0.092F, 0.38F}, {0.067F, 0.32F}, {0.08F, 0.27F},
+            {0.13F, 0.16F},  {0.12F, 0.08F}, {0.08F, 0.015F}, {0, 0.015F}};
+}
+
+std::vector<vec2> pot_profile() {
+    return {{0, 0},        {0.16F, 0},    {0.16F, 0},   {0.22F, 0.34F}, {0.22F, 0.34F}, {0.24F, 0.34F}, {0.24F, 0.34F},
+            {0.24F, 0.4F}, {0.24F, 0.4F}, {0.2F, 0.4F}, {0.2F, 0.4F},   {0.19F, 0.33F}, {0.19F, 0.33F}, {0, 0.33F}};
+}
+
+tinygltf::Material thin(tinygltf::Material surface) {
+    surface.doubleSided = true;
+    return surface;
+}
+
 std::vector<vec2> crucible_profile() {
     return {{0, 0},     {0.5F, 0.02F}, {0.72F, 0.2F}, {0.85F, 0.55F}, {0.88F, 1}, {0.88F, 1},
             {0.76F, 1}, {0.76F, 1},    {0.73F, 0.6F}, {0.6F, 0.3F},   {0, 0.25F}};
@@ -253,6 +270,10 @@ int main(int argc, char** argv) {
         save_shape(models / "crucible.glb", lathe(crucible_profile(), 48),
                    material({0.09F, 0.08F, 0.075F}, 0.6, 0.6)) &&
         save_shape(models / "melt.glb", lathe(melt_profile(), 48), material({0.3F, 0.1F, 0.02F}, 0, 0.4)) &&
+        save_shape(models / "vase.glb", lathe(vase_profile(), 48), material({0.8F, 0.9F, 0.88F}, 0, 0.05)) &&
+        save_shape(models / "pot.glb", lathe(pot_profile(), 48), material({0.5F, 0.24F, 0.15F}, 0, 0.85)) &&
+        save_shape(models / "curtain.glb", curtain(1, 2.4F, 7), thin(material({0.75F, 0.68F, 0.56F}, 0, 0.95))) &&
+        save_shape(models / "plant.glb", plant(26, 1.1F), thin(material({0.13F, 0.3F, 0.1F}, 0, 0.5))) &&
         save_figure(models / "figure.glb") && save(folder / "sky.hdr", sky(), false) &&
         save(folder / "flames.png", flames(), true);
     if (is_done) return 0;

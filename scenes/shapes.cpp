@@ -127,6 +127,56 @@ Mesh sphere(float radius, std::uint32_t segments, std::uint32_t rings) {
     return mesh;
 }
 
+namespace {
+
+/// A sheet over [0, 1] x [0, 1], columns by rows, with normals from its neighbours.
+template <class Place>
+void add_sheet(Mesh& mesh, std::uint32_t columns, std::uint32_t rows, const Place& place) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    constexpr float step = 1e-3F;
+    for (std::uint32_t row = 0; row <= rows; ++row) {
+        for (std::uint32_t column = 0; column <= columns; ++column) {
+            const float u = static_cast<float>(column) / static_cast<float>(columns);
+            const float v = static_cast<float>(row) / static_cast<float>(rows);
+            const vec3 along = place(u + step, v) - place(u - step, v), up = place(u, v + step) - place(u, v - step);
+            mesh.positions.push_back(place(u, v));
+            mesh.normals.push_back(glm::normalize(glm::cross(along, up)));
+            mesh.uvs.push_back({u, 1 - v});
+        }
+    }
+    add_grid(mesh, first, rows + 1, columns);
+}
+
+}  // namespace
+
+Mesh curtain(float width, float height, std::uint32_t folds) {
+    Mesh mesh;
+    add_sheet(mesh, folds * 12, 12, [&](float u, float v) {
+        const float wave = 2 * pi * static_cast<float>(folds) * u;
+        const float depth = glm::mix(0.09F, 0.03F, v) * (1 + 0.4F * std::sin(5 * u + 2));
+        return vec3((u - 0.5F) * width + 0.02F * std::sin(wave * 0.5F + 3 * v), v * height, depth * std::sin(wave));
+    });
+    return mesh;
+}
+
+Mesh plant(std::uint32_t leaves, float height) {
+    Mesh mesh;
+    for (std::uint32_t leaf = 0; leaf < leaves; ++leaf) {
+        const auto number = static_cast<float>(leaf);
+        // The golden angle, and lengths and bends that do not repeat with it.
+        const float turn = 2.39996F * number, length = height * (0.65F + 0.35F * std::sin(number * 1.7F));
+        const float bend = 0.35F + 0.55F * number / static_cast<float>(leaves), wide = 0.05F + 0.02F * std::cos(number);
+        const vec3 out(std::cos(turn), 0, std::sin(turn)), side(-out.z, 0, out.x);
+        add_sheet(mesh, 4, 14, [&](float u, float v) {
+            const float width = wide * std::sin(pi * std::pow(glm::clamp(v, 0.0F, 1.0F), 0.7F)) + 0.004F;
+            const float across = (u - 0.5F) * 2 * width, crease = 0.3F * std::abs(across);
+            return out * (length * bend * v * v + 0.02F) +
+                   vec3(0, length * (v - 0.45F * bend * v * v * v) + crease, 0) + side * across;
+        });
+    }
+    return mesh;
+}
+
 std::vector<Bone> figure_bones() {
     return {{"hips", Hips, {0, 0.95F, 0}},
             {"chest", Hips, {0, 1.15F, 0}},

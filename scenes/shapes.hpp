@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Geometry of the shipped models: bodies of revolution and a jointed figure. Metres, y up, counter-clockwise fronts.
+// Geometry of the shipped models: bodies of revolution, cloth, a plant and a jointed figure. Metres, y up,
+// counter-clockwise fronts.
 
 #include <array>
 #include <cstdint>
@@ -29,6 +30,12 @@ struct Mesh {
 /// profile; a point given twice makes a crease.
 [[nodiscard]] Mesh lathe(std::span<const vec2> profile, std::uint32_t segments);
 [[nodiscard]] Mesh sphere(float radius, std::uint32_t segments, std::uint32_t rings);
+
+/// Cloth that hangs from y = height to the floor, `folds` waves across `width`, deeper at the bottom; seen from both
+/// sides.
+[[nodiscard]] Mesh curtain(float width, float height, std::uint32_t folds);
+/// Leaves that rise from the origin and bend outward, each by its own number; seen from both sides.
+[[nodiscard]] Mesh plant(std::uint32_t leaves, float height);
 
 /// A bone of the figure: where it starts in the rest pose, and below which.
 struct Bone {
