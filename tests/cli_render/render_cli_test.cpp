@@ -121,6 +121,25 @@ TEST_F(CliRender, AnySizeIsASize) {
     }
 }
 
+TEST_F(CliRender, FiveThousandPixelsAcrossShowTheSameAsFewer) {
+    ASSERT_EQ(render({"--size", "5120x2880", "--samples", "1", "--no-grid"}, "large.png").code, 0);
+    ASSERT_EQ(render({"--size", "320x180", "--samples", "64", "--no-grid"}, "small.png").code, 0);
+    const Picture large = picture("large.png"), small = picture("small.png");
+    ASSERT_EQ(large.width, 5120U);
+    ASSERT_EQ(large.height, 2880U);
+    double apart = 0;
+    for (std::uint32_t y = 0; y < small.height; ++y) {
+        for (std::uint32_t x = 0; x < small.width; ++x) {
+            const float *const a = large.at(x * 16 + 8, y * 16 + 8), *const b = small.at(x, y);
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_TRUE(a[c] >= 0 && a[c] <= 1);
+                apart += std::abs(a[c] - b[c]);
+            }
+        }
+    }
+    EXPECT_LT(apart / (small.width * small.height * 3), 0.01);
+}
+
 TEST_F(CliRender, WritesEveryKindOfFile) {
     for (const auto& [name, flags] :
          std::vector<std::pair<std::string, std::vector<std::string>>>{{"a.jpg", {}},

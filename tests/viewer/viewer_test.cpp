@@ -48,9 +48,19 @@ TEST_F(CliViewer, AStoredFrameIsDevelopedAsByDevelop) {
     EXPECT_EQ(picture("window.png").width, 1600U);
 }
 
-TEST_F(CliViewer, KeysOfPlayDoWhatTheySay) {
-    start({"play", scenes + "showcase.scene.toml", "--size", "320x180", "--bloom-intensity", "0.3", "--fog-density",
-           "0.05", "--dither-intensity", "0.1", "--ssao-intensity", "1"});
+class CliViewerKeys : public CliViewer, public testing::WithParamInterface<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(Commands, CliViewerKeys, testing::Values("play", "edit"));
+
+TEST_P(CliViewerKeys, DoWhatTheySay) {
+    const bool is_play = GetParam() == std::string("play");
+    // What was edited and is not saved, edit asks about.
+    const auto end = [&] {
+        if (is_play) leave();
+        EXPECT_EQ(complained(), "");
+    };
+    start({GetParam(), scenes + "showcase.scene.toml", "--size", is_play ? "320x180" : "1280x720", "--bloom-intensity",
+           "0.3", "--fog-density", "0.05", "--dither-intensity", "0.1", "--ssao-intensity", "1"});
     press("p", "P pause: on");
     const Picture before = shot();
     for (const auto& [key, line] :
@@ -66,20 +76,22 @@ TEST_F(CliViewer, KeysOfPlayDoWhatTheySay) {
             press(key, line);
         EXPECT_EQ(difference(before, shot()), 0) << key << " pressed again brings it back";
     }
+    const std::uint32_t width = before.width;
     press("F11");
-    EXPECT_TRUE(wait_until([&] { return shot().width == 1920; }, 60)) << "the whole screen";
+    EXPECT_TRUE(wait_until([&] { return is_play ? shot().width == 1920 : shot().width > width; }, 60))
+        << "the whole screen";
     press("F11");
-    EXPECT_TRUE(wait_until([&] { return shot().width == 320; }, 60)) << "and back";
+    EXPECT_TRUE(wait_until([&] { return shot().width == width; }, 60)) << "and back";
     press("ctrl+c", "stored frame-");
     press("shift+F12", "stored darkroom-window-");
-    leave();
-    start({"play", scenes + "dungeon.scene.toml", "--size", "320x180", "--paused"});
+    end();
+    start({GetParam(), scenes + "dungeon.scene.toml", "--size", "320x180", "--paused"});
     const Picture light = shot();
     press("F10", "F10 volumetric: off");
     EXPECT_GT(difference(light, shot()), 0) << "F10 changes the picture";
     press("F10", "F10 volumetric: on");
     EXPECT_EQ(difference(light, shot()), 0) << "and brings it back";
-    leave();
+    end();
 }
 
 TEST_F(CliViewer, ACapturedFrameDevelopsToThePicture) {
