@@ -8,6 +8,9 @@ if(DARKROOM_STATIC_COMPILER MATCHES "\\.so")
   message(STATUS "libdarkroom.a is left out: shaderc is a shared library here")
   return()
 endif()
+# Beside another compiler CMAKE_LINKER may be that of LLVM.
+find_program(DARKROOM_GNU_LINKER NAMES ld.bfd ld)
+mark_as_advanced(DARKROOM_GNU_LINKER)
 set(libraries ${DARKROOM_STATIC_COMPILER})
 get_target_property(type darkroom_fmt TYPE)
 if(type STREQUAL STATIC_LIBRARY)
@@ -24,7 +27,7 @@ endforeach()
 # get names that nobody else has.
 set(whole ${CMAKE_BINARY_DIR}/darkroom_static.o)
 add_custom_command(OUTPUT ${whole} COMMAND_EXPAND_LISTS VERBATIM
-  COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${whole} ${objects} --start-group ${libraries} --end-group
+  COMMAND ${DARKROOM_GNU_LINKER} -r --force-group-allocation -o ${whole} ${objects} --start-group ${libraries} --end-group
   COMMAND ${CMAKE_OBJCOPY} --wildcard --keep-global-symbol "_ZN8darkroom*" --keep-global-symbol "_ZNK8darkroom*"
     --keep-global-symbol "_ZZN8darkroom*" --keep-global-symbol "_ZZNK8darkroom*"
     --keep-global-symbol "_ZT?N8darkroom*" --keep-global-symbol "_ZGV*N8darkroom*" ${whole}

@@ -25,10 +25,10 @@ class Json {
     Json();
     Json(std::nullptr_t) : Json() {}
     Json(std::initializer_list<Json> list);
-    Json(std::same_as<bool> auto value) : value_(value) {}
+    Json(std::same_as<bool> auto value) : Json() { set(bool{value}); }
     template <std::integral T>
-    requires(!std::same_as<T, bool>) Json(T value) : value_(static_cast<std::int64_t>(value)) {}
-    Json(std::floating_point auto value) : value_(double{value}) {}
+    requires(!std::same_as<T, bool>) Json(T value) : Json() { set(static_cast<std::int64_t>(value)); }
+    Json(std::floating_point auto value) : Json() { set(double{value}); }
     Json(std::string text);
     Json(std::string_view text) : Json(std::string(text)) {}
     Json(const char* text) : Json(std::string(text)) {}
@@ -84,6 +84,11 @@ class Json {
     [[nodiscard]] std::string dump(std::optional<int> indent = {}) const;
 
   private:
+    // Not here, where a member is no whole type yet.
+    void set(bool value);
+    void set(std::int64_t value);
+    void set(double value);
+
     std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<Json>, std::vector<Member>>
         value_;
 };
