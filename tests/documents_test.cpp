@@ -55,12 +55,16 @@ std::set<std::string> first_cells(const std::vector<std::pair<std::string, std::
     return cells;
 }
 
-std::vector<std::string> flat_names(std::int32_t FlatPlace::*order, bool only_those_on = false) {
+std::vector<std::string> flat_names(LookOrder order, bool only_those_on = false) {
+    const auto rank = [&](const EffectInfo* effect) {
+        return order == LookOrder::Documented ? effect->flat.documented : effect->flat.scene_linear;
+    };
     std::vector<const EffectInfo*> effects;
     for (const EffectInfo* const effect : all_effects())
-        if (effect->flat.*order >= 0 && !effect->flat.is_of_ui && (!only_those_on || effect->flat.starts_on))
+        if (rank(effect) >= 0 && !effect->flat.is_of_ui &&
+            (!only_those_on || flat_entry(*effect, order).state.enabled.on != 0))
             effects.push_back(effect);
-    std::ranges::sort(effects, {}, [order](const EffectInfo* effect) { return effect->flat.*order; });
+    std::ranges::sort(effects, {}, rank);
     std::vector<std::string> names;
     for (const EffectInfo* const effect : effects) names.emplace_back(effect->name);
     return names;
@@ -69,10 +73,12 @@ std::vector<std::string> flat_names(std::int32_t FlatPlace::*order, bool only_th
 TEST(Documents, LooksSayWhatStartsOnAndBothOrders) {
     const std::string text = one_line("docs/looks.md");
     for (const std::string& part :
-         {fmt::format("| `\"documented\"` (the default) | {} |", fmt::join(flat_names(&FlatPlace::documented), ", ")),
-          fmt::format("| `\"scene_linear\"` | {} |", fmt::join(flat_names(&FlatPlace::scene_linear), ", ")),
-          fmt::format("These effects start switched on: `{}`.",
-                      fmt::join(flat_names(&FlatPlace::documented, true), "`, `"))})
+         {fmt::format("| `\"documented\"` (of a table that names none) | {} |",
+                      fmt::join(flat_names(LookOrder::Documented), ", ")),
+          fmt::format("| `\"scene_linear\"` | {} |", fmt::join(flat_names(LookOrder::SceneLinear), ", ")),
+          fmt::format("In `scene_linear` these effects start switched on: `{}`; in `documented`: `{}`.",
+                      fmt::join(flat_names(LookOrder::SceneLinear, true), "`, `"),
+                      fmt::join(flat_names(LookOrder::Documented, true), "`, `"))})
         EXPECT_NE(text.find(part), std::string::npos) << "docs/looks.md lacks: " << part;
 }
 

@@ -49,6 +49,7 @@ const EffectInfo& effect_info(const ArenaBloom&) {
         .files = embedded_files("arena_bloom"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
+        .flat = {.documented = 54, .scene_linear = 64},
         .build = build,
         .reference = arena_bloom_reference,
         .is_identity =

@@ -136,7 +136,7 @@ const EffectInfo& effect_info(const Bloom&) {
         .files = embedded_files("bloom"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .flat = {.documented = 50, .scene_linear = 50, .starts_on = true},
+        .flat = {.documented = 50, .scene_linear = 62, .starts_on = true},
         .toggle_key = 5,
         .build = build,
         .reference = bloom_reference,

@@ -24,7 +24,7 @@ const EffectInfo& effect_info(const ChromaticAberration&) {
         .files = embedded_files("chromatic_aberration"),
         .touch = Touch::Warp,
         .accepts = Domains::all(),
-        .flat = {.documented = 20, .scene_linear = 20, .starts_on = true},
+        .flat = {.documented = 20, .scene_linear = 56, .starts_on = true},
         .reference = chromatic_aberration_reference,
         .is_identity =
             [](const void* parameters) {

@@ -56,6 +56,7 @@ const EffectInfo& effect_info(const ClassicBloom&) {
         .files = embedded_files("classic_bloom"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
+        .flat = {.documented = 52, .scene_linear = 63},
         .build = build,
         .reference = classic_bloom_reference,
         .is_identity = [](const void* parameters) { return bloom_of(parameters).intensity == 0.0f; },

@@ -78,7 +78,7 @@ const EffectInfo& effect_info(const Dither&) {
         .files = embedded_files("dither"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::Encoded),
-        .flat = {.documented = 100, .scene_linear = 100, .starts_on = false},
+        .flat = {.documented = 100, .scene_linear = 100, .starts_on = true},
         .toggle_key = 9,
         .is_last_step = true,
         .build = build,

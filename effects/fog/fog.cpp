@@ -59,7 +59,7 @@ const EffectInfo& effect_info(const Fog&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
         .needs = {.depth = true},
-        .flat = {.documented = 80, .scene_linear = 55, .starts_on = false},
+        .flat = {.documented = 80, .scene_linear = 30, .starts_on = false},
         .toggle_key = 8,
         .build =
             [](PassBuilder& builder) {

@@ -116,6 +116,7 @@ const EffectInfo& effect_info(const FrameBlend&) {
         .files = embedded_files("frame_blend"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
+        .flat = {.documented = 44, .scene_linear = 46},
         .build = build,
         .reference = frame_blend_reference,
         .is_identity = [](const void* parameters) { return blend_of(parameters).amount == 0.0f; },

@@ -26,7 +26,7 @@ const EffectInfo& effect_info(const Fxaa&) {
         .files = embedded_files("fxaa"),
         .touch = Touch::Warp,
         .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::Encoded),
-        .flat = {.documented = 95, .scene_linear = 95, .starts_on = false},
+        .flat = {.documented = 95, .scene_linear = 95, .starts_on = true},
         .reference = fxaa_reference,
     };
     return info;

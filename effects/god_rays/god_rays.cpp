@@ -115,6 +115,7 @@ const EffectInfo& effect_info(const GodRays&) {
         .files = embedded_files("god_rays"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
+        .flat = {.documented = 42, .scene_linear = 40},
         .build = build,
         .reference = god_rays_reference,
         .is_identity = [](const void* parameters) { return god_rays_of(parameters).intensity == 0.0f; },

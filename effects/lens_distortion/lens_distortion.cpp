@@ -99,7 +99,7 @@ const EffectInfo& effect_info(const LensDistortion&) {
         .files = embedded_files("lens_distortion"),
         .touch = Touch::Warp,
         .accepts = Domains::all(),
-        .flat = {.documented = 85, .scene_linear = 75, .starts_on = true},
+        .flat = {.documented = 85, .scene_linear = 58, .starts_on = true},
         .build = build,
         .reference = lens_distortion_reference,
         .conflict = conflict,

@@ -138,7 +138,7 @@ const EffectInfo& effect_info(const Lut&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
         .makes = makes,
-        .flat = {.documented = 87, .scene_linear = 85, .starts_on = false},
+        .flat = {.documented = 87, .scene_linear = 78, .starts_on = false},
         .build = build,
         .reference = lut_reference,
         .is_identity =

@@ -156,7 +156,7 @@ const EffectInfo& effect_info(const MotionBlur&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
         .needs = {.depth = true},
-        .flat = {.documented = 45, .scene_linear = 45, .starts_on = false},
+        .flat = {.documented = 45, .scene_linear = 50, .starts_on = false},
         .build = build,
         .reference = motion_blur_reference,
         .is_identity = [](const void* parameters) { return blur_of(parameters).shutter_angle == 0.0f; },

@@ -160,6 +160,7 @@ const EffectInfo& effect_info(const Perturb&) {
         .files = embedded_files("perturb"),
         .touch = Touch::Warp,
         .accepts = Domains::all(),
+        .flat = {.documented = 15, .scene_linear = 52},
         .build = build,
         .reference = perturb_reference,
         .conflict = conflict,

@@ -22,7 +22,7 @@ const EffectInfo& effect_info(const RadialBlur&) {
         .files = embedded_files("radial_blur"),
         .touch = Touch::Warp,
         .accepts = Domains::all(),
-        .flat = {.documented = 10, .scene_linear = 10, .starts_on = true},
+        .flat = {.documented = 10, .scene_linear = 54, .starts_on = true},
         .reference = radial_blur_reference,
         .is_identity =
             [](const void* parameters) { return static_cast<const RadialBlur*>(parameters)->radial_blur <= 0.001f; },

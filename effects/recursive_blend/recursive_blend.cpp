@@ -57,6 +57,7 @@ const EffectInfo& effect_info(const RecursiveBlend&) {
         .files = embedded_files("recursive_blend"),
         .touch = Touch::History,
         .accepts = Domains::all(),
+        .flat = {.documented = 43, .scene_linear = 44},
         .build = build,
         .reference = recursive_blend_reference,
         .is_identity = [](const void* parameters) { return blend_of(parameters).weight == 0.0f; },

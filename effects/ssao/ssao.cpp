@@ -200,7 +200,7 @@ const EffectInfo& effect_info(const Ssao&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
         .needs = {.depth = true},
-        .flat = {.documented = 30, .scene_linear = 30, .starts_on = true},
+        .flat = {.documented = 30, .scene_linear = 10, .starts_on = true},
         .toggle_key = 7,
         .build = build,
         .reference = ssao_reference,

@@ -25,7 +25,7 @@ const EffectInfo& effect_info(const UiChroma&) {
         .parameters = ui_chroma_rows.table(),
         .files = embedded_files("ui_chroma"),
         .touch = Touch::Map,
-        .flat = {.documented = 113, .scene_linear = 93, .is_of_ui = true},
+        .flat = {.documented = 113, .scene_linear = 113, .is_of_ui = true},
         .parts_channels = true,
         .is_ui = true,
         .reference = map_reference<ui_chroma_reference>,

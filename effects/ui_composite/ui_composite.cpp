@@ -26,7 +26,7 @@ const EffectInfo& effect_info(const UiComposite&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::Encoded),
         .needs = {.ui = true},
-        .flat = {.documented = 120, .scene_linear = 98, .is_of_ui = true},
+        .flat = {.documented = 120, .scene_linear = 120, .is_of_ui = true},
         .has_second = true,
         .has_second_in_place = true,
         .works_encoded = true,

@@ -25,7 +25,7 @@ const EffectInfo& effect_info(const UiWarp&) {
         .parameters = ui_warp_rows.table(),
         .files = embedded_files("ui_warp"),
         .touch = Touch::Map,
-        .flat = {.documented = 112, .scene_linear = 92, .is_of_ui = true},
+        .flat = {.documented = 112, .scene_linear = 112, .is_of_ui = true},
         .is_ui = true,
         .reference = map_reference<ui_warp_reference>,
         .reference_map = ui_warp_reference,

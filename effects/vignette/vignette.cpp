@@ -24,7 +24,7 @@ const EffectInfo& effect_info(const Vignette&) {
         .files = embedded_files("vignette"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .flat = {.documented = 110, .scene_linear = 80, .starts_on = false},
+        .flat = {.documented = 110, .scene_linear = 75, .starts_on = false},
         .reference = pointwise_reference<Vignette, vignette_reference>,
         .is_identity =
             [](const void* parameters) { return static_cast<const Vignette*>(parameters)->intensity == 0.0f; },

@@ -170,7 +170,7 @@ const EffectInfo& effect_info(const Volumetric&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
         .needs = {.depth = true, .shadows = true},
-        .flat = {.documented = 40, .scene_linear = 40, .starts_on = false},
+        .flat = {.documented = 40, .scene_linear = 20, .starts_on = false},
         .toggle_key = 10,
         .build = build,
         .reference = volumetric_reference,

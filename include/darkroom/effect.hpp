@@ -57,8 +57,8 @@ struct Needs {
 struct FlatPlace {
     std::int32_t documented = -1;
     std::int32_t scene_linear = -1;
-    bool starts_on = false;
-    bool is_of_ui = false;  ///< its keys stand in the table [ui]
+    bool starts_on = false;  ///< in scene_linear; what is otherwise in documented stands in src/looks/documented.hpp
+    bool is_of_ui = false;   ///< its keys stand in the table [ui]
 };
 
 /// Values that passes may depend on while recording.

@@ -102,7 +102,7 @@ struct LookLayer {
     std::vector<Value> values;
 };
 
-/// The two shipped orders of the flat table.
+/// The two shipped orders of the flat table: that of files which name none, and that of all else.
 enum class LookOrder : std::uint32_t { Documented, SceneLinear };
 
 /// The rest of the table [ui]: what the interface is.
@@ -118,7 +118,7 @@ struct Look {
     bool is_flat = true;                       ///< [post_process]; false: [[stack]]
     bool was_flat = false;                     ///< a stack that place_entry made of a flat table
     bool is_enabled = true;                    ///< flat only; false: nothing but tone mapping and encoding, at defaults
-    LookOrder order = LookOrder::Documented;   ///< flat only
+    LookOrder order = LookOrder::SceneLinear;  ///< flat only
     std::vector<LookEntry> entries;            ///< flat: every effect with a place in the tables
     std::optional<LookUi> ui{};                ///< there is a table [ui]
     std::vector<LookPulse> pulses;
@@ -143,8 +143,12 @@ struct LookOptions {
     std::filesystem::path folder;  ///< that files are relative to; empty: read_look takes the look's own
 };
 
-/// The flat table with nothing written in it.
-[[nodiscard]] Look default_look();
+/// The flat table with nothing written in it but its order.
+[[nodiscard]] Look default_look(LookOrder order = LookOrder::SceneLinear);
+/// An effect's entry there: at its defaults, or in the documented order at those of src/looks/documented.hpp.
+[[nodiscard]] LookEntry flat_entry(const EffectInfo& effect, LookOrder order);
+/// Of a flat look: values that are the defaults of its order become those of the new one.
+void set_order(Look& look, LookOrder order);
 /// Gives a look the interface's own chain, at its defaults where it has none: what an empty table [ui] does.
 void add_ui(Look& look);
 /// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`. The files that a look

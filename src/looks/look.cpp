@@ -8,8 +8,10 @@
 #include <functional>
 #include <map>
 
+#include "core/assert.hpp"
 #include "core/text/param_text.hpp"
 #include "looks/apply/look_resources.hpp"
+#include "looks/documented.hpp"
 #include "looks/look_parts.hpp"
 
 namespace darkroom {
@@ -101,15 +103,43 @@ void write_stack(std::string& out, const Look& look) {
 
 }  // namespace
 
-Look default_look() {
-    Look look{.shown_name = "the default look"};
-    for (const EffectInfo* const effect : all_effects()) {
-        if (effect->flat.documented < 0 && effect->flat.scene_linear < 0) continue;
-        look.entries.push_back(entry_of(*effect));
-        look.entries.back().state.enabled = effect->flat.starts_on;
-        look.entries.back().is_of_ui = effect->flat.is_of_ui;
+LookEntry flat_entry(const EffectInfo& effect, LookOrder order) {
+    LookEntry entry = entry_of(effect);
+    entry.state.enabled = effect.flat.starts_on;
+    entry.is_of_ui = effect.flat.is_of_ui;
+    if (order != LookOrder::Documented) return entry;
+    for (const DocumentedValue& value : documented_values) {
+        if (value.effect != effect.name) continue;
+        if (value.parameter == "enabled") {
+            entry.state.enabled = value.text == "true";
+            continue;
+        }
+        const auto row = std::ranges::find(effect.parameters.rows, value.parameter, &ParamInfo::name);
+        DARKROOM_ASSERT(row != effect.parameters.rows.end());
+        const Result<ParamValue> parsed = parse_text(*row, value.text);
+        DARKROOM_ASSERT(parsed && assign(*row, entry.words, *parsed, value.parameter));
     }
+    return entry;
+}
+
+Look default_look(LookOrder order) {
+    Look look{.order = order, .shown_name = "the default look"};
+    for (const EffectInfo* const effect : all_effects())
+        if (effect->flat.documented >= 0 || effect->flat.scene_linear >= 0)
+            look.entries.push_back(flat_entry(*effect, order));
     return look;
+}
+
+void set_order(Look& look, LookOrder order) {
+    for (LookEntry& entry : look.entries) {
+        const LookEntry was = flat_entry(*entry.effect, look.order), is = flat_entry(*entry.effect, order);
+        for (const ParamInfo& row : entry.effect->parameters.rows)
+            if (std::equal(&entry.words[row.word], &entry.words[row.word] + row.words, &was.words[row.word]))
+                std::copy_n(&is.words[row.word], row.words, &entry.words[row.word]);
+        if (!entry.is_asked_for && entry.state.enabled.on == was.state.enabled.on)
+            entry.state.enabled = is.state.enabled;
+    }
+    look.order = order;
 }
 
 void add_ui(Look& look) {

@@ -46,15 +46,19 @@ bool lacks(std::initializer_list<const char*> effects) {
 bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
 
 TEST(Look, EmptyTableIsTheDefaults) {
-    for (const char* const text : {"", "[post_process]\n", "format = 1\n"}) {
-        EXPECT_EQ(write_look(look_of(text)), write_look(default_look()));
+    for (const auto& [text, order] : {std::pair("", LookOrder::SceneLinear),
+                                      {"format = 1\n", LookOrder::SceneLinear},
+                                      {"[post_process]\n", LookOrder::Documented},
+                                      {"[post_process]\norder = \"documented\"\n", LookOrder::Documented},
+                                      {"[post_process]\norder = \"scene_linear\"\n", LookOrder::SceneLinear}}) {
+        EXPECT_EQ(write_look(look_of(text)), write_look(default_look(order))) << text;
         EXPECT_TRUE(warnings_of(text).empty());
     }
 }
 
 // What scenes that say nothing were made with.
 TEST(Look, DefaultsAreThePublishedOnes) {
-    Look look = default_look();
+    Look look = look_of("[post_process]\n");
     const std::map<std::string, std::map<std::string, std::string>> published{
         {"bloom", {{"intensity", "0.04"}, {"threshold", "1.0"}, {"soft_threshold", "0.5"}}},
         {"chromatic_aberration", {{"chromatic_aberration", "0.0"}}},
@@ -69,7 +73,8 @@ TEST(Look, DefaultsAreThePublishedOnes) {
           {"height_falloff", "0.1"},
           {"height_origin", "0.0"}}},
         {"radial_blur", {{"radial_blur", "0.0"}}},
-        {"ssao", {{"radius", "0.5"}, {"intensity", "1.0"}, {"bias", "0.025"}}},
+        {"fxaa", {}},
+        {"ssao", {{"radius", "0.5"}, {"intensity", "1.0"}, {"bias", "0.025"}, {"method", "\"hemisphere\""}}},
         {"vignette", {{"intensity", "0.3"}, {"smoothness", "2.0"}}},
         {"volumetric", {{"samples", "32"}, {"density", "1.0"}, {"max_distance", "100.0"}, {"decay", "0.98"}}}};
     const std::set<std::string> on{"bloom", "chromatic_aberration", "exposure", "radial_blur", "ssao"};
@@ -79,6 +84,17 @@ TEST(Look, DefaultsAreThePublishedOnes) {
         for (const auto& [name, value] : values)
             EXPECT_EQ(value_of(look, effect, name), value) << effect << ' ' << name;
     }
+}
+
+TEST(Look, AnotherOrderBringsItsOwnDefaultsAndKeepsWhatWasSaid) {
+    if (lacks({"ssao", "dither"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    Look look = look_of("[post_process]\nssao_radius = 2\n");
+    set_order(look, LookOrder::SceneLinear);
+    EXPECT_EQ(value_of(look, "ssao", "method"), "\"ground_truth\"");
+    EXPECT_EQ(value_of(look, "ssao", "radius"), "2.0");
+    EXPECT_TRUE(find_entry(look, "dither")->state.enabled.on);
+    set_order(look, LookOrder::Documented);
+    EXPECT_EQ(write_look(look), write_look(look_of("[post_process]\nssao_radius = 2\n")));
 }
 
 TEST(Look, ReadsTheFlatTable) {

@@ -100,6 +100,7 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
             return no_place_for_layers(output);
         job.develop.target = target_for(*samples);
     }
+    suit(job.look, job.develop.target);
     const std::vector<long long> numbers = numbers_of(*inputs);
     bool is_any_asked_for = false;
     std::size_t next_written = inputs->size();

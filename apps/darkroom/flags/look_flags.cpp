@@ -216,9 +216,9 @@ Result<> LookFlags::set_order(Look& look) const {
         return user_error(
             fmt::format("--order {}: {} has an explicit stack", darkroom::printable(order_), look.shown_name));
     if (order_ == "documented")
-        look.order = darkroom::LookOrder::Documented;
+        darkroom::set_order(look, darkroom::LookOrder::Documented);
     else if (order_ == "scene_linear")
-        look.order = darkroom::LookOrder::SceneLinear;
+        darkroom::set_order(look, darkroom::LookOrder::SceneLinear);
     else
         return user_error(
             fmt::format("--order {}: allowed is documented or scene_linear", darkroom::printable(order_)));

@@ -171,6 +171,13 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, T
     return frames;
 }
 
+void suit(darkroom::Look& look, darkroom::DevelopTarget target) {
+    if (target == darkroom::DevelopTarget::Encoded8) return;
+    for (darkroom::LookEntry& entry : look.entries)
+        if (entry.effect->is_last_step && entry.effect->makes == nullptr && look.is_flat && !entry.is_asked_for)
+            entry.state.enabled = false;
+}
+
 // Linear targets skip the last steps by definition; that is no news.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
                                      std::span<const std::string> left_out, std::string_view frame) {
@@ -183,7 +190,8 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
         // What a table has on by itself, nobody asked for.
         const auto named = std::ranges::find(names, text.substr(0, text.find(':')));
         const bool is_asked_for = named != names.end() && look.entries[named - names.begin()].is_asked_for;
-        const bool is_flat = (look.is_flat || look.was_flat) && info.flat.starts_on && !is_asked_for;
+        const bool is_flat = (look.is_flat || look.was_flat) &&
+                             darkroom::flat_entry(info, look.order).state.enabled.on != 0 && !is_asked_for;
         const bool is_usual = (is_flat || (look.ui && info.flat.is_of_ui)) &&
                               std::ranges::equal(composer.words(*entry), info.parameters.defaults);
         if (!composer.desc(*entry)->enabled || info.is_last_step) continue;

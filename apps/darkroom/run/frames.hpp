@@ -30,6 +30,8 @@ inline constexpr double assumed_field_of_view = 45;
 /// frames are `delta_time` seconds apart, at the worst of the moments of a timeline.
 [[nodiscard]] darkroom::Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time,
                                                         Timeline timeline, darkroom::FrameOptions& frame);
+/// Switches off noise that nobody asked for where the picture has more than 8 bits: it hides their steps.
+void suit(darkroom::Look& look, darkroom::DevelopTarget target);
 /// One warning, `frame` first, for each entry that is on and has no place in the plan, but for those that are on by
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,

@@ -141,11 +141,15 @@ class Splicer {
     Result<> write_flat() {
         if (is_.is_enabled != (!was_.is_flat || was_.is_enabled))
             if (Result<> done = editor_.set(flat_path, "enabled", bool_text(is_.is_enabled)); !done) return done;
-        if (is_.order != (was_.is_flat ? was_.order : LookOrder::Documented)) {
-            const std::string order = toml_string(order_names[static_cast<std::size_t>(is_.order)]);
-            if (Result<> done = editor_.set(flat_path, "order", order); !done) return done;
-        }
-        return write_table(flat_path, false);
+        const auto write_order = [&] {
+            return editor_.set(flat_path, "order", toml_string(order_names[static_cast<std::size_t>(is_.order)]));
+        };
+        if (was_.is_flat && is_.order != was_.order)
+            if (Result<> done = write_order(); !done) return done;
+        if (Result<> done = write_table(flat_path, false); !done) return done;
+        // A table that names no order is in the documented one.
+        const bool must_say = is_.order != LookOrder::Documented && editor_.contains(flat_path);
+        return must_say && !has_key(flat_path, "order") ? write_order() : Result<>{};
     }
 
     Result<> write_table(const TomlPath& table, bool is_of_ui) {
@@ -172,11 +176,17 @@ class Splicer {
     /// `before` null: it was not there, so that nobody knows what the table says of it.
     Result<> write_flat_entry(const TomlPath& table, const LookEntry* before, const LookEntry& entry) {
         const std::string_view effect = entry.effect->name;
-        const LookEntry plain = entry_of(*entry.effect);
+        const LookEntry plain = flat_entry(*entry.effect, is_.order);
         const bool is_on = entry.state.enabled.on != 0;
-        const bool is_switched = before == nullptr || is_on != (before->state.enabled.on != 0);
+        // What the table does not say follows from its order.
+        const bool is_switched =
+            before == nullptr || is_.order != was_.order || is_on != (before->state.enabled.on != 0);
+        const auto is_row_said = [&](const ParamInfo& row) {
+            return has_key(table, flat_key(effect, row.name)) ||
+                   (!row.formerly.empty() && has_key(table, flat_key(effect, row.formerly)));
+        };
         const auto is_same_row = [&](const ParamInfo& row) {
-            return has_same(before == nullptr ? plain : *before, entry, row);
+            return has_same(before == nullptr || !is_row_said(row) ? plain : *before, entry, row);
         };
         if (!is_switched && std::ranges::all_of(entry.effect->parameters.rows, is_same_row)) return {};
         const std::string switch_key = flat_key(effect, "enabled");
@@ -204,7 +214,7 @@ class Splicer {
     /// in the order of the keys.
     bool is_on_unsaid(const TomlPath& table, const LookEntry& entry) const {
         if (entry.is_of_ui) return true;
-        bool out = entry.effect->flat.starts_on;
+        bool out = flat_entry(*entry.effect, is_.order).state.enabled.on != 0;
         std::string last;
         for (const ParamInfo& row : entry.effect->parameters.rows)
             for (const std::string_view name : {row.name, row.formerly}) {

@@ -153,8 +153,10 @@ TEST_F(Splice, NewKeysComeBehindThoseOfTheirEffect) {
     EXPECT_EQ(blooming("[post_process]\nfog_color = [\n 1,\n 1,\n 1]\r\n"),
               "[post_process]\nfog_color = [\n 1,\n 1,\n 1]\r\nbloom_threshold = 2.0\n");
     EXPECT_EQ(blooming("[post_process]"), "[post_process]\nbloom_threshold = 2.0");
-    EXPECT_EQ(blooming(""), "[post_process]\nbloom_threshold = 2.0\n");
-    EXPECT_EQ(blooming("a = 1\r\n[b]"), "a = 1\r\n[b]\r\n\r\n[post_process]\r\nbloom_threshold = 2.0\r\n");
+    // A table that is new says the order that held without it.
+    EXPECT_EQ(blooming(""), "[post_process]\nbloom_threshold = 2.0\norder = \"scene_linear\"\n");
+    EXPECT_EQ(blooming("a = 1\r\n[b]"),
+              "a = 1\r\n[b]\r\n\r\n[post_process]\r\nbloom_threshold = 2.0\r\norder = \"scene_linear\"\r\n");
     EXPECT_EQ(blooming("post_process = {}\n"), "post_process = { bloom_threshold = 2.0 }\n");
     EXPECT_EQ(blooming("post_process = { exposure = 2 }\n"),
               "post_process = { exposure = 2, bloom_threshold = 2.0 }\n");

@@ -130,7 +130,8 @@ Result<std::vector<PlacedEntry>> stack_of(const Look& look, const ApplyOptions& 
                                     .scale = fraction(entry->state.scale),
                                     .format = image_format(entry->state.format)},
                            .has_values = look.is_enabled};
-        if (look.is_flat && !entry->is_of_ui) placed.desc.source = scene_color;
+        // Bloom reads the scene itself in the documented order, and in the other what exposure and air made of it.
+        if (look.is_flat && !entry->is_of_ui && look.order == LookOrder::Documented) placed.desc.source = scene_color;
         if (Result<> done = reader.read(placed); !done) return failure(std::move(done));
         out.push_back(std::move(placed));
     }

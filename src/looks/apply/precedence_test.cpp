@@ -106,14 +106,15 @@ TEST(Precedence, AKeyChangesItsOwnValueAlone) {
         const Look file = with_file(effect, row, other_value(effect, row, 1));
         for (const EffectInfo* const other : all_effects()) {
             if (other->flat.documented < 0) continue;
+            const LookEntry plain = flat_entry(*other, LookOrder::Documented);
             for (const ParamInfo& kept : other->parameters.rows) {
-                const std::string usual = format(kept, other->parameters.defaults);
+                const std::string usual = format(kept, plain.words);
                 EXPECT_EQ(value_of(file, *other, kept) == usual, &kept != &row) << flat_key(other->name, kept.name);
             }
             if (other != &effect) {
                 // The table [ui] turns all of its effects on.
                 const bool is_of_table = effect.flat.is_of_ui && other->flat.is_of_ui;
-                EXPECT_EQ(is_on(file, *other), other->flat.starts_on || is_of_table) << other->name;
+                EXPECT_EQ(is_on(file, *other), plain.state.enabled.on != 0 || is_of_table) << other->name;
             }
         }
     });
@@ -142,7 +143,7 @@ TEST(Precedence, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
         ASSERT_EQ(warnings.size(), 1U);
         EXPECT_NE(warnings[0].find("unknown key '" + slip + "'"), std::string::npos) << warnings[0];
         EXPECT_NE(warnings[0].find("did you mean '" + key + "'"), std::string::npos) << warnings[0];
-        EXPECT_EQ(value_of(*look, effect, row), format(row, effect.parameters.defaults));
+        EXPECT_EQ(value_of(*look, effect, row), format(row, flat_entry(effect, LookOrder::Documented).words));
     });
 }
 
@@ -150,7 +151,9 @@ TEST(Precedence, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
 TEST(Precedence, AmountsSwitchAndNothingElse) {
     const std::set<std::string> named{"bloom_intensity",      "ssao_intensity",     "fog_density",
                                       "dither_intensity",     "vignette_intensity", "volumetric_density",
-                                      "chromatic_aberration", "radial_blur",        "motion_blur_shutter_angle"};
+                                      "chromatic_aberration", "radial_blur",        "motion_blur_shutter_angle",
+                                      "god_rays_intensity",   "perturb_amount",     "classic_bloom_intensity",
+                                      "arena_bloom_intensity"};
     std::set<std::string> switches;
     for_every_flat_row([&](const EffectInfo& effect, const ParamInfo& row) {
         const std::string key = flat_key(effect.name, row.name), enabled = flat_key(effect.name, "enabled");
@@ -159,7 +162,8 @@ TEST(Precedence, AmountsSwitchAndNothingElse) {
         const bool does_switch = is_on(with_flag(off, key, value), effect);
         if (does_switch) switches.insert(key);
         EXPECT_EQ(is_on(with_file(effect, row, value), effect),
-                  named.contains(key) || effect.flat.starts_on || effect.flat.is_of_ui);
+                  named.contains(key) || flat_entry(effect, LookOrder::Documented).state.enabled.on != 0 ||
+                      effect.flat.is_of_ui);
         Look typed = default_look();
         ASSERT_TRUE(override_look(
             typed, std::array{LookOverride{enabled, "off", ""}, LookOverride{key, flag_text(value), ""}}));

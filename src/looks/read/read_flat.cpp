@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <string>
 
 #include "core/text/param_text.hpp"
 #include "looks/look_parts.hpp"
@@ -140,9 +142,14 @@ class FlatReader {
 }  // namespace
 
 Look read_flat(LookReader& reader, const toml::node* node) {
-    Look look = default_look();
-    if (node == nullptr) return look;
-    if (const toml::table* const table = node->as_table())
+    if (node == nullptr) return default_look();
+    const toml::table* const table = node->as_table();
+    // Files that name no order were made for the documented one, whose defaults lie under what they say.
+    const std::optional<std::string> order = table == nullptr ? std::nullopt : (*table)["order"].value<std::string>();
+    Look look =
+        default_look(order == order_names[static_cast<std::size_t>(LookOrder::SceneLinear)] ? LookOrder::SceneLinear
+                                                                                            : LookOrder::Documented);
+    if (table != nullptr)
         FlatReader(reader, look, false).read(*table);
     else
         reader.report(*node, Weight::Wrong, fmt::format("post_process = {}: expected a table", show(*node)));

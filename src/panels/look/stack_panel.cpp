@@ -126,7 +126,7 @@ class StackList {
             for (std::size_t i = 0; i < order_names.size(); ++i)
                 if (ImGui::Selectable(shown_name(order_names[i]).c_str(), i == present) && i != present)
                     state_.edit("order", [i](Look& look) {
-                        look.order = static_cast<LookOrder>(i);
+                        set_order(look, static_cast<LookOrder>(i));
                         return Result<>();
                     });
             ImGui::EndCombo();
