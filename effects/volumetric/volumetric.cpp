@@ -66,12 +66,13 @@ Ramp world_ramp(const PassContext& context) {
 }
 
 /// The world's ramp as u, v and depth in a cascade; the bias keeps what is lit off its own shadow.
-void write_cascade(const Matrix& m, const Ramp& world, std::span<PassVector> out) {
+void write_cascade(const Matrix& m, std::uint32_t resolution, const Ramp& world, std::span<PassVector> out) {
+    const double bias = volumetric_bias(m, resolution);
     const auto row = [&](std::size_t index, const Vector3& v) {
         return double{m[index]} * v[0] + double{m[4 + index]} * v[1] + double{m[8 + index]} * v[2];
     };
     for (std::size_t index = 0; index < 3; ++index) {
-        const double scale = index == 2 ? 1 : 0.5, offset = index == 2 ? -volumetric_bias : 0.5;
+        const double scale = index == 2 ? 1 : 0.5, offset = index == 2 ? -bias : 0.5;
         out[0][index] = static_cast<float>((row(index, world.start) + double{m[12 + index]}) * scale + offset);
         out[1][index] = static_cast<float>(row(index, world.slope) * scale);
         out[2][index] = static_cast<float>(row(index, world.per_x) * scale);
@@ -113,7 +114,7 @@ void march_constants(const void* parameters, const PassContext& context, std::sp
     const std::size_t cascades = std::min<std::size_t>(light->cascade_count, Light::max_cascades);
     for (std::size_t cascade = 0; cascade < cascades; ++cascade) {
         const auto vectors = out.subspan(fixed_vectors + cascade * vectors_per_cascade, vectors_per_cascade);
-        write_cascade(light->world_to_cascade[cascade], world, vectors);
+        write_cascade(light->world_to_cascade[cascade], light->cascades.extent.width, world, vectors);
         vectors[0][3] = light->splits[cascade];
     }
     out[fixed_vectors + 1][3] = static_cast<float>(cascades);

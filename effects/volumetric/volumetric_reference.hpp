@@ -14,8 +14,16 @@
 
 namespace darkroom {
 
-/// Of a cascade's range of depth: keeps what is lit off its own shadow.
-inline constexpr double volumetric_bias = 0.002;
+/// How much nearer to the light a point in the air is compared than it is, of the cascade's depth. That is a quarter of
+/// a texel, whatever the range of depth is: what is lit stays off its own shadow, and a wall of one texel stays closed.
+inline double volumetric_bias(const Matrix& world_to_cascade, std::uint32_t resolution) {
+    const auto length = [&](std::size_t row) {
+        return std::hypot(double{world_to_cascade[row]}, double{world_to_cascade[4 + row]},
+                          double{world_to_cascade[8 + row]});
+    };
+    const double texel = 2 / (std::max(length(0), 1e-30) * std::max(resolution, 1u));
+    return 0.25 * texel * length(2);
+}
 
 /// Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941, with g = 0.8.
 inline double volumetric_phase(double cosine) {
@@ -51,7 +59,7 @@ inline double volumetric_visible(const ReferenceLight& light, const Double3& poi
     if (!(u >= 0 && u < 1 && v >= 0 && v < 1)) return 1;
     const auto x = static_cast<std::size_t>(u * light.resolution), y = static_cast<std::size_t>(v * light.resolution);
     const double nearest = double{light.cascades[cascade][y * light.resolution + x]};
-    return std::min(place[2] - volumetric_bias, 1.0) <= nearest ? 1 : 0;
+    return std::min(place[2] - volumetric_bias(m, light.resolution), 1.0) <= nearest ? 1 : 0;
 }
 
 /// NaN counts as sky.

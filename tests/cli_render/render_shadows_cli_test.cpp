@@ -55,7 +55,7 @@ TEST_F(CliRenderShadows, VolumetricLightIsDevelopedBitForBit) {
     EXPECT_EQ(off.err, "");
     const Result<Comparison> lit = compare(picture("a.png"), picture("off.png"));
     ASSERT_TRUE(lit);
-    EXPECT_GT(lit->mean_error, 0.03);
+    EXPECT_GT(lit->mean_error, 0.02);
     const FrameFile file = frame("f.exr");
     ASSERT_EQ(file.lights.size(), 2U);
     ASSERT_EQ(file.lights[0].cascades.size(), 3U);

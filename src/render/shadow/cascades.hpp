@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Where the cascades of a directional light lie: practical splits (Zhang et al., "Parallel-Split Shadow Maps", 2006),
-// a bounding sphere a slice snapped to texels, so that edges stand still when the camera moves, and a depth range
-// extended toward the light, so that walls and ceilings behind the camera cast. Arithmetic alone, no GPU.
+// Where the cascades of a directional light lie: practical splits (Zhang et al., "Parallel-Split Shadow Maps", 2006) of
+// the part of the view in which there is something, a bounding sphere a slice, cut to what the scene covers as the
+// light sees it, and snapped to texels, so that edges stand still when the camera moves. Arithmetic alone, no GPU.
 
 #include <array>
 #include <cstdint>
@@ -21,7 +21,14 @@ struct CascadeDesc {
     std::uint32_t resolution = 2048;  ///< of each, texels
     float split_lambda = 0.5F;        ///< 0 uniform .. 1 logarithmic
     float far_distance = 200;         ///< where shadows end, metres
-    float least_pull_back = 100;      ///< how far behind the view casters are looked for, metres
+};
+
+/// What there is to cast and to receive shadows.
+struct CascadeScene {
+    scene::Box bounds{scene::vec3(-1e9F), scene::vec3(1e9F)};
+    /// Depth begins where the scene does toward the light. Else it begins with the slice, and the rasteriser moves what
+    /// lies before that to depth 0: it casts all the same.
+    bool holds_casters = false;
 };
 
 struct Cascades {
@@ -36,7 +43,10 @@ struct Cascades {
                                                                 std::uint32_t count);
 
 /// `toward_light`: normalised, any direction, straight up too.
-[[nodiscard]] Cascades fit_cascades(const scene::CameraState& camera, scene::vec3 toward_light,
-                                    const CascadeDesc& desc);
+[[nodiscard]] Cascades fit_cascades(const scene::CameraState& camera, scene::vec3 toward_light, const CascadeDesc& desc,
+                                    const CascadeScene& scene = {});
+
+/// How far along the view axis the part of a box lies that is in view, without regard to near and far; 0: none is.
+[[nodiscard]] double farthest_in_view(const scene::CameraState& camera, const scene::Box& box);
 
 }  // namespace darkroom::render

@@ -170,28 +170,83 @@ TEST(RenderCascades, VerticalLight) {
     }
 }
 
-TEST(RenderCascades, DepthReachesBehindTheView) {
-    const mat4 view = glm::lookAt(vec3(0, 2, 0), vec3(0, 2, -1), vec3(0, 1, 0));
-    const vec3 light = glm::normalize(vec3(0, 1, 1));
-    const CascadeDesc desc;
-    const Cascades cascades = fit_cascades(perspective(view, {}), light, desc);
-    for (std::uint32_t i = 0; i < 3; ++i) {
-        const auto used = static_cast<float>(desc.resolution - 10);
-        const float radius = cascades.texel[i] * used / 2;
-        EXPECT_NEAR(radius, std::round(radius), 1e-3F) << "whole metres";
-        const float pull_back = std::max(radius, 100.0F);
-        const float depth_a_metre = glm::length(row(cascades.world_to_cascade[i], 2));
-        EXPECT_NEAR(1 / depth_a_metre, pull_back + radius, 1e-3F);
-        // The centre of the slice lies one radius before the end.
-        const float middle = pull_back / (pull_back + radius);
-        const float center_distance = i == 0 ? 20.0F : cascades.splits[i] - 1;
-        const vec3 place = map_place(cascades, i, view_point(perspective(view, {}), 0, 0, center_distance), 2048);
-        EXPECT_NEAR(place.z, middle, radius / (pull_back + radius));
+TEST(RenderCascades, SplitsEndWhereTheSceneDoes) {
+    const scene::CameraState camera = perspective(glm::lookAt(vec3(0, 2, 0), vec3(0, 2, -1), vec3(0, 1, 0)), {});
+    const auto end = [&](vec3 low, vec3 high) {
+        return fit_cascades(camera, vec3(0, 1, 0), {}, {.bounds = {low, high}}).splits[2];
+    };
+    EXPECT_EQ(end(vec3(-1, 0, -8), vec3(1, 4, 3)), 8) << "what is behind the camera does not count";
+    EXPECT_FLOAT_EQ(end(vec3(-1, 0, -8.1F), vec3(1, 4, 3)), 8 * std::sqrt(2.0F)) << "in coarse steps";
+    EXPECT_EQ(end(vec3(-300), vec3(300)), 200);
+    EXPECT_LT(end(vec3(500, 0, -8), vec3(501, 4, 100)), 1) << "nothing is in view";
+    EXPECT_NEAR(farthest_in_view(camera, {vec3(-1, 0, -8.1F), vec3(1, 4, 3)}), 8.1, 1e-5);
+    const std::array splits = practical_splits(0.1F, 8, 0.5F, 3);
+    EXPECT_EQ(fit_cascades(camera, vec3(0, 1, 0), {}, {.bounds = {vec3(-1, 0, -8), vec3(1, 4, 3)}}).splits, splits);
+}
+
+TEST(RenderCascades, FarthestInViewIsThatOfPointsOfTheBox) {
+    Random random;
+    for (int round = 0; round < 100; ++round) {
+        const scene::CameraState camera = perspective(random.view(), {.field_of_view = random.in(20, 100)});
+        scene::Box box;
+        box.add(camera.position + vec3(random.in(-20, 20), random.in(-20, 20), random.in(-20, 20)));
+        box.add(camera.position + vec3(random.in(-20, 20), random.in(-20, 20), random.in(-20, 20)));
+        const auto found = static_cast<float>(farthest_in_view(camera, box));
+        float truth = 0;
+        for (int sample = 0; sample < 20000; ++sample) {
+            const vec3 part(random.in(0, 1), random.in(0, 1), random.in(0, 1));
+            const vec4 clip = camera.projection * camera.view * vec4(glm::mix(box.low, box.high, part), 1);
+            if (std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w) truth = std::max(truth, clip.w);
+        }
+        EXPECT_GE(found * 1.0001F, truth) << round;
+        EXPECT_LE(found, truth + 5) << round << ": samples miss corners, but not by much";
     }
-    // A ceiling far behind the camera, toward the light, is within the first cascade's depth.
-    const vec3 ceiling = map_place(cascades, 0, vec3(0, 2, -20) + light * 90.0F, 2048);
-    EXPECT_GT(ceiling.z, 0);
-    EXPECT_LT(ceiling.z, map_place(cascades, 0, vec3(0, 2, -20), 2048).z);
+}
+
+TEST(RenderCascades, DepthReachesBehindTheView) {
+    Random random;
+    const scene::Box bounds{vec3(-60, -4, -60), vec3(60, 45, 60)};
+    for (int round = 0; round < 100; ++round) {
+        const vec3 eye(random.in(-30, 30), random.in(0, 20), random.in(-30, 30));
+        const mat4 view = glm::lookAt(eye, eye + random.direction(), vec3(0.01F, 1, 0.02F));
+        const vec3 light = random.direction();
+        for (const bool holds_casters : {false, true}) {
+            const scene::CameraState camera = perspective(view, {});
+            const Cascades cascades = fit_cascades(camera, light, {}, {bounds, holds_casters});
+            for (std::uint32_t i = 0; i < 3; ++i) {
+                for (int sample = 0; sample < 24; ++sample) {
+                    const vec3 part(random.in(0, 1), random.in(0, 1), random.in(0, 1));
+                    const vec3 point = glm::mix(bounds.low, bounds.high, part);
+                    const vec3 place = map_place(cascades, i, point, 2048);
+                    if (holds_casters) {
+                        EXPECT_GE(place.z, 0) << "the whole scene is within the range";
+                    }
+                    const vec4 clip = camera.projection * camera.view * vec4(point, 1);
+                    const float before = i == 0 ? camera.near_distance : cascades.splits[i - 1];
+                    const bool is_seen = std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.w >= before &&
+                                         clip.w <= cascades.splits[i];
+                    if (!is_seen) continue;
+                    EXPECT_GT(place.z, 0);
+                    EXPECT_LE(place.z, 1.0F + 1e-5F);
+                    EXPECT_GE(std::min(place.x, place.y), 4 - 0.01F);
+                    EXPECT_LE(std::max(place.x, place.y), 2044 + 0.01F);
+                    EXPECT_LT(map_place(cascades, i, point + light * 10.0F, 2048).z, place.z);
+                }
+            }
+        }
+    }
+}
+
+TEST(RenderCascades, TexelsAndDepthsAreThoseOfTheScene) {
+    const scene::CameraState camera = perspective(glm::lookAt(vec3(0, 2, 0), vec3(1, 2, 0), vec3(0, 1, 0)), {});
+    const vec3 light = glm::normalize(vec3(0.4F, 0.6F, 0.05F));
+    const Cascades room = fit_cascades(camera, light, {}, {.bounds = {vec3(-4, 0, -4), vec3(4, 3, 4)}});
+    const Cascades all = fit_cascades(camera, light, {});
+    EXPECT_LT(room.texel[0], all.texel[0] / 4);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        EXPECT_LT(room.texel[i] * 2048, 16) << "a room of 8 m";
+        EXPECT_LT(1 / glm::length(row(room.world_to_cascade[i], 2)), 16) << "metres of depth";
+    }
 }
 
 TEST(RenderCascades, ResolutionIsThatOfTheTexels) {

@@ -18,9 +18,9 @@ namespace darkroom::render {
 namespace {
 
 constexpr VkFormat map_format = VK_FORMAT_D32_SFLOAT;
-/// Steps of depth, and texels of slope, that casters lie deeper than they are. The filter compares groups of 2x2 texels
-/// with one depth each, which is wrong by half a texel's slope in both directions.
-constexpr float bias_constant = 2, bias_slope = 2;
+/// Texels of slope that casters lie deeper than they are. A wall of one texel is lost beyond 1 - sqrt(1/2), where a
+/// point beside it still has to be dark in the nearest texel; shaders/light/shadow.glsl does the rest.
+constexpr float bias_slope = 0.28F;
 /// Inputs of shaders/mesh/mesh_place.glsl.
 constexpr std::uint32_t normal_location = 1, tangent_location = 2;
 /// How many times the depth range casters are looked for in front of it, where clamping lets them cast from there.
@@ -114,6 +114,13 @@ scene::mat4 reaching_matrix(scene::mat4 world_to_cascade) {
     return world_to_cascade;
 }
 
+CascadeScene cascade_scene(const scene::Snapshot& snapshot, bool has_depth_clamp) {
+    CascadeScene out{.bounds = {}, .holds_casters = !has_depth_clamp};
+    for (const scene::Instance& instance : snapshot.instances)
+        if (!instance.is_wireframe && !instance.bounds.is_empty()) out.bounds.add(instance.bounds);
+    return out;
+}
+
 VkImageMemoryBarrier2 map_barrier(const gpu::Image& map) {
     return {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
@@ -185,7 +192,6 @@ struct ShadowPass::State {
             .front = variant.is_mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE,
             .depth_compare = VK_COMPARE_OP_LESS_OR_EQUAL,
             .clamps_depth = context->traits.has_depth_clamp,
-            .depth_bias = bias_constant,
             .depth_bias_slope = bias_slope};
         if (variant.is_masked) pipeline.sets.push_back(material_layout);
         // has_textures, is_skinned, is_morphed; see the shaders.
@@ -351,16 +357,18 @@ void ShadowPass::clear() {
 void ShadowPass::prepare(const scene::Snapshot& snapshot) {
     clear();
     State& state = *state_;
+    const bool has_depth_clamp = state.context->traits.has_depth_clamp;
+    const CascadeScene fitted = cascade_scene(snapshot, has_depth_clamp);
     for (const std::uint32_t place : lights_with_shadows(snapshot)) {
         if (state.cascades.size() == state.most_lights) break;
         state.require_map(state.cascades.size());
         if (state.error) return;
-        const Cascades& cascades =
-            state.cascades.emplace_back(fit_cascades(snapshot.camera, snapshot.lights[place].direction, state.desc));
+        const Cascades& cascades = state.cascades.emplace_back(
+            fit_cascades(snapshot.camera, snapshot.lights[place].direction, state.desc, fitted));
         for (std::uint32_t i = 0; i < cascades.count; ++i) {
             const scene::mat4& matrix = cascades.world_to_cascade[i];
-            const DrawList& list = state.lists.emplace_back(
-                caster_list(snapshot, state.context->traits.has_depth_clamp ? reaching_matrix(matrix) : matrix));
+            const DrawList& list =
+                state.lists.emplace_back(caster_list(snapshot, has_depth_clamp ? reaching_matrix(matrix) : matrix));
             state.require_pipelines(snapshot, list);
         }
     }

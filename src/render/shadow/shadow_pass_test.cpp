@@ -11,7 +11,6 @@ namespace {
 
 using namespace test;
 
-/// Cascade 0 reaches 5 m.
 constexpr CascadeDesc small{.resolution = 512, .far_distance = 30};
 
 /// A floor, seen from above.
@@ -123,22 +122,6 @@ TEST(RenderGpuShadow, SlopesDoNotShadeThemselves) {
     }
 }
 
-TEST(RenderGpuShadow, WallsMeetTheirShadows) {
-    ShadowRig rig(small);
-    for (const int degrees : {20, 45, 60, 70}) {
-        const float angle = glm::radians(static_cast<float>(degrees));
-        scene::Snapshot snapshot = floor_scene(vec3(std::sin(angle), std::cos(angle), 0.1F));
-        rig.prepare(snapshot);
-        const float texel = rig.pass.cascades(0).texel[0];
-        add_box(snapshot, vec3(0, 0, -2), vec3(2.5F * texel, 0.5F, 2));
-        const Visibility seen = rig.run(snapshot, {.width = 80, .right = vec3(-0.1F * texel, 0, 0)});
-        float light = 0;
-        for (const float value : seen.filtered) light += value * 0.1F;
-        EXPECT_LT(light, 1.25F) << "texels of light behind a wall of 2.5 texels, at " << degrees << " degrees";
-        EXPECT_EQ(seen.filtered.back(), 0);
-    }
-}
-
 TEST(RenderGpuShadow, ResolutionMeansWhatItSays) {
     for (const std::uint32_t resolution : {1024U, 2048U, 300U}) {
         ShadowRig rig({.count = 2, .resolution = resolution}, 2);
@@ -159,7 +142,8 @@ TEST(RenderGpuShadow, ResolutionMeansWhatItSays) {
         rig.pass.fill(block);
         EXPECT_EQ(block.shadow_settings, vec4(2, resolution, 1 / static_cast<float>(resolution), 200));
         EXPECT_EQ(block.cascade_texels[1].y, rig.pass.cascades(1).texel[1]);
-        EXPECT_EQ(block.cascade_splits[1].y, 200);
+        EXPECT_EQ(block.cascade_splits[1].y, rig.pass.cascades(1).splits[1]);
+        EXPECT_EQ(block.cascade_splits[1].y, 8) << "where the floor that is in view ends";
         EXPECT_EQ(block.world_to_cascade[5], rig.pass.cascades(1).world_to_cascade[1]);
     }
 }
@@ -295,6 +279,7 @@ TEST(RenderGpuShadow, AnyNumberOfCascades) {
     for (std::uint32_t count = 1; count <= most_cascades; ++count) {
         ShadowRig rig({.count = count, .resolution = 256, .far_distance = 30});
         scene::Snapshot snapshot = floor_scene(vec3(0.2F, 1, 0.1F));
+        snapshot.camera = look(vec3(0, 4, 4), vec3(0, 0, -6), 60);
         add_box(snapshot, vec3(-30, 5, -30), vec3(30, 5.1F, -2));
         for (const float z : {-2.0F, -8.0F, -14.0F}) EXPECT_EQ(visibility_at(rig, snapshot, vec3(0, 0, z - 3)), 0);
         for (const float z : {0.0F, 0.5F}) EXPECT_EQ(visibility_at(rig, snapshot, vec3(0, 0, z)), 1);

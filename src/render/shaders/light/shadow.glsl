@@ -1,6 +1,5 @@
 // Shadows of directional lights: how much of light `light`'s light arrives, by its number among the shadow maps. Four
-// gathers a cascade cover the 4x4 texels that a 3x3 filter of bilinear taps reaches; every group of 2x2 is compared
-// with the receiver's own plane there, so that sloped ground does not shade itself and edges stay where they are.
+// gathers a cascade cover the 4x4 texels of a cubic B-spline.
 #include "frame.glsl"
 
 /// How many shadow maps there are, 0: not known. The others then cost nothing, which branches alone do not achieve on
@@ -10,15 +9,14 @@ const uint shadow_map_count = shadow_lights == 0u ? 4u : shadow_lights;
 
 const float cascade_blend = 0.1;  // as render/shadow/cascades.hpp has it
 const float shadow_fade = 0.25;   // last part of the shadow distance
-// The rasteriser's bias of two texels of slope leaves a part of the receiver's slope to this filter. It takes no more,
-// and nothing of steep ones: normals that are interpolated over coarse meshes say too much where it matters most.
-const float slope_part = 0.75;
-const float least_cosine = 0.2;  // of the light to a surface
-// Toward the light the plane is followed further: texels of a group lie up to half a texel beyond where they meet, and
-// beyond the edge of a face they are its neighbour's, which the rasteriser has not moved by the receiver's slope. More
-// would lose what thin casters shade where they stand.
-const float light_side = 1.5;
-const float plane_margin = 0.5;  // texels that a receiver is moved toward the light
+// A receiver is moved along its normal by this many texels where light grazes it, and toward the light by some always:
+// lengths in the world, whatever the range of depth. The rest of a slope is left to what follows, and to the rasteriser's
+// quarter of a texel. Moving along the normal leads away from the walls that meet a floor, so that they stay closed.
+const float normal_offset = 0.82;
+const float light_offset = 0.25;
+// Of the kernel's weight: less is dark, more is lit. A wall of one texel covers two thirds of it at the least, where it
+// meets another one; beyond the upper share lie the corners of the kernel, which a sloped plane may darken itself.
+const float dark_share = 0.32, lit_share = 0.82;
 
 vec4 gather_shadow(uint light, vec3 place, float depth) {
     if (shadow_map_count > 1u && light == 1u) return textureGather(shadow_maps[1], place, depth);
@@ -58,43 +56,40 @@ float shadow_presence(float view_distance) {
     return clamp((end - view_distance) / (end * shadow_fade), 0.0, 1.0);
 }
 
-/// Change of depth from texel to texel along a surface, in sizes of a texel: x right, y down.
-vec2 receiver_slope(mat4 world_to_cascade, vec3 normal, float half_extent, float range) {
-    const vec3 turned = mat3(world_to_cascade) * normal * vec3(half_extent, half_extent, -range);
-    // A surface that faces away is behind its own front.
-    return turned.z > 0.0 ? turned.xy * (slope_part / max(turned.z, least_cosine)) : vec2(0);
+/// Weights of the four texels of a cubic B-spline, `f` behind the second.
+vec4 spline_weights(float f) {
+    const float g = 1.0 - f;
+    return vec4(g * g * g, (3.0 * f - 6.0) * f * f + 4.0, (3.0 * g - 6.0) * g * g + 4.0, f * f * f) * (1.0 / 6.0);
 }
 
-/// 3x3 bilinear taps one texel apart (after Reeves et al., "Rendering Antialiased Shadows with Depth Maps", 1987), with
-/// their weights added up a texel: 1 - f, 1, 1, f in both directions.
+/// Percentage-closer filtering (Reeves et al., "Rendering Antialiased Shadows with Depth Maps", 1987) of 4x4 texels by a
+/// cubic B-spline, which is smooth where a box shows the texels' steps. All are compared with one depth: following the
+/// receiver's plane toward the light would lead through a thin ceiling.
 float filter_cascade(uint light, uint cascade, vec3 world_position, vec3 normal) {
     const mat4 world_to_cascade = shadows.world_to_cascade[4u * light + cascade];
     const float texel = shadows.cascade_texels[light][cascade];
     const float resolution = shadows.shadow_settings.y;
     const vec3 depth_row = vec3(world_to_cascade[0].z, world_to_cascade[1].z, world_to_cascade[2].z);
     const float range = inversesqrt(dot(depth_row, depth_row));
-    const vec2 slope = receiver_slope(world_to_cascade, normal, 0.5 * texel * resolution, range);
-    const float depth_a_texel = texel / range;
+    const vec3 toward_light = -depth_row * range;
+    const float cosine = dot(normal, toward_light);
+    const float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    const vec3 offset = normal * (normal_offset * sine) + toward_light * light_offset;
 
-    const vec3 position = (world_to_cascade * vec4(world_position, 1)).xyz;
+    const vec3 position = (world_to_cascade * vec4(world_position + offset * texel, 1)).xyz;
+    const float depth = min(position.z, 1.0);
     const vec2 place = (position.xy * 0.5 + 0.5) * resolution;
     const vec2 corner = floor(place - 0.5);
-    // Steps of 1/256 make the weights exact, so that a place among lit texels is lit to the last bit.
-    const vec2 f = floor((place - 0.5 - corner) * 256.0) * (1.0 / 256.0);
+    const vec4 across = spline_weights(place.x - 0.5 - corner.x), down = spline_weights(place.y - 0.5 - corner.y);
     float sum = 0.0;
     for (uint i = 0u; i < 4u; ++i) {
         const vec2 side = vec2(i & 1u, i >> 1u);
         const vec2 meeting = corner + side * 2.0;  // of the four texels of a gather
-        const float along = dot(slope, meeting - place);
-        const float rise = (along < 0.0 ? light_side * along : along) - plane_margin;
-        const float plane = position.z + rise * depth_a_texel;
-        const vec3 coordinates = vec3(meeting * shadows.shadow_settings.z, float(cascade));
-        const vec4 lit = gather_shadow(light, coordinates, min(plane, 1.0));
-        const vec2 first = mix(1.0 - f, vec2(1), side);
-        const vec2 second = mix(vec2(1), f, side);
-        sum += (lit.w * first.x + lit.z * second.x) * first.y + (lit.x * first.x + lit.y * second.x) * second.y;
+        const vec4 lit = gather_shadow(light, vec3(meeting * shadows.shadow_settings.z, float(cascade)), depth);
+        const vec2 u = side.x > 0.0 ? across.zw : across.xy, v = side.y > 0.0 ? down.zw : down.xy;
+        sum += dot(lit.wz, u) * v.x + dot(lit.xy, u) * v.y;
     }
-    return sum * (1.0 / 9.0);
+    return clamp((sum - dark_share) * (1.0 / (lit_share - dark_share)), 0.0, 1.0);
 }
 
 /// Filtered, for surfaces: 0 in shadow .. 1 lit. `light` counts shadow maps and is the same for all invocations of a
@@ -115,11 +110,15 @@ float shadow_visibility(uint light, vec3 world_position, vec3 world_normal, floa
     return 1.0 - shadow_presence(view_distance) * (1.0 - visibility);
 }
 
-/// One tap, for points in the air.
+/// One tap, for points in the air; nearer to the light by a quarter of a texel, which what is lit is kept off its own
+/// shadow by.
 float shadow_visibility_point(uint light, vec3 world_position, float view_distance) {
     light = shadow_map_count > 1u ? light : 0u;
     const uint cascade = cascade_of(light, view_distance);
-    const vec3 position = (shadows.world_to_cascade[4u * light + cascade] * vec4(world_position, 1)).xyz;
+    const mat4 world_to_cascade = shadows.world_to_cascade[4u * light + cascade];
+    vec3 position = (world_to_cascade * vec4(world_position, 1)).xyz;
+    const vec3 depth_row = vec3(world_to_cascade[0].z, world_to_cascade[1].z, world_to_cascade[2].z);
+    position.z -= light_offset * shadows.cascade_texels[light][cascade] * sqrt(dot(depth_row, depth_row));
     const float lit = tap_shadow(light, vec4(position.xy * 0.5 + 0.5, float(cascade), min(position.z, 1.0)));
     return 1.0 - shadow_presence(view_distance) * (1.0 - lit);
 }
