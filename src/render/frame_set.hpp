@@ -69,6 +69,7 @@ struct PassSetup {
     Output output = Output::Hdr;
     bool is_tone_mapped = true;  ///< Output::Display
     std::uint32_t shadow_maps = 0;
+    bool has_soft_shadows = false;
     bool has_environment = false;
 };
 

@@ -203,6 +203,7 @@ Result<> Renderer::State::create_passes() {
                           .output = desc.output,
                           .is_tone_mapped = desc.is_tone_mapped,
                           .shadow_maps = maps,
+                          .has_soft_shadows = desc.cascades.filter == ShadowFilter::Soft,
                           .has_environment = scene->environment.is_given};
     meshes = MeshPass::create(*context, setup, scene->meshes);
     if (made = take(SkyPass::create(*context, setup), sky); !made) return made;

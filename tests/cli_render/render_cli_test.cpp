@@ -170,10 +170,11 @@ TEST_F(CliRenderFlags, EveryMomentIsAPicture) {
 
 TEST_F(CliRenderFlags, DefaultsAreThoseOfTheHelp) {
     ASSERT_EQ(render({}, "a.png").code, 0);
-    ASSERT_EQ(
-        render({"--shadow-resolution", "2048", "--msaa", "1", "--fps", "24", "--time", "0", "--seed", "0"}, "b.png")
-            .code,
-        0);
+    ASSERT_EQ(render({"--shadow-resolution", "2048", "--shadow-filter", "soft", "--msaa", "1", "--fps", "24", "--time",
+                      "0", "--seed", "0"},
+                     "b.png")
+                  .code,
+              0);
     EXPECT_EQ(content(path("a.png")), content(path("b.png")));
     const std::string help = run({"render", "--help-all"}).out;
     for (const char* const flag : {"--output",

@@ -173,7 +173,7 @@ TEST_F(CliRenderPixels, TheGridLiesOnTheGroundBesideTheFloor) {
 
 TEST_F(CliRenderPixels, ShadowsDarkenWhatTheBoxHidesFromTheSun) {
     const Picture with = rendered({"--no-grid"}), without = rendered({"--no-grid", "--no-shadows"});
-    const Picture coarse = rendered({"--no-grid", "--shadow-resolution", "512"});
+    const Picture coarse = rendered({"--no-grid", "--shadow-resolution", "256"});
     const Eye eye;
     std::size_t shaded = 0, coarser = 0;
     for_every_pixel([&](std::uint32_t x, std::uint32_t y) {

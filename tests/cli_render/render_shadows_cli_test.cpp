@@ -64,6 +64,14 @@ TEST_F(CliRenderShadows, VolumetricLightIsDevelopedBitForBit) {
     EXPECT_LT(*std::ranges::min_element(file.lights[0].cascades[2].depth.values), 1);
 }
 
+TEST_F(CliRenderShadows, TheFilterIsChosen) {
+    for (const std::string filter : {"plain", "soft"})
+        ASSERT_EQ(
+            run({"render", dungeon, "-o", path(filter + ".png"), "--size", "160x90", "--shadow-filter", filter}).code,
+            0);
+    EXPECT_NE(content(path("plain.png")), content(path("soft.png")));
+}
+
 TEST_F(CliRenderShadows, EveryFrameAndSampleIsDevelopedBitForBit) {
     expect_develops_alike({"--msaa", "4", "--frames", "2"});
 }

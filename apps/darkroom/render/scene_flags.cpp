@@ -39,6 +39,14 @@ Result<DebugView> parse_debug_mode(const std::string& text) {
                                   darkroom::suggestion(text, names)));
 }
 
+Result<darkroom::render::ShadowFilter> parse_shadow_filter(const std::string& text) {
+    const std::vector<std::string> names{"plain", "soft"};
+    if (text == names[0]) return darkroom::render::ShadowFilter::Plain;
+    if (text == names[1]) return darkroom::render::ShadowFilter::Soft;
+    return user_error(fmt::format("--shadow-filter {}: allowed is {}{}", printable(text), fmt::join(names, ", "),
+                                  darkroom::suggestion(text, names)));
+}
+
 std::string_view trimmed(std::string_view text) {
     while (text.starts_with(' ')) text.remove_prefix(1);
     while (text.ends_with(' ')) text.remove_suffix(1);
@@ -112,6 +120,11 @@ Result<darkroom::render::RenderDesc> SceneFlags::desc() const {
     if (Result<> done = shadow_resolution_.read_to(out.cascades.resolution); !done) return failure(std::move(done));
     out.samples = usual_msaa_;
     if (Result<> done = msaa_.read_to(out.samples); !done) return failure(std::move(done));
+    if (shadow_filter_) {
+        const Result<darkroom::render::ShadowFilter> filter = parse_shadow_filter(*shadow_filter_);
+        if (!filter) return failure(filter.error());
+        out.cascades.filter = *filter;
+    }
     if (debug_mode_) {
         const Result<DebugView> view = parse_debug_mode(*debug_mode_);
         if (!view) return failure(view.error());
@@ -149,6 +162,11 @@ void SceneFlags::add_drawing(CommandFlags command) {
     shadow_resolution_.add_to(command, "Of each cascade of a shadow map")
         .type_name("TEXELS")
         .default_str(fmt::format("{}", darkroom::render::RenderDesc().cascades.resolution))
+        .group(group);
+    command
+        .add_option("--shadow-filter", shadow_filter_, "Edges of shadows: over a texel or two, or as wide as the sun's")
+        .type_name("plain|soft")
+        .default_str("soft")
         .group(group);
     msaa_.add_to(command, "Samples of the rasteriser a pixel, of the counts that the device has")
         .type_name("N")

@@ -41,7 +41,7 @@ class SceneFlags {
     VkExtent2D default_extent_{};
     std::uint32_t usual_msaa_ = 1;
     // Optional, so that an empty text is a wrong value, not a missing one.
-    std::optional<std::string> size_, target_, debug_mode_;
+    std::optional<std::string> size_, target_, debug_mode_, shadow_filter_;
     std::vector<std::string> schemas_;
     // More pixels than any device takes. Its own limit is said once it is known.
     NumberFlag width_{"--width", {.least = 1, .most = 1e6, .is_whole = true, .unit = "px"}};

@@ -82,6 +82,7 @@ void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant&
     desc.specialization[6] = word(setup_.is_tone_mapped);
     desc.specialization[7] = word(is_transparent || variant.writes_alpha_only);
     desc.specialization[8] = setup_.shadow_maps;
+    desc.specialization[9] = word(setup_.has_soft_shadows);
     desc.cull = variant.is_double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT;
     desc.front = variant.is_mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
     gpu::ColorTarget color = blended_target(variant.blend, setup_.formats.has_alpha_layer);

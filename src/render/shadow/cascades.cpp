@@ -124,7 +124,8 @@ struct Extent {
 };
 
 /// What lies outside of the scene as the light sees it is lit, or behind all that is.
-Extent fit(dvec3 center, double radius, const LightBounds& bounds, bool holds_casters) {
+/// `least_reach`: texels before the slice in which the distance of casters counts.
+Extent fit(dvec3 center, double radius, const LightBounds& bounds, double least_reach, std::uint32_t used) {
     const dvec3 low = glm::max(center - radius, bounds.low), high = glm::min(center + radius, bounds.high);
     Extent out{.center = center, .half = radius};
     if (low.x < high.x && low.y < high.y) {
@@ -134,7 +135,8 @@ Extent fit(dvec3 center, double radius, const LightBounds& bounds, bool holds_ca
         if (out.half < radius) out.center = dvec3((low + high) * 0.5);
     }
     // What is behind everything is compared at depth 1, so that the far end may lie anywhere before the near one.
-    out.near = holds_casters ? std::max(bounds.high.z, low.z) : high.z;
+    const double texel = 2 * out.half / used;
+    out.near = std::max(std::min(bounds.high.z, center.z + radius + least_reach * texel), low.z);
     const double least = radius * 1e-3;
     out.far = std::min(low.z, out.near - least);
     // A little before the first surface, which must not lie at depth 0, where casters before it are.
@@ -216,12 +218,14 @@ Cascades fit_cascades(const scene::CameraState& camera, vec3 toward_light, const
     const mat4 camera_to_world = glm::inverse(camera.view);
 
     Cascades cascades{.count = count, .splits = practical_splits(near, far, desc.split_lambda, count)};
+    const double soft_reach = desc.filter == ShadowFilter::Soft ? most_penumbra / sun_tangent : 0.0F;
+    const double reach = scene.holds_casters ? std::numeric_limits<double>::infinity() : soft_reach;
     float from = near;
     for (std::uint32_t i = 0; i < count; ++i) {
         const Sphere sphere = bounding_sphere(camera.projection, from, cascades.splits[i]);
         const dvec3 center = glm::transpose(axes) * dvec3(camera_to_world * scene::vec4(sphere.center, 1));
-        Extent extent = fit(center, round_up(sphere.radius), bounds, scene.holds_casters);
         const std::uint32_t used = resolution - 2 * std::min(border, resolution / 4);
+        Extent extent = fit(center, round_up(sphere.radius), bounds, reach, used);
         const double texel = 2 * extent.half / used;
         // Whole texels: a point that stands still keeps its place within its texel.
         extent.center.x = std::round(extent.center.x / texel) * texel;

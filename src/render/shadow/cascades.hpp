@@ -16,18 +16,26 @@ namespace darkroom::render {
 /// as well.
 inline constexpr float cascade_blend = 0.1F;
 
+/// How shadows end: over a texel or two, or the wider the farther away what casts them is, as in the sun's light.
+enum class ShadowFilter : std::uint32_t { Plain, Soft };
+
+/// What a penumbra grows to either side by distance, and how many texels at most; shaders/light/shadow.glsl has them
+/// too.
+inline constexpr float sun_tangent = 0.004625F, most_penumbra = 8;
+
 struct CascadeDesc {
     std::uint32_t count = 3;          ///< [1, 4]
     std::uint32_t resolution = 2048;  ///< of each, texels
     float split_lambda = 0.5F;        ///< 0 uniform .. 1 logarithmic
-    float far_distance = 200;         ///< where shadows end, metres
+    ShadowFilter filter = ShadowFilter::Soft;
+    float far_distance = 200;  ///< where shadows end, metres
 };
 
 /// What there is to cast and to receive shadows.
 struct CascadeScene {
     scene::Box bounds{scene::vec3(-1e9F), scene::vec3(1e9F)};
-    /// Depth begins where the scene does toward the light. Else it begins with the slice, and the rasteriser moves what
-    /// lies before that to depth 0: it casts all the same.
+    /// Depth begins where the scene does toward the light. Else it begins with the slice, or as far before that as the
+    /// width of soft shadows depends on, and the rasteriser moves what lies before to depth 0: it casts all the same.
     bool holds_casters = false;
 };
 

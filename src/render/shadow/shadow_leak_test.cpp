@@ -124,10 +124,10 @@ RoomLeaks leaks_of(ShadowRig& rig, const scene::Snapshot& snapshot, float thickn
 }
 
 /// All suns, each with another far plane and another wall, of rooms alone or under a wide ceiling.
-void expect_dark(std::uint32_t resolution, bool is_wide) {
+void expect_dark(std::uint32_t resolution, ShadowFilter filter, bool is_wide) {
     constexpr std::array<float, 6> fars{20, 100, 200, 500, 1000, 5000};
     constexpr std::array<float, 4> walls{0.05F, 0.1F, 0.3F, 0.5F};
-    ShadowRig rig({.resolution = resolution});
+    ShadowRig rig({.resolution = resolution, .filter = filter});
     RoomLeaks all;
     for (std::size_t i = 0; i < suns.size(); ++i) {
         for (const std::size_t turn : {std::size_t{0}, std::size_t{1}}) {
@@ -159,17 +159,28 @@ void expect_dark(std::uint32_t resolution, bool is_wide) {
 
 }  // namespace
 
-class RenderGpuShadowRoom : public testing::TestWithParam<std::uint32_t> {};
-INSTANTIATE_TEST_SUITE_P(Resolutions, RenderGpuShadowRoom, testing::Values(512U, 1024U, 2048U, 4096U));
+class RenderGpuShadowRoom : public testing::TestWithParam<std::tuple<std::uint32_t, ShadowFilter>> {
+  protected:
+    static void expect_dark(bool is_wide) {
+        const auto& [resolution, filter] = GetParam();
+        render::expect_dark(resolution, filter, is_wide);
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Soft, RenderGpuShadowRoom,
+                         testing::Combine(testing::Values(512U, 1024U, 2048U, 4096U),
+                                          testing::Values(ShadowFilter::Soft)));
+INSTANTIATE_TEST_SUITE_P(Plain, RenderGpuShadowRoom,
+                         testing::Combine(testing::Values(512U, 2048U), testing::Values(ShadowFilter::Plain)));
 
-TEST_P(RenderGpuShadowRoom, IsDarkAlone) { expect_dark(GetParam(), false); }
-TEST_P(RenderGpuShadowRoom, IsDarkUnderAWideCeiling) { expect_dark(GetParam(), true); }
+TEST_P(RenderGpuShadowRoom, IsDarkAlone) { expect_dark(false); }
+TEST_P(RenderGpuShadowRoom, IsDarkUnderAWideCeiling) { expect_dark(true); }
 
 TEST(RenderGpuShadow, LitPlanesDoNotShadeThemselves) {
     const vec3 light = glm::normalize(vec3(0.3F, 1, 0.2F));
     const vec3 right = glm::normalize(glm::cross(vec3(0, 1, 0), light)), up = glm::cross(light, right);
-    for (const std::uint32_t resolution : {512U, 4096U}) {
-        ShadowRig rig({.resolution = resolution});
+    for (const auto& [resolution, filter] :
+         {std::pair(512U, ShadowFilter::Soft), {4096U, ShadowFilter::Soft}, {512U, ShadowFilter::Plain}}) {
+        ShadowRig rig({.resolution = resolution, .filter = filter});
         for (const float degrees : {5.0F, 30.0F, 60.0F, 75.0F, 80.0F, 83.0F, 85.0F}) {
             for (const vec3& across : {up, right, glm::normalize(right + up), glm::normalize(right * 0.4F - up)}) {
                 const float angle = glm::radians(degrees);

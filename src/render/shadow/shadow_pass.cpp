@@ -94,8 +94,6 @@ Result<VkSampler> create_sampler(gpu::Context& context) {
                                    .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
                                    .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
                                    .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
-                                   .compareEnable = VK_TRUE,
-                                   .compareOp = VK_COMPARE_OP_LESS_OR_EQUAL,
                                    .maxLod = VK_LOD_CLAMP_NONE,
                                    .borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE};
     VkSampler sampler = VK_NULL_HANDLE;

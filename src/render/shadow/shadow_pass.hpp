@@ -43,7 +43,7 @@ class ShadowPass {
     [[nodiscard]] std::uint32_t casting_lights() const;  ///< of the last prepare
     [[nodiscard]] const Cascades& cascades(std::uint32_t light) const;
     [[nodiscard]] const gpu::Image& map(std::uint32_t light) const;  ///< a 1x1 lit one beyond the casting lights
-    [[nodiscard]] VkSampler sampler() const;                         ///< compares, clamps to lit
+    [[nodiscard]] VkSampler sampler() const;                         ///< of single texels; beyond the edge is light
     void fill(blocks::Shadows& block) const;
 
   private:

@@ -275,6 +275,38 @@ TEST(RenderGpuShadow, EndsInLight) {
     }
 }
 
+namespace {
+
+/// From where a tenth of the light arrives to where nine tenths do, metres, at the edge of a plate at this height.
+float penumbra(ShadowRig& rig, float height) {
+    scene::Snapshot snapshot = empty_scene(look(vec3(0.5F, 1, 1), vec3(0, 0, 0), 60));
+    add_box(snapshot, vec3(-2, -0.1F, -2), vec3(2, 0, 2));
+    add_box(snapshot, vec3(-2, height, -2), vec3(0.0137F, height + 0.1F, 2));
+    add_light(snapshot, vec3(0, 1, 0));
+    constexpr std::uint32_t count = 1200;
+    constexpr float step = 0.00025F;
+    const Visibility seen = rig.run(snapshot, {.width = count, .first = vec3(-0.15F, 0, 0), .right = vec3(step, 0, 0)});
+    EXPECT_TRUE(std::ranges::is_sorted(seen.filtered)) << "light grows across the edge";
+    EXPECT_EQ(seen.filtered.front(), 0);
+    EXPECT_EQ(seen.filtered.back(), 1);
+    const auto first = std::ranges::lower_bound(seen.filtered, 0.1F),
+               last = std::ranges::lower_bound(first, seen.filtered.end(), 0.9F);
+    return static_cast<float>(last - first) * step;
+}
+
+}  // namespace
+
+// Half of a disc is covered at its middle; nine tenths are 0.687 of its radius farther on.
+TEST(RenderGpuShadow, PenumbrasAreTheSunsAndWidenWithDistance) {
+    ShadowRig soft({.resolution = 1024}), plain({.resolution = 1024, .filter = ShadowFilter::Plain});
+    for (const float height : {2.0F, 3.0F, 5.0F}) {
+        const float sun = height * std::tan(glm::radians(0.53F / 2)) * 2 * 0.687F;
+        EXPECT_NEAR(penumbra(soft, height), sun, 0.25F * sun) << height << " m";
+    }
+    EXPECT_NEAR(penumbra(plain, 5), penumbra(plain, 2), 0.002F);
+    EXPECT_LT(penumbra(plain, 5), penumbra(soft, 5) / 2);
+}
+
 TEST(RenderGpuShadow, AnyNumberOfCascades) {
     for (std::uint32_t count = 1; count <= most_cascades; ++count) {
         ShadowRig rig({.count = count, .resolution = 256, .far_distance = 30});

@@ -31,7 +31,7 @@ struct Grid {
     }
 };
 
-/// What the two functions of shadow.glsl say at the points of a grid.
+/// What shadow.glsl says at the points of a grid.
 struct Visibility {
     std::uint32_t width = 0;
     std::vector<float> filtered, one_tap;
@@ -89,7 +89,8 @@ class ShadowRig {
             gpu::test::upload(context_, gpu::test::make_pixels(1, 1, [](auto, auto) { return std::array<float, 4>{}; }),
                               VK_FORMAT_R8G8B8A8_UNORM);
         sets_ = must(gpu::DescriptorSets::create(context_, {&layout_.handle, 1}));
-        evaluation_ = must(gpu::Pipeline::create(context_, evaluation(shader_lights)));
+        evaluation_ =
+            must(gpu::Pipeline::create(context_, evaluation(shader_lights, desc.filter == ShadowFilter::Soft)));
     }
 
     /// Cascades and casters of the snapshot, and everything that set 0 needs.
@@ -151,7 +152,7 @@ class ShadowRig {
         return must(gpu::Buffer::create(context_, size, usage, gpu::Memory::Kind::Upload, "shadow test"));
     }
 
-    [[nodiscard]] gpu::PipelineDesc evaluation(std::uint32_t shader_lights) const {
+    [[nodiscard]] gpu::PipelineDesc evaluation(std::uint32_t shader_lights, bool is_soft) const {
         gpu::PipelineDesc desc{.name = "shadow evaluation"};
         desc.vertex = R"(#version 460
             void main() { gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0, 0, 1); })";
@@ -167,8 +168,9 @@ class ShadowRig {
             })";
         desc.sets = {layout_.handle};
         desc.push_constant_size = sizeof(Push);
-        desc.specialization.assign(9, 0);
+        desc.specialization.assign(10, 0);
         desc.specialization[8] = shader_lights;
+        desc.specialization[9] = is_soft ? 1 : 0;
         desc.colors = {{.format = VK_FORMAT_R32G32_SFLOAT}};
         return desc;
     }

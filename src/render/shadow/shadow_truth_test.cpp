@@ -146,7 +146,8 @@ Comparison compare(const std::vector<std::uint8_t>& truth, const Visibility& see
     return out;
 }
 
-constexpr CascadeDesc desc{.resolution = 512, .far_distance = 30};
+// Rays know a sun without width.
+constexpr CascadeDesc desc{.resolution = 512, .filter = ShadowFilter::Plain, .far_distance = 30};
 constexpr std::uint32_t grid_size = 192;
 
 Comparison against_rays(const scene::Snapshot& snapshot, vec3 center) {

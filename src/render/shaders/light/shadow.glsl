@@ -5,6 +5,8 @@
 /// How many shadow maps there are, 0: not known. The others then cost nothing, which branches alone do not achieve on
 /// every driver.
 layout(constant_id = 8) const uint shadow_lights = 0u;
+/// Whether penumbras widen with the distance of what casts them.
+layout(constant_id = 9) const bool shadows_are_soft = false;
 const uint shadow_map_count = shadow_lights == 0u ? 4u : shadow_lights;
 
 const float cascade_blend = 0.1;  // as render/shadow/cascades.hpp has it
@@ -18,18 +20,34 @@ const float light_offset = 0.25;
 // meets another one; beyond the upper share lie the corners of the kernel, which a sloped plane may darken itself.
 const float dark_share = 0.32, lit_share = 0.82;
 
-vec4 gather_shadow(uint light, vec3 place, float depth) {
-    if (shadow_map_count > 1u && light == 1u) return textureGather(shadow_maps[1], place, depth);
-    if (shadow_map_count > 2u && light == 2u) return textureGather(shadow_maps[2], place, depth);
-    if (shadow_map_count > 3u && light == 3u) return textureGather(shadow_maps[3], place, depth);
-    return textureGather(shadow_maps[0], place, depth);
+// Half of the sun's angular diameter of 0.53 degrees, as a tangent: what a penumbra grows to either side by distance; as
+// render/shadow/cascades.hpp has it.
+const float sun_tangent = 0.004625;
+const float most_reach = 8.0;                        // texels that a penumbra reaches to either side
+const float least_reach = 0.75, soft_reach = 1.5;  // the 4x4 texels alone; the disc alone
+// Vogel, "A better way to construct the sunflower head", 1979: even over a disc for any number of taps. The same ones
+// everywhere and always: no noise, which only accumulation over frames would hide.
+const uint disc_taps = 24u;
+const vec2 disc[disc_taps] = vec2[](
+    vec2(0.1443, 0.0000), vec2(-0.1843, 0.1689), vec2(0.0282, -0.3215), vec2(0.2324, 0.3031), vec2(-0.4264, -0.0754),
+    vec2(0.4039, -0.2569), vec2(-0.1351, 0.5026), vec2(-0.2577, -0.4961), vec2(0.5590, 0.2041),
+    vec2(-0.5816, 0.2401), vec2(0.2803, -0.5991), vec2(0.2072, 0.6605), vec2(-0.6244, -0.3619),
+    vec2(0.7325, -0.1610), vec2(-0.4470, 0.6359), vec2(-0.1033, -0.7970), vec2(0.6340, 0.5343),
+    vec2(-0.8532, 0.0353), vec2(0.6223, -0.6193), vec2(-0.0416, 0.9004), vec2(-0.5922, -0.7096),
+    vec2(0.9380, 0.1262), vec2(-0.7948, 0.5530), vec2(0.2172, -0.9654));
+
+vec4 gather_shadow(uint light, vec3 place) {
+    if (shadow_map_count > 1u && light == 1u) return textureGather(shadow_maps[1], place);
+    if (shadow_map_count > 2u && light == 2u) return textureGather(shadow_maps[2], place);
+    if (shadow_map_count > 3u && light == 3u) return textureGather(shadow_maps[3], place);
+    return textureGather(shadow_maps[0], place);
 }
 
-float tap_shadow(uint light, vec4 place) {
-    if (shadow_map_count > 1u && light == 1u) return texture(shadow_maps[1], place);
-    if (shadow_map_count > 2u && light == 2u) return texture(shadow_maps[2], place);
-    if (shadow_map_count > 3u && light == 3u) return texture(shadow_maps[3], place);
-    return texture(shadow_maps[0], place);
+float tap_shadow(uint light, vec3 place) {
+    if (shadow_map_count > 1u && light == 1u) return textureLod(shadow_maps[1], place, 0.0).r;
+    if (shadow_map_count > 2u && light == 2u) return textureLod(shadow_maps[2], place, 0.0).r;
+    if (shadow_map_count > 3u && light == 3u) return textureLod(shadow_maps[3], place, 0.0).r;
+    return textureLod(shadow_maps[0], place, 0.0).r;
 }
 
 /// The first cascade that reaches as far as this distance along the view axis.
@@ -62,34 +80,98 @@ vec4 spline_weights(float f) {
     return vec4(g * g * g, (3.0 * f - 6.0) * f * f + 4.0, (3.0 * g - 6.0) * g * g + 4.0, f * f * f) * (1.0 / 6.0);
 }
 
-/// Percentage-closer filtering (Reeves et al., "Rendering Antialiased Shadows with Depth Maps", 1987) of 4x4 texels by a
-/// cubic B-spline, which is smooth where a box shows the texels' steps. All are compared with one depth: following the
-/// receiver's plane toward the light would lead through a thin ceiling.
-float filter_cascade(uint light, uint cascade, vec3 world_position, vec3 normal) {
+/// A point as its cascade has it.
+struct Receiver {
+    uint light, cascade;
+    vec2 place;   // texels
+    float depth;  // 0 .. 1
+    vec2 slope;   // of depth, a texel, along the surface
+    float texel;  // world
+    float range;  // world, of depth 0 .. 1
+};
+
+Receiver receive(uint light, uint cascade, vec3 world_position, vec3 normal) {
     const mat4 world_to_cascade = shadows.world_to_cascade[4u * light + cascade];
     const float texel = shadows.cascade_texels[light][cascade];
     const float resolution = shadows.shadow_settings.y;
     const vec3 depth_row = vec3(world_to_cascade[0].z, world_to_cascade[1].z, world_to_cascade[2].z);
     const float range = inversesqrt(dot(depth_row, depth_row));
-    const vec3 toward_light = -depth_row * range;
-    const float cosine = dot(normal, toward_light);
-    const float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    const vec3 offset = normal * (normal_offset * sine) + toward_light * light_offset;
-
+    const float half_extent = 0.5 * texel * resolution;
+    const vec3 turned = mat3(world_to_cascade) * normal * vec3(half_extent, half_extent, -range);
+    const float sine = sqrt(max(1.0 - turned.z * turned.z, 0.0));
+    const vec3 offset = normal * (normal_offset * sine) - depth_row * (range * light_offset);
     const vec3 position = (world_to_cascade * vec4(world_position + offset * texel, 1)).xyz;
-    const float depth = min(position.z, 1.0);
-    const vec2 place = (position.xy * 0.5 + 0.5) * resolution;
-    const vec2 corner = floor(place - 0.5);
-    const vec4 across = spline_weights(place.x - 0.5 - corner.x), down = spline_weights(place.y - 0.5 - corner.y);
+    return Receiver(light, cascade, (position.xy * 0.5 + 0.5) * resolution, min(position.z, 1.0),
+                    turned.xy * (texel / (range * max(turned.z, 0.05))), texel, range);
+}
+
+/// Depths of the four texels that meet at `meeting`, whole texels.
+vec4 depths_around(Receiver receiver, vec2 meeting) {
+    return gather_shadow(receiver.light, vec3(meeting * shadows.shadow_settings.z, float(receiver.cascade)));
+}
+
+/// Which of a gather's texels a depth is before, weighed by `u` and `v`.
+float weighed_light(vec4 depths, float depth, vec2 u, vec2 v) {
+    const vec4 lit = vec4(greaterThanEqual(depths, vec4(depth)));
+    return dot(lit.wz, u) * v.x + dot(lit.xy, u) * v.y;
+}
+
+/// Percentage-closer filtering (Reeves et al., "Rendering Antialiased Shadows with Depth Maps", 1987) of 4x4 texels by a
+/// cubic B-spline, which is smooth where a box shows the texels' steps. All are compared with one depth: following the
+/// receiver's plane toward the light would lead through a thin ceiling.
+float filter_texels(Receiver receiver) {
+    const vec2 corner = floor(receiver.place - 0.5);
+    const vec2 f = receiver.place - 0.5 - corner;
+    const vec4 across = spline_weights(f.x), down = spline_weights(f.y);
     float sum = 0.0;
     for (uint i = 0u; i < 4u; ++i) {
         const vec2 side = vec2(i & 1u, i >> 1u);
-        const vec2 meeting = corner + side * 2.0;  // of the four texels of a gather
-        const vec4 lit = gather_shadow(light, vec3(meeting * shadows.shadow_settings.z, float(cascade)), depth);
         const vec2 u = side.x > 0.0 ? across.zw : across.xy, v = side.y > 0.0 ? down.zw : down.xy;
-        sum += dot(lit.wz, u) * v.x + dot(lit.xy, u) * v.y;
+        sum += weighed_light(depths_around(receiver, corner + side * 2.0), receiver.depth, u, v);
     }
     return clamp((sum - dark_share) * (1.0 / (lit_share - dark_share)), 0.0, 1.0);
+}
+
+/// Fernando, "Percentage-Closer Soft Shadows", 2005: the mean distance of what blocks the light says how wide the
+/// penumbra is. Where it is wider than the filter of 4x4 texels, a disc of bilinear taps takes that one's place.
+float soften(Receiver receiver, float visibility) {
+    const float texels_a_depth = receiver.range * sun_tangent / receiver.texel;
+    // Nothing that casts lies before depth 0.
+    const float reach = min(receiver.depth * texels_a_depth, most_reach);
+    vec2 blocked = vec2(0.0);  // how many, and the sum of their distances
+    float nearest = 1.0;
+    // Loops in place of branches, as below.
+    for (uint i = 0u, end = reach > least_reach ? 16u : 0u; i < end; ++i) {
+        const vec2 offset = (vec2(i & 3u, i >> 2u) - 1.5) * (reach * (2.0 / 3.0));
+        const float plane = receiver.depth + min(dot(receiver.slope, offset), 0.0) - dot(abs(receiver.slope), vec2(1));
+        const vec4 depths = depths_around(receiver, floor(receiver.place + offset + 0.5));
+        const vec4 blocks = vec4(lessThan(depths, vec4(plane)));
+        const vec4 distances = receiver.depth - depths;
+        blocked += vec2(dot(blocks, vec4(1)), dot(blocks, distances));
+        const vec4 near = mix(vec4(1), distances, blocks);
+        nearest = min(nearest, min(min(near.x, near.y), min(near.z, near.w)));
+    }
+    const float radius = min(blocked.y / max(blocked.x, 1.0) * texels_a_depth, most_reach);
+    const bool is_dark = blocked.x > 63.5 && visibility <= 0.0;
+    const uint taps = radius > least_reach && !is_dark ? disc_taps : 0u;
+    float sum = 0.0;
+    for (uint i = 0u; i < taps; ++i) {
+        const vec2 offset = disc[i] * radius;
+        // Along the receiver's plane, but not as far as to what blocks.
+        const float rise = clamp(dot(receiver.slope, offset), -0.5 * nearest, 0.0);
+        const vec2 place = receiver.place + offset - 0.5;
+        const vec2 f = fract(place);
+        sum += weighed_light(depths_around(receiver, floor(place) + 1.0), receiver.depth + rise, vec2(1.0 - f.x, f.x),
+                             vec2(1.0 - f.y, f.y));
+    }
+    const float share = taps > 0u ? smoothstep(least_reach, soft_reach, radius) : 0.0;
+    return mix(visibility, sum * (1.0 / float(disc_taps)), share);
+}
+
+float filter_cascade(uint light, uint cascade, vec3 world_position, vec3 normal) {
+    const Receiver receiver = receive(light, cascade, world_position, normal);
+    const float visibility = filter_texels(receiver);
+    return shadows_are_soft ? soften(receiver, visibility) : visibility;
 }
 
 /// Filtered, for surfaces: 0 in shadow .. 1 lit. `light` counts shadow maps and is the same for all invocations of a
@@ -119,6 +201,6 @@ float shadow_visibility_point(uint light, vec3 world_position, float view_distan
     vec3 position = (world_to_cascade * vec4(world_position, 1)).xyz;
     const vec3 depth_row = vec3(world_to_cascade[0].z, world_to_cascade[1].z, world_to_cascade[2].z);
     position.z -= light_offset * shadows.cascade_texels[light][cascade] * sqrt(dot(depth_row, depth_row));
-    const float lit = tap_shadow(light, vec4(position.xy * 0.5 + 0.5, float(cascade), min(position.z, 1.0)));
+    const float lit = tap_shadow(light, vec3(position.xy * 0.5 + 0.5, float(cascade))) >= min(position.z, 1.0) ? 1.0 : 0.0;
     return 1.0 - shadow_presence(view_distance) * (1.0 - lit);
 }
