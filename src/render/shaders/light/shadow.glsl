@@ -25,6 +25,8 @@ const float dark_share = 0.32, lit_share = 0.82;
 const float sun_tangent = 0.004625;
 const float most_reach = 8.0;                        // texels that a penumbra reaches to either side
 const float least_reach = 0.75, soft_reach = 1.5;  // the 4x4 texels alone; the disc alone
+// What hides the steps of texels, to either side, and how it grows a texel of distance.
+const float steps_reach = 2.5, steps_growth = 0.015;
 // Vogel, "A better way to construct the sunflower head", 1979: even over a disc for any number of taps. The same ones
 // everywhere and always: no noise, which only accumulation over frames would hide.
 const uint disc_taps = 24u;
@@ -151,7 +153,12 @@ float soften(Receiver receiver, float visibility) {
         const vec4 near = mix(vec4(1), distances, blocks);
         nearest = min(nearest, min(min(near.x, near.y), min(near.z, near.w)));
     }
-    const float radius = min(blocked.y / max(blocked.x, 1.0) * texels_a_depth, most_reach);
+    const float distance = blocked.y / max(blocked.x, 1.0);
+    const float penumbra = min(distance * texels_a_depth, most_reach);
+    // What blocks from afar shows the map's steps where a penumbra is narrower; as above, a share of what is wider than
+    // the sun's does not light.
+    const float radius = max(penumbra, min(distance * receiver.range / receiver.texel * steps_growth, steps_reach));
+    const float dark = dark_share * (1.0 - penumbra / max(radius, 1e-6));
     const bool is_dark = blocked.x > 63.5 && visibility <= 0.0;
     const uint taps = radius > least_reach && !is_dark ? disc_taps : 0u;
     float sum = 0.0;
@@ -165,7 +172,8 @@ float soften(Receiver receiver, float visibility) {
                              vec2(1.0 - f.y, f.y));
     }
     const float share = taps > 0u ? smoothstep(least_reach, soft_reach, radius) : 0.0;
-    return mix(visibility, sum * (1.0 / float(disc_taps)), share);
+    const float lit = clamp((sum * (1.0 / float(disc_taps)) - dark) / (1.0 - dark), 0.0, 1.0);
+    return mix(visibility, lit, share);
 }
 
 float filter_cascade(uint light, uint cascade, vec3 world_position, vec3 normal) {
