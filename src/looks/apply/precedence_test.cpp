@@ -106,7 +106,8 @@ TEST(Precedence, AKeyChangesItsOwnValueAlone) {
         const Look file = with_file(effect, row, other_value(effect, row, 1));
         for (const EffectInfo* const other : all_effects()) {
             if (other->flat.documented < 0) continue;
-            const LookEntry plain = flat_entry(*other, LookOrder::Documented);
+            const LookEntry plain =
+                flat_entry(*other, effect.flat.is_of_ui ? LookOrder::SceneLinear : LookOrder::Documented);
             for (const ParamInfo& kept : other->parameters.rows) {
                 const std::string usual = format(kept, plain.words);
                 EXPECT_EQ(value_of(file, *other, kept) == usual, &kept != &row) << flat_key(other->name, kept.name);
