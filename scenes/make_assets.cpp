@@ -179,8 +179,10 @@ Picture sky() {
                                  -std::cos(longitude) * std::cos(latitude));
             const float height = std::max(direction.y, 0.0F);
             const vec3 above = glm::mix(vec3(0.85F, 0.8F, 0.72F), vec3(0.12F, 0.26F, 0.6F), std::pow(height, 0.45F));
-            const vec3 below = vec3(0.22F, 0.19F, 0.16F);
-            vec3 color = glm::mix(below, above, glm::smoothstep(-0.02F, 0.02F, direction.y));
+            // The ground loses itself in the haze of the horizon.
+            const vec3 haze(0.85F, 0.8F, 0.72F), ground(0.22F, 0.19F, 0.16F);
+            const vec3 below = glm::mix(ground, haze, std::exp(std::min(direction.y, 0.0F) * 9));
+            vec3 color = direction.y < 0 ? below : above;
             const float toward = glm::dot(direction, sun);
             color += vec3(1, 0.85F, 0.6F) * (0.5F * std::pow(std::max(toward, 0.0F), 24.0F));
             color += vec3(1, 0.9F, 0.75F) * (60 * glm::smoothstep(0.9994F, 0.9999F, toward));

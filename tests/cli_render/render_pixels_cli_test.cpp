@@ -241,7 +241,7 @@ TEST_F(CliRenderPixels, SamplesAreThoseOfTheFlagThenOfTheScene) {
         return content(path("s.png"));
     };
     const std::string usual = picture_of("", nullptr), one = picture_of("", "1"), seven = picture_of("", "7");
-    EXPECT_EQ(usual, picture_of("", "4"));
+    EXPECT_EQ(usual, picture_of("", "2"));
     EXPECT_NE(usual, one);
     EXPECT_EQ(picture_of("samples = 7\n", nullptr), seven);
     EXPECT_EQ(picture_of("samples = 7\n", "1"), one);

@@ -25,7 +25,7 @@ namespace {
 constexpr VkExtent2D default_extent{1920, 1080};
 constexpr double default_frames_per_second = 24;
 constexpr const char* moment_group = "The moment";
-constexpr std::uint32_t usual_samples = 4;
+constexpr std::uint32_t usual_samples = 2;
 
 }  // namespace
 
