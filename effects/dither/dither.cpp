@@ -14,10 +14,12 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto dither_rows =
-    describe(field<&Dither::intensity>(
-                 "Width of the noise, in units of the encoded range; 2/255 hides the steps of 8 bits.", {0, 1})
-                 .as_amount());
+constexpr auto dither_rows = describe(
+    field<&Dither::intensity>("Width of the noise, in units of the encoded range; 2/255 hides the steps of 8 bits.",
+                              {0, 1})
+        .as_amount(),
+    field<&Dither::ends>("Which mean stays near black and white: that of the rounded picture, or that before."),
+    field<&Dither::moves>("The noise is another one in each frame while time runs, for what averages frames."));
 
 static_assert(dither_tile_size == blue_noise_size);
 constexpr std::size_t texel_count = std::size_t{dither_tile_size} * dither_tile_size;
@@ -30,8 +32,9 @@ float triangular(std::uint16_t rank) {
     return static_cast<float>(std::copysign(1.0 - std::sqrt(1.0 - std::abs(t)), t));
 }
 
-void shift_tile(const void*, const PassContext& context, std::span<PassVector> out) {
-    const DitherOffset offset = dither_offset(context.time, context.frame_index);
+void shift_tile(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const Toggle moves = static_cast<const Dither*>(parameters)->moves;
+    const DitherOffset offset = moves ? dither_offset(context.time, context.frame_index) : DitherOffset{};
     out[0] = {std::bit_cast<float>(offset.y << 6u | offset.x), 0, 0, 0};
 }
 

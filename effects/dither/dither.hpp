@@ -9,8 +9,15 @@ namespace darkroom {
 
 struct EffectInfo;
 
+enum class DitherEnds : std::uint32_t {
+    Rounded,    ///< the mean stays what it was once the picture is rounded to steps of half the intensity
+    Unrounded,  ///< the mean stays before rounding, which near black and white it does not survive
+};
+
 struct Dither {
-    float intensity = 0.03f;
+    float intensity = 2.0f / 255.0f;
+    DitherEnds ends = DitherEnds::Rounded;
+    Toggle moves = false;
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const Dither&);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Dither in double precision, and the tile that the GPU reads too: with the rank r of a texel in (0, 1),
-// t = 2r - 1, n = sign(t)(1 - sqrt(1 - |t|)), c' = c + n * min(intensity / 2, c, 1 - c).
+// t = 2r - 1, n = sign(t)(1 - sqrt(1 - |t|)), c' = c + n * min(intensity / 2, c, 1 - c) for the unrounded mean. For the
+// rounded one n is the quantile of t in the sum of two uniform noises, one step of intensity / 2 wide and at most as
+// wide: Lipshitz, Wannamaker and Vanderkooy, "Quantization and Dither: A Theoretical Survey", 1992.
 
 #include <algorithm>
 #include <array>
@@ -32,10 +34,17 @@ struct DitherOffset {
 }
 
 inline ReferenceImage dither_image_reference(const void* parameters, const ReferenceInput& input) {
-    const double intensity = static_cast<const Dither*>(parameters)->intensity;
-    const DitherOffset offset = dither_offset(input.time, input.frame_index);
-    const auto add = [intensity](double v, double noise) {
-        return v + noise * std::max(std::min({intensity / 2.0, v, 1.0 - v}), 0.0);
+    const Dither& dither = *static_cast<const Dither*>(parameters);
+    const double code = dither.intensity / 2.0;
+    const DitherOffset offset = dither.moves ? dither_offset(input.time, input.frame_index) : DitherOffset{};
+    const auto add = [&](double v, double noise) {
+        const double room = std::min(v, 1.0 - v);
+        if (dither.ends == DitherEnds::Unrounded) return v + noise * std::max(std::min(code, room), 0.0);
+        if (room < 0 || code == 0) return v;
+        // Both halves of the trapezoid: a plateau of height 1 up to 1/2 - second, then a slope down to 1/2 + second.
+        const double second = std::min(room / code, 0.5), t = 1 - std::pow(1 - std::abs(noise), 2);
+        const double found = t <= 1 - 2 * second ? t / 2 : 0.5 + second - std::sqrt(2 * second * (1 - t));
+        return v + code * std::copysign(found, noise);
     };
     ReferenceImage out = *input.picture;
     for (std::uint32_t y = 0; y < out.height; ++y) {

@@ -18,8 +18,11 @@ namespace {
 constexpr std::uint32_t side = dither_tile_size;
 constexpr double code = 1.0 / 255.0;
 
-ReferenceImage dithered(const ReferenceImage& picture, float intensity, double time = 0, std::uint64_t frame = 0) {
-    const Dither parameters{.intensity = intensity};
+/// As older looks have it: its mean stays before rounding, and it moves.
+Dither older(float intensity) { return {.intensity = intensity, .ends = DitherEnds::Unrounded, .moves = true}; }
+
+ReferenceImage dithered(const ReferenceImage& picture, const Dither& parameters, double time = 0,
+                        std::uint64_t frame = 0) {
     return effect_info(parameters)
         .reference(&parameters, {.picture = &picture, .source = &picture, .time = time, .frame_index = frame});
 }
@@ -45,7 +48,7 @@ TEST(EffectDither, NoiseIsTriangular) {
 
 TEST(EffectDither, MeanStaysEvenAtTheEnds) {
     for (const double value : {0.0, 0.001, 0.1, 0.5, 0.997, 1.0}) {
-        const ReferenceImage out = dithered(test::uniform(side, side, {value, value, value}), 0.2f);
+        const ReferenceImage out = dithered(test::uniform(side, side, {value, value, value}), older(0.2f));
         Rgba sum{0, 0, 0};
         for (const Rgba& color : out.pixels) {
             sum.r += color.r;
@@ -57,8 +60,59 @@ TEST(EffectDither, MeanStaysEvenAtTheEnds) {
     }
 }
 
+// Of the rounded picture, in codes, from black to white and outside of both.
+TEST(EffectDither, TheMeanOfCodesStaysAtEveryValue) {
+    const auto mean_error = [](double value, const Dither& parameters) {
+        const ReferenceImage out = dithered(test::uniform(side, side, {value, value, value}), parameters);
+        double sum = 0;
+        for (const Rgba& color : out.pixels) sum += std::round(std::clamp(color.g, 0.0, 1.0) / code);
+        return std::abs(sum / (side * side) - value / code);
+    };
+    double older_worst = 0;
+    for (int i = 0; i <= 255 * 16; ++i) {
+        const double value = i * code / 16;
+        EXPECT_LE(mean_error(value, {}), 0.02) << value / code;
+        if (i < 64) older_worst = std::max(older_worst, mean_error(value, older(2.0f / 255.0f)));
+    }
+    EXPECT_GT(older_worst, 0.2) << "which narrowing alone does not do";
+}
+
+// A ramp of 8 codes, 32 pixels each: without noise runs of 32 equal codes.
+TEST(EffectDither, NoRunOfEqualCodesIsLong) {
+    ReferenceImage ramp(256, side);
+    for (std::uint32_t y = 0; y < ramp.height; ++y)
+        for (std::uint32_t x = 0; x < ramp.width; ++x) {
+            const double value = (100 + x / 32.0) * code;
+            ramp.at(x, y) = {value, value, value};
+        }
+    const auto longest = [](const ReferenceImage& picture) {
+        std::uint32_t most = 0;
+        for (std::uint32_t y = 0; y < picture.height; ++y) {
+            std::uint32_t run = 1;
+            for (std::uint32_t x = 1; x < picture.width; ++x) {
+                const bool is_same = std::round(picture.at(x, y).g / code) == std::round(picture.at(x - 1, y).g / code);
+                run = is_same ? run + 1 : 1;
+                most = std::max(most, run);
+            }
+        }
+        return most;
+    };
+    EXPECT_EQ(longest(ramp), 32U);
+    EXPECT_LT(longest(dithered(ramp, {})), 26U);
+}
+
+TEST(EffectDither, StandsStillUnlessItIsAskedToMove) {
+    const ReferenceImage grey = test::uniform(side, side, {0.5, 0.5, 0.5});
+    EXPECT_EQ(test::worst_difference(dithered(grey, {}, 1.0, 1), dithered(grey, {}, 1.0, 2)), 0.0);
+    const auto frame = [&](std::uint64_t index) {
+        return test::develop([](Composer& composer) { composer.add(Dither{}); }, grey,
+                             {.time = 3.0, .frame_index = index});
+    };
+    EXPECT_EQ(test::worst_difference(frame(1), frame(2)), 0.0);
+}
+
 TEST(EffectDither, AmplitudeIsHalfTheIntensity) {
-    const ReferenceImage out = dithered(test::uniform(side, side, {0.5, 0.5, 0.5}), 0.1f);
+    const ReferenceImage out = dithered(test::uniform(side, side, {0.5, 0.5, 0.5}), {.intensity = 0.1f});
     double widest = 0.0;
     for (const Rgba& color : out.pixels) widest = std::max(widest, std::abs(color.g - 0.5));
     EXPECT_LE(widest, 0.05);
@@ -67,7 +121,7 @@ TEST(EffectDither, AmplitudeIsHalfTheIntensity) {
 
 TEST(EffectDither, OutsideTheRangeNothingChanges) {
     const Rgba color{-0.5, 1.5, 60000.0};
-    const ReferenceImage out = dithered(test::uniform(side, side, color), 1.0f);
+    const ReferenceImage out = dithered(test::uniform(side, side, color), {.intensity = 1.0f});
     for (const Rgba& pixel : out.pixels) {
         EXPECT_EQ(pixel.r, color.r);
         EXPECT_EQ(pixel.g, color.g);
@@ -132,13 +186,13 @@ TEST(EffectDither, GradientsShowNoSteps) {
         return worst;
     };
     EXPECT_GT(worst_strip(gradient), 0.3);
-    EXPECT_LT(worst_strip(dithered(gradient, static_cast<float>(2.0 * code))), 0.03);
+    EXPECT_LT(worst_strip(dithered(gradient, {})), 0.03);
 }
 
 TEST(EffectDither, MovesOnlyWhileTimeRuns) {
     const ReferenceImage grey = test::uniform(side, side, {0.5, 0.5, 0.5});
-    EXPECT_EQ(test::worst_difference(dithered(grey, 0.1f, 0.0, 1), dithered(grey, 0.1f, 0.0, 2)), 0.0);
-    EXPECT_GT(test::worst_difference(dithered(grey, 0.1f, 1.0, 1), dithered(grey, 0.1f, 1.0, 2)), 0.01);
+    EXPECT_EQ(test::worst_difference(dithered(grey, older(0.1f), 0.0, 1), dithered(grey, older(0.1f), 0.0, 2)), 0.0);
+    EXPECT_GT(test::worst_difference(dithered(grey, older(0.1f), 1.0, 1), dithered(grey, older(0.1f), 1.0, 2)), 0.01);
     std::set<std::uint32_t> offsets;
     for (std::uint64_t frame = 0; frame < 256; ++frame) {
         const DitherOffset offset = dither_offset(1.0, frame);
@@ -159,15 +213,16 @@ TEST(EffectDither, GpuMatchesReference) {
     for (const float intensity : {0.004f, 0.03f, 1.0f}) {
         SCOPED_TRACE(intensity);
         test::expect_gpu_matches_reference(Dither{.intensity = intensity}, picture);
+        test::expect_gpu_matches_reference(older(intensity), picture);
     }
 }
 
 TEST(EffectDither, GpuMovesAsTheReferenceDoes) {
     const ReferenceImage picture = test::round_to_float(test::random_display(131, 97, 1));
     for (const std::uint64_t frame : {1u, 77u, 4000000000u}) {
-        const ReferenceImage out = test::develop([](Composer& composer) { composer.add(Dither{.intensity = 0.2f}); },
-                                                 picture, {.time = 3.0, .frame_index = frame});
-        EXPECT_LE(test::worst_half_ulps(out, dithered(picture, 0.2f, 3.0, frame)), 2.0) << frame;
+        const ReferenceImage out = test::develop([](Composer& composer) { composer.add(older(0.2f)); }, picture,
+                                                 {.time = 3.0, .frame_index = frame});
+        EXPECT_LE(test::worst_half_ulps(out, dithered(picture, older(0.2f), 3.0, frame)), 2.0) << frame;
     }
 }
 

@@ -30,7 +30,8 @@ constexpr auto ssao_rows = describe(
     field<&Ssao::resolution>("Of the occlusion; half is brought back to full along depth edges."),
     field<&Ssao::merge>("How the picture takes the occlusion."),
     field<&Ssao::fade_start>("Distance at which occlusion begins to fade.", {0, 1e9}, unit::metres),
-    field<&Ssao::fade_end>("Distance at which it is gone; must lie beyond `fade_start`.", {0.001, 1e9}, unit::metres));
+    field<&Ssao::fade_end>("Distance at which it is gone; must lie beyond `fade_start`.", {0.001, 1e9}, unit::metres),
+    field<&Ssao::moves>("The noise is another one in each frame while time runs, for what averages frames."));
 
 const Ssao& ssao_of(const void* parameters) { return *static_cast<const Ssao*>(parameters); }
 
@@ -83,7 +84,7 @@ void occlusion_constants(const void* parameters, const PassContext& context, std
     out[5] = {ssao.radius, 1.0f / ssao.radius, ssao.bias, ssao.intensity};
     out[6] = {ssao.fade_start, 1.0f / std::max(ssao.fade_end - ssao.fade_start, 1e-6f),
               ssao.thickness > 0 ? ssao.thickness : ssao_endless,
-              std::bit_cast<float>(ssao_tile(context.time, context.frame_index))};
+              std::bit_cast<float>(ssao.moves ? ssao_tile(context.time, context.frame_index) : 0U)};
 }
 
 template <SsaoResolution resolution>

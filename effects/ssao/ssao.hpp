@@ -32,6 +32,7 @@ struct Ssao {
     SsaoMerge merge = SsaoMerge::Multiply;
     float fade_start = 200.0f;
     float fade_end = 400.0f;
+    Toggle moves = false;
 };
 
 /// Points of the unit half ball around +z, denser toward its middle: point i of n lies on a random direction at a

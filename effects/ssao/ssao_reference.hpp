@@ -159,7 +159,7 @@ class SsaoReference {
 
     /// The shares of the arcs that are hidden, over what the open surface would see by the same directions.
     [[nodiscard]] double horizons(int x, int y, const Double3& at) const {
-        const auto tile = static_cast<int>(ssao_tile(input_.time, input_.frame_index));
+        const auto tile = static_cast<int>(ssao_.moves ? ssao_tile(input_.time, input_.frame_index) : 0U);
         const auto noise = ssao_noise()[static_cast<std::size_t>((y + tile / 4) % 4 * 4 + (x + tile % 4) % 4)];
         const Double3 up = normal(x, y);
         const Double3 view = normalized(sum(position(x, y, 1), position(x, y, 2), -1));

@@ -18,6 +18,9 @@ inline constexpr std::array documented_values{
     DocumentedValue{"ssao", "method", "hemisphere"},
     DocumentedValue{"fxaa", "enabled", "false"},
     DocumentedValue{"dither", "enabled", "false"},
+    DocumentedValue{"dither", "intensity", "0.03"},
+    DocumentedValue{"dither", "ends", "unrounded"},
+    DocumentedValue{"dither", "moves", "true"},
 };
 
 }  // namespace darkroom
