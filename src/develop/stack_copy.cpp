@@ -2,6 +2,7 @@
 #include "develop/stack_copy.hpp"
 
 #include <algorithm>
+#include <darkroom/effect.hpp>
 #include <tuple>
 
 namespace darkroom {

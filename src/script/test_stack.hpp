@@ -6,6 +6,7 @@
 #include <darkroom/composer.hpp>
 #include <darkroom/console.hpp>
 #include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
 #include <string>
 #include <vector>
 
