@@ -73,7 +73,7 @@ const EffectInfo& effect_info(const ArenaGrade&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
         .makes = [](Domain, const void*) { return Domain::DisplayLinear; },
-        .flat = {.documented = 67, .scene_linear = 68},
+        .flat = {.documented = 71, .scene_linear = 72},
         .build = build,
         .reference = arena_grade_reference,
     };

@@ -23,7 +23,6 @@ const EffectInfo& effect_info(const Blend&) {
         .files = embedded_files("blend"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .flat = {.documented = 88, .scene_linear = 79},
         .has_second = true,
         .has_second_in_place = true,
         .reference = blend_image_reference,

@@ -47,7 +47,7 @@ const EffectInfo& effect_info(const BoxBlur&) {
         .files = embedded_files("box_blur"),
         .touch = Touch::Neighbourhood,
         .accepts = Domains::all(),
-        .flat = {.documented = 76, .scene_linear = 85},
+        .flat = {.documented = 77, .scene_linear = 85},
         .build = build,
         .reference = box_blur_reference,
         .is_identity = [](const void* parameters) { return blur_of(parameters).radius == 0; },

@@ -18,9 +18,12 @@ vec4 dither(vec4 color, Pixel pixel, Dither parameters) {
     vec3 noise = load(dither_tile, (pixel.texel + ivec2(offset, offset >> 6)) & (dither_tile_size - 1)).rgb;
     // Near black and white the noise narrows; outside there is none.
     vec3 room = min(color.rgb, 1.0 - color.rgb);
-    float code = 0.5 * parameters.intensity;
+    vec3 widest = vec3(0.5 * parameters.intensity);
     if (parameters.ends == Dither_ends_unrounded)
-        return vec4(color.rgb + noise * max(min(vec3(code), room), vec3(0.0)), color.a);
-    vec3 added = code * dither_trapezoid(noise, clamp(room / max(code, 1e-6), 0.0, 0.5));
-    return vec4(color.rgb + mix(added, vec3(0.0), lessThan(room, vec3(0.0))), color.a);
+        return vec4(color.rgb + noise * max(min(widest, room), vec3(0.0)), color.a);
+    // More than a code to either side narrows to one first.
+    vec3 code = min(widest, max(room, vec3(1.0 / 255.0)));
+    vec3 added = code * dither_trapezoid(noise, clamp(room / max(code, vec3(1e-6)), 0.0, 0.5));
+    // What is rounded to the ends anyway is brought to them.
+    return vec4(mix(clamp(color.rgb + added, 0.0, 1.0), color.rgb, lessThan(room, vec3(0.0))), color.a);
 }

@@ -35,16 +35,17 @@ struct DitherOffset {
 
 inline ReferenceImage dither_image_reference(const void* parameters, const ReferenceInput& input) {
     const Dither& dither = *static_cast<const Dither*>(parameters);
-    const double code = dither.intensity / 2.0;
+    const double widest = dither.intensity / 2.0;
     const DitherOffset offset = dither.moves ? dither_offset(input.time, input.frame_index) : DitherOffset{};
     const auto add = [&](double v, double noise) {
         const double room = std::min(v, 1.0 - v);
-        if (dither.ends == DitherEnds::Unrounded) return v + noise * std::max(std::min(code, room), 0.0);
-        if (room < 0 || code == 0) return v;
+        if (dither.ends == DitherEnds::Unrounded) return v + noise * std::max(std::min(widest, room), 0.0);
+        if (room < 0 || widest == 0) return v;
+        const double code = std::min(widest, std::max(room, 1 / 255.0));
         // Both halves of the trapezoid: a plateau of height 1 up to 1/2 - second, then a slope down to 1/2 + second.
         const double second = std::min(room / code, 0.5), t = 1 - std::pow(1 - std::abs(noise), 2);
         const double found = t <= 1 - 2 * second ? t / 2 : 0.5 + second - std::sqrt(2 * second * (1 - t));
-        return v + code * std::copysign(found, noise);
+        return std::clamp(v + code * std::copysign(found, noise), 0.0, 1.0);
     };
     ReferenceImage out = *input.picture;
     for (std::uint32_t y = 0; y < out.height; ++y) {

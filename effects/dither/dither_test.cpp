@@ -72,6 +72,10 @@ TEST(EffectDither, TheMeanOfCodesStaysAtEveryValue) {
     for (int i = 0; i <= 255 * 16; ++i) {
         const double value = i * code / 16;
         EXPECT_LE(mean_error(value, {}), 0.02) << value / code;
+        if (i < 64 || i > 255 * 16 - 64) {
+            for (const float wide : {0.015f, 0.03f})
+                EXPECT_LE(mean_error(value, {.intensity = wide}), 0.03) << value / code;
+        }
         if (i < 64) older_worst = std::max(older_worst, mean_error(value, older(2.0f / 255.0f)));
     }
     EXPECT_GT(older_worst, 0.2) << "which narrowing alone does not do";

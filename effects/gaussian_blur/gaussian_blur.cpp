@@ -178,7 +178,7 @@ const EffectInfo& effect_info(const GaussianBlur&) {
         .files = embedded_files("gaussian_blur"),
         .touch = Touch::Neighbourhood,
         .accepts = Domains::all(),
-        .flat = {.documented = 78, .scene_linear = 87},
+        .flat = {.documented = 79, .scene_linear = 87},
         .build = build,
         .reference = gaussian_blur_reference,
         .is_identity = is_identity,

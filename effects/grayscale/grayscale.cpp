@@ -22,7 +22,7 @@ const EffectInfo& effect_info(const Grayscale&) {
         .files = embedded_files("grayscale"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .flat = {.documented = 74, .scene_linear = 83},
+        .flat = {.documented = 75, .scene_linear = 83},
         .reference = pointwise_reference<Grayscale, grayscale_reference>,
         .is_identity = [](const void* parameters) { return static_cast<const Grayscale*>(parameters)->amount == 0.0f; },
     };

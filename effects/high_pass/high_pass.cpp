@@ -23,7 +23,7 @@ const EffectInfo& effect_info(const HighPass&) {
         .files = embedded_files("high_pass"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .flat = {.documented = 71, .scene_linear = 80},
+        .flat = {.documented = 72, .scene_linear = 80},
         .reference = pointwise_reference<HighPass, high_pass_reference>,
     };
     return info;

@@ -24,7 +24,7 @@ const EffectInfo& effect_info(const HsvAdjust&) {
         .files = embedded_files("hsv_adjust"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .flat = {.documented = 72, .scene_linear = 81},
+        .flat = {.documented = 73, .scene_linear = 81},
         .reference = pointwise_reference<HsvAdjust, hsv_adjust_reference>,
         .is_identity =
             [](const void* parameters) {

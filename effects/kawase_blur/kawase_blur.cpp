@@ -91,7 +91,7 @@ const EffectInfo& effect_info(const KawaseBlur&) {
         .files = embedded_files("kawase_blur"),
         .touch = Touch::Neighbourhood,
         .accepts = Domains::all(),
-        .flat = {.documented = 77, .scene_linear = 86},
+        .flat = {.documented = 78, .scene_linear = 86},
         .build = build,
         .reference = kawase_blur_reference,
         .is_identity =

@@ -22,7 +22,7 @@ const EffectInfo& effect_info(const Negative&) {
         .files = embedded_files("negative"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .flat = {.documented = 73, .scene_linear = 82},
+        .flat = {.documented = 74, .scene_linear = 82},
         .reference = pointwise_reference<Negative, negative_reference>,
         .is_identity = [](const void* parameters) { return static_cast<const Negative*>(parameters)->amount == 0.0f; },
     };

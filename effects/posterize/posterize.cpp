@@ -23,7 +23,7 @@ const EffectInfo& effect_info(const Posterize&) {
         .files = embedded_files("posterize"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .flat = {.documented = 75, .scene_linear = 84},
+        .flat = {.documented = 76, .scene_linear = 84},
         .reference = pointwise_reference<Posterize, posterize_reference>,
     };
     return info;

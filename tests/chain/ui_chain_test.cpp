@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 #include <darkroom/ui_constants.hpp>
 
-#include "shared/sample_reference.hpp"
 #include "compose/test_stacks/host.hpp"
 #include "develop/reference_chain.hpp"
+#include "shared/sample_reference.hpp"
 
 namespace darkroom {
 namespace {

@@ -156,7 +156,7 @@ TEST_F(CliSequence, TimingsSayWhatEachStageTook) {
 TEST_F(CliSequence, FramesASecondMakeWhatMovesMove) {
     for (int number = 2; number <= count; ++number)
         fs::copy_file(path(in(1)), path(in(number)), fs::copy_options::overwrite_existing);
-    ASSERT_EQ(develop("j", {"--fps", "24"}).code, 0);
+    ASSERT_EQ(develop("j", {"--fps", "24", "--dither-moves", "on"}).code, 0);
     EXPECT_NE(content(path(out("j", 1))), content(path(out("j", 2)))) << "the dither moves with time";
     ASSERT_EQ(develop("k", {"--time", "0.5"}).code, 0);
     ASSERT_EQ(develop("l", {"--fps", "2"}).code, 0);

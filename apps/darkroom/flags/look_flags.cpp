@@ -22,10 +22,9 @@ using darkroom::LookOverride;
 using darkroom::Result;
 using darkroom::user_error;
 
-namespace {
-
-// Scenes hold a look beside other tables; what has another name is a look alone, and unknown tables are slips.
 bool is_scene_name(const std::filesystem::path& path) { return path.filename().string().ends_with(".scene.toml"); }
+
+namespace {
 
 // What a flag takes, as help and completions show it.
 std::string shown_value(const darkroom::ParamInfo& row) {

@@ -14,6 +14,9 @@
 
 namespace app {
 
+/// Scenes hold a look beside other tables; what has another name is a look alone, and unknown tables are slips.
+[[nodiscard]] bool is_scene_name(const std::filesystem::path& path);
+
 /// Makes the files of a look's interface, which are relative to `folder`, such that they can be opened.
 void resolve_ui(darkroom::Look& look, const std::filesystem::path& folder);
 

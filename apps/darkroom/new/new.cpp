@@ -51,7 +51,7 @@ constexpr std::string_view look_text =
 format = 1
 
 [post_process]
-# Light of the scene behind its fog, tone mapping behind both; "documented" is the order of older looks.
+# The order of light; "documented" is that of older looks, and of tables that name none.
 order = "scene_linear"
 
 # A multiplier: 2 is one stop brighter.
@@ -64,9 +64,6 @@ vignette_intensity = 0.25
 
 # How light becomes what a display can show: `darkroom effects tonemap` lists the curves.
 tonemap_curve = "agx"
-
-# Hides the steps of 8 bits.
-dither_enabled = true
 )";
 
 constexpr std::string_view scene_text =

@@ -11,6 +11,7 @@
 #include "apps/darkroom/run/frames.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "develop/developer.hpp"
+#include "looks/look_parts.hpp"
 #include "plan_statistics.hpp"
 
 namespace app {
@@ -24,7 +25,7 @@ struct Options {
     DeviceFlags device;
     std::string size, frame, bits = "8", chip;
     std::vector<std::string> loops;
-    bool is_json = false, wants_statistics = false;
+    bool is_json = false, wants_statistics = false, wants_stack = false;
 };
 
 Result<std::string> statistics_of(const Options& options, const darkroom::Device& device,
@@ -45,9 +46,24 @@ Result<std::string> statistics_of(const Options& options, const darkroom::Device
     return options.is_json ? json_of(report) : text_of(report);
 }
 
+/// As the renderer of scenes hands its frames over (render/targets.hpp).
+void add_layers_of_scenes(darkroom::CompileDesc& compile) {
+    const VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    compile.depth = {VK_FORMAT_R32_SFLOAT, usage};
+    compile.is_depth_planar = true;
+    compile.normals = {VK_FORMAT_R16G16B16A16_SFLOAT, usage};
+    compile.velocity = {VK_FORMAT_R16G16_SFLOAT, usage};
+    compile.is_velocity_plain = true;
+    compile.has_shadows = true;
+}
+
 Result<std::string> text_of(const Options& options) {
-    const Result<darkroom::Look> look = options.look.look();
+    Result<darkroom::Look> look = options.look.look();
     if (!look) return failure(look.error());
+    if (options.wants_stack) {
+        if (look->is_flat) darkroom::make_stack(*look);
+        return darkroom::write_look(*look);
+    }
     const Result<darkroom::SampleKind> samples = parse_bits(options.bits);
     if (!samples) return failure(samples.error());
     const Result<darkroom::KernelStage> stage = options.device.stage();
@@ -78,6 +94,7 @@ Result<std::string> text_of(const Options& options) {
     if (look->ui) compile.ui = {VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT};
     compile.has_shadows =
         std::ranges::any_of(frame.lights, [](const darkroom::FrameLight& light) { return !light.cascades.empty(); });
+    if (options.frame.empty() && is_scene_name(options.look.file)) add_layers_of_scenes(compile);
     const Result<darkroom::Plan> plan = composer.plan(compile);
     if (!plan) return failure(plan.error());
     if (options.wants_statistics) return statistics_of(options, *device, composer, *plan, compile);
@@ -97,12 +114,16 @@ Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> name
     const CommandFlags command = program.add_command(
         "plan", "Shows what the planner makes of a look: kernels, what fused and why not, bytes, memory");
     command.examples(
-        "darkroom plan my.toml\n"
         "darkroom plan my.toml --input frame.exr --size 3840x2160\n"
+        "darkroom plan my.toml --as-stack\n"
         "darkroom plan --bloom-intensity 0.2 --json");
     const auto options = std::make_shared<Options>();
-    command.add_option("LOOK", options->look.file, "A look file (TOML). Default: the flat table at its defaults");
+    command.add_option(
+        "LOOK", options->look.file,
+        "A look file or a scene (TOML), whose renderer gives all layers. Default: the flat table at its defaults");
     command.add_flag("--json", options->is_json, "For programs");
+    command.add_flag("--as-stack", options->wants_stack,
+                     "Instead of a plan the look itself: a flat table as the [[stack]] that it stands for");
     command.add_option("--size", options->size, "Size of the picture, default 1920x1080 or that of --input")
         .type_name("WxH");
     command.add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")

@@ -15,13 +15,15 @@ namespace darkroom {
 
 namespace {
 
-// Of the flat table's effects that are off, the pointwise ones without images cost nothing. The others would own memory
-// or part a kernel in every frame, for what nobody asked for.
+// Of the flat table's effects that are off, the pointwise ones without images that come and go by an amount cost nearly
+// nothing. The others would own memory, part a kernel or lengthen it in every frame, for what nobody asked for.
 bool is_in_the_way(const Look& look, const LookEntry& entry, const std::string& name, const ApplyOptions& options) {
     const EffectInfo& effect = *entry.effect;
     if (is_moved(look, name) || std::ranges::count(options.keeps, name) > 0) return false;
     if (entry.is_of_ui) return entry.state.enabled.on == 0 && !options.keeps_what_is_off;
-    if (!look.is_flat || (effect.touch == Touch::Pointwise && !effect.build)) return false;
+    const bool has_amount = std::ranges::any_of(effect.parameters.rows, &ParamInfo::is_amount);
+    const bool starts_on = flat_entry(effect, look.order).state.enabled.on != 0;
+    if (!look.is_flat || (effect.touch == Touch::Pointwise && !effect.build && (has_amount || starts_on))) return false;
     const bool is_still =
         effect.touch == Touch::Warp && effect.is_identity != nullptr && effect.is_identity(entry.words.data());
     return is_still || (entry.state.enabled.on == 0 && !options.keeps_what_is_off);

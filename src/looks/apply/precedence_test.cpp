@@ -61,7 +61,9 @@ std::string flag_text(std::string toml) {
 }
 
 /// The table that an effect's keys stand in.
-std::string table_of(const EffectInfo& effect) { return effect.flat.is_of_ui ? "[ui]\n" : "[post_process]\n"; }
+std::string table_of(const EffectInfo& effect) {
+    return effect.flat.is_of_ui ? "[ui]\n" : "[post_process]\norder = \"scene_linear\"\n";
+}
 
 Look with_file(const EffectInfo& effect, const ParamInfo& row, const std::string& value) {
     const std::string text = table_of(effect) + flat_key(effect.name, row.name) + " = " + value + "\n";
@@ -106,8 +108,7 @@ TEST(Precedence, AKeyChangesItsOwnValueAlone) {
         const Look file = with_file(effect, row, other_value(effect, row, 1));
         for (const EffectInfo* const other : all_effects()) {
             if (other->flat.documented < 0) continue;
-            const LookEntry plain =
-                flat_entry(*other, effect.flat.is_of_ui ? LookOrder::SceneLinear : LookOrder::Documented);
+            const LookEntry plain = flat_entry(*other, LookOrder::SceneLinear);
             for (const ParamInfo& kept : other->parameters.rows) {
                 const std::string usual = format(kept, plain.words);
                 EXPECT_EQ(value_of(file, *other, kept) == usual, &kept != &row) << flat_key(other->name, kept.name);
@@ -144,7 +145,7 @@ TEST(Precedence, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
         ASSERT_EQ(warnings.size(), 1U);
         EXPECT_NE(warnings[0].find("unknown key '" + slip + "'"), std::string::npos) << warnings[0];
         EXPECT_NE(warnings[0].find("did you mean '" + key + "'"), std::string::npos) << warnings[0];
-        EXPECT_EQ(value_of(*look, effect, row), format(row, flat_entry(effect, LookOrder::Documented).words));
+        EXPECT_EQ(value_of(*look, effect, row), format(row, flat_entry(effect, LookOrder::SceneLinear).words));
     });
 }
 
@@ -163,7 +164,7 @@ TEST(Precedence, AmountsSwitchAndNothingElse) {
         const bool does_switch = is_on(with_flag(off, key, value), effect);
         if (does_switch) switches.insert(key);
         EXPECT_EQ(is_on(with_file(effect, row, value), effect),
-                  named.contains(key) || flat_entry(effect, LookOrder::Documented).state.enabled.on != 0 ||
+                  named.contains(key) || flat_entry(effect, LookOrder::SceneLinear).state.enabled.on != 0 ||
                       effect.flat.is_of_ui);
         Look typed = default_look();
         ASSERT_TRUE(override_look(

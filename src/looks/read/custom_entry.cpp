@@ -30,7 +30,7 @@ void make_stack(Look& look) {
         const bool changes_domain = is_domain_change(*entry->effect);
         if (look.is_enabled ? entry->state.enabled.on == 0 && !changes_domain : !changes_domain) continue;
         entries.push_back(look.is_enabled ? *entry : entry_of(*entry->effect));
-        if (!entry->is_of_ui) entries.back().source = scene_name;
+        if (!entry->is_of_ui && look.order == LookOrder::Documented) entries.back().source = scene_name;
         entries.back().is_of_ui = entry->is_of_ui;
     }
     look.entries = std::move(entries);
