@@ -188,10 +188,14 @@ TEST_F(CustomLook, APlaceIsWhereTheEffectIsMeantFor) {
 }
 
 TEST_F(CustomLook, TheFlatTableStandsForItsStack) {
-    Look flat = default_look(), stack = flat;
+    Look flat = default_look(), stack = default_look(LookOrder::Documented);
     ASSERT_TRUE(place_entry(stack, entry_of_text("// @effect last: Last.\nlast(\n")));
     stack.entries.pop_back();
     for (const LookEntry& kept : stack.entries) EXPECT_EQ(kept.source, "scene");
+    stack = flat;
+    ASSERT_TRUE(place_entry(stack, entry_of_text("// @effect last: Last.\nlast(\n")));
+    stack.entries.pop_back();
+    for (const LookEntry& kept : stack.entries) EXPECT_EQ(kept.source, "") << "bloom reads the picture at its place";
     std::vector<std::string_view> expected, actual;
     for (const LookEntry* const kept : ordered(flat))
         if (kept->state.enabled.on != 0) expected.push_back(kept->effect->name);

@@ -259,13 +259,14 @@ TEST_F(ChainEverything, IsItsReferencesInThatOrder) {
         const double error = mean_codes(made, expected);
         EXPECT_LE(error, gpu::test::filter_step() == 0 ? 0.04 : 0.08);
         EXPECT_LE(255 * test::worst_difference(made, expected), 4);
-        // Only this order gives this picture, which filtering may hide in part. Volumetric light and the bloom of the
-        // scene are both added.
+        // Only this order gives this picture, which filtering may hide in part. Volumetric light and what follows it
+        // are both added, and where a lens bends light does not matter to a multiplier.
         const double clearly = gpu::test::filter_step() == 0 ? 2 : 1;
         for (std::size_t i = 0; i + 1 < composer.size(); ++i) {
-            if (composer.desc(composer.entry(i))->name == "volumetric") continue;
+            const std::string& name = composer.desc(composer.entry(i))->name;
+            if (name == "volumetric" || name == "lens_distortion") continue;
             EXPECT_GT(mean_codes(made, references_in_turn(composer, floor, is_documented, i)), clearly * error)
-                << composer.desc(composer.entry(i))->name << " and what follows it";
+                << name << " and what follows it";
         }
     }
 }
@@ -323,8 +324,11 @@ TEST_F(ChainLooks, EveryShippedLookDevelopsAsItsReference) {
     ASSERT_FALSE(shipped_looks().empty());
     for (const std::filesystem::path& path : shipped_looks()) {
         SCOPED_TRACE(path.filename());
-        const auto look = read_look(path, {.is_strict = true});
+        auto look = read_look(path, {.is_strict = true});
         ASSERT_TRUE(look) << look.error().text;
+        // It follows an edge or does not, by less than kernels round; effects/fxaa has tests of its own.
+        for (LookEntry& entry : look->entries)
+            if (entry.effect->name == "fxaa") entry.state.enabled = false;
         Composer composer(gpu::test::device());
         test::must(apply(*look, composer));
         expect_is_the_reference(composer, VK_FORMAT_R32G32B32A32_SFLOAT, 1);

@@ -61,7 +61,8 @@ TEST_F(CliHabits, AFrameIsSavedUnderBothNames) {
 TEST_F(CliHabits, EffectsAreSwitchedByTheirNames) {
     for (const char* const name : {"dither", "bloom", "exposure"})
         if (find_effect(name) == nullptr) GTEST_SKIP() << "the effect " << name << " is not in this build";
-    const std::string plain = developed({}), dithered = developed({"--dither-enabled", "on"});
+    const std::string plain = developed({"--dither-enabled", "off"}), dithered = developed({"--dither-enabled", "on"});
+    EXPECT_EQ(developed({}), dithered) << "on by itself";
     EXPECT_NE(plain, dithered);
     EXPECT_EQ(developed({"--dither"}), dithered);
     EXPECT_EQ(developed({"--dither", "--no-dither"}), plain);
@@ -69,7 +70,7 @@ TEST_F(CliHabits, EffectsAreSwitchedByTheirNames) {
     EXPECT_EQ(developed({"--no-dither", "--dither-enabled", "on"}), dithered) << "what was typed last counts";
     EXPECT_EQ(developed({"--dither-enabled", "on", "--no-dither"}), plain);
     EXPECT_EQ(developed({"--no-bloom"}), developed({"--bloom-enabled", "off"}));
-    EXPECT_NE(developed({"--no-bloom"}), plain);
+    EXPECT_NE(developed({"--no-bloom"}), dithered);
     EXPECT_EQ(developed({"--no-exposure", "--exposure", "2"}), plain) << "switched off, whatever its value";
     expect_refused({"develop", path("frame.exr"), "-o", path("x.png"), "--exposure"}, 1, "one value is needed");
 }

@@ -57,7 +57,8 @@ TEST_F(CliLut, TheFlagLooksColoursUp) {
     ASSERT_EQ(look.pixels.size(), plain.pixels.size());
     for (std::size_t i = 0; i < plain.pixels.size(); ++i)
         ASSERT_NEAR(look.pixels[i], i % 4 == 3 ? 1 : plain.pixels[i] / 2, 1.01 / 255);
-    const std::vector<std::string> common{"--bloom-enabled", "off", "--ssao-enabled", "off"};
+    const std::vector<std::string> common{"--bloom-enabled", "off", "--ssao-enabled",   "off",
+                                          "--fxaa-enabled",  "off", "--dither-enabled", "off"};
     const auto develop = [&](std::vector<std::string> arguments, const std::string& out) {
         arguments.insert(arguments.begin(), {"develop", frame, "-o", path(out)});
         arguments.insert(arguments.end(), common.begin(), common.end());

@@ -23,10 +23,11 @@ class CliViewer : public ViewerFixture {};
 TEST_F(CliViewer, APictureIsThatOfRender) {
     for (const auto& [scene, size] : {std::pair("dungeon", "320x180"), std::pair("showcase", "333x217")}) {
         const std::string file = scenes + scene + ".scene.toml";
-        const Outcome rendered = run(
-            {"render", file, "--size", size, "--fps", "60", "--samples", "1", "--msaa", "4", "-o", path("render.png")});
+        const Outcome rendered = run({"render", file, "--size", size, "--fps", "60", "--samples", "1", "--msaa", "4",
+                                      "--fxaa-enabled", "off", "-o", path("render.png")});
         ASSERT_EQ(rendered.code, 0) << rendered.err;
-        const Outcome shown = run({"play", file, "--size", size, "--screenshot", path("shown.png")});
+        const Outcome shown =
+            run({"play", file, "--size", size, "--fxaa-enabled", "off", "--screenshot", path("shown.png")});
         ASSERT_EQ(shown.code, 0) << shown.err;
         EXPECT_EQ(shown.err, "") << "the validation layer is silent";
         EXPECT_LE(difference(picture("render.png"), picture("shown.png")), 1.001 / 255) << scene;
@@ -39,9 +40,11 @@ TEST_F(CliViewer, AStoredFrameIsDevelopedAsByDevelop) {
                   .code,
               0);
     const std::string look = scenes + "dungeon.scene.toml";
-    ASSERT_EQ(run({"develop", path("frame.exr"), "--look", look, "-o", path("developed.png")}).code, 0);
-    const Outcome shown = run({"edit", path("frame.exr"), "--look", look, "--screenshot", path("shown.png"),
-                               "--window-screenshot", path("window.png")});
+    ASSERT_EQ(
+        run({"develop", path("frame.exr"), "--look", look, "--fxaa-enabled", "off", "-o", path("developed.png")}).code,
+        0);
+    const Outcome shown = run({"edit", path("frame.exr"), "--look", look, "--fxaa-enabled", "off", "--screenshot",
+                               path("shown.png"), "--window-screenshot", path("window.png")});
     ASSERT_EQ(shown.code, 0) << shown.err;
     EXPECT_EQ(shown.err, "");
     EXPECT_LE(difference(picture("developed.png"), picture("shown.png")), 1.001 / 255);
@@ -96,12 +99,13 @@ TEST_P(CliViewerKeys, DoWhatTheySay) {
 
 TEST_F(CliViewer, ACapturedFrameDevelopsToThePicture) {
     const std::string scene = scenes + "showcase.scene.toml";
-    start({"play", scene, "--size", "320x180"});
+    start({"play", scene, "--size", "320x180", "--fxaa-enabled", "off"});
     press("p", "P pause: on");
     const Picture shown = shot();
     press("ctrl+c", "stored frame-0001.exr");
     leave();
-    const Outcome developed = run({"develop", path("frame-0001.exr"), "--look", scene, "-o", path("developed.png")});
+    const Outcome developed =
+        run({"develop", path("frame-0001.exr"), "--look", scene, "--fxaa-enabled", "off", "-o", path("developed.png")});
     ASSERT_EQ(developed.code, 0) << developed.err;
     EXPECT_LE(difference(picture("developed.png"), shown), 1.001 / 255);
 }
@@ -188,7 +192,7 @@ TEST_F(CliViewer, ObeysStandardInput) {
 }
 
 TEST_F(CliViewer, SurvivesAStormOfSizes) {
-    start({"play", scenes + "showcase.scene.toml", "--size", "320x180", "--paused"});
+    start({"play", scenes + "showcase.scene.toml", "--size", "320x180", "--fxaa-enabled", "off", "--paused"});
     constexpr int sizes = 200;
     std::mt19937 random(7);
     std::string command = "xdotool";
@@ -198,7 +202,7 @@ TEST_F(CliViewer, SurvivesAStormOfSizes) {
     ASSERT_EQ(shell(fmt::format("xdotool windowsize --sync {} 301 203", window())), 0);
     EXPECT_TRUE(wait_until([&] { return shot().width == 301; }, 60));
     const Outcome rendered = run({"render", scenes + "showcase.scene.toml", "--size", "301x203", "--fps", "60",
-                                  "--samples", "1", "--msaa", "4", "-o", path("render.png")});
+                                  "--samples", "1", "--msaa", "4", "--fxaa-enabled", "off", "-o", path("render.png")});
     ASSERT_EQ(rendered.code, 0);
     const Picture expected = picture("render.png");
     // The plan for this very size comes when the size has settled.
