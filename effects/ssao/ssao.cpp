@@ -87,6 +87,19 @@ void occlusion_constants(const void* parameters, const PassContext& context, std
               std::bit_cast<float>(ssao.moves ? ssao_tile(context.time, context.frame_index) : 0U)};
 }
 
+void texel_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const auto [ray, flat] = ray_constants(*context.camera, context.frame_extent,
+                                           ssao_of(parameters).resolution == SsaoResolution::Half ? 2.0f : 1.0f);
+    out[0] = {ray[0], flat[0], 0, 0};
+}
+
+void upsample_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    depth_vectors(parameters, context, out);
+    const auto [ray, flat] = ray_constants(*context.camera, context.frame_extent, 1);
+    out[1][1] = ray[0];
+    out[1][2] = flat[0];
+}
+
 template <SsaoResolution resolution>
 bool is_size_used(const void* parameters, const PassContext&, std::uint32_t) {
     return ssao_of(parameters).resolution == resolution;
@@ -117,16 +130,25 @@ PassImage add_chain(PassBuilder& builder, PassImage turns) {
     const PassImage blurred = builder.add({.name = "blur" + suffix,
                                            .shader = "ssao_blur.glsl",
                                            .inputs = {{.name = "ssao_raw", .image = raw}},
-                                           .output = create("blurred", VK_FORMAT_R32_SFLOAT),
+                                           .output = create("tile", VK_FORMAT_R32G32_SFLOAT),
+                                           .custom_vectors = 1,
+                                           .constants = texel_constants,
                                            .condition = condition});
-    if (!is_half) return blurred;
+    const PassImage widened = builder.add({.name = "widen" + suffix,
+                                           .shader = "ssao_widen.glsl",
+                                           .inputs = {{.name = "ssao_tile", .image = blurred, .is_loaded = true}},
+                                           .output = create("blurred", VK_FORMAT_R32G32_SFLOAT),
+                                           .custom_vectors = 1,
+                                           .constants = texel_constants,
+                                           .condition = condition});
+    if (!is_half) return widened;
     return builder.add({.name = "upsample",
                         .shader = "ssao_upsample.glsl",
-                        .inputs = {{.name = "ssao_blurred", .image = blurred},
+                        .inputs = {{.name = "ssao_blurred", .image = widened},
                                    {.name = "ssao_depth", .image = builder.frame_image(FrameImage::Depth)}},
                         .output = create("upsampled", VK_FORMAT_R16G16B16A16_SFLOAT),
                         .custom_vectors = 2,
-                        .constants = depth_vectors,
+                        .constants = upsample_constants,
                         .condition = condition});
 }
 

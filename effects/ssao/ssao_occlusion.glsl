@@ -28,6 +28,7 @@ float ssao_load(vec2 place) {
 
 #include "ssao_hemisphere.glsl"
 #include "ssao_horizon.glsl"
+#include "ssao_packed.glsl"
 
 SsaoPoint ssao_point(Pixel pixel) {
     SsaoPoint point;
@@ -41,13 +42,11 @@ SsaoPoint ssao_point(Pixel pixel) {
     return point;
 }
 
-// Planar distance with its last ten bits replaced by the visibility: the blur then reads one number a pixel.
-vec4 ssao_packed(SsaoPoint point, float visibility) {
+vec4 ssao_result(SsaoPoint point, float visibility) {
     float seen = clamp(1.0 - (1.0 - visibility) * custom[5].w, 0.0, 1.0);
     float fade = clamp((point.planar - custom[6].x) * custom[6].y, 0.0, 1.0);
     seen = mix(seen, 1.0, fade * fade * (3.0 - 2.0 * fade));
-    int bits = (floatBitsToInt(point.planar) & ~1023) | int(seen * 1023.0 + 0.5);
-    return vec4(intBitsToFloat(point.is_surface ? bits : floatBitsToInt(1e10) | 1023), 0.0, 0.0, 0.0);
+    return vec4(point.is_surface ? ssao_with(1.0 / point.planar, seen * 1023.0) : ssao_with(1e-10, 1023.0), 0.0, 0.0, 0.0);
 }
 
 vec4 shade(Pixel pixel) {
@@ -59,5 +58,5 @@ vec4 shade(Pixel pixel) {
         visibility = ssao_hemisphere(point, samples);
     else
         visibility = ssao_horizons(point, samples);
-    return ssao_packed(point, visibility);
+    return ssao_result(point, visibility);
 }

@@ -47,16 +47,23 @@ class SsaoReference {
     void compute() {
         const auto count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
         std::vector<double> raw(count);
-        distance_.resize(count);
+        nearness_.resize(count);
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x) {
                 const double planar = planar_at(x, y);
-                distance_[index(x, y)] = is_surface(planar) ? planar : 1e10;
+                nearness_[index(x, y)] = is_surface(planar) ? 1 / planar : 1e-10;
                 raw[index(x, y)] = is_surface(planar) ? occlusion(x, y, planar) : 1;
+            }
+        std::vector<double> tile(count);
+        slopes_.resize(count);
+        for (int y = 0; y < height_; ++y)
+            for (int x = 0; x < width_; ++x) {
+                slopes_[index(x, y)] = {slope(x, y, 1, 0), slope(x, y, 0, 1)};
+                tile[index(x, y)] = blur(raw, x, y);
             }
         blurred_.resize(count);
         for (int y = 0; y < height_; ++y)
-            for (int x = 0; x < width_; ++x) blurred_[index(x, y)] = blur(raw, x, y);
+            for (int x = 0; x < width_; ++x) blurred_[index(x, y)] = widen(tile, x, y);
     }
 
   private:
@@ -221,21 +228,50 @@ class SsaoReference {
         return std::popcount(mask) / double{ssao_sectors};
     }
 
+    /// How wide `step` pixels of the frame are at this nearness, as a share of the distance.
+    [[nodiscard]] double width(double near, int step) const {
+        return std::abs(frame_position(step, 0, 1 / near)[0] - frame_position(0, 0, 1 / near)[0]) * near;
+    }
+
+    /// To the next pixel, as a share of the nearness here.
+    [[nodiscard]] double slope(int x, int y, int dx, int dy) const {
+        const auto nearness = [&](int steps) { return nearness_[index(x + steps * dx, y + steps * dy)]; };
+        const double own = nearness(0), before = own - nearness(-1), after = nearness(1) - own;
+        const double lesser = std::max(std::min(before, after), 0.0) + std::min(std::max(before, after), 0.0);
+        const double bend = std::abs(nearness(-1) - nearness(-2) - before) / own;
+        const double straight = std::clamp(2 - bend / std::max(0.15 * width(own, step_), 3e-4), 0.0, 1.0);
+        const double chosen = std::lerp(lesser, before, straight);
+        return std::clamp(chosen / own, -0.999, 0.999);
+    }
+
+    /// Of a pixel so far away in the surface of (x, y), whose slopes over the distance of a tap are `spans` times those
+    /// to the next pixel.
+    [[nodiscard]] double likeness(int x, int y, int i, int j, int spans) const {
+        const double own = nearness_[index(x, y)];
+        const auto [across, down] = slopes_[index(x, y)];
+        const double unlike = std::abs(nearness_[index(x + i, y + j)] / own - (1 + across * i + down * j));
+        const double tolerance = std::max(width(own, step_), 3e-4) + 0.1 * spans * (std::abs(across) + std::abs(down));
+        return std::clamp(2 - unlike / tolerance, 0.0, 1.0);
+    }
+
     [[nodiscard]] double blur(const std::vector<double>& raw, int x, int y) const {
-        const auto distance = [&](int column, int row) { return distance_[index(column, row)]; };
-        const double own = distance(x, y);
-        const auto slope = [&](int dx, int dy) {
-            const double before = own - distance(x - dx, y - dy), after = distance(x + dx, y + dy) - own;
-            return std::max(std::min(before, after), 0.0) + std::min(std::max(before, after), 0.0);
-        };
-        const double slope_x = slope(1, 0), slope_y = slope(0, 1);
-        const double tolerance = 0.01 * own + 0.1 * (std::abs(slope_x) + std::abs(slope_y));
         double seen = 0, weights = 0;
         for (int j = -2; j <= 1; ++j)
             for (int i = -2; i <= 1; ++i) {
-                const double unlike = std::abs(distance(x + i, y + j) - (own + slope_x * i + slope_y * j));
-                const double weight = std::clamp(2 - unlike / tolerance, 0.0, 1.0);
+                const double weight = likeness(x, y, i, j, 1);
                 seen += raw[index(x + i, y + j)] * weight;
+                weights += weight;
+            }
+        return seen / weights;
+    }
+
+    [[nodiscard]] double widen(const std::vector<double>& tile, int x, int y) const {
+        double seen = 0, weights = 0;
+        for (int j = -4; j <= 4; j += 4)
+            for (int i = -4; i <= 4; i += 4) {
+                const double weight = std::min(likeness(x, y, i, j, 4), likeness(x, y, -i, -j, 4)) *
+                                      (i == 0 ? 1 : 0.5) * (j == 0 ? 1 : 0.5);
+                seen += tile[index(x + i, y + j)] * weight;
                 weights += weight;
             }
         return seen / weights;
@@ -251,9 +287,12 @@ class SsaoReference {
         for (int j = 0; j < 2; ++j)
             for (int i = 0; i < 2; ++i) {
                 const double across = part_x == 0 ? 0.5 : i, down = part_y == 0 ? 0.5 : j;
-                const double unlike = std::abs(distance_[index(base_x + i, base_y + j)] / planar - 1);
-                const double weight = (across * down + 0.05) * (std::clamp(2 - unlike * 40, 0.0, 1.0) + 1e-4);
-                seen += blurred_[index(base_x + i, base_y + j)] * weight;
+                const std::size_t from = index(base_x + i, base_y + j);
+                const double expected = nearness_[from] * (1 + slopes_[from][0] * (part_x / 2.0 - i) +
+                                                           slopes_[from][1] * (part_y / 2.0 - j));
+                const double unlike = (expected * planar - 1) * 2 / std::max(width(1 / planar, 1), 4e-4);
+                const double weight = (across * down + 0.05) / std::pow(1 + unlike * unlike, 2);
+                seen += blurred_[from] * weight;
                 weights += weight;
             }
         return seen / weights;
@@ -263,7 +302,8 @@ class SsaoReference {
     const ReferenceInput& input_;
     ReferenceCamera camera_;
     int step_, width_, height_;
-    std::vector<double> distance_, blurred_;
+    std::vector<double> nearness_, blurred_;
+    std::vector<std::array<double, 2>> slopes_;
 };
 
 [[nodiscard]] inline ReferenceImage ssao_reference(const void* parameters, const ReferenceInput& input) {
