@@ -31,7 +31,7 @@ Result<> HostBuffer::reserve(gpu::Context& context, VkDeviceSize size, VkBufferU
 std::array<VkDescriptorPoolSize, 3> frame_set_sizes() {
     return {VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
             VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 5},
-            VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, most_directional_lights + 3}};
+            VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, shadow_images + 3}};
 }
 
 Result<FrameBuffers> FrameBuffers::create(gpu::Context& context, SetAllocator& sets, VkDescriptorSetLayout layout) {
@@ -93,12 +93,13 @@ void FrameBuffers::write_set(const gpu::Context& context, const GpuScene& scene,
                              materials_.info(), joints_.info(),
                              weights_.info(),   VkDescriptorBufferInfo{scene.morph_deltas.handle, 0, VK_WHOLE_SIZE}};
     constexpr VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    std::array<VkDescriptorImageInfo, most_directional_lights + 3> images{};
+    std::array<VkDescriptorImageInfo, shadow_images + 3> images{};
     for (std::uint32_t light = 0; light < most_directional_lights; ++light)
         images[light] = {shadows.sampler(), shadows.map(light).view, layout};
-    images[4] = {environment.sampler, environment.prefiltered.view, layout};
-    images[5] = {environment.sampler, environment.skybox.view, layout};
-    images[6] = {environment.sampler, environment.split_sum.view, layout};
+    images[most_directional_lights] = {shadows.sampler(), shadows.atlas().view, layout};
+    images[5] = {environment.sampler, environment.prefiltered.view, layout};
+    images[6] = {environment.sampler, environment.skybox.view, layout};
+    images[7] = {environment.sampler, environment.split_sum.view, layout};
 
     std::array<VkWriteDescriptorSet, frame_bindings> writes{};
     for (std::uint32_t binding = 0; binding < frame_bindings; ++binding) {
@@ -114,8 +115,8 @@ void FrameBuffers::write_set(const gpu::Context& context, const GpuScene& scene,
         }
         write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
         const bool are_maps = binding == buffers.size();
-        write.descriptorCount = are_maps ? most_directional_lights : 1;
-        write.pImageInfo = are_maps ? images.data() : &images[binding - buffers.size() + most_directional_lights - 1];
+        write.descriptorCount = are_maps ? shadow_images : 1;
+        write.pImageInfo = are_maps ? images.data() : &images[binding - buffers.size() + shadow_images - 1];
     }
     context.vk.UpdateDescriptorSets(context.device, frame_bindings, writes.data(), 0, nullptr);
 }

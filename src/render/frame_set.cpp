@@ -9,7 +9,7 @@ Result<gpu::SetLayout> create_frame_layout(gpu::Context& context) {
     std::array<gpu::SetLayout::Binding, frame_bindings> bindings{};
     for (std::size_t i = 0; i < 3; ++i) bindings[i].type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     for (std::size_t i = 3; i < 8; ++i) bindings[i].type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    bindings[8].count = most_directional_lights;
+    bindings[8].count = shadow_images;
     return gpu::SetLayout::create(context, bindings);
 }
 

@@ -33,6 +33,10 @@ struct Material {
 
 inline constexpr std::uint32_t most_directional_lights = 4, most_point_lights = 16, most_spot_lights = 8;
 inline constexpr std::uint32_t most_cascades = 4;
+/// Images of binding 8: the maps of directional lights, then the tiles of lamps.
+inline constexpr std::uint32_t shadow_images = most_directional_lights + 1;
+/// In ShadowBlock::world_to_map.
+inline constexpr std::uint32_t first_tile = most_directional_lights * most_cascades;
 inline constexpr std::uint32_t frame_bindings = 12;
 
 /// Bindings 0 .. 11 of set 0, in order.
@@ -70,6 +74,7 @@ struct PassSetup {
     bool is_tone_mapped = true;  ///< Output::Display
     std::uint32_t shadow_maps = 0;
     bool has_soft_shadows = false;
+    bool has_lamp_shadows = false;
     bool has_environment = false;
 };
 

@@ -196,7 +196,9 @@ Result<> Renderer::State::create_passes() {
     const auto casting = static_cast<std::uint32_t>(std::ranges::count_if(directional, is_caster));
     const std::uint32_t maps = desc.draw.has_shadows ? casting : 0;
     const VkDescriptorSetLayout layout = scene->frame_layout.handle;
-    Result<> made = take(ShadowPass::create(*context, layout, scene->meshes, desc.cascades, maps), shadows);
+    const std::uint32_t tiles = desc.draw.has_shadows ? tiles_needed(scene->first) : 0;
+    Result<> made = take(
+        ShadowPass::create(*context, layout, scene->meshes, desc.cascades, {.lights = maps, .tiles = tiles}), shadows);
     if (!made) return made;
     const PassSetup setup{.frame_layout = layout,
                           .formats = formats(),
@@ -204,6 +206,7 @@ Result<> Renderer::State::create_passes() {
                           .is_tone_mapped = desc.is_tone_mapped,
                           .shadow_maps = maps,
                           .has_soft_shadows = desc.cascades.filter == ShadowFilter::Soft,
+                          .has_lamp_shadows = tiles > 0,
                           .has_environment = scene->environment.is_given};
     meshes = MeshPass::create(*context, setup, scene->meshes);
     if (made = take(SkyPass::create(*context, setup), sky); !made) return made;
@@ -259,7 +262,7 @@ Result<> Renderer::State::fill_buffers(FrameBuffers& buffers) {
         for (std::uint32_t i = 0; i < desc.positions; ++i)
             buffers.position(i) = moved_block(buffers.frame(), position_in_pixel(i));
     }
-    buffers.lights() = light_block(*snapshot, shadows->casting_lights());
+    buffers.lights() = light_block(*snapshot, shadows->casting_lights(), shadows->lamps());
     shadows->fill(buffers.shadows());
     std::ranges::transform(snapshot->materials, buffers.materials(), material_block);
     blocks::Instance* instance = buffers.instances();

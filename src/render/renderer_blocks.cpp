@@ -84,7 +84,14 @@ blocks::Frame moved_block(const blocks::Frame& frame, scene::vec2 pixels) {
     return moved;
 }
 
-blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps) {
+blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps,
+                           std::span<const LampTiles> lamps) {
+    const auto tiles_of_light = [&](const scene::LightState* state) -> vec4 {
+        const auto found =
+            std::ranges::find(lamps, static_cast<std::uint32_t>(state - snapshot.lights.data()), &LampTiles::light);
+        if (found == lamps.end()) return {-1, 0, 0, 0};
+        return {static_cast<float>(found->first), static_cast<float>(found->count), 0, 0};
+    };
     blocks::Lights block;
     std::size_t i = 0;
     std::uint32_t map = 0;
@@ -96,12 +103,13 @@ blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow
     i = 0;
     for (const scene::LightState* state : lights_of(snapshot, LightType::Point, most_point_lights)) {
         block.point_position[i] = vec4(state->position, state->light.range);
-        block.point_color[i++] = radiance(state->light, 0);
+        block.point_color[i++] = radiance(state->light, tiles_of_light(state).x);
     }
     i = 0;
     for (const scene::LightState* state : lights_of(snapshot, LightType::Spot, most_spot_lights)) {
         block.spot_position[i] = vec4(state->position, state->light.range);
         block.spot_direction[i] = vec4(state->direction, std::cos(state->light.outer_angle));
+        block.spot_tiles[i] = tiles_of_light(state);
         block.spot_color[i++] = radiance(state->light, std::cos(state->light.inner_angle));
     }
     return block;

@@ -8,6 +8,7 @@
 
 #include "render/frame_set.hpp"
 #include "render/pass/draw_list.hpp"
+#include "render/shadow/lamps.hpp"
 #include "render/upload/gpu_scene.hpp"
 
 namespace darkroom::render {
@@ -26,8 +27,9 @@ struct FrameSettings {
 [[nodiscard]] blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& settings);
 /// The same frame, drawn so that the centres of pixels see what lies `pixels` beside them, x right and y down.
 [[nodiscard]] blocks::Frame moved_block(const blocks::Frame& frame, scene::vec2 pixels);
-/// `shadow_maps`: of the first that many casting directional lights.
-[[nodiscard]] blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps);
+/// `shadow_maps`: of the first that many casting directional lights; `lamps`: those that have tiles.
+[[nodiscard]] blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps,
+                                         std::span<const LampTiles> lamps = {});
 [[nodiscard]] blocks::Material material_block(const scene::SnapshotMaterial& material);
 [[nodiscard]] blocks::Instance instance_block(const scene::Instance& instance, const GpuMesh& mesh);
 

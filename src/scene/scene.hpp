@@ -84,7 +84,7 @@ struct Light {
     vec3 direction{0, -1, 0};  ///< directional: toward the light; spot: the cone's axis, from the light into the scene
     float range = 10;          ///< metres; "radius" in some files
     float inner_angle = 0.3F, outer_angle = 0.5F;  ///< radians, from the axis
-    bool casts_shadow = true;                      ///< directional lights only
+    bool casts_shadow = true;
     float volumetric_intensity = 0;
     std::optional<vec3> volumetric_color;  ///< default: color
 };

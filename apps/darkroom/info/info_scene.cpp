@@ -155,7 +155,7 @@ Json scene_lights_of(const scenes::Scene& scene) {
         if (!entity.light) continue;
         Json row{{"entity", entity.name}};
         row.update(light_of(*entity.light));
-        row["casts_shadow"] = entity.light->type == scenes::LightType::Directional && entity.light->casts_shadow;
+        row["casts_shadow"] = entity.light->casts_shadow;
         row["volumetric_intensity"] = entity.light->volumetric_intensity;
         out.push_back(std::move(row));
     }

@@ -20,7 +20,10 @@ using scene::vec4;
 std::string lights_body(const std::string& shade) {
     return test::frame_stand_in() +
            "float shadow_visibility(uint light, vec3 position, vec3 normal, float distance) {\n"
-           "    return 0.25 + float(light) * 0.1;\n}\n" +
+           "    return 0.25 + float(light) * 0.1;\n}\n"
+           "const bool lamps_cast_shadows = true;\n"
+           "float lamp_visibility(uint tile, uint tiles, vec3 position, vec3 normal, vec3 l) {\n"
+           "    return 0.25 + float(tile) * 0.01 + float(tiles) * 0.03;\n}\n" +
            test::shader_part("light/brdf.glsl") + test::shader_part("light/lights.glsl") +
            "vec4 shade(Pixel pixel) {\n" + shade + "}\n";
 }
@@ -89,7 +92,7 @@ struct Lights {
         }
         for (std::size_t i = 0; i < most_point_lights; ++i) {
             block.point_position[i] = position();
-            block.point_color[i] = color(0);
+            block.point_color[i] = color(i % 2 == 0 ? -1.0F : 6 * static_cast<float>(i));
         }
         for (std::size_t i = 0; i < most_spot_lights; ++i) {
             block.spot_position[i] = position();
@@ -97,7 +100,13 @@ struct Lights {
             const dvec3 axis = -glm::normalize(dvec3(block.spot_position[i]) + random.on_sphere());
             block.spot_direction[i] = vec4(axis, 0.7);
             block.spot_color[i] = color(0.9F);
+            block.spot_tiles[i] = vec4(i % 2 == 0 ? -1.0 : double(i), i % 3 == 0 ? 1 : 6, 0, 0);
         }
+    }
+
+    /// As the stand-in for shadows has it.
+    [[nodiscard]] static double lamp_visibility(float tile, float tiles) {
+        return tile < 0 ? 1 : 0.25 + double(tile) * 0.01 + double(tiles) * 0.03;
     }
 
     /// Sum over all lights in double precision.
@@ -113,14 +122,16 @@ struct Lights {
         for (std::size_t i = 0; i < most_point_lights; ++i) {
             const dvec3 to_light = dvec3(block.point_position[i]) - position;
             sum += reference::reflected(surface, n, v, glm::normalize(to_light)) * dvec3(block.point_color[i]) *
-                   reference::distance_attenuation(glm::length(to_light), block.point_position[i].w);
+                   reference::distance_attenuation(glm::length(to_light), block.point_position[i].w) *
+                   lamp_visibility(block.point_color[i].w, 6);
         }
         for (std::size_t i = 0; i < most_spot_lights; ++i) {
             const dvec3 to_light = dvec3(block.spot_position[i]) - position;
             const double cosine = glm::dot(dvec3(block.spot_direction[i]), -glm::normalize(to_light));
             sum += reference::reflected(surface, n, v, glm::normalize(to_light)) * dvec3(block.spot_color[i]) *
                    reference::distance_attenuation(glm::length(to_light), block.spot_position[i].w) *
-                   reference::cone_attenuation(cosine, block.spot_direction[i].w, block.spot_color[i].w);
+                   reference::cone_attenuation(cosine, block.spot_direction[i].w, block.spot_color[i].w) *
+                   lamp_visibility(block.spot_tiles[i].x, block.spot_tiles[i].y);
         }
         return sum;
     }
@@ -136,6 +147,7 @@ struct Lights {
         add(block.spot_position);
         add(block.spot_direction);
         add(block.spot_color);
+        add(block.spot_tiles);
         out.resize(length);
         return out;
     }
@@ -173,6 +185,7 @@ TEST(RenderGpuLights, AllLightsTogetherAgreeWithTheReference) {
         lights.spot_position[i] = load(input_3, ivec2(40 + i, 0));
         lights.spot_direction[i] = load(input_3, ivec2(48 + i, 0));
         lights.spot_color[i] = load(input_3, ivec2(56 + i, 0));
+        lights.spot_tiles[i] = load(input_3, ivec2(i, 1));
     }
     vec4 n = load(input_0, pixel.texel);
     vec4 v = load(input_1, pixel.texel);

@@ -162,7 +162,7 @@ struct FragmentBench::Sets {
         const blocks::Shadows shadows{};
         set_buffer(2, &shadows, sizeof shadows);
         for (std::uint32_t binding = 3; binding < 8; ++binding) set_buffer(binding, materials.data(), sizeof materials);
-        for (std::uint32_t map = 0; map < 4; ++map) set_image(0, 8, map, shadow_map.view, comparing);
+        for (std::uint32_t map = 0; map < shadow_images; ++map) set_image(0, 8, map, shadow_map.view, comparing);
         set_picture(0, 9, bench.environment);
         set_picture(0, 10, bench.environment);
         set_picture(0, 11, one(bench.scale_and_bias));

@@ -158,9 +158,14 @@ DrawList draw_list(const Snapshot& snapshot) {
     return list;
 }
 
-DrawList caster_list(const Snapshot& snapshot, const scene::mat4& world_to_cascade) {
+bool Reach::touches(const scene::Box& box) const {
+    const scene::vec3 away = center - glm::clamp(center, box.low, box.high);
+    return glm::dot(away, away) <= radius * radius;
+}
+
+DrawList caster_list(const Snapshot& snapshot, const scene::mat4& world_to_map, const Reach& reach) {
     DrawList list;
-    const Frustum frustum(world_to_cascade);
+    const Frustum frustum(world_to_map);
     const std::vector<std::uint32_t> surfaces = surface_numbers(snapshot);
     std::vector<Entry> opaque, transparent;
     for (std::uint32_t i = 0; i < snapshot.instances.size(); ++i) {
@@ -168,7 +173,7 @@ DrawList caster_list(const Snapshot& snapshot, const scene::mat4& world_to_casca
         const bool casts = instance.casts_shadow && !instance.is_wireframe &&
                            snapshot.materials[instance.material].writes == scene::Writes::All;
         if (!casts) continue;
-        if (!frustum.touches(instance.bounds)) {
+        if (!frustum.touches(instance.bounds) || !reach.touches(instance.bounds)) {
             ++list.culled;
             continue;
         }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,7 +39,15 @@ struct DrawList {
 
 /// Two materials in one batch share state and textures; factors may differ, the shader looks them up an instance.
 [[nodiscard]] DrawList draw_list(const scene::Snapshot& snapshot);
-/// Casters in a cascade: opaque, masked and transparent meshes whose `casts_shadow` is set, without order by depth.
-[[nodiscard]] DrawList caster_list(const scene::Snapshot& snapshot, const scene::mat4& world_to_cascade);
+/// How far a light shines.
+struct Reach {
+    scene::vec3 center{0};
+    float radius = std::numeric_limits<float>::infinity();
+    [[nodiscard]] bool touches(const scene::Box& box) const;
+};
+
+/// Casters in a shadow map: opaque, masked and transparent meshes whose `casts_shadow` is set, without order by depth.
+[[nodiscard]] DrawList caster_list(const scene::Snapshot& snapshot, const scene::mat4& world_to_map,
+                                   const Reach& reach = {});
 
 }  // namespace darkroom::render

@@ -128,15 +128,15 @@ class Stage {
         for (std::uint32_t binding = 0; binding < frame_bindings; ++binding) {
             const VkDescriptorImageInfo picture{environment.sampler, images[binding < 8 ? 0 : binding - 8]->view,
                                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-            const std::array<VkDescriptorImageInfo, most_directional_lights> pictures{picture, picture, picture,
-                                                                                      picture};
+            std::array<VkDescriptorImageInfo, shadow_images> pictures{};
+            pictures.fill(picture);
             VkDescriptorType type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
             if (binding < 8) type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
             if (binding < 3) type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
             const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                              .dstSet = sets.sets[0],
                                              .dstBinding = binding,
-                                             .descriptorCount = binding == 8 ? most_directional_lights : 1,
+                                             .descriptorCount = binding == 8 ? shadow_images : 1,
                                              .descriptorType = type,
                                              .pImageInfo = pictures.data(),
                                              .pBufferInfo = &buffer};

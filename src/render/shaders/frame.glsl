@@ -37,7 +37,7 @@ layout(set = 0, binding = 5, std430) readonly buffer Joints { mat4 joints[]; };
 layout(set = 0, binding = 6, std430) readonly buffer Weights { vec2 weights[]; };
 // Two vectors a vertex of a target: position, normal.
 layout(set = 0, binding = 7, std430) readonly buffer MorphDeltas { vec4 morph_deltas[]; };
-layout(set = 0, binding = 8) uniform sampler2DArray shadow_maps[4];  // depth
+layout(set = 0, binding = 8) uniform sampler2DArray shadow_maps[5];  // depth; the last is of tiles, of lamps
 layout(set = 0, binding = 9) uniform sampler2D prefiltered_environment;  // equirectangular, a roughness a mip level
 layout(set = 0, binding = 10) uniform sampler2D skybox;                  // equirectangular
 layout(set = 0, binding = 11) uniform sampler2D split_sum;  // x: n.v, y: roughness; scale and bias of F0

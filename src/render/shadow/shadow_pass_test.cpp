@@ -144,7 +144,7 @@ TEST(RenderGpuShadow, ResolutionMeansWhatItSays) {
         EXPECT_EQ(block.cascade_texels[1].y, rig.pass.cascades(1).texel[1]);
         EXPECT_EQ(block.cascade_splits[1].y, rig.pass.cascades(1).splits[1]);
         EXPECT_EQ(block.cascade_splits[1].y, 8) << "where the floor that is in view ends";
-        EXPECT_EQ(block.world_to_cascade[5], rig.pass.cascades(1).world_to_cascade[1]);
+        EXPECT_EQ(block.world_to_map[5], rig.pass.cascades(1).world_to_cascade[1]);
     }
 }
 
@@ -340,7 +340,7 @@ TEST(RenderGpuShadow, RefusesWhatTheDeviceLacks) {
     GpuScene scene = must(GpuScene::create(context, {}));
     const gpu::SetLayout layout = must(create_frame_layout(context));
     const auto error = [&](const CascadeDesc& desc) {
-        const Result<ShadowPass> made = ShadowPass::create(context, layout.handle, scene, desc, 1);
+        const Result<ShadowPass> made = ShadowPass::create(context, layout.handle, scene, desc, {.lights = 1});
         return made ? "made" : made.error().text;
     };
     const std::uint32_t most = context.traits.max_image_dimension;

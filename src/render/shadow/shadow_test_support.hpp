@@ -81,7 +81,7 @@ class ShadowRig {
         : context_(gpu::test::context()),
           scene(must(GpuScene::create(context_, assets))),
           layout_(must(create_frame_layout(context_))),
-          pass(must(ShadowPass::create(context_, layout_.handle, scene, desc, lights))) {
+          pass(must(ShadowPass::create(context_, layout_.handle, scene, desc, {.lights = lights}))) {
         frame_ = make_buffer(sizeof(blocks::Frame), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
         lights_ = make_buffer(sizeof(blocks::Lights), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
         shadows_ = make_buffer(sizeof(blocks::Shadows), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
@@ -218,7 +218,7 @@ class ShadowRig {
         const std::array<const gpu::Buffer*, 8> buffers{&frame_,     &lights_, &shadows_, &instances_,
                                                         &materials_, &joints_, &weights_, &scene.morph_deltas};
         std::array<VkDescriptorBufferInfo, 8> buffer_infos{};
-        std::array<VkDescriptorImageInfo, most_directional_lights> maps{};
+        std::array<VkDescriptorImageInfo, shadow_images> maps{};
         std::vector<VkWriteDescriptorSet> writes;
         for (std::uint32_t i = 0; i < 8; ++i) {
             buffer_infos[i] = {buffers[i]->handle, 0, VK_WHOLE_SIZE};
@@ -230,12 +230,12 @@ class ShadowRig {
                  .descriptorType = i < 3 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                  .pBufferInfo = &buffer_infos[i]});
         }
-        for (std::uint32_t i = 0; i < most_directional_lights; ++i)
+        for (std::uint32_t i = 0; i < shadow_images; ++i)
             maps[i] = {pass.sampler(), pass.map(i).view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
         writes.push_back({.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                           .dstSet = sets_.sets[0],
                           .dstBinding = 8,
-                          .descriptorCount = most_directional_lights,
+                          .descriptorCount = shadow_images,
                           .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                           .pImageInfo = maps.data()});
         // What the environment's textures are is nobody's matter here, but drivers look at whole sets.

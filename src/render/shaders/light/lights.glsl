@@ -19,6 +19,16 @@ vec3 hemisphere(vec3 n, vec3 sky, vec3 ground) {
     return mix(ground, sky, n.y * 0.5 + 0.5);
 }
 
+// What a lamp's shadow lets through, where any of its light would be seen.
+float lamp_shadow(float first_tile, float tiles, bool is_seen, vec3 position, vec3 surface_normal, vec3 l) {
+    float visibility = 1.0;
+    // A loop in place of a branch, as in shadow_visibility().
+    for (uint i = 0u, end = is_seen && first_tile >= 0.0 ? 1u : 0u; i < end; ++i) {
+        visibility = lamp_visibility(uint(first_tile), uint(tiles), position, surface_normal, l);
+    }
+    return visibility;
+}
+
 // Sum over all lights of what leaves toward v. `n` is shaded, `surface_normal` is the geometry's, which shadows are
 // offset along; `view_distance` is along the camera's axis.
 vec3 reflected_lights(Reflectance surface, vec3 position, vec3 n, vec3 surface_normal, vec3 v, float view_distance,
@@ -38,6 +48,9 @@ vec3 reflected_lights(Reflectance surface, vec3 position, vec3 n, vec3 surface_n
         float attenuation = distance_attenuation(squared_distance, lights.point_position[i].w);
         if (attenuation > 0.0) {
             vec3 l = to_light * inversesqrt(max(squared_distance, 1e-12));
+            if (lamps_cast_shadows) {
+                attenuation *= lamp_shadow(lights.point_color[i].w, 6.0, dot(n, l) > 0.0, position, surface_normal, l);
+            }
             sum += reflected(surface, n, v, l) * lights.point_color[i].rgb * attenuation;
         }
     }
@@ -49,6 +62,11 @@ vec3 reflected_lights(Reflectance surface, vec3 position, vec3 n, vec3 surface_n
         vec4 color = lights.spot_color[i];
         float attenuation = distance_attenuation(squared_distance, lights.spot_position[i].w) *
                             cone_attenuation(dot(axis.xyz, -l), axis.w, color.w);
+        if (lamps_cast_shadows) {
+            vec2 tiles = lights.spot_tiles[i].xy;
+            bool is_seen = attenuation > 0.0 && dot(n, l) > 0.0;
+            attenuation *= lamp_shadow(tiles.x, tiles.y, is_seen, position, surface_normal, l);
+        }
         if (attenuation > 0.0) sum += reflected(surface, n, v, l) * color.rgb * attenuation;
     }
     return sum;

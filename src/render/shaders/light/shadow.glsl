@@ -1,5 +1,5 @@
-// Shadows of directional lights: how much of light `light`'s light arrives, by its number among the shadow maps. Four
-// gathers a cascade cover the 4x4 texels of a cubic B-spline.
+// Shadows: how much of a light's light arrives. Directional lights go by their number among the shadow maps, lamps
+// (point and spot lights) by their tiles, which are of one image. Four gathers a map cover the 4x4 texels of a cubic B-spline.
 #include "frame.glsl"
 
 /// How many shadow maps there are, 0: not known. The others then cost nothing, which branches alone do not achieve on
@@ -7,6 +7,8 @@
 layout(constant_id = 8) const uint shadow_lights = 0u;
 /// Whether penumbras widen with the distance of what casts them.
 layout(constant_id = 9) const bool shadows_are_soft = false;
+/// Whether point and spot lights have tiles.
+layout(constant_id = 12) const bool lamps_cast_shadows = false;
 const uint shadow_map_count = shadow_lights == 0u ? 4u : shadow_lights;
 
 const float cascade_blend = 0.1;  // as render/shadow/cascades.hpp has it
@@ -82,8 +84,9 @@ vec4 spline_weights(float f) {
     return vec4(g * g * g, (3.0 * f - 6.0) * f * f + 4.0, (3.0 * g - 6.0) * g * g + 4.0, f * f * f) * (1.0 / 6.0);
 }
 
-/// A point as its cascade has it.
+/// A point as its cascade or its tile has it.
 struct Receiver {
+    bool is_in_tile;
     uint light, cascade;
     vec2 place;   // texels
     float depth;  // 0 .. 1
@@ -92,8 +95,13 @@ struct Receiver {
     float range;  // world, of depth 0 .. 1
 };
 
+/// By how many texels a receiver is moved; `sine` of the angle between its normal and the map's axis.
+vec3 texels_off(vec3 normal, float sine, vec3 toward_light) {
+    return normal * (normal_offset * sine) + toward_light * light_offset;
+}
+
 Receiver receive(uint light, uint cascade, vec3 world_position, vec3 normal) {
-    const mat4 world_to_cascade = shadows.world_to_cascade[4u * light + cascade];
+    const mat4 world_to_cascade = shadows.world_to_map[4u * light + cascade];
     const float texel = shadows.cascade_texels[light][cascade];
     const float resolution = shadows.shadow_settings.y;
     const vec3 depth_row = vec3(world_to_cascade[0].z, world_to_cascade[1].z, world_to_cascade[2].z);
@@ -101,14 +109,40 @@ Receiver receive(uint light, uint cascade, vec3 world_position, vec3 normal) {
     const float half_extent = 0.5 * texel * resolution;
     const vec3 turned = mat3(world_to_cascade) * normal * vec3(half_extent, half_extent, -range);
     const float sine = sqrt(max(1.0 - turned.z * turned.z, 0.0));
-    const vec3 offset = normal * (normal_offset * sine) - depth_row * (range * light_offset);
+    const vec3 offset = texels_off(normal, sine, depth_row * -range);
     const vec3 position = (world_to_cascade * vec4(world_position + offset * texel, 1)).xyz;
-    return Receiver(light, cascade, (position.xy * 0.5 + 0.5) * resolution, min(position.z, 1.0),
+    return Receiver(false, light, cascade, (position.xy * 0.5 + 0.5) * resolution, min(position.z, 1.0),
                     turned.xy * (texel / (range * max(turned.z, 0.05))), texel, range);
+}
+
+/// As a lamp's tile has it. Texels grow along the tile's axis, and a plane is one in the tile's depth too, so that what
+/// moves a receiver off its own surface is as much as for a cascade whose texels are those at its place.
+Receiver receive_in_tile(uint tile, vec3 world_position, vec3 normal, vec3 toward_lamp) {
+    const mat4 world_to_tile = shadows.world_to_map[16u + tile];
+    const vec3 across = vec3(world_to_tile[0].x, world_to_tile[1].x, world_to_tile[2].x);
+    const vec3 axis = vec3(world_to_tile[0].w, world_to_tile[1].w, world_to_tile[2].w);
+    const float side = shadows.tile_settings.x;
+    const float along = dot(axis, world_position) + world_to_tile[3].w;
+    const float texel = 2.0 * along * inversesqrt(dot(across, across)) / side;
+    const float cosine = dot(normal, axis);
+    const vec3 depth_row = vec3(world_to_tile[0].z, world_to_tile[1].z, world_to_tile[2].z);
+    const vec3 down = vec3(world_to_tile[0].y, world_to_tile[1].y, world_to_tile[2].y);
+    // Depth is a constant and a share of this over the distance along the axis.
+    const float hyperbola = world_to_tile[3].z - dot(depth_row, axis) * world_to_tile[3].w;
+    const float steepness = hyperbola * texel * dot(axis, toward_lamp) / (along * along * max(dot(normal, toward_lamp), 0.05));
+    const vec3 offset = texels_off(normal, sqrt(max(1.0 - cosine * cosine, 0.0)), toward_lamp);
+    const vec4 clip = world_to_tile * vec4(world_position + offset * texel, 1);
+    const uint tiles_a_row = uint(shadows.tile_settings.y);
+    // No further than the filter needs to stay within the tile.
+    const vec2 place = clamp((clip.xy / clip.w * 0.5 + 0.5) * side, 4.0, side - 4.0);
+    return Receiver(true, 0u, 0u, place + vec2(tile % tiles_a_row, tile / tiles_a_row) * side,
+                    min(clip.z / clip.w, 1.0),
+                    vec2(dot(normal, across), dot(normal, down)) * (steepness * inversesqrt(dot(across, across))), texel, 0.0);
 }
 
 /// Depths of the four texels that meet at `meeting`, whole texels.
 vec4 depths_around(Receiver receiver, vec2 meeting) {
+    if (receiver.is_in_tile) return textureGather(shadow_maps[4], vec3(meeting * shadows.tile_settings.zw, 0.0));
     return gather_shadow(receiver.light, vec3(meeting * shadows.shadow_settings.z, float(receiver.cascade)));
 }
 
@@ -205,10 +239,40 @@ float shadow_visibility(uint light, vec3 world_position, vec3 world_normal, floa
 float shadow_visibility_point(uint light, vec3 world_position, float view_distance) {
     light = shadow_map_count > 1u ? light : 0u;
     const uint cascade = cascade_of(light, view_distance);
-    const mat4 world_to_cascade = shadows.world_to_cascade[4u * light + cascade];
+    const mat4 world_to_cascade = shadows.world_to_map[4u * light + cascade];
     vec3 position = (world_to_cascade * vec4(world_position, 1)).xyz;
     const vec3 depth_row = vec3(world_to_cascade[0].z, world_to_cascade[1].z, world_to_cascade[2].z);
     position.z -= light_offset * shadows.cascade_texels[light][cascade] * sqrt(dot(depth_row, depth_row));
     const float lit = tap_shadow(light, vec3(position.xy * 0.5 + 0.5, float(cascade))) >= min(position.z, 1.0) ? 1.0 : 0.0;
     return 1.0 - shadow_presence(view_distance) * (1.0 - lit);
+}
+
+/// Which face of a cube around a lamp a direction from it leads through, as render/shadow/lamps.cpp numbers them.
+uint face_of(vec3 from_lamp) {
+    const vec3 size = abs(from_lamp);
+    const uint axis = size.x >= size.y && size.x >= size.z ? 0u : size.y >= size.z ? 1u : 2u;
+    return 2u * axis + (from_lamp[axis] < 0.0 ? 1u : 0u);
+}
+
+/// At the edges of a lamp's shadow, a disc in place of the 4x4 texels, through which the steps of oblique texels show.
+float smooth_edges(Receiver receiver, float visibility) {
+    const float share = 4.0 * visibility * (1.0 - visibility);
+    float sum = 0.0;
+    for (uint i = 0u, end = share > 0.0 ? disc_taps : 0u; i < end; ++i) {
+        const vec2 offset = disc[i] * steps_reach;
+        const vec2 place = receiver.place + offset - 0.5;
+        const vec2 f = fract(place);
+        sum += weighed_light(depths_around(receiver, floor(place) + 1.0),
+                             receiver.depth + min(dot(receiver.slope, offset), 0.0), vec2(1.0 - f.x, f.x),
+                             vec2(1.0 - f.y, f.y));
+    }
+    return mix(visibility, sum * (1.0 / float(disc_taps)), share);
+}
+
+/// Filtered, for surfaces, by the first of a lamp's tiles and their number, 1 or 6. `toward_lamp`: normalised.
+float lamp_visibility(uint first_tile, uint tiles, vec3 world_position, vec3 world_normal, vec3 toward_lamp) {
+    const uint tile = first_tile + (tiles > 1u ? face_of(-toward_lamp) : 0u);
+    const Receiver receiver = receive_in_tile(tile, world_position, world_normal, toward_lamp);
+    const float visibility = filter_texels(receiver);
+    return shadows_are_soft ? smooth_edges(receiver, visibility) : visibility;
 }

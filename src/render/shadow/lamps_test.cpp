@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include "render/shadow/lamps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/renderer_test_support.hpp"
+
+namespace darkroom::render {
+
+namespace {
+
+// Not by using: tests of cascades have an add_box() of their own.
+
+using test::Pixels;
+using test::vec3;
+using test::vec4;
+
+constexpr VkExtent2D lamp_extent{160, 120};
+
+scene::LightState point_lamp(vec3 position, float intensity = 10, float range = 12) {
+    scene::LightState out{.light = {.type = scene::LightType::Point, .intensity = intensity, .range = range}};
+    out.position = position;
+    return out;
+}
+
+scene::LightState spot_lamp(vec3 position, vec3 direction, float outer_angle = 0.6F) {
+    scene::LightState out = point_lamp(position, 30);
+    out.light.type = scene::LightType::Spot;
+    out.light.outer_angle = outer_angle;
+    out.light.inner_angle = outer_angle * 0.9F;
+    out.direction = glm::normalize(direction);
+    return out;
+}
+
+scene::SnapshotMaterial chalk() {
+    scene::SnapshotMaterial out;
+    out.surface.base_color = vec4(1);
+    out.surface.metallic = 0;
+    out.surface.roughness = 1;
+    return out;
+}
+
+void add_chalk(scene::Snapshot& snapshot, vec3 low, vec3 high) { test::add_box(snapshot, low, high, chalk()); }
+
+/// As an entity of a scene, from which a renderer takes how many tiles there may be.
+scene::Scene lit_by(const std::vector<scene::LightState>& lights) {
+    scene::Scene out = test::dark_scene();
+    out.environment.ambient_intensity = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        scene::Entity entity;
+        entity.name = "lamp " + std::to_string(i);
+        entity.light = lights[i].light;
+        out.entities.push_back(entity);
+    }
+    return out;
+}
+
+Pixels shot(const scene::Snapshot& snapshot, bool has_shadows = true, ShadowFilter filter = ShadowFilter::Soft) {
+    Renderer renderer = test::renderer_for(
+        {.extent = lamp_extent, .cascades = {.filter = filter}, .draw = {.has_shadows = has_shadows}}, {},
+        lit_by(snapshot.lights));
+    return test::shoot(renderer, snapshot).color;
+}
+
+float brightest(const Pixels& pixels) {
+    float out = 0;
+    for (std::size_t i = 0; i < pixels.rgba.size(); i += 4) out = std::max(out, pixels.rgba[i]);
+    return out;
+}
+
+/// The inside of six slabs around a point, `thick` metres thick.
+void add_shell(scene::Snapshot& snapshot, vec3 center, float half, float thick) {
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0F, 1.0F}) {
+            vec3 low = center - half - thick, high = center + half + thick;
+            (side < 0 ? high : low)[axis] = center[axis] + side * half;
+            add_chalk(snapshot, low, high);
+        }
+    }
+}
+
+/// The inside of a room from the camera in it.
+constexpr float room_half_width = 2.5F, room_half_height = 1.5F, room_back = -6.5F;
+
+/// Where two walls meet, the filter finds the one before the other, as far as two texels, here 2.4 cm, reach.
+bool is_in_a_corner(std::uint32_t x, std::uint32_t y) {
+    const vec3 ray((static_cast<float>(x) + 0.5F - 80) / 60, (60 - static_cast<float>(y) - 0.5F) / 60, -1);
+    const vec3 walls = vec3(room_half_width, room_half_height, -room_back) / glm::abs(ray);
+    const vec3 point = ray * std::min({walls.x, walls.y, walls.z});
+    std::array gaps{room_half_width - std::abs(point.x), room_half_height - std::abs(point.y), point.z - room_back};
+    std::ranges::sort(gaps);
+    return gaps[1] < 0.048F;
+}
+
+/// Largest difference in sRGB codes, of values below 1, outside corners.
+float codes_apart(const Pixels& a, const Pixels& b) {
+    const auto code = [](float x) { return 255 * std::pow(std::clamp(x, 0.0F, 1.0F), 1 / 2.2F); };
+    float out = 0;
+    for (std::uint32_t y = 0; y < lamp_extent.height; ++y)
+        for (std::uint32_t x = 0; x < lamp_extent.width; ++x)
+            if (!is_in_a_corner(x, y)) out = std::max(out, std::abs(code(a.at(x, y)[0]) - code(b.at(x, y)[0])));
+    return out;
+}
+
+}  // namespace
+
+TEST(RenderLampShadows, TilesAreOneASpotAndSixAPoint) {
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    EXPECT_EQ(tiles_needed(snapshot), 0U);
+    snapshot.lights = {spot_lamp({0, 0, -3}, {0, -1, 0}), point_lamp({0, 0, -3}),
+                       spot_lamp({0, 0, -3}, {0, -1, 0}, 1.4F)};
+    EXPECT_EQ(tiles_needed(snapshot), 13U);
+    const LampShadows chosen = choose_lamps(snapshot, 512);
+    ASSERT_EQ(chosen.lamps.size(), 3U);
+    EXPECT_EQ(chosen.lamps[1].first, 1U);
+    EXPECT_EQ(chosen.lamps[2].first, 7U) << "too wide for one tile";
+    snapshot.lights[1].light.casts_shadow = false;
+    snapshot.lights[2].light.intensity = 0;
+    EXPECT_EQ(tiles_needed(snapshot), 1U);
+    for (int i = 0; i < 20; ++i) snapshot.lights.push_back(point_lamp({0, 0, -3}));
+    EXPECT_EQ(tiles_needed(snapshot), most_tiles);
+    EXPECT_EQ(tile_side(2048), 512U);
+    EXPECT_EQ(tile_side(16), 64U);
+    EXPECT_EQ(tile_side(16384), 1024U);
+}
+
+TEST(RenderLampShadows, TheBudgetGoesToThoseWithTheMostLightAtTheCamera) {
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    for (int i = 0; i < 10; ++i) snapshot.lights.push_back(point_lamp({0, 0, -4 - i}));
+    snapshot.lights[0].light.intensity = 0.1F;
+    snapshot.lights[9].light.intensity = 100;
+    snapshot.lights[2].position = {0, 0, 20};
+    const LampShadows chosen = choose_lamps(snapshot, 512);
+    std::vector<std::uint32_t> places;
+    for (const LampTiles& lamp : chosen.lamps) places.push_back(lamp.light);
+    EXPECT_EQ(places, (std::vector<std::uint32_t>{1, 3, 4, 5, 6, 7, 8, 9})) << "0 is weak, 2 shines behind the camera";
+    EXPECT_EQ(chosen.world_to_tile.size(), most_tiles);
+}
+
+TEST(RenderGpuLampShadows, LampInAClosedBoxLightsNothingOutside) {
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    add_chalk(snapshot, {-6, -2, -12}, {6, -1.5F, 0});
+    add_chalk(snapshot, {-6, -2, -9}, {6, 4, -8.5F});
+    snapshot.lights = {point_lamp({0.13F, 0.1F, -4})};
+    EXPECT_GT(brightest(shot(snapshot)), 0.1F);
+    add_shell(snapshot, {0, 0, -4}, 0.7F, 0.1F);
+    EXPECT_GT(brightest(shot(snapshot, false)), 0.1F) << "the floor around the box is in view";
+    for (const ShadowFilter filter : {ShadowFilter::Plain, ShadowFilter::Soft})
+        EXPECT_EQ(brightest(shot(snapshot, true, filter)), 0);
+}
+
+TEST(RenderGpuLampShadows, FacesMeetWithoutALine) {
+    // Inside a room all of whose walls the lamp sees nothing may be dark: not at the edges of a cube's faces, which
+    // cross the walls of a room that is no cube, and not at grazing angles.
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    add_chalk(snapshot, {-3, -2, -7}, {3, -room_half_height, 1});
+    add_chalk(snapshot, {-3, room_half_height, -7}, {3, 2, 1});
+    add_chalk(snapshot, {-3, -2, -7}, {-room_half_width, 2, 1});
+    add_chalk(snapshot, {room_half_width, -2, -7}, {3, 2, 1});
+    add_chalk(snapshot, {-3, -2, -7}, {3, 2, room_back});
+    for (const vec3 place : {vec3(0, 0, -4), vec3(0.7F, -0.6F, -3.1F), vec3(-1.9F, 0.9F, -5.2F)}) {
+        snapshot.lights = {point_lamp(place, 2)};
+        EXPECT_GT(brightest(shot(snapshot, false)), 0.1F);
+        for (const ShadowFilter filter : {ShadowFilter::Plain, ShadowFilter::Soft})
+            EXPECT_LE(codes_apart(shot(snapshot, true, filter), shot(snapshot, false)), 1.0F) << place.x;
+    }
+}
+
+TEST(RenderGpuLampShadows, PostBetweenASpotAndTheFloorShadesWhereRaysSay) {
+    // Seen from above: the picture's rows go along the floor, which lies 4 m below the camera.
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    const vec3 low(-0.2F, -0.15F, -3.95F), high(0.15F, 0.2F, -2.9F);  // stands on the floor, nearly
+    add_chalk(snapshot, {-8, -8, -5}, {8, 8, -4});
+    const vec3 lamp(-1.6F, 0.3F, -1.9F);
+    snapshot.lights = {spot_lamp(lamp, vec3(0.3F, -0.1F, -4) - lamp, 0.8F)};
+    const Pixels open = shot(snapshot);
+    add_chalk(snapshot, low, high);
+    const Pixels posted = shot(snapshot);
+    const float texel = 2 * std::tan(0.8F) * 3.3F / 512;
+    int lit = 0, shaded = 0;
+    for (std::uint32_t y = 0; y < lamp_extent.height; ++y) {
+        for (std::uint32_t x = 0; x < lamp_extent.width; ++x) {
+            const vec3 ray((static_cast<float>(x) + 0.5F - 80) / 60, (60 - static_cast<float>(y) - 0.5F) / 60, -1);
+            const vec3 point = ray * 4.0F;
+            // Slabs (Kay and Kajiya, "Ray Tracing Complex Scenes", 1986), of a post so much larger or smaller.
+            const auto meets = [&](vec3 from, vec3 to, float larger) {
+                const vec3 a = (low - larger - from) / (to - from), b = (high + larger - from) / (to - from);
+                const vec3 enter = glm::min(a, b), leave = glm::max(a, b);
+                const float first = std::max({enter.x, enter.y, enter.z, 0.0F});
+                return first < std::min({leave.x, leave.y, leave.z, 0.9999F});
+            };
+            if (open.at(x, y)[0] < 0.01F || meets(vec3(0), point, 0.02F)) continue;
+            // Two texels for the gap where it stands, and what the soft filter reaches.
+            const bool is_shaded = meets(point, lamp, -2 * texel), is_lit = !meets(point, lamp, 4 * texel);
+            const float share = posted.at(x, y)[0] / open.at(x, y)[0];
+            if (is_shaded) {
+                ++shaded;
+                EXPECT_LE(share, 0.5F) << x << ", " << y;
+            }
+            if (is_lit) {
+                ++lit;
+                EXPECT_EQ(share, 1) << x << ", " << y;
+            }
+        }
+    }
+    EXPECT_GT(lit, 2000);
+    EXPECT_GT(shaded, 100);
+}
+
+TEST(RenderGpuLampShadows, BeyondTheBudgetLampsShineWithoutAShadow) {
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    add_chalk(snapshot, {-6, -3, -9}, {6, 3, -8});
+    add_shell(snapshot, {0, 0, -4}, 0.7F, 0.1F);
+    for (int i = 0; i < 9; ++i) snapshot.lights.push_back(point_lamp({0, 0, -4}, 5));
+    EXPECT_GT(brightest(shot(snapshot)), 0.01F) << "the ninth";
+    snapshot.lights.pop_back();
+    EXPECT_EQ(brightest(shot(snapshot)), 0);
+    snapshot.lights[3].light.casts_shadow = false;
+    EXPECT_GT(brightest(shot(snapshot)), 0.01F) << "one that is told not to";
+}
+
+TEST(RenderGpuLampShadows, StillScenesGiveEqualFrames) {
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    add_chalk(snapshot, {-6, -3, -9}, {6, 3, -8});
+    for (int i = 0; i < 12; ++i) snapshot.lights.push_back(point_lamp({static_cast<float>(i) * 0.3F - 2, 0, -6}, 1));
+    add_chalk(snapshot, {-0.2F, -3, -7}, {0.2F, 3, -6.8F});
+    Renderer renderer = test::renderer_for({.extent = lamp_extent}, {}, lit_by(snapshot.lights));
+    const Pixels first = test::shoot(renderer, snapshot).color;
+    snapshot.time = 1.25;
+    EXPECT_EQ(first.rgba, test::shoot(renderer, snapshot).color.rgba);
+}
+
+}  // namespace darkroom::render

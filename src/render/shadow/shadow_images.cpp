@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "render/shadow/shadow_images.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "render/shadow/casters.hpp"
+
+namespace darkroom::render {
+
+namespace {
+
+/// A view of an array even where it has a single layer, as the shader's sampler wants it.
+Result<> view_as_array(gpu::Context& context, gpu::Image& image) {
+    if (image.info.array_layers > 1) return {};
+    const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                     .image = image.handle,
+                                     .viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY,
+                                     .format = image.info.format,
+                                     .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1}};
+    VkImageView view = VK_NULL_HANDLE;
+    Result<> made = context.check(context.vk.CreateImageView(context.device, &info, context.allocator, &view),
+                                  fmt::format("creating a view of the image \"{}\"", image.info.name));
+    if (!made) return made;
+    context.vk.DestroyImageView(context.device, image.view, context.allocator);
+    image.view = view;
+    return {};
+}
+
+Result<gpu::Image> create_map(gpu::Context& context, std::string name, VkExtent2D extent, std::uint32_t layers,
+                              VkImageUsageFlags usage) {
+    Result<gpu::Image> image = gpu::Image::create(context, {.name = std::move(name),
+                                                            .format = shadow_map_format,
+                                                            .extent = {extent.width, extent.height, 1},
+                                                            .array_layers = layers,
+                                                            .usage = usage | VK_IMAGE_USAGE_SAMPLED_BIT});
+    if (!image) return image;
+    if (Result<> viewed = view_as_array(context, *image); !viewed) return failure(std::move(viewed));
+    return image;
+}
+
+VkImageMemoryBarrier2 map_barrier(const gpu::Image& map) {
+    return {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .image = map.handle,
+            .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, map.info.array_layers}};
+}
+
+constexpr VkPipelineStageFlags2 depth_stages =
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+constexpr VkPipelineStageFlags2 reading_stages =
+    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+
+void record_barriers(const gpu::Context& context, VkCommandBuffer commands,
+                     std::span<const VkImageMemoryBarrier2> barriers) {
+    const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                      .imageMemoryBarrierCount = static_cast<std::uint32_t>(barriers.size()),
+                                      .pImageMemoryBarriers = barriers.data()};
+    context.vk.CmdPipelineBarrier2(commands, &dependency);
+}
+
+}  // namespace
+
+Result<gpu::Image> create_shadow_map(gpu::Context& context, std::string name, VkExtent2D extent, std::uint32_t layers) {
+    return create_map(context, std::move(name), extent, layers,
+                      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+}
+
+Result<gpu::Image> create_lit_map(gpu::Context& context) {
+    Result<gpu::Image> image = create_map(context, "no shadow", {1, 1}, 1, VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    if (!image) return image;
+    Result<> cleared = gpu::submit_and_wait(context, "clearing the empty shadow map", [&](VkCommandBuffer commands) {
+        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        const VkClearDepthStencilValue lit{.depth = 1};
+        const VkImageSubresourceRange range{VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
+        context.vk.CmdClearDepthStencilImage(commands, image->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &lit, 1,
+                                             &range);
+        gpu::transition(context, commands, *image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    });
+    if (!cleared) return failure(std::move(cleared));
+    return image;
+}
+
+Result<VkSampler> create_shadow_sampler(gpu::Context& context) {
+    const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                   .magFilter = VK_FILTER_NEAREST,
+                                   .minFilter = VK_FILTER_NEAREST,
+                                   .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+                                   .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+                                   .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+                                   .maxLod = VK_LOD_CLAMP_NONE,
+                                   .borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE};
+    VkSampler sampler = VK_NULL_HANDLE;
+    Result<> made = context.check(context.vk.CreateSampler(context.device, &info, context.allocator, &sampler),
+                                  "creating the sampler of shadow maps");
+    if (!made) return failure(std::move(made));
+    return sampler;
+}
+
+void begin_writing(const gpu::Context& context, VkCommandBuffer commands, std::span<const gpu::Image* const> maps) {
+    std::vector<VkImageMemoryBarrier2> barriers;
+    for (const gpu::Image* map : maps) {
+        VkImageMemoryBarrier2& barrier = barriers.emplace_back(map_barrier(*map));
+        barrier.srcStageMask = reading_stages;
+        barrier.dstStageMask = depth_stages;
+        barrier.dstAccessMask =
+            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+        barrier.newLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    }
+    record_barriers(context, commands, barriers);
+}
+
+void begin_reading(const gpu::Context& context, VkCommandBuffer commands, std::span<const gpu::Image* const> maps) {
+    std::vector<VkImageMemoryBarrier2> barriers;
+    for (const gpu::Image* map : maps) {
+        VkImageMemoryBarrier2& barrier = barriers.emplace_back(map_barrier(*map));
+        barrier.srcStageMask = depth_stages;
+        barrier.srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+        barrier.dstStageMask = reading_stages;
+        barrier.dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+        barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    }
+    record_barriers(context, commands, barriers);
+}
+
+}  // namespace darkroom::render
