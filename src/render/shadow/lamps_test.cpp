@@ -170,17 +170,20 @@ TEST(RenderGpuLampShadows, FacesMeetWithoutALine) {
     }
 }
 
-TEST(RenderGpuLampShadows, PostBetweenASpotAndTheFloorShadesWhereRaysSay) {
+namespace {
+
+/// `side`: of the floor that a tile sees at a metre's distance.
+void expect_shadow_of_a_post(const scene::LightState& light, float side) {
     // Seen from above: the picture's rows go along the floor, which lies 4 m below the camera.
     scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
     const vec3 low(-0.2F, -0.15F, -3.95F), high(0.15F, 0.2F, -2.9F);  // stands on the floor, nearly
     add_chalk(snapshot, {-8, -8, -5}, {8, 8, -4});
-    const vec3 lamp(-1.6F, 0.3F, -1.9F);
-    snapshot.lights = {spot_lamp(lamp, vec3(0.3F, -0.1F, -4) - lamp, 0.8F)};
+    const vec3 lamp = light.position;
+    snapshot.lights = {light};
     const Pixels open = shot(snapshot);
     add_chalk(snapshot, low, high);
     const Pixels posted = shot(snapshot);
-    const float texel = 2 * std::tan(0.8F) * 3.3F / 512;
+    const float texel = side * (lamp.z + 4) / 500;
     int lit = 0, shaded = 0;
     for (std::uint32_t y = 0; y < lamp_extent.height; ++y) {
         for (std::uint32_t x = 0; x < lamp_extent.width; ++x) {
@@ -209,6 +212,19 @@ TEST(RenderGpuLampShadows, PostBetweenASpotAndTheFloorShadesWhereRaysSay) {
     }
     EXPECT_GT(lit, 2000);
     EXPECT_GT(shaded, 100);
+}
+
+}  // namespace
+
+TEST(RenderGpuLampShadows, PostBetweenASpotAndTheFloorShadesWhereRaysSay) {
+    const vec3 lamp(-1.6F, 0.3F, -1.9F);
+    expect_shadow_of_a_post(spot_lamp(lamp, vec3(0.3F, -0.1F, -4) - lamp, 0.8F), 2 * std::tan(0.8F));
+}
+
+// Half of what is shaded lies in another face than the post.
+TEST(RenderGpuLampShadows, PostBetweenAPointAndTheFloorShadesWhereRaysSay) {
+    expect_shadow_of_a_post(point_lamp({-1.6F, 0.3F, -1.9F}), 2);
+    expect_shadow_of_a_post(point_lamp({-0.9F, -1.1F, -1.7F}), 2);
 }
 
 TEST(RenderGpuLampShadows, BeyondTheBudgetLampsShineWithoutAShadow) {
