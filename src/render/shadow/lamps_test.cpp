@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "render/renderer_test_support.hpp"
+#include "render/shadow/shadow_pass.hpp"
 
 namespace darkroom::render {
 
@@ -139,6 +140,35 @@ TEST(RenderLampShadows, TheBudgetGoesToThoseWithTheMostLightAtTheCamera) {
     for (const LampTiles& lamp : chosen.lamps) places.push_back(lamp.light);
     EXPECT_EQ(places, (std::vector<std::uint32_t>{1, 3, 4, 5, 6, 7, 8, 9})) << "0 is weak, 2 shines behind the camera";
     EXPECT_EQ(chosen.world_to_tile.size(), most_tiles);
+}
+
+TEST(RenderGpuLampShadows, TheImageIsAsLargeAsTheLampsNeedAndHoldsWhatTheyReach) {
+    gpu::Context& context = gpu::test::context();
+    GpuScene scene = test::must(GpuScene::create(context, {}));
+    const gpu::SetLayout layout = test::must(create_frame_layout(context));
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    add_chalk(snapshot, {-1, -1, -5}, {1, 1, -4});
+    add_chalk(snapshot, {11, -1, -14}, {13, 1, -12});  // in a corner of the tile, beyond the range
+    const auto pass_for = [&](const scene::Snapshot& lit) {
+        ShadowPass pass =
+            test::must(ShadowPass::create(context, layout.handle, scene, {}, {.tiles = tiles_needed(lit)}));
+        pass.prepare(lit);
+        return pass;
+    };
+    const ShadowPass without = pass_for(snapshot);
+    EXPECT_EQ(without.atlas().info.extent.width, 1U) << "no lamp, no image";
+    EXPECT_TRUE(without.caster_lists().empty());
+    snapshot.lights = {point_lamp({0, 0, -2})};
+    const ShadowPass six = pass_for(snapshot);
+    EXPECT_EQ(six.atlas().info.extent.width, 6 * 512U);
+    EXPECT_EQ(six.atlas().info.extent.height, 512U);
+    ASSERT_EQ(six.caster_lists().size(), 6U);
+    EXPECT_EQ(six.caster_lists()[5].order, std::vector<std::uint32_t>{0});
+    for (std::size_t face = 0; face < 5; ++face) EXPECT_TRUE(six.caster_lists()[face].order.empty()) << face;
+    snapshot.lights.resize(3, snapshot.lights[0]);
+    const ShadowPass eighteen = pass_for(snapshot);
+    EXPECT_EQ(eighteen.atlas().info.extent.width, 8 * 512U);
+    EXPECT_EQ(eighteen.atlas().info.extent.height, 3 * 512U);
 }
 
 TEST(RenderGpuLampShadows, LampInAClosedBoxLightsNothingOutside) {
