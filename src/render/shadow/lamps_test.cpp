@@ -192,7 +192,7 @@ TEST(RenderGpuLampShadows, FacesMeetWithoutALine) {
     add_chalk(snapshot, {-3, -2, -7}, {-room_half_width, 2, 1});
     add_chalk(snapshot, {room_half_width, -2, -7}, {3, 2, 1});
     add_chalk(snapshot, {-3, -2, -7}, {3, 2, room_back});
-    for (const vec3 place : {vec3(0, 0, -4), vec3(0.7F, -0.6F, -3.1F), vec3(-1.9F, 0.9F, -5.2F)}) {
+    for (const vec3& place : {vec3(0, 0, -4), vec3(0.7F, -0.6F, -3.1F), vec3(-1.9F, 0.9F, -5.2F)}) {
         snapshot.lights = {point_lamp(place, 2)};
         EXPECT_GT(brightest(shot(snapshot, false)), 0.1F);
         for (const ShadowFilter filter : {ShadowFilter::Plain, ShadowFilter::Soft})
