@@ -61,7 +61,7 @@ struct ModelMaterial {
 struct Vertex {
     vec3 position{0};
     vec3 normal{0, 1, 0};
-    vec4 tangent{0};  ///< w: handedness; all 0: the shader makes one from derivatives
+    vec4 tangent{0};  ///< w: handedness; all 0: no normal map, or none to be had
     vec2 uv0{0}, uv1{0};
     std::array<std::uint8_t, 4> color{255, 255, 255, 255};  ///< linear
 };

@@ -15,7 +15,8 @@ void pick(std::vector<T>& values, std::span<const std::uint32_t> from) {
     values = std::move(picked);
 }
 
-// Vertex i becomes what vertex from[i] was.
+}  // namespace
+
 void rearrange(Primitive& primitive, std::span<const std::uint32_t> from) {
     pick(primitive.vertices, from);
     pick(primitive.skin, from);
@@ -24,8 +25,6 @@ void rearrange(Primitive& primitive, std::span<const std::uint32_t> from) {
         pick(target.normals, from);
     }
 }
-
-}  // namespace
 
 // glTF 2.0 specification, 3.7.2.1: the corners of triangle i, in the order that keeps its front.
 std::vector<std::uint32_t> triangles_of(std::span<const std::uint32_t> corners, int mode) {

@@ -14,6 +14,9 @@ namespace darkroom::scene::gltf {
 /// `mode`: of glTF: 4 triangles, 5 strip, 6 fan. Corners that make no whole triangle are passed over.
 [[nodiscard]] std::vector<std::uint32_t> triangles_of(std::span<const std::uint32_t> corners, int mode);
 
+/// Vertex i becomes what vertex from[i] was, in all arrays but the indices.
+void rearrange(Primitive& primitive, std::span<const std::uint32_t> from);
+
 /// Gives every triangle vertices of its own, with its normal.
 void make_flat(Primitive& primitive);
 

@@ -6,6 +6,8 @@
 
 #include "image/codec/decoder.hpp"
 #include "scene/gltf/convert.hpp"
+#include "scene/gltf/geometry.hpp"
+#include "scene/gltf/tangents.hpp"
 #include "scene/model.hpp"
 
 namespace darkroom::scene {
@@ -37,6 +39,37 @@ std::vector<bool> needed(std::size_t count, const std::vector<Node>& nodes, std:
     return is_needed;
 }
 
+bool has_tangents(const Primitive& primitive) {
+    return std::ranges::any_of(primitive.vertices, [](const Vertex& vertex) { return vertex.tangent != vec4(0); });
+}
+
+// glTF 2.0, 3.7.2.1: for the coordinates of the normal map. Without one nothing reads them.
+Result<> make_missing_tangents(Document& document, Model& model) {
+    for (std::size_t i = 0; i < model.meshes.size(); ++i)
+        for (Primitive& primitive : model.meshes[i].primitives) {
+            if (primitive.material == no_index || has_tangents(primitive)) continue;
+            const Texture& texture = model.materials[primitive.material].normal_texture;
+            if (!texture.is_given()) continue;
+            const std::string place = fmt::format("/meshes/{}", i);
+            const std::uint64_t taken = document.budget().taken();
+            const std::size_t before = gltf::size_in_memory(primitive);
+            if (auto charged = document.budget().take(place, "vertices with tangents", primitive.vertices.size(),
+                                                      gltf::tangent_bytes_per_vertex(primitive));
+                !charged)
+                return charged;
+            if (auto charged = document.budget().take(place, "corners with tangents", primitive.indices.size(),
+                                                      gltf::tangent_bytes_per_corner);
+                !charged)
+                return charged;
+            gltf::make_tangents(primitive, texture);
+            document.budget().give_back_to(taken);
+            if (auto charged = document.budget().take(place, "bytes", gltf::size_in_memory(primitive) - before, 1);
+                !charged)
+                return charged;
+        }
+    return {};
+}
+
 Result<> convert_drawn(Document& document, const NodeOrder& order, Model& model) {
     const tinygltf::Model& source = document.model();
     if (auto done = convert_all(
@@ -57,6 +90,7 @@ Result<> convert_drawn(Document& document, const NodeOrder& order, Model& model)
             [&](std::size_t i) { return convert_material(document, i, is_broken); }, model.materials);
         !done)
         return done;
+    if (auto done = make_missing_tangents(document, model); !done) return done;
     return convert_all(
         document, source.skins.size(), needed(source.skins.size(), model.nodes, &Node::skin),
         [&](std::size_t i) { return convert_skin(document, i, order); }, model.skins);

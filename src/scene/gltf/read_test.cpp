@@ -10,6 +10,11 @@
 namespace darkroom::scene {
 namespace {
 
+// A PNG.
+constexpr const char* red_pixel =
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAA"
+    "MBAQDJ/pLvAAAAAElFTkSuQmCC";
+
 class SceneGltfRead : public WithFolder {
   protected:
     Result<Model> read(TestModel& model) {
@@ -201,11 +206,7 @@ TEST_F(SceneGltfRead, ParentsComeBeforeChildren) {
 TEST_F(SceneGltfRead, MaterialsTexturesAndTheirTransforms) {
     TestModel test;
     test.add_triangle()["material"] = 0;
-    // A PNG of one red pixel.
-    test.json["images"] = {{{"uri",
-                             "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4z8AAAA"
-                             "MBAQDJ/pLvAAAAAElFTkSuQmCC"}},
-                           {{"uri", "missing.png"}}};
+    test.json["images"] = {{{"uri", red_pixel}}, {{"uri", "missing.png"}}};
     test.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
     test.json["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 1}}};
     const nlohmann::json transform{
@@ -256,6 +257,27 @@ TEST_F(SceneGltfRead, MaterialsTexturesAndTheirTransforms) {
     EXPECT_TRUE(model.images[1].is_empty());
     ASSERT_FALSE(model.warnings.empty());
     EXPECT_NE(model.warnings.back().find("missing.png"), std::string::npos) << model.warnings.back();
+}
+
+// Tangents are made where a normal map reads them, those of the file kept.
+TEST_F(SceneGltfRead, NormalMapsGetTangents) {
+    const auto read_with = [&](bool has_map, bool has_tangents) {
+        TestModel test;
+        nlohmann::json& primitive = test.add_triangle();
+        primitive["attributes"]["NORMAL"] = test.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+        primitive["attributes"]["TEXCOORD_0"] = test.accessor<float>({0, 0, 0, 1, 1, 0}, "VEC2");
+        if (has_tangents)
+            primitive["attributes"]["TANGENT"] = test.accessor<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4");
+        primitive["material"] = 0;
+        test.json["images"] = {{{"uri", red_pixel}}};
+        test.json["textures"] = {{{"source", 0}}};
+        test.json["materials"] = {{{has_map ? "normalTexture" : "emissiveTexture", {{"index", 0}}}}};
+        const Model model = read_good(test);
+        return only_primitive(model).vertices.at(0).tangent;
+    };
+    EXPECT_EQ(read_with(true, false), vec4(0, 1, 0, 1));
+    EXPECT_EQ(read_with(true, true), vec4(1, 0, 0, 1));
+    EXPECT_EQ(read_with(false, false), vec4(0));
 }
 
 TEST_F(SceneGltfRead, LightsAndCameras) {
