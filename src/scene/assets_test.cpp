@@ -95,9 +95,20 @@ TEST_F(SceneAssets, TexturesAndSkybox) {
     EXPECT_EQ(assets.entities[0].particle_texture, 1u);
     EXPECT_EQ(assets.entities[1].sprite_texture, no_index);
     EXPECT_TRUE(has_warning(assets, "entity 'other' asks for 'gone.png': there is no such file"));
-    // 0.5 of light is 188 in sRGB.
-    EXPECT_EQ(assets.images[0].rgba.at(0), 188);
-    EXPECT_EQ(assets.images[0].rgba.at(3), 255);
+    EXPECT_EQ(assets.images[0].kind, ImageKind::Halves);
+    EXPECT_EQ(glm::unpackHalf1x16(assets.images[0].wide.at(0)), 0.5F);
+    EXPECT_EQ(glm::unpackHalf1x16(assets.images[0].wide.at(3)), 1);
+}
+
+TEST_F(SceneAssets, FloatsKeepWhatIsBrighterThanWhite) {
+    Picture picture(2, 1);
+    picture.pixels = {12, 0.5005F, -1, 1, 1e9F, 0, 1, 2};
+    ASSERT_TRUE(write_frame(file("lamp.exr"), {.color = picture}));
+    const auto image = read_image(file("lamp.exr"));
+    ASSERT_TRUE(image) << image.error().text;
+    std::vector<float> values;
+    for (const std::uint16_t half : image->wide) values.push_back(glm::unpackHalf1x16(half));
+    EXPECT_EQ(values, (std::vector<float>{12, 0.50048828125F, 0, 1, 65504, 0, 1, 1}));
 }
 
 TEST_F(SceneAssets, BrokenImagesSayWhatAndWhere) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Many images decoded at once, to four bytes a pixel, on all processors. The results do not depend on how many there
+// Many images decoded at once, as fine as their files, on all processors. The results do not depend on how many there
 // are or on who is first. It caches nothing.
 
 #include <cstddef>

@@ -2,11 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 
-#include "core/srgb.hpp"
 #include "core/thread/parallel.hpp"
 #include "image/picture/picture_source.hpp"
 #include "scene/assets.hpp"
@@ -18,19 +17,14 @@ namespace {
 // GPUs take no larger textures.
 constexpr std::uint32_t most_texture_side = 16384;
 
-// What a batch may become, in pixels: a few bytes of a damaged file must not ask for gigabytes.
+// What a batch may become, in pixels of four bytes: a few bytes of a damaged file must not ask for gigabytes.
 constexpr std::size_t free_pixels = std::size_t{1} << 27;
 constexpr std::size_t pixels_per_byte = 64;
 
-// IEC 61966-2-1: colour textures are decoded as sRGB where they are used.
-std::uint8_t encoded(float linear) {
-    if (!(linear > 0)) return 0;
-    return static_cast<std::uint8_t>(std::lround(std::min(srgb_encode(linear), 1.0F) * 255));
-}
-
-std::uint8_t unencoded(float value) {
-    return value > 0 ? static_cast<std::uint8_t>(std::lround(std::min(value, 1.0F) * 255)) : std::uint8_t{0};
-}
+// The nearest half that textures may hold: no light below 0, none that is infinite.
+std::uint16_t half_of(float value, float most) { return glm::packHalf1x16(value > 0 ? std::min(value, most) : 0.0F); }
+std::uint16_t half_of_light(float value) { return half_of(value, 65504); }
+std::uint16_t half_of_alpha(float value) { return half_of(value, 1); }
 
 /// A file whose header has been read and whose pixels have not.
 class OpenedImage {
@@ -47,13 +41,13 @@ class OpenedImage {
     }
 
     [[nodiscard]] std::size_t pixel_count() const { return std::size_t{part().width} * part().height; }
+    /// What a decoded picture takes, in pixels of four bytes.
+    [[nodiscard]] std::size_t room() const { return pixel_count() * (kind() == SampleKind::Integer8 ? 1 : 2); }
     [[nodiscard]] std::size_t byte_count() const { return byte_count_; }
 
     [[nodiscard]] Result<Image> decode() {
         Image image{.width = part().width, .height = part().height};
-        const SampleKind kind = part().kinds.front();
-        const bool is_float = kind == SampleKind::Half || kind == SampleKind::Float;
-        if (auto done = is_float ? read_floats(image) : read_integers(image); !done) return failure(std::move(done));
+        if (auto done = read_into(image); !done) return failure(std::move(done));
         return image;
     }
 
@@ -61,19 +55,20 @@ class OpenedImage {
     OpenedImage(std::unique_ptr<PictureSource> source, std::size_t byte_count)
         : source_(std::move(source)), byte_count_(byte_count) {}
     [[nodiscard]] const FilePart& part() const { return source_->parts().front(); }
+    [[nodiscard]] SampleKind kind() const { return part().kinds.front(); }
     [[nodiscard]] std::size_t channel_count() const { return std::min<std::size_t>(part().channels.size(), 4); }
 
     // One channel is grey, two are grey and alpha.
-    template <class T, class ToColor, class ToAlpha>
+    template <class T, class Out, class ToColor, class ToAlpha>
     static void spread(std::span<const T> from, std::size_t channels, const ToColor& to_color, const ToAlpha& to_alpha,
-                       std::vector<std::uint8_t>& rgba) {
+                       Out opaque, std::vector<Out>& rgba) {
         const std::size_t count = from.size() / channels;
         rgba.resize(count * 4);
         const bool is_gray = channels < 3;
         for (std::size_t i = 0; i < count; ++i) {
             const T* pixel = from.data() + i * channels;
             for (std::size_t c = 0; c < 3; ++c) rgba[i * 4 + c] = to_color(pixel[is_gray ? 0 : c]);
-            rgba[i * 4 + 3] = channels % 2 == 0 ? to_alpha(pixel[channels - 1]) : std::uint8_t{255};
+            rgba[i * 4 + 3] = channels % 2 == 0 ? to_alpha(pixel[channels - 1]) : opaque;
         }
     }
 
@@ -92,21 +87,28 @@ class OpenedImage {
         return source_->read_rows(0, 0, part().height, places);
     }
 
-    [[nodiscard]] Result<> read_integers(Image& image) {
-        std::vector<std::uint8_t> samples;
-        if (auto done = read(SampleKind::Integer8, samples); !done) return done;
-        const auto same = [](std::uint8_t value) { return value; };
-        if (channel_count() == 4)
-            image.rgba = std::move(samples);
-        else
-            spread<std::uint8_t>(samples, channel_count(), same, same, image.rgba);
+    [[nodiscard]] Result<> read_into(Image& image) {
+        if (kind() == SampleKind::Integer8) return read_integers(SampleKind::Integer8, image.rgba);
+        if (kind() == SampleKind::Integer16 || kind() == SampleKind::Integer32) {
+            image.kind = ImageKind::Codes16;
+            return read_integers(SampleKind::Integer16, image.wide);
+        }
+        image.kind = ImageKind::Halves;
+        std::vector<float> samples;
+        if (auto done = read(SampleKind::Float, samples); !done) return done;
+        spread<float>(samples, channel_count(), half_of_light, half_of_alpha, half_of_alpha(1), image.wide);
         return {};
     }
 
-    [[nodiscard]] Result<> read_floats(Image& image) {
-        std::vector<float> samples;
-        if (auto done = read(SampleKind::Float, samples); !done) return done;
-        spread<float>(samples, channel_count(), encoded, unencoded, image.rgba);
+    template <class T>
+    [[nodiscard]] Result<> read_integers(SampleKind kind, std::vector<T>& rgba) {
+        std::vector<T> samples;
+        if (auto done = read(kind, samples); !done) return done;
+        const auto same = [](T value) { return value; };
+        if (channel_count() == 4)
+            rgba = std::move(samples);
+        else
+            spread<T>(samples, channel_count(), same, same, std::numeric_limits<T>::max(), rgba);
         return {};
     }
 
@@ -147,8 +149,8 @@ std::vector<Result<Image>> decode_images(std::span<const EncodedImage> sources) 
     for (std::size_t i = 0; i < opened.size(); ++i) {
         if (!opened[i]) continue;
         const std::size_t count = opened[i]->pixel_count();
-        if (count <= allowed) {
-            allowed -= count;
+        if (opened[i]->room() <= allowed) {
+            allowed -= opened[i]->room();
             continue;
         }
         results[i] = user_error(

@@ -18,13 +18,18 @@ namespace darkroom::scene {
 
 inline constexpr std::uint32_t no_index = ~0U;
 
-/// Four bytes a pixel, top row first. Which transfer function they have is a matter of use: base colour and emissive
-/// are sRGB, everything else linear.
+/// What the samples of an Image are: codes of 8 or 16 bits, whose transfer function is a matter of use (base colour and
+/// emissive are sRGB, everything else linear), or halves, which are linear always.
+enum class ImageKind : std::uint8_t { Codes8, Codes16, Halves };
+
+/// Four samples a pixel, top row first, as fine as the file has them.
 struct Image {
     std::string name;
     std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
-    [[nodiscard]] bool is_empty() const { return rgba.empty(); }
+    std::vector<std::uint8_t> rgba{};   ///< of Codes8
+    std::vector<std::uint16_t> wide{};  ///< of the others
+    ImageKind kind = ImageKind::Codes8;
+    [[nodiscard]] bool is_empty() const { return rgba.empty() && wide.empty(); }
 };
 
 enum class Wrap : std::uint8_t { Repeat, Mirror, Clamp };

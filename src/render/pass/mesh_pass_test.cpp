@@ -300,6 +300,31 @@ TEST(RenderGpuMesh, TexturesAreDecodedByTheirUse) {
     expect_near(middle(shoot(renderer, snapshot).color), {0.503F, 1.006F, 0.503F, 1}, 4e-3F);
 }
 
+// What lies between two codes of 8 bits differs on the screen, and light above 1 stays.
+TEST(RenderGpuMesh, WideTexturesKeepTheirNumbers) {
+    const auto shown = [](scene::ImageKind kind, std::uint16_t sample) {
+        scene::Assets assets;
+        assets.images.push_back({.name = "wide", .width = 2, .height = 2, .wide = {}, .kind = kind});
+        const std::uint16_t alpha = kind == scene::ImageKind::Halves ? glm::packHalf1x16(1) : 0xffff;
+        for (int i = 0; i < 4; ++i)
+            assets.images[0].wide.insert(assets.images[0].wide.end(), {sample, sample, sample, alpha});
+        Renderer renderer = renderer_for({.extent = small}, assets);
+        scene::Snapshot snapshot = snapshot_of(small);
+        scene::SnapshotMaterial material = plain({1, 1, 1, 1});
+        material.entity_texture = 0;
+        add_wall(snapshot, 4, 3, material);
+        return middle(shoot(renderer, snapshot).color)[0];
+    };
+    float before = 0;
+    for (std::uint16_t code = 188 * 257; code <= 189 * 257; code = static_cast<std::uint16_t>(code + 64)) {
+        const float value = shown(scene::ImageKind::Codes16, code);
+        EXPECT_GT(value, before) << code;
+        EXPECT_NEAR(value, std::pow((static_cast<float>(code) / 65535 + 0.055F) / 1.055F, 2.4F), 1e-3F) << code;
+        before = value;
+    }
+    EXPECT_EQ(shown(scene::ImageKind::Halves, glm::packHalf1x16(12)), 12);
+}
+
 TEST(RenderGpuMesh, TexturesKeepTheirLevelAtTheEdgesOfTriangles) {
     // Half white, half black: every smaller level is grey. The mesh shows a piece of the white half, much enlarged.
     scene::Assets assets;

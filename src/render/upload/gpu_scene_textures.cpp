@@ -72,6 +72,32 @@ bool has_anisotropy(const gpu::Context& context) {
     return features.features.samplerAnisotropy == VK_TRUE;
 }
 
+bool is_filtered(const gpu::Context& context, VkFormat format) {
+    VkFormatProperties properties{};
+    context.vk.GetPhysicalDeviceFormatProperties(context.physical_device, format, &properties);
+    return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0;
+}
+
+/// A picture's levels; those of 8 bits are without level 0, which is the picture.
+struct Chain {
+    VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
+    std::vector<MipLevel> levels;
+    std::vector<WideMipLevel> wide;
+};
+
+Chain chain_of(const gpu::Context& context, const scene::Image& image, bool is_srgb, std::optional<float> cutoff) {
+    if (image.kind == scene::ImageKind::Codes8)
+        return {.format = is_srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM,
+                .levels = mip_levels(image.width, image.height, image.rgba, is_srgb, cutoff),
+                .wide = {}};
+    // Every device filters halves.
+    const bool as_codes =
+        image.kind == scene::ImageKind::Codes16 && !is_srgb && is_filtered(context, VK_FORMAT_R16G16B16A16_UNORM);
+    return {.format = as_codes ? VK_FORMAT_R16G16B16A16_UNORM : VK_FORMAT_R16G16B16A16_SFLOAT,
+            .levels = {},
+            .wide = wide_mip_levels(image, is_srgb, as_codes, cutoff)};
+}
+
 }  // namespace
 
 GpuTextures::~GpuTextures() {
@@ -95,32 +121,35 @@ Result<> GpuTextures::create(const scene::Assets& assets, Uploader& uploader) {
 }
 
 Result<> GpuTextures::create_constant(std::array<std::uint8_t, 4> rgba, Uploader& uploader, std::string_view name) {
-    const Uploader::Level level{.width = 1, .height = 1, .rgba = rgba};
+    const Uploader::Level level{.width = 1, .height = 1, .bytes = std::as_bytes(std::span(rgba))};
     return uploader.image(images_.emplace_back(), VK_FORMAT_R8G8B8A8_UNORM, {&level, 1}, name);
 }
 
 Result<> GpuTextures::create_textures(const scene::Assets& assets, std::span<const TextureKey> keys,
                                       Uploader& uploader) {
     const std::map<TextureKey, float> cutoffs = alpha_cutoffs(assets);
-    std::vector<std::vector<MipLevel>> chains(keys.size());
+    std::vector<Chain> chains(keys.size());
     parallel_for(keys.size(), 0, [&](std::size_t i) {
-        const scene::Image& image = *image_of(assets, keys[i]);
         const auto cutoff = cutoffs.find(keys[i]);
-        chains[i] = mip_levels(image.width, image.height, image.rgba, keys[i].transfer == Transfer::Srgb,
-                               cutoff == cutoffs.end() ? std::nullopt : std::optional(cutoff->second));
+        chains[i] = chain_of(*context_, *image_of(assets, keys[i]), keys[i].transfer == Transfer::Srgb,
+                             cutoff == cutoffs.end() ? std::nullopt : std::optional(cutoff->second));
     });
     const std::uint32_t limit = context_->traits.max_image_dimension;
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const scene::Image& image = *image_of(assets, keys[i]);
         std::vector<Uploader::Level> levels;
         // What is too large for the device is shown by its first level that is not.
-        if (image.width <= limit && image.height <= limit) levels.push_back({image.width, image.height, image.rgba});
-        for (const MipLevel& level : chains[i])
-            if (level.width <= limit && level.height <= limit)
-                levels.push_back({level.width, level.height, level.rgba});
-        const VkFormat format = keys[i].transfer == Transfer::Srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+        const auto add = [&](std::uint32_t width, std::uint32_t height, std::span<const std::byte> bytes) {
+            if (width <= limit && height <= limit) levels.push_back({width, height, bytes});
+        };
+        if (!image.rgba.empty()) add(image.width, image.height, std::as_bytes(std::span(image.rgba)));
+        for (const MipLevel& level : chains[i].levels)
+            add(level.width, level.height, std::as_bytes(std::span(level.rgba)));
+        for (const WideMipLevel& level : chains[i].wide)
+            add(level.width, level.height, std::as_bytes(std::span(level.rgba)));
         numbers_.emplace(keys[i], images_.size());
-        if (Result<> done = uploader.image(images_.emplace_back(), format, levels, image.name); !done) return done;
+        if (Result<> done = uploader.image(images_.emplace_back(), chains[i].format, levels, image.name); !done)
+            return done;
     }
     return {};
 }

@@ -50,20 +50,20 @@ Result<> Uploader::image(gpu::Image& out, VkFormat format, std::span<const Level
     if (!made) return failure(std::move(made));
     out = std::move(*made);
     std::size_t size = 0;
-    for (const Level& level : levels) size += level.rgba.size();
+    for (const Level& level : levels) size += level.bytes.size();
     std::byte* mapped = nullptr;
     const Result<VkBuffer> source = stage(size, mapped);
     if (!source) return failure(source.error());
     ImageCopy copy{.source = *source, .target = &out, .regions = {}};
     std::size_t offset = 0;
     for (const Level& level : levels) {
-        std::memcpy(mapped + offset, level.rgba.data(), level.rgba.size());
+        std::memcpy(mapped + offset, level.bytes.data(), level.bytes.size());
         copy.regions.push_back({.bufferOffset = offset,
                                 .imageSubresource = {.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT,
                                                      .mipLevel = static_cast<std::uint32_t>(copy.regions.size()),
                                                      .layerCount = 1},
                                 .imageExtent = {level.width, level.height, 1}});
-        offset += level.rgba.size();
+        offset += level.bytes.size();
     }
     image_copies_.push_back(std::move(copy));
     return {};

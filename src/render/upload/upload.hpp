@@ -19,11 +19,12 @@ class Uploader {
     /// zero beyond the bytes.
     [[nodiscard]] Result<gpu::Buffer> buffer(std::span<const std::byte> bytes, VkBufferUsageFlags usage,
                                              std::size_t least_size, std::string_view name);
-    /// A sampled RGBA8 image with these levels, in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL once flush() has returned.
-    /// The levels halve (rounding down, not below 1). The image must stay where it is until flush().
+    /// A sampled RGBA image of 8 or 16 bits a sample with these levels, as `format` has them, in
+    /// VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL once flush() has returned. The levels halve (rounding down, not below
+    /// 1). The image must stay where it is until flush().
     struct Level {
         std::uint32_t width = 0, height = 0;
-        std::span<const std::uint8_t> rgba;
+        std::span<const std::byte> bytes;
     };
     Result<> image(gpu::Image& out, VkFormat format, std::span<const Level> levels, std::string_view name);
     /// Submits what was asked for and waits.

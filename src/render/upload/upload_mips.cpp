@@ -107,32 +107,85 @@ MipLevel encoded(const LinearLevel& level, bool is_srgb) {
     return out;
 }
 
-}  // namespace
+/// Linear numbers of codes of 16 bits.
+std::vector<float> decoded_codes(bool is_srgb) {
+    std::vector<float> table(steps);
+    for (std::size_t i = 0; i < steps; ++i) {
+        const float value = static_cast<float>(i) / (static_cast<float>(steps) - 1);
+        table[i] = is_srgb ? srgb_decode(value) : value;
+    }
+    return table;
+}
 
-std::vector<MipLevel> mip_levels(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba,
-                                 bool is_srgb, std::optional<float> alpha_cutoff) {
-    std::vector<MipLevel> levels;
-    if (width <= 1 && height <= 1) return levels;
-    const std::array<float, 256>& color = decoded_bytes(is_srgb);
-    const std::array<float, 256>& alpha = decoded_bytes(false);
+std::vector<float> decoded_halves() {
+    std::vector<float> table(steps);
+    for (std::size_t i = 0; i < steps; ++i) table[i] = glm::unpackHalf1x16(static_cast<std::uint16_t>(i));
+    return table;
+}
+
+std::uint16_t wide_sample(float value, bool as_code) {
+    if (!as_code) return glm::packHalf1x16(value);
+    return static_cast<std::uint16_t>(std::clamp(value, 0.0F, 1.0F) * 65535 + 0.5F);
+}
+
+WideMipLevel wide(const LinearLevel& level, bool as_codes) {
+    WideMipLevel out{.width = level.width, .height = level.height, .rgba = {}};
+    out.rgba.reserve(level.values.size());
+    for (const float value : level.values) out.rgba.push_back(wide_sample(value, as_codes));
+    return out;
+}
+
+/// Calls `keep(level)` with levels 1, 2, ... of what `source` gives.
+template <class Source, class Keep>
+void each_level(std::uint32_t width, std::uint32_t height, const Source& source, std::optional<float> alpha_cutoff,
+                const Keep& keep) {
+    if (width <= 1 && height <= 1) return;
+    const std::size_t count = std::size_t{width} * height * 4;
     std::size_t covered = 0;
     if (alpha_cutoff)
-        for (std::size_t i = 3; i < rgba.size(); i += 4) covered += alpha[rgba[i]] >= *alpha_cutoff ? 1 : 0;
-    const float wanted = static_cast<float>(covered) / static_cast<float>(std::size_t{width} * height);
-    LinearLevel level = halved(
-        width, height, [&](std::size_t place) { return place % 4 == 3 ? alpha[rgba[place]] : color[rgba[place]]; });
+        for (std::size_t i = 3; i < count; i += 4) covered += source(i) >= *alpha_cutoff ? 1 : 0;
+    const float wanted = static_cast<float>(covered) / static_cast<float>(count / 4);
+    LinearLevel level = halved(width, height, source);
     while (true) {
         if (alpha_cutoff) {
             // The next level is made of what is measured, not of what was scaled.
             LinearLevel scaled = level;
             scale_alpha(scaled, *alpha_cutoff, wanted);
-            levels.push_back(encoded(scaled, is_srgb));
+            keep(scaled);
         } else {
-            levels.push_back(encoded(level, is_srgb));
+            keep(level);
         }
-        if (level.width == 1 && level.height == 1) return levels;
+        if (level.width == 1 && level.height == 1) return;
         level = halved(level.width, level.height, [&](std::size_t place) { return level.values[place]; });
     }
+}
+
+}  // namespace
+
+std::vector<MipLevel> mip_levels(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgba,
+                                 bool is_srgb, std::optional<float> alpha_cutoff) {
+    std::vector<MipLevel> levels;
+    const std::array<float, 256>& color = decoded_bytes(is_srgb);
+    const std::array<float, 256>& alpha = decoded_bytes(false);
+    each_level(
+        width, height, [&](std::size_t place) { return place % 4 == 3 ? alpha[rgba[place]] : color[rgba[place]]; },
+        alpha_cutoff, [&](const LinearLevel& level) { levels.push_back(encoded(level, is_srgb)); });
+    return levels;
+}
+
+std::vector<WideMipLevel> wide_mip_levels(const scene::Image& image, bool is_srgb, bool as_codes,
+                                          std::optional<float> alpha_cutoff) {
+    static const std::vector<float> srgb = decoded_codes(true), linear = decoded_codes(false), half = decoded_halves();
+    const bool has_codes = image.kind == scene::ImageKind::Codes16;
+    const std::vector<float>& alpha = has_codes ? linear : half;
+    const std::vector<float>& color = has_codes && is_srgb ? srgb : alpha;
+    const auto source = [&](std::size_t place) { return (place % 4 == 3 ? alpha : color)[image.wide[place]]; };
+    std::vector<WideMipLevel> levels{{.width = image.width, .height = image.height, .rgba = {}}};
+    levels[0].rgba.reserve(image.wide.size());
+    for (std::size_t i = 0; i < image.wide.size(); ++i) levels[0].rgba.push_back(wide_sample(source(i), as_codes));
+    each_level(image.width, image.height, source, alpha_cutoff,
+               [&](const LinearLevel& level) { levels.push_back(wide(level, as_codes)); });
+    return levels;
 }
 
 }  // namespace darkroom::render

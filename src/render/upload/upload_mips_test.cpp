@@ -89,6 +89,27 @@ TEST(RenderMips, MaskedTexturesKeepTheirCoverage) {
     }
 }
 
+TEST(RenderMips, WideLevelsAreMeansOfLight) {
+    scene::Image image{.width = 2,
+                       .height = 1,
+                       .wide = {0, 0x8040, 0x8000, 0xffff, 0xffff, 0x8040, 0x8002, 1},
+                       .kind = scene::ImageKind::Codes16};
+    // Half of the light, and not what the mean of the codes decodes to (0.214).
+    std::vector<WideMipLevel> levels = wide_mip_levels(image, true, false);
+    ASSERT_EQ(levels.size(), 2U);
+    EXPECT_NEAR(glm::unpackHalf1x16(levels[1].rgba[0]), 0.5F, 1e-3F);
+    EXPECT_NEAR(glm::unpackHalf1x16(levels[1].rgba[1]), 0.21495F, 1e-4F);
+    EXPECT_NEAR(glm::unpackHalf1x16(levels[1].rgba[3]), 0.5F, 1e-3F);
+    levels = wide_mip_levels(image, false, true);
+    EXPECT_EQ(levels[0].rgba, image.wide);
+    EXPECT_EQ(levels[1].rgba, (std::vector<std::uint16_t>{0x8000, 0x8040, 0x8001, 0x8000}));
+    image.kind = scene::ImageKind::Halves;
+    for (std::size_t i = 0; i < 8; ++i) image.wide[i] = glm::packHalf1x16(i < 4 ? 12.0F : 2.0F);
+    levels = wide_mip_levels(image, true, false);
+    EXPECT_EQ(levels[0].rgba, image.wide);
+    EXPECT_EQ(glm::unpackHalf1x16(levels[1].rgba[0]), 7);
+}
+
 TEST(RenderMips, EveryCodeSurvivesDecodingAndEncoding) {
     for (int code = 0; code < 256; ++code) {
         const auto flat = picture(2, 1, [&](std::uint32_t, std::uint32_t) { return code; });

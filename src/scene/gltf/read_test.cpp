@@ -259,6 +259,20 @@ TEST_F(SceneGltfRead, MaterialsTexturesAndTheirTransforms) {
     EXPECT_NE(model.warnings.back().find("missing.png"), std::string::npos) << model.warnings.back();
 }
 
+TEST_F(SceneGltfRead, SixteenBitsStay) {
+    TestModel test;
+    test.add_triangle();
+    // A PNG of two pixels.
+    test.json["images"] = {
+        {{"uri",
+          "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABEAIAAAAr0DSeAAAAFUlEQVR4nGNoYGhwaGhgYGRg"
+          "+v8fABfVBELEPnO+AAAAAElFTkSuQmCC"}}};
+    const Model model = read_good(test);
+    ASSERT_EQ(model.images.size(), 1u);
+    EXPECT_EQ(model.images[0].kind, ImageKind::Codes16);
+    EXPECT_EQ(model.images[0].wide, (std::vector<std::uint16_t>{0x8000, 0x8040, 0x8080, 65535, 1, 2, 65535, 65535}));
+}
+
 // Tangents are made where a normal map reads them, those of the file kept.
 TEST_F(SceneGltfRead, NormalMapsGetTangents) {
     const auto read_with = [&](bool has_map, bool has_tangents) {
