@@ -3,7 +3,7 @@
 
 vec4 radial_blur(Pixel pixel, RadialBlur parameters) {
     vec4 own = load_clamped(picture, pixel.texel);
-    vec2 from_centre = pixel.uv - 0.5;
+    vec2 from_centre = pixel.uv - parameters.center;
     float distance = length(from_centre);
     // Strength times direction: the step grows with the distance, so nothing is divided by it.
     vec2 step_uv = from_centre * (parameters.radial_blur * 0.04);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Radial blur: the picture smears away from its centre, as at speed; the middle stays sharp. It knows no motion.
+// Radial blur: the picture smears away from a centre, as at speed; what is near it stays sharp. It knows no motion.
 
 #include <darkroom/param.hpp>
 
@@ -10,6 +10,7 @@ struct EffectInfo;
 
 struct RadialBlur {
     float radial_blur = 0.0f;
+    Vec2 center{0.5f, 0.5f};
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const RadialBlur&);

@@ -13,16 +13,18 @@
 namespace darkroom {
 
 inline ReferenceImage radial_blur_reference(const void* parameters, const ReferenceInput& input) {
-    const double strength = double{static_cast<const RadialBlur*>(parameters)->radial_blur};
+    const RadialBlur& blur = *static_cast<const RadialBlur*>(parameters);
+    const double strength = double{blur.radial_blur};
     ReferenceImage out = *input.picture;
     for (std::uint32_t y = 0; y < out.height; ++y) {
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const double u = (x + 0.5) / out.width, v = (y + 0.5) / out.height;
-            const double distance = std::hypot(u - 0.5, v - 0.5);
+            const double du = u - double{blur.center.x}, dv = v - double{blur.center.y};
+            const double distance = std::hypot(du, dv);
             Rgba mean{0, 0, 0, 0};
             for (int i = 0; i < 8; ++i) {
                 const double t = (i - 3.5) * strength * 0.04;
-                const Rgba tap = sample_reference(*input.picture, u + (u - 0.5) * t, v + (v - 0.5) * t);
+                const Rgba tap = sample_reference(*input.picture, u + du * t, v + dv * t);
                 mean = {mean.r + tap.r / 8, mean.g + tap.g / 8, mean.b + tap.b / 8, 0};
             }
             const double s = std::clamp((distance - 0.1) / 0.6, 0.0, 1.0);
