@@ -12,14 +12,14 @@ struct SsaoPoint {
     ivec2 texel;
     float planar;
     vec3 position, normal;
-    bool is_surface;
+    bool is_near, is_surface;  // no sky; and no sprite
 };
 
 vec2 ssao_place(vec2 texel, float planar) {
     return (texel * custom[0].xy + custom[0].zw) * planar + (texel * custom[1].xy + custom[1].zw);
 }
 
-// The distance at a place, in texels; 0 outside the picture. A place within one texel before it is on its border.
+// The distance at a place, in texels; 0 outside the picture, negative where nothing occludes. A place within one texel before it is on its border.
 float ssao_load(vec2 place) {
     if (loads_outside_are_zero) return load(ssao_distance, ivec2(place)).r;
     vec2 inside = clamp(place, vec2(-0.99), custom[4].zw);
@@ -33,10 +33,11 @@ float ssao_load(vec2 place) {
 SsaoPoint ssao_point(Pixel pixel) {
     SsaoPoint point;
     point.texel = pixel.texel;
-    float planar = load(ssao_distance, pixel.texel).r;
+    float distance = load(ssao_distance, pixel.texel).r, planar = abs(distance);
     // What is no number compares as neither.
-    point.is_surface = planar > 1e-6 && planar < 1e9;
-    point.planar = point.is_surface ? planar : 1.0;
+    point.is_near = planar > 1e-6 && planar < 1e9;
+    point.is_surface = point.is_near && distance > 0.0;
+    point.planar = point.is_near ? planar : 1.0;
     point.position = vec3(ssao_place(vec2(pixel.texel), point.planar), -point.planar);
     point.normal = load(ssao_normals, pixel.texel).xyz;
     return point;
@@ -46,7 +47,8 @@ vec4 ssao_result(SsaoPoint point, float visibility) {
     float seen = clamp(1.0 - (1.0 - visibility) * custom[5].w, 0.0, 1.0);
     float fade = clamp((point.planar - custom[6].x) * custom[6].y, 0.0, 1.0);
     seen = mix(seen, 1.0, fade * fade * (3.0 - 2.0 * fade));
-    return vec4(point.is_surface ? ssao_with(1.0 / point.planar, seen * 1023.0) : ssao_with(1e-10, 1023.0), 0.0, 0.0, 0.0);
+    float near = point.is_near ? 1.0 / point.planar : 1e-10;
+    return vec4(ssao_with(near, point.is_surface ? seen * 1023.0 : 1023.0), 0.0, 0.0, 0.0);
 }
 
 vec4 shade(Pixel pixel) {

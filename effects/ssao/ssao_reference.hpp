@@ -52,7 +52,7 @@ class SsaoReference {
             for (int x = 0; x < width_; ++x) {
                 const double planar = planar_at(x, y);
                 nearness_[index(x, y)] = is_surface(planar) ? 1 / planar : 1e-10;
-                raw[index(x, y)] = is_surface(planar) ? occlusion(x, y, planar) : 1;
+                raw[index(x, y)] = is_surface(planar) && has_normal(x, y) ? occlusion(x, y, planar) : 1;
             }
         std::vector<double> tile(count);
         slopes_.resize(count);
@@ -85,6 +85,13 @@ class SsaoReference {
                static_cast<std::size_t>(std::clamp(x, 0, width_ - 1));
     }
     [[nodiscard]] double planar_at(int x, int y) const { return input_.depth->clamped(x * step_, y * step_).r; }
+
+    /// What has none, a sprite, neither occludes nor is occluded.
+    [[nodiscard]] bool has_normal(int x, int y) const {
+        if (input_.normals == nullptr) return true;
+        const Rgba& normal = input_.normals->clamped(x * step_, y * step_);
+        return normal.r * normal.r + normal.g * normal.g + normal.b * normal.b > 0;
+    }
 
     /// View position of a pixel of the frame at a distance.
     [[nodiscard]] Double3 frame_position(double x, double y, double planar) const {
@@ -151,17 +158,18 @@ class SsaoReference {
             const int column = static_cast<int>(there[0]), row = static_cast<int>(there[1]);
             const double found = planar_at(column, row);
             const double height = dot(up, sum(position(column, row, found), at, -1));
-            if (!(found < -point[2] - bias && height > bias)) continue;
+            if (!(found < -point[2] - bias && height > bias && has_normal(column, row))) continue;
             const double near = std::clamp(2 - std::abs(at[2] + found) / radius, 0.0, 1.0);
             occlusion += near * near * (3 - 2 * near);
         }
         return 1 - occlusion / ssao_.samples;
     }
 
-    /// 0 outside the picture. A place within one pixel before it is on its border.
+    /// 0 outside the picture, negative where nothing occludes. A place within one pixel before it is on its border.
     [[nodiscard]] double distance_or_zero(double x, double y) const {
         const bool is_near = x > -1 && y > -1 && x < width_ && y < height_;
-        return is_near ? planar_at(static_cast<int>(x), static_cast<int>(y)) : 0;
+        const int column = static_cast<int>(x), row = static_cast<int>(y);
+        return is_near ? planar_at(column, row) * (has_normal(column, row) ? 1 : -1) : 0;
     }
 
     /// The shares of the arcs that are hidden, over what the open surface would see by the same directions.

@@ -140,8 +140,8 @@ Noise noise_of(const std::string& name) {
 TEST(SoakGpuSsaoNoise, OfTheShippedScenes) {
     for (const char* const name : {"forge", "courtyard", "dungeon", "showcase"}) {
         const Noise noise = noise_of(name);
-        EXPECT_LE(noise.usual, 2.1) << name;
-        EXPECT_LE(noise.most, 8.7) << name;
+        EXPECT_LE(noise.usual, 2) << name;
+        EXPECT_LE(noise.most, 8.5) << name;
     }
 }
 

@@ -239,6 +239,30 @@ TEST(EffectSsao, FadesWithDistance) {
     }
 }
 
+TEST(EffectSsao, WhatHasNoNormalNeitherOccludesNorIsOccluded) {
+    BoxView view =
+        test::view_of({.name = "post before a wall",
+                       .boxes = {test::box(-50, -50, -5, 100, 100, 1), test::box(-0.2, -50, -3.9, 0.4, 100, 0.3)},
+                       .eye = {0, 0, 0},
+                       .target = {0, 0, -1}},
+                      96, 48);
+    for (const SsaoMethod method : methods)
+        for (const SsaoResolution resolution : resolutions) {
+            const Ssao ssao{.intensity = 2, .radius = 1.5f, .method = method, .resolution = resolution};
+            BoxView without = view;
+            for (std::size_t i = 0; i < view.depth.pixels.size(); ++i)
+                if (view.depth.pixels[i].r < 3.9) without.normals.pixels[i] = {};
+            const auto darkest = [&](const BoxView& of) {
+                double out = 1;
+                for (const Rgba& pixel : test::visibility_of(ssao, of.options()).pixels) out = std::min(out, pixel.r);
+                return out;
+            };
+            EXPECT_LT(darkest(view), 0.9) << int(method) << int(resolution);
+            // A plane's own steps of depth may darken it by a little.
+            EXPECT_GT(darkest(without), 0.995) << int(method) << int(resolution);
+        }
+}
+
 TEST(EffectSsao, LuminanceSparesBrightPixels) {
     const BoxView view = test::view_of(step_scene(), 64, 48);
     ReferenceImage picture(64, 48);

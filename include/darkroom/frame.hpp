@@ -141,7 +141,7 @@ struct Watched {
 struct Frame {
     ImageRef color;  ///< scene-linear Rec. 709
     ImageRef depth;
-    ImageRef normals;   ///< world space, -1..1
+    ImageRef normals;   ///< world space, -1..1; of no length: nothing that occludes or is occluded, as a sprite
     ImageRef velocity;  ///< as Camera::velocity says
     ImageRef ui;        ///< sRGB-encoded, premultiplied after encoding
     Camera camera;

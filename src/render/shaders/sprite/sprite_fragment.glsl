@@ -1,4 +1,4 @@
-// Sprites: unlit, opaque where their texture is, and like any surface in depth, normals and motion.
+// Sprites: unlit, opaque where their texture is, and like any surface in depth and motion. Without a normal: they do not occlude.
 #include "frame.glsl"
 #include "sprite/billboard_varyings.glsl"
 #include "sprite/billboard_texture.glsl"
@@ -13,6 +13,6 @@ void main() {
     vec4 texel = billboard_texel(square) * square.tint;
     if (texel.a < 0.5) discard;
     color = finish(texel.rgb, 1.0);
-    normal = vec4(frame.view[0].z, frame.view[1].z, frame.view[2].z, 1.0);
+    normal = vec4(0.0, 0.0, 0.0, 1.0);
     velocity = motion(square.clip, square.previous_clip);
 }
