@@ -24,7 +24,10 @@ constexpr auto fog_rows = describe(
     field<&Fog::height_falloff>("How quickly it thins above `height_origin`.", {0, 1000}, unit::per_metre)
         .as_amount_of<&Fog::height_enabled>(),
     field<&Fog::height_origin>("World height up to which it has its full density.", {-1e6, 1e6}, unit::metres),
-    field<&Fog::sky>("Does it cover the sky, too: full, at every height."));
+    field<&Fog::sky>("Does it cover the sky, too: full, at every height."),
+    field<&Fog::horizon>(
+        "How far above the horizon it fades out of the sky, so that land and sky meet; 0: it ends there.", {0, 90},
+        unit::degrees));
 
 const Fog& fog_of(const void* parameters) { return *static_cast<const Fog*>(parameters); }
 
@@ -45,7 +48,7 @@ void fog_constants(const void* parameters, const PassContext& context, std::span
     out[1][2] = static_cast<float>(-density * start);
     out[1][3] = static_cast<float>(density * span);
     out[2] = {static_cast<float>(-1 / std::expm1(-std::max(density * span, 1e-30))), -fog.height_falloff,
-              static_cast<float>(rise), 0};
+              static_cast<float>(rise), static_cast<float>(1 / std::max(fog_horizon_sine(fog), 1e-6))};
 }
 
 }  // namespace

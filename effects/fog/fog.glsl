@@ -19,6 +19,9 @@ vec4 fog(vec4 color, Pixel pixel, Fog parameters) {
         float rise = dot(frame_view_to_world_y.xyz, ray) * (is_sky ? parameters.end / true_length : 1.0);
         amount *= exp(more.y * max(rise + more.z, 0.0));
     }
-    if (is_sky && parameters.sky == 0u) amount = 0.0;
+    if (is_sky && parameters.sky == 0u) {
+        float share = clamp(1.0 - dot(frame_view_to_world_y.xyz, ray) / true_length * more.w, 0.0, 1.0);
+        amount *= parameters.horizon > 0.0 ? share * share * (3.0 - 2.0 * share) : 0.0;
+    }
     return vec4(mix(color.rgb, parameters.color, clamp(amount, 0.0, 1.0)), color.a);
 }

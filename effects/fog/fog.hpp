@@ -18,6 +18,7 @@ struct Fog {
     float height_falloff = 0.1f;
     float height_origin = 0.0f;
     Toggle sky = false;
+    float horizon = 10.0f;
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const Fog&);

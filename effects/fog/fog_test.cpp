@@ -62,7 +62,7 @@ TEST(EffectFog, RefusesAnEndThatDoesNotLieBeyondTheStart) {
 TEST(EffectFog, GpuMatchesReference) {
     const Case data;
     for (const Fog& fog : {Fog{}, Fog{.density = 0}, Fog{.density = 1e-5f, .start = 0, .end = 400}, Fog{.density = 3},
-                           Fog{.density = 0.1f, .end = 20, .sky = true},
+                           Fog{.density = 0.1f, .end = 20, .sky = true}, Fog{.horizon = 0}, Fog{.horizon = 60},
                            Fog{.height_enabled = true, .height_falloff = 0.4f, .height_origin = -2, .sky = true}}) {
         const ReferenceImage expected = test::scene_reference_of(fog, data.picture, data.options());
         for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
@@ -73,6 +73,30 @@ TEST(EffectFog, GpuMatchesReference) {
                 << fog.density << " " << fog.height_enabled.on;
         }
     }
+}
+
+// A camera that looks level over a plain to the horizon: from the land into the sky no row differs by more than a step
+// of the fade, and high up the sky is its own.
+TEST(EffectFog, LandAndSkyMeetWithoutALine) {
+    constexpr std::uint32_t height = 400;
+    const ReferenceImage white = test::uniform(4, height, {1, 1, 1, 1});
+    ReferenceImage depth{4, height};
+    const Camera camera = test::look_at({0, 2, 0}, {0, 2, -1}, 1.0, 4.0 / height);
+    const ReferenceCamera reference(camera);
+    for (std::uint32_t y = 0; y < height; ++y) {
+        const double down = -reference.world_direction(reference.view_position(0.5, (y + 0.5) / height, 1))[1];
+        for (std::uint32_t x = 0; x < 4; ++x) depth.at(x, y).r = down > 0 ? 2 / down : 1e10;
+    }
+    const auto steepest = [&](const Fog& fog) {
+        const ReferenceImage out =
+            test::develop([&](Composer& composer) { composer.add(fog); }, white, {.depth = &depth, .camera = camera});
+        EXPECT_EQ(out.at(2, 0).r, 1) << "high up";
+        double step = 0;
+        for (std::uint32_t y = 1; y < height; ++y) step = std::max(step, std::abs(out.at(2, y).r - out.at(2, y - 1).r));
+        return step;
+    };
+    EXPECT_GT(steepest({.color = {0, 0, 0}, .horizon = 0}), 0.9);
+    EXPECT_LT(steepest({.color = {0, 0, 0}}), 0.06);
 }
 
 // The same distances as device depth, near to far and reversed.
@@ -123,7 +147,8 @@ TEST(EffectFog, GpuKnowsParallelRaysToo) {
 
 TEST(EffectFog, GpuLeavesTheSkyBitForBit) {
     const Case data;
-    for (const Fog& fog : {Fog{.density = 1000, .end = 6}, Fog{.density = 3, .height_enabled = true}}) {
+    for (const Fog& fog :
+         {Fog{.density = 1000, .end = 6, .horizon = 0}, Fog{.density = 3, .height_enabled = true, .horizon = 0}}) {
         const ReferenceImage out =
             test::develop([&](Composer& composer) { composer.add(fog); }, data.picture, data.options());
         ASSERT_EQ(out.pixels.size(), data.picture.pixels.size());

@@ -16,6 +16,7 @@ struct DocumentedValue {
 
 inline constexpr std::array documented_values{
     DocumentedValue{"ssao", "method", "hemisphere"},
+    DocumentedValue{"fog", "horizon", "0"},
     DocumentedValue{"fxaa", "enabled", "false"},
     DocumentedValue{"dither", "enabled", "false"},
     DocumentedValue{"dither", "intensity", "0.03"},
