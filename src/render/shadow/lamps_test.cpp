@@ -183,6 +183,29 @@ TEST(RenderGpuLampShadows, LampInAClosedBoxLightsNothingOutside) {
         EXPECT_EQ(brightest(shot(snapshot, true, filter)), 0);
 }
 
+// A screen two metres before the camera, a lamp three metres behind it, and a board between them that neither sees from
+// the front: a metre from the lamp, then halfway. The bulb's penumbra would be 0.2 and 0.05 m to either side; six
+// texels are 0.12 m.
+TEST(RenderGpuLampShadows, PenumbrasWidenWithDistance) {
+    const auto width_of = [](float board, ShadowFilter filter) {
+        scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+        add_chalk(snapshot, {-9, -9, -2.1F}, {9, 9, -2});
+        snapshot.lights = {point_lamp({0.3F, 0, 3}, 30)};
+        const Pixels open = shot(snapshot, true, filter);
+        add_chalk(snapshot, {0.3F, -3, board - 0.02F}, {4, 3, board});
+        const Pixels cut = shot(snapshot, true, filter);
+        int partly = 0;
+        for (std::uint32_t x = 0; x < lamp_extent.width; ++x) {
+            const float share = cut.at(x, 60)[0] / open.at(x, 60)[0];
+            if (share > 0.02F && share < 0.98F) ++partly;
+        }
+        return static_cast<float>(partly) * 4.0F / static_cast<float>(lamp_extent.height);
+    };
+    EXPECT_NEAR(width_of(2, ShadowFilter::Soft), 0.24F, 0.05F);
+    EXPECT_NEAR(width_of(0.5F, ShadowFilter::Soft), 0.1F, 0.035F);
+    EXPECT_NEAR(width_of(2, ShadowFilter::Plain), width_of(0.5F, ShadowFilter::Plain), 0.035F);
+}
+
 TEST(RenderGpuLampShadows, FacesMeetWithoutALine) {
     // Inside a room all of whose walls the lamp sees nothing may be dark: not at the edges of a cube's faces, which
     // cross the walls of a room that is no cube, and not at grazing angles.

@@ -27,6 +27,10 @@ const float dark_share = 0.32, lit_share = 0.82;
 const float sun_tangent = 0.004625;
 const float most_reach = 8.0;                        // texels that a penumbra reaches to either side
 const float least_reach = 0.75, soft_reach = 1.5;  // the 4x4 texels alone; the disc alone
+// Of a lamp, whose bulb has this radius, metres: a penumbra reaches so many texels, which its tile's border has room for.
+const float bulb_radius = 0.05, most_lamp_reach = 6.0;
+// Its tile's depth is the first less the second over the distance, as render/shadow/lamps.cpp has it.
+const float lamp_depth_end = 1.0 / (1.0 - 0.005);
 // What hides the steps of texels, to either side, and how it grows a texel of distance.
 const float steps_reach = 2.5, steps_growth = 0.015;
 // Vogel, "A better way to construct the sunflower head", 1979: even over a disc for any number of taps. The same ones
@@ -134,7 +138,7 @@ Receiver receive_in_tile(uint tile, vec3 world_position, vec3 normal, vec3 towar
     const vec4 clip = world_to_tile * vec4(world_position + offset * texel, 1);
     const uint tiles_a_row = uint(shadows.tile_settings.y);
     // No further than the filter needs to stay within the tile.
-    const vec2 place = clamp((clip.xy / clip.w * 0.5 + 0.5) * side, 4.0, side - 4.0);
+    const vec2 place = clamp((clip.xy / clip.w * 0.5 + 0.5) * side, most_lamp_reach + 2.0, side - most_lamp_reach - 2.0);
     return Receiver(true, 0u, 0u, place + vec2(tile % tiles_a_row, tile / tiles_a_row) * side,
                     min(clip.z / clip.w, 1.0),
                     vec2(dot(normal, across), dot(normal, down)) * (steepness * inversesqrt(dot(across, across))), texel, 0.0);
@@ -168,12 +172,20 @@ float filter_texels(Receiver receiver) {
     return clamp((sum - dark_share) * (1.0 / (lit_share - dark_share)), 0.0, 1.0);
 }
 
-/// Fernando, "Percentage-Closer Soft Shadows", 2005: the mean distance of what blocks the light says how wide the
-/// penumbra is. Where it is wider than the filter of 4x4 texels, a disc of bilinear taps takes that one's place.
+/// How far the penumbra of what lies at a depth reaches to either side here, texels.
+float penumbra_of(Receiver receiver, float blocker) {
+    // The blocker's distance is to the receiver's as the other way round what is left of the depth's end.
+    if (receiver.is_in_tile)
+        return ((lamp_depth_end - blocker) / (lamp_depth_end - receiver.depth) - 1.0) * bulb_radius / receiver.texel;
+    return (receiver.depth - blocker) * receiver.range * sun_tangent / receiver.texel;
+}
+
+/// Fernando, "Percentage-Closer Soft Shadows", 2005: the mean depth of what blocks the light says how wide the penumbra
+/// is. Where it is wider than the filter of 4x4 texels, a disc of bilinear taps takes that one's place.
 float soften(Receiver receiver, float visibility) {
-    const float texels_a_depth = receiver.range * sun_tangent / receiver.texel;
+    const float most = receiver.is_in_tile ? most_lamp_reach : most_reach;
     // Nothing that casts lies before depth 0.
-    const float reach = min(receiver.depth * texels_a_depth, most_reach);
+    const float reach = min(penumbra_of(receiver, 0.0), most);
     vec2 blocked = vec2(0.0);  // how many, and the sum of their distances
     float nearest = 1.0;
     // Loops in place of branches, as below.
@@ -188,11 +200,15 @@ float soften(Receiver receiver, float visibility) {
         nearest = min(nearest, min(min(near.x, near.y), min(near.z, near.w)));
     }
     const float distance = blocked.y / max(blocked.x, 1.0);
-    const float penumbra = min(distance * texels_a_depth, most_reach);
-    // What blocks from afar shows the map's steps where a penumbra is narrower; as above, a share of what is wider than
-    // the sun's does not light.
-    const float radius = max(penumbra, min(distance * receiver.range / receiver.texel * steps_growth, steps_reach));
-    const float dark = dark_share * (1.0 - penumbra / max(radius, 1e-6));
+    const float penumbra = min(penumbra_of(receiver, receiver.depth - distance), most);
+    // What blocks from afar shows the map's steps where a penumbra is narrower, and in a tile everything that is seen
+    // obliquely; as above, a share of what is wider than the light's does not light.
+    const float steps = receiver.is_in_tile ? sign(blocked.x) * steps_reach : distance * receiver.range / receiver.texel * steps_growth;
+    const float radius = max(penumbra, min(steps, steps_reach));
+    const float narrow = 1.0 - penumbra / max(radius, 1e-6);
+    const float dark = dark_share * narrow;
+    // Walls that meet darken each other by a part of the disc.
+    const float bright = receiver.is_in_tile ? mix(1.0, lit_share, narrow) : 1.0;
     const bool is_dark = blocked.x > 63.5 && visibility <= 0.0;
     const uint taps = radius > least_reach && !is_dark ? disc_taps : 0u;
     float sum = 0.0;
@@ -206,7 +222,7 @@ float soften(Receiver receiver, float visibility) {
                              vec2(1.0 - f.y, f.y));
     }
     const float share = taps > 0u ? smoothstep(least_reach, soft_reach, radius) : 0.0;
-    const float lit = clamp((sum * (1.0 / float(disc_taps)) - dark) / (1.0 - dark), 0.0, 1.0);
+    const float lit = clamp((sum * (1.0 / float(disc_taps)) - dark) / (bright - dark), 0.0, 1.0);
     return mix(visibility, lit, share);
 }
 
@@ -254,25 +270,10 @@ uint face_of(vec3 from_lamp) {
     return 2u * axis + (from_lamp[axis] < 0.0 ? 1u : 0u);
 }
 
-/// At the edges of a lamp's shadow, a disc in place of the 4x4 texels, through which the steps of oblique texels show.
-float smooth_edges(Receiver receiver, float visibility) {
-    const float share = 4.0 * visibility * (1.0 - visibility);
-    float sum = 0.0;
-    for (uint i = 0u, end = share > 0.0 ? disc_taps : 0u; i < end; ++i) {
-        const vec2 offset = disc[i] * steps_reach;
-        const vec2 place = receiver.place + offset - 0.5;
-        const vec2 f = fract(place);
-        sum += weighed_light(depths_around(receiver, floor(place) + 1.0),
-                             receiver.depth + min(dot(receiver.slope, offset), 0.0), vec2(1.0 - f.x, f.x),
-                             vec2(1.0 - f.y, f.y));
-    }
-    return mix(visibility, sum * (1.0 / float(disc_taps)), share);
-}
-
 /// Filtered, for surfaces, by the first of a lamp's tiles and their number, 1 or 6. `toward_lamp`: normalised.
 float lamp_visibility(uint first_tile, uint tiles, vec3 world_position, vec3 world_normal, vec3 toward_lamp) {
     const uint tile = first_tile + (tiles > 1u ? face_of(-toward_lamp) : 0u);
     const Receiver receiver = receive_in_tile(tile, world_position, world_normal, toward_lamp);
     const float visibility = filter_texels(receiver);
-    return shadows_are_soft ? smooth_edges(receiver, visibility) : visibility;
+    return shadows_are_soft ? soften(receiver, visibility) : visibility;
 }
