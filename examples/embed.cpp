@@ -14,6 +14,13 @@ namespace {
 
 constexpr VkExtent2D extent{640, 360};
 
+/// The host's camera, at the origin: 60 degrees high, 16 : 9, clip space as Vulkan has it, from 0.1 to 100.
+constexpr darkroom::Camera camera{
+    .projection = {0.9742786f, 0, 0, 0, 0, -1.7320508f, 0, 0, 0, 0, 100.0f / (0.1f - 100.0f), -1, 0, 0,
+                   0.1f * 100.0f / (0.1f - 100.0f), 0},
+    .near_distance = 0.1f,
+    .far_distance = 100.0f};
+
 void check(VkResult result, const char* what) {
     if (result == VK_SUCCESS) return;
     std::fprintf(stderr, "embed: %s: VkResult %d\n", what, result);
@@ -239,6 +246,7 @@ int main(int argc, char** argv) {
                                                    .layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                                    .last_stages = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                                                    .last_access = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT},
+                                         .camera = camera,
                                          .time = 0.0,
                                          .target = {.image = target.image,
                                                     .view = target.view,
