@@ -33,14 +33,14 @@ class CliRenderEffects : public test::CliFixture {
             if (find_effect(name) == nullptr) GTEST_SKIP() << "the effect " << name << " is not in this build";
         CliFixture::SetUp();
     }
-    /// The picture of a scene's text.
+    /// The picture of a scene's text. `said`: what the program says of it.
     [[nodiscard]] Picture rendered(const std::string& scene, std::vector<std::string> flags = {},
-                                   const std::string& out = "out.png") const {
+                                   const std::string& out = "out.png", const std::string& said = "") const {
         flags.insert(flags.begin(), {"render", write("a.scene.toml", scene), "-o", path(out), "--size", "96x60",
                                      "--shadow-resolution", "256"});
         const Outcome outcome = run(flags);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
-        EXPECT_EQ(outcome.err, "");
+        EXPECT_EQ(outcome.err, said);
         return picture(out);
     }
 };
@@ -73,9 +73,53 @@ TEST_F(CliRenderEffects, AnEmissiveBoxHasAHalo) {
     }
     EXPECT_GT(code_of(on, 58, 30), 2 * code_of(on, 65, 30));
     // What emits nothing above the threshold has none.
-    const Picture dull = rendered(square_scene(bloom, emissive + "0.4"));
+    const Picture dull =
+        rendered(square_scene(bloom, emissive + "0.4"), {}, "out.png",
+                 "darkroom: bloom: nothing is brighter than its threshold 1; the brightest value is 0.4\n");
     EXPECT_GT(code_of(dull, 48, 30), 0);
     EXPECT_EQ(codes_of(dull, 59, 30), (std::array{0, 0, 0}));
+}
+
+TEST_F(CliRenderEffects, BloomThatWasAskedForAndFindsNothingIsSaid) {
+    const std::string dim = "color = [0, 0, 0], emissive = [1, 0.5, 0.25], emissive_strength = 0.5";
+    const std::string scene = write("dim.scene.toml", square_scene("[post_process]\nssao_enabled = false\n", dim));
+    const auto said = [&](std::vector<std::string> flags) {
+        const Outcome outcome = run(flags);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return outcome.err;
+    };
+    const auto render = [&](std::vector<std::string> flags) {
+        flags.insert(flags.begin(), {"render", scene, "--size", "96x60"});
+        return said(flags);
+    };
+    const auto line = [](const std::string& threshold, const std::string& brightest) {
+        return "darkroom: bloom: nothing is brighter than its threshold " + threshold + "; the brightest value is " +
+               brightest + "\n";
+    };
+    const std::string out = path("out.png"), asked = "--bloom-intensity=0.3";
+    EXPECT_EQ(render({"-o", out, asked}), line("1", "0.5"));
+    EXPECT_EQ(render({"-o", out, asked, "--bloom-threshold", "0.75"}), line("0.75", "0.5"));
+    EXPECT_EQ(render({"-o", out, asked, "--bloom-threshold", "0.25"}), "");
+    EXPECT_EQ(render({"-o", out, asked, "--no-bloom"}), "");
+    EXPECT_EQ(render({"-o", out}), "") << "on by itself";
+    EXPECT_EQ(render({"-o", out, asked, "--quiet"}), "");
+    EXPECT_EQ(render({"-o", path("out.####.png"), asked, "--frames", "0-2", "--fps", "24"}), line("1", "0.5"))
+        << "once";
+    // There it reads the scene, here the picture before it.
+    EXPECT_EQ(render({"-o", out, asked, "--order", "scene_linear", "--save-frame", path("frame.exr")}),
+              line("1", "0.5"));
+    const auto develop = [&](std::vector<std::string> flags) {
+        flags.insert(flags.begin(), {"develop", path("frame.exr"), "-o", out});
+        return said(flags);
+    };
+    EXPECT_EQ(develop({asked}), line("1", "0.5"));
+    EXPECT_EQ(develop({asked, "--bloom-threshold", "0.25"}), "");
+    EXPECT_EQ(develop({}), "");
+    const std::string look = write("look.toml",
+                                   "[[stack]]\neffect = \"exposure\"\nexposure = 1.5\n"
+                                   "[[stack]]\neffect = \"bloom\"\n[[stack]]\neffect = \"encode\"\n");
+    EXPECT_EQ(develop({"--look", look}), line("1", "0.75"));
+    EXPECT_EQ(develop({"--look", look, "--set", "exposure.exposure=3"}), "");
 }
 
 TEST_F(CliRenderEffects, FogHasTheColourOfTableAndFlag) {

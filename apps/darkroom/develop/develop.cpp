@@ -13,6 +13,7 @@
 #include "apps/darkroom/flags/look_flags.hpp"
 #include "apps/darkroom/flags/number_flag.hpp"
 #include "apps/darkroom/flags/run_flags.hpp"
+#include "apps/darkroom/run/dim_bloom.hpp"
 #include "apps/darkroom/run/frames.hpp"
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
@@ -281,6 +282,7 @@ class Develop {
         }
         if (Result<> done = developer_->submit(*composer_, item.input); !done) return done;
         tell_of_what_is_left_out(i, developer_->plan().left_out);
+        if (i == 0) tell_of_dim_bloom(*device_, *composer_, job_.look, job_.develop, item.input);
         return {};
     }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "apps/darkroom/commands.hpp"
+#include "apps/darkroom/run/dim_bloom.hpp"
 #include "apps/darkroom/run/frames.hpp"
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
@@ -329,6 +330,7 @@ class Render {
             Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
             if (!made) return failure(std::move(made));
             if (i == 0) warn_of_what_is_left_out(look_, *composer_, developer_->plan().left_out);
+            if (i == 0) tell_of_dim_bloom(*device_, *composer_, look_, develop_, input);
             item.picture = std::move(*made);
             if (flags_.run.has_timings) pass_times_.add(composer_->times().passes);
         } else {
