@@ -21,7 +21,7 @@ class CliNew : public test::CliFixture {
         FrameFile frame;
         frame.color = Picture(24, 16);
         for (std::size_t i = 0; i < frame.color.pixels.size(); ++i)
-            frame.color.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((i * 37) % 101) / 800.0f;
+            frame.color.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((i * 37) % 101) / 60.0f;  // some of it glows
         ASSERT_TRUE(write_frame(path("frame.exr"), frame));
     }
     /// Nothing is warned of either.
