@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Ambient occlusion in double precision: both methods, both sizes, blur, upsampling and merge. It follows the shaders'
+// Ambient occlusion in double precision: both methods, both sizes and merge. It follows the shaders'
 // choice of pixels and sectors, and takes its points from the camera's matrices; no packed bits.
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "shared/camera_reference.hpp"
+#include "ssao/ssao_filter_reference.hpp"
 
 namespace darkroom {
 
@@ -41,29 +42,23 @@ class SsaoReference {
     /// What each pixel of the picture is multiplied by.
     [[nodiscard]] double visibility(std::uint32_t x, std::uint32_t y) const {
         const auto [column, row] = std::array{static_cast<int>(x), static_cast<int>(y)};
-        return step_ == 1 ? blurred_[index(column, row)] : upsampled(column, row);
+        if (step_ == 1) return filter_.blurred(column, row);
+        // The last of an odd number of pixels takes its neighbour's.
+        const int base_x = std::min(column / 2, width_ - 1), base_y = std::min(row / 2, height_ - 1);
+        const int part_x = std::min(column - base_x * 2, 1), part_y = std::min(row - base_y * 2, 1);
+        const double planar = input_.depth->clamped(base_x * 2 + part_x, base_y * 2 + part_y).r;
+        return is_surface(planar) ? filter_.upsampled(base_x, base_y, part_x, part_y, planar) : 1;
     }
 
     void compute() {
-        const auto count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-        std::vector<double> raw(count);
-        nearness_.resize(count);
+        std::vector<double> nearness, raw;
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x) {
                 const double planar = planar_at(x, y);
-                nearness_[index(x, y)] = is_surface(planar) ? 1 / planar : 1e-10;
-                raw[index(x, y)] = is_surface(planar) && has_normal(x, y) ? occlusion(x, y, planar) : 1;
+                nearness.push_back(is_surface(planar) ? 1 / planar : 1e-10);
+                raw.push_back(is_surface(planar) && has_normal(x, y) ? occlusion(x, y, planar) : 1);
             }
-        std::vector<double> tile(count);
-        slopes_.resize(count);
-        for (int y = 0; y < height_; ++y)
-            for (int x = 0; x < width_; ++x) {
-                slopes_[index(x, y)] = {slope(x, y, 1, 0), slope(x, y, 0, 1)};
-                tile[index(x, y)] = blur(raw, x, y);
-            }
-        blurred_.resize(count);
-        for (int y = 0; y < height_; ++y)
-            for (int x = 0; x < width_; ++x) blurred_[index(x, y)] = widen(tile, x, y);
+        filter_.compute(std::move(nearness), raw);
     }
 
   private:
@@ -80,10 +75,6 @@ class SsaoReference {
         return squared > 0 && std::isfinite(squared) ? sum({}, v, 1 / std::sqrt(squared)) : Double3{0, 0, 1};
     }
     static bool is_surface(double planar) { return planar > 1e-6 && planar < 1e9; }
-    [[nodiscard]] std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(std::clamp(y, 0, height_ - 1)) * static_cast<std::size_t>(width_) +
-               static_cast<std::size_t>(std::clamp(x, 0, width_ - 1));
-    }
     [[nodiscard]] double planar_at(int x, int y) const { return input_.depth->clamped(x * step_, y * step_).r; }
 
     /// What has none, a sprite, neither occludes nor is occluded.
@@ -236,82 +227,17 @@ class SsaoReference {
         return std::popcount(mask) / double{ssao_sectors};
     }
 
-    /// How wide `step` pixels of the frame are at this nearness, as a share of the distance.
-    [[nodiscard]] double width(double near, int step) const {
-        return std::abs(frame_position(step, 0, 1 / near)[0] - frame_position(0, 0, 1 / near)[0]) * near;
-    }
-
-    /// To the next pixel, as a share of the nearness here.
-    [[nodiscard]] double slope(int x, int y, int dx, int dy) const {
-        const auto nearness = [&](int steps) { return nearness_[index(x + steps * dx, y + steps * dy)]; };
-        const double own = nearness(0), before = own - nearness(-1), after = nearness(1) - own;
-        const double lesser = std::max(std::min(before, after), 0.0) + std::min(std::max(before, after), 0.0);
-        const double bend = std::abs(nearness(-1) - nearness(-2) - before) / own;
-        const double straight = std::clamp(2 - bend / std::max(0.15 * width(own, step_), 3e-4), 0.0, 1.0);
-        const double chosen = std::lerp(lesser, before, straight);
-        return std::clamp(chosen / own, -0.999, 0.999);
-    }
-
-    /// Of a pixel so far away in the surface of (x, y), whose slopes over the distance of a tap are `spans` times those
-    /// to the next pixel.
-    [[nodiscard]] double likeness(int x, int y, int i, int j, int spans) const {
-        const double own = nearness_[index(x, y)];
-        const auto [across, down] = slopes_[index(x, y)];
-        const double unlike = std::abs(nearness_[index(x + i, y + j)] / own - (1 + across * i + down * j));
-        const double tolerance = std::max(width(own, step_), 3e-4) + 0.1 * spans * (std::abs(across) + std::abs(down));
-        return std::clamp(2 - unlike / tolerance, 0.0, 1.0);
-    }
-
-    [[nodiscard]] double blur(const std::vector<double>& raw, int x, int y) const {
-        double seen = 0, weights = 0;
-        for (int j = -2; j <= 1; ++j)
-            for (int i = -2; i <= 1; ++i) {
-                const double weight = likeness(x, y, i, j, 1);
-                seen += raw[index(x + i, y + j)] * weight;
-                weights += weight;
-            }
-        return seen / weights;
-    }
-
-    [[nodiscard]] double widen(const std::vector<double>& tile, int x, int y) const {
-        double seen = 0, weights = 0;
-        for (int j = -4; j <= 4; j += 4)
-            for (int i = -4; i <= 4; i += 4) {
-                const double weight = std::min(likeness(x, y, i, j, 4), likeness(x, y, -i, -j, 4)) *
-                                      (i == 0 ? 1 : 0.5) * (j == 0 ? 1 : 0.5);
-                seen += tile[index(x + i, y + j)] * weight;
-                weights += weight;
-            }
-        return seen / weights;
-    }
-
-    [[nodiscard]] double upsampled(int x, int y) const {
-        // The last of an odd number of pixels takes its neighbour's.
-        const int base_x = std::min(x / 2, width_ - 1), base_y = std::min(y / 2, height_ - 1);
-        const int part_x = std::min(x - base_x * 2, 1), part_y = std::min(y - base_y * 2, 1);
-        const double planar = input_.depth->clamped(base_x * 2 + part_x, base_y * 2 + part_y).r;
-        if (!is_surface(planar)) return 1;
-        double seen = 0, weights = 0;
-        for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 2; ++i) {
-                const double across = part_x == 0 ? 0.5 : i, down = part_y == 0 ? 0.5 : j;
-                const std::size_t from = index(base_x + i, base_y + j);
-                const double expected = nearness_[from] * (1 + slopes_[from][0] * (part_x / 2.0 - i) +
-                                                           slopes_[from][1] * (part_y / 2.0 - j));
-                const double unlike = (expected * planar - 1) * 2 / std::max(width(1 / planar, 1), 4e-4);
-                const double weight = (across * down + 0.05) / std::pow(1 + unlike * unlike, 2);
-                seen += blurred_[from] * weight;
-                weights += weight;
-            }
-        return seen / weights;
+    /// How wide `pixels` of the frame are at this nearness, as a share of the distance.
+    [[nodiscard]] double width(double near, int pixels) const {
+        return std::abs(frame_position(pixels, 0, 1 / near)[0] - frame_position(0, 0, 1 / near)[0]) * near;
     }
 
     const Ssao& ssao_;
     const ReferenceInput& input_;
     ReferenceCamera camera_;
     int step_, width_, height_;
-    std::vector<double> nearness_, blurred_;
-    std::vector<std::array<double, 2>> slopes_;
+    SsaoFilterReference filter_{width_, height_, step_,
+                                [this](double near, int pixels) { return width(near, pixels); }};
 };
 
 [[nodiscard]] inline ReferenceImage ssao_reference(const void* parameters, const ReferenceInput& input) {
