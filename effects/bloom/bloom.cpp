@@ -141,6 +141,11 @@ const EffectInfo& effect_info(const Bloom&) {
         .build = build,
         .reference = bloom_reference,
         .is_identity = is_identity,
+        .threshold = [](const void* parameters) -> std::optional<float> {
+            const Bloom& bloom = bloom_of(parameters);
+            if (bloom.intensity == 0.0f || bloom.mode != BloomMode::Additive) return {};
+            return bloom.threshold;
+        },
     };
     return info;
 }

@@ -60,6 +60,11 @@ const EffectInfo& effect_info(const ClassicBloom&) {
         .build = build,
         .reference = classic_bloom_reference,
         .is_identity = [](const void* parameters) { return bloom_of(parameters).intensity == 0.0f; },
+        .threshold = [](const void* parameters) -> std::optional<float> {
+            const ClassicBloom& bloom = bloom_of(parameters);
+            if (bloom.intensity == 0.0f || bloom.source_kind == ClassicBloomSource::Layer) return {};
+            return bloom.threshold;
+        },
     };
     return info;
 }

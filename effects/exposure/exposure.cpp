@@ -26,6 +26,7 @@ const EffectInfo& effect_info(const Exposure&) {
         .reference = pointwise_reference<Exposure, exposure_reference>,
         .is_identity =
             [](const void* parameters) { return static_cast<const Exposure*>(parameters)->exposure == 1.0f; },
+        .exposure = [](const void* parameters) { return static_cast<const Exposure*>(parameters)->exposure; },
     };
     return info;
 }

@@ -24,6 +24,7 @@
 #include <darkroom/resource.hpp>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -230,6 +231,11 @@ struct EffectInfo {
     std::string (*conflict)(const void* parameters) = nullptr;
     /// For a frame's parameters: does the effect change nothing? Such an entry is treated as switched off.
     bool (*is_identity)(const void* parameters) = nullptr;
+    /// Of effects that nobody sees where no channel of what they read is above a value: that value, for a frame's
+    /// parameters. None: they are seen, or not, whatever they read.
+    std::optional<float> (*threshold)(const void* parameters) = nullptr;
+    /// The effect is the exposure of a look, which stays where the rest is switched off: its multiplier of light.
+    float (*exposure)(const void* parameters) = nullptr;
     /// Of effects with a history: how many frames before a frame must have been developed so that its picture is within
     /// half a code of 8 bits of an unbroken run, given that what the effect reads is, and that frames are `delta_time`
     /// seconds apart. Null: none.

@@ -4,24 +4,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
+#include <optional>
 
 #include "develop/stack_copy.hpp"
-#include "effects/bloom/bloom.hpp"
 #include "report.hpp"
 
 namespace app {
 
 namespace {
 
-/// The place in the stack of the first bloom that was asked for and has a threshold for the picture before it, or
-/// for the scene.
+/// The place in the stack of the first effect with a threshold that was asked for and reads the picture before it, or
+/// the scene.
 std::optional<std::size_t> place_of_bloom(const darkroom::Composer& composer, const darkroom::Look& look) {
     const std::vector<std::string> names = darkroom::entry_names(look);
     for (std::size_t i = 0; i < composer.size(); ++i) {
         const darkroom::Handle entry = composer.entry(i);
-        if (composer.info(entry)->name != std::string_view("bloom")) continue;
+        if (composer.info(entry)->threshold == nullptr) continue;
         const darkroom::EntryDesc& desc = *composer.desc(entry);
         if (desc.input.is_given() || (desc.source.is_given() && desc.source != darkroom::scene_color)) continue;
         const auto named = std::ranges::find(names, desc.name);
@@ -38,12 +36,9 @@ void tell(darkroom::Device& device, const darkroom::Composer& composer, const da
     const std::optional<std::size_t> place = place_of_bloom(composer, look);
     if (!place) return;
     const darkroom::Composer::EntryValues values = composer.values_at(composer.entry(*place), time, camera);
-    darkroom::Bloom bloom;
-    static_assert(std::is_trivially_copyable_v<darkroom::Bloom>);
-    std::memcpy(static_cast<void*>(&bloom), values.words.data(), sizeof bloom);
-    if (!values.is_enabled || values.opacity == 0 || bloom.intensity == 0 ||
-        bloom.mode != darkroom::BloomMode::Additive)
-        return;
+    if (!values.is_enabled || values.opacity == 0) return;
+    const std::optional<float> threshold = composer.info(composer.entry(*place))->threshold(values.words.data());
+    if (!threshold) return;
     darkroom::Composer before(device, {.frames_in_flight = 1});
     darkroom::StackCopy stack;
     if (!stack.follow(composer, before, time, camera) || !stack.follow_values(composer, before, time, camera)) return;
@@ -59,9 +54,9 @@ void tell(darkroom::Device& device, const darkroom::Composer& composer, const da
     float brightest = 0;
     for (std::size_t i = 0; i + 3 < picture->pixels.size(); i += 4)
         brightest = std::max({brightest, picture->pixels[i], picture->pixels[i + 1], picture->pixels[i + 2]});
-    if (brightest > bloom.threshold) return;
+    if (brightest > *threshold) return;
     complain(fmt::format("{}: nothing is brighter than its threshold {:g}; the brightest value is {:.3g}",
-                         composer.desc(composer.entry(*place))->name, bloom.threshold, brightest));
+                         composer.desc(composer.entry(*place))->name, *threshold, brightest));
 }
 
 }  // namespace
