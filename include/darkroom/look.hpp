@@ -113,13 +113,20 @@ struct LookUi {
     GameTable game;
 };
 
+/// A key of a flat table that its file writes.
+struct WrittenValue {
+    const EffectInfo* effect = nullptr;
+    std::string_view parameter;  ///< the row's name, or "enabled"
+};
+
 struct Look {
     static constexpr std::int64_t format = 1;  ///< of the files that this build reads and writes
     bool is_flat = true;                       ///< [post_process]; false: [[stack]]
     bool was_flat = false;                     ///< a stack that place_entry made of a flat table
-    bool is_enabled = true;                    ///< flat only; false: nothing but tone mapping and encoding, at defaults
+    bool is_enabled = true;                    ///< flat only; false: its exposure, tone mapping and encoding alone
     LookOrder order = LookOrder::SceneLinear;  ///< flat only
     std::vector<LookEntry> entries;            ///< flat: every effect with a place in the tables
+    std::vector<WrittenValue> written{};       ///< flat only: what a file says of the effects
     std::optional<LookUi> ui{};                ///< there is a table [ui]
     std::vector<LookPulse> pulses;
     std::vector<LookLayer> layers;  ///< in the order they are blended
@@ -149,12 +156,20 @@ struct LookOptions {
 [[nodiscard]] LookEntry flat_entry(const EffectInfo& effect, LookOrder order);
 /// Of a flat look: values that are the defaults of its order become those of the new one.
 void set_order(Look& look, LookOrder order);
+/// What remains of a look where post-processing is off: its exposure, and tone mapping and encoding at their defaults.
+[[nodiscard]] Look switched_off(const Look& look);
+/// The multiplier of the scene's light that the look has; 1: it has none.
+[[nodiscard]] float exposure_of(const Look& look);
 /// Gives a look the interface's own chain, at its defaults where it has none: what an empty table [ui] does.
 void add_ui(Look& look);
 /// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`. The files that a look
 /// names are read with it.
 [[nodiscard]] Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options = {});
 [[nodiscard]] Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options = {});
+/// Lays what a file writes in [post_process] over a look, and leaves all else as it is: the order, too. An effect that
+/// a stack lacks gets a place, as by place_entry. Errors: read_look's; there is no such value; a value and those of the
+/// look cannot be together.
+[[nodiscard]] Result<> lay_over(Look& look, const std::filesystem::path& file, const LookOptions& options = {});
 /// An entry of the effect in this file (darkroom/custom_effect.hpp), at its defaults.
 [[nodiscard]] Result<LookEntry> custom_entry(const std::filesystem::path& file);
 /// Puts an entry behind the last place where the picture is in a domain that its effect accepts. A flat table becomes

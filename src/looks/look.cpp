@@ -142,6 +142,27 @@ void set_order(Look& look, LookOrder order) {
     look.order = order;
 }
 
+Look switched_off(const Look& look) {
+    Look off = default_look(look.order);
+    off.is_enabled = false;
+    off.shown_name = look.shown_name;
+    for (LookEntry& entry : off.entries) {
+        const auto found = std::ranges::find(look.entries, entry.effect, &LookEntry::effect);
+        if (entry.effect->exposure != nullptr && found != look.entries.end()) {
+            entry.words = found->words;
+            entry.state.enabled = found->state.enabled;
+        }
+    }
+    return off;
+}
+
+float exposure_of(const Look& look) {
+    for (const LookEntry& entry : look.entries)
+        if (entry.effect->exposure != nullptr && entry.state.enabled.on != 0)
+            return entry.effect->exposure(entry.words.data());
+    return 1;
+}
+
 void add_ui(Look& look) {
     if (!look.ui) look.ui.emplace();
     for (LookEntry& entry : default_look().entries) {

@@ -112,6 +112,12 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
             .type_name("FILE")
             .group(group);
     command
+        .add_option("--layer", layers_,
+                    "A look file whose [post_process] is laid over the look: what it writes, and no more")
+        .type_name("FILE")
+        .repeated()
+        .group(group);
+    command
         .add_option("--ui", ui_file_,
                     "The interface over the picture: an image with alpha, or an SVG document; --ui-... and "
                     "--contrast-gamma-... are for it")
@@ -132,7 +138,9 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
         .repeated()
         .group(group);
     command.add_flag("--strict", is_strict_, "Unknown keys and values out of range in a look are errors").group(group);
-    command.add_flag("--no-postprocess", is_off_, "Tone mapping and encoding at their defaults, whatever the look says")
+    command
+        .add_flag("--no-postprocess", is_off_,
+                  "The look's exposure, and tone mapping and encoding at their defaults; nothing else")
         .group(group);
     command
         .add_option(
@@ -209,6 +217,25 @@ Result<> LookFlags::set_ui(Look& look) const {
     return {};
 }
 
+Result<> LookFlags::lay_layers(Look& look) const {
+    std::vector<std::string> warnings;
+    darkroom::LookOptions how = options(&warnings);
+    Result<> done;
+    for (std::size_t i = 0; i < layers_.size() && done; ++i) {
+        how.is_scene = is_scene_name(layers_[i]);
+        done = darkroom::lay_over(look, layers_[i], how);
+    }
+    for (const std::string& warning : warnings) warn(warning);
+    return done;
+}
+
+std::vector<std::filesystem::path> LookFlags::input_files() const {
+    std::vector<std::filesystem::path> files(layers_.begin(), layers_.end());
+    for (const std::string& one : {file, events})
+        if (!one.empty()) files.emplace_back(one);
+    return files;
+}
+
 Result<> LookFlags::set_order(Look& look) const {
     if (order_.empty()) return {};
     if (!look.is_flat)
@@ -233,11 +260,13 @@ darkroom::LookOptions LookFlags::options(std::vector<std::string>* warnings) con
 }
 
 bool LookFlags::change_anything() const {
-    return !ui_file_.empty() || !game_.empty() || !order_.empty() || !sets_.empty() || !effect_files_.empty() ||
+    return !layers_.empty() || !ui_file_.empty() || !game_.empty() || !order_.empty() || !sets_.empty() ||
+           !effect_files_.empty() ||
            std::ranges::any_of(values_, [](const auto& value) { return value->option.count() > 0; });
 }
 
 Result<> LookFlags::change(Look& look, bool keeps_what_is_off) const {
+    if (Result<> done = lay_layers(look); !done) return done;
     if (Result<> done = set_ui(look); !done) return done;
     if (Result<> done = set_order(look); !done) return done;
     // They have no place before it is known what is on, but values already.
@@ -263,10 +292,7 @@ Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
     if (!look) return look;
     resolve_ui(*look, path.parent_path());
     if (Result<> done = change(*look, !events.empty()); !done) return failure(std::move(done));
-    if (is_off_) {
-        *look = darkroom::default_look();
-        look->is_enabled = false;
-    }
+    if (is_off_) *look = darkroom::switched_off(*look);
     return look;
 }
 

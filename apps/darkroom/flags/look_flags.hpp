@@ -33,8 +33,10 @@ class LookFlags {
     /// place where it is asked for. --ui becomes the interface's document as it was typed.
     [[nodiscard]] darkroom::Result<> change(darkroom::Look& look, bool keeps_what_is_off) const;
     [[nodiscard]] bool change_anything() const;
+    /// What they read: the look, its layers, the timeline.
+    [[nodiscard]] std::vector<std::filesystem::path> input_files() const;
     [[nodiscard]] const std::string& ui_file() const { return ui_file_; }
-    /// --no-postprocess. look() is then the default one, switched off.
+    /// --no-postprocess. look() is then switched off.
     [[nodiscard]] bool is_off() const { return is_off_; }
     [[nodiscard]] bool is_strict() const { return is_strict_; }
 
@@ -58,11 +60,12 @@ class LookFlags {
     [[nodiscard]] darkroom::Result<std::vector<darkroom::LookOverride>> overrides() const;
     /// Puts those of --effect behind the look's entries, at their defaults.
     [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
+    [[nodiscard]] darkroom::Result<> lay_layers(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_order(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_ui(darkroom::Look& look) const;
 
     std::string order_, ui_file_;
-    std::vector<std::string> sets_, effect_files_, game_;
+    std::vector<std::string> layers_, sets_, effect_files_, game_;
     std::vector<std::unique_ptr<Value>> values_;  // CLI11 keeps references to the texts
     std::optional<CommandFlags> command_;         // knows in which order they were typed
     bool is_strict_ = false;

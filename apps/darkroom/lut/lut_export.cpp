@@ -157,7 +157,7 @@ Result<ExportedLook> export_look(const Look& look) {
             kept.entries.push_back(*entry);
             continue;
         }
-        // A look that is off is made of what changes the domain, and of nothing else.
+        // A look that is off is made of its exposure and what changes the domain, and of nothing else.
         if (look.is_enabled)
             out.left_out.push_back(
                 fmt::format("{}: {}", names[static_cast<std::size_t>(entry - look.entries.data())], *why));

@@ -169,8 +169,7 @@ Result<> ViewFlags::read_window(ViewerJob& job) const {
     if (!screenshot_.empty() || !window_screenshot_.empty()) job.frames_to_show = job.frames_to_show.value_or(1);
     std::vector<std::filesystem::path> inputs = job.frames;
     if (!job.scene.empty()) inputs.push_back(job.scene);
-    for (const std::filesystem::path& file : {std::filesystem::path(look_.file), std::filesystem::path(look_.events)})
-        if (!file.empty()) inputs.push_back(file);
+    std::ranges::copy(look_.input_files(), std::back_inserter(inputs));
     darkroom::Look look = job.document->look();
     resolve_ui(look, job.document->file().parent_path());
     std::ranges::copy(ui_files(look), std::back_inserter(inputs));

@@ -119,19 +119,20 @@ Result<std::vector<PlacedEntry>> stack_of(const Look& look, const ApplyOptions& 
     WireReader reader(look);
     for (const LookEntry* const entry : ordered(look)) {
         const std::string& name = names[static_cast<std::size_t>(entry - look.entries.data())];
-        const bool is_kept = look.is_enabled || is_domain_change(*entry->effect);
+        const bool is_own = look.is_enabled || entry->effect->exposure != nullptr;
+        const bool is_kept = is_own || is_domain_change(*entry->effect);
         if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry, name, options)) continue;
         PlacedEntry placed{.entry = entry,
                            .name = name,
                            .desc = {.is_ui = entry->is_of_ui && entry->effect->is_ui,
                                     .name = name,
                                     .output = entry->output,
-                                    .enabled = look.is_enabled ? entry->state.enabled.on != 0 : true,
+                                    .enabled = is_own ? entry->state.enabled.on != 0 : true,
                                     .opacity = entry->state.opacity,
                                     .blend = entry->state.blend,
                                     .scale = fraction(entry->state.scale),
                                     .format = image_format(entry->state.format)},
-                           .has_values = look.is_enabled};
+                           .has_values = is_own};
         // Bloom reads the scene itself in the documented order, and in the other what exposure and air made of it.
         if (look.is_flat && !entry->is_of_ui && look.order == LookOrder::Documented) placed.desc.source = scene_color;
         if (Result<> done = reader.read(placed); !done) return failure(std::move(done));

@@ -27,9 +27,9 @@ std::string names_of(Domains domains) {
 void make_stack(Look& look) {
     std::vector<LookEntry> entries;
     for (const LookEntry* const entry : ordered(look)) {
-        const bool changes_domain = is_domain_change(*entry->effect);
-        if (look.is_enabled ? entry->state.enabled.on == 0 && !changes_domain : !changes_domain) continue;
-        entries.push_back(look.is_enabled ? *entry : entry_of(*entry->effect));
+        const bool is_own = look.is_enabled || entry->effect->exposure != nullptr;
+        if (!is_domain_change(*entry->effect) && (!is_own || entry->state.enabled.on == 0)) continue;
+        entries.push_back(is_own ? *entry : entry_of(*entry->effect));
         if (!entry->is_of_ui && look.order == LookOrder::Documented) entries.back().source = scene_name;
         entries.back().is_of_ui = entry->is_of_ui;
     }
@@ -77,9 +77,9 @@ Result<> place_entry(Look& look, LookEntry entry) {
         is_found = true;
     }
     if (!is_found)
-        return user_error(fmt::format("{}: {} accepts {}, which the picture of {} is nowhere",
-                                      printable(entry.effect_file), entry.effect->name, names_of(accepts),
-                                      look.shown_name));
+        return user_error(fmt::format("{}{}{} accepts {}, which the picture of {} is nowhere",
+                                      printable(entry.effect_file), entry.effect_file.empty() ? "" : ": ",
+                                      entry.effect->name, names_of(accepts), look.shown_name));
     look.entries.insert(place, std::move(entry));
     return {};
 }
