@@ -120,13 +120,8 @@ void Viewer::take_scene(std::unique_ptr<SceneSource> scene) {
     is_cut_ = true;
 }
 
-const darkroom::Look& Viewer::look_of(Side side) const {
-    static const darkroom::Look off = [] {
-        darkroom::Look look = darkroom::default_look();
-        look.is_enabled = false;
-        return look;
-    }();
-    if (side == Side::Off) return off;
+darkroom::Look Viewer::look_of(Side side) const {
+    if (side == Side::Off) return darkroom::switched_off(document_->look());
     return side == Side::Look ? document_->look() : document_->saved_look();
 }
 
@@ -187,6 +182,7 @@ LiveMoment Viewer::moment() const {
     if (scene_ != nullptr) out.orbit = camera_->orbit(scene_->snapshot());
     out.previous_orbit = last_orbit_;
     out.is_post_off = !is_post_on_ && scene_ != nullptr && !screen_.is_comparing();
+    out.draw.exposure = darkroom::exposure_of(document_->look());
     if (source_->frames() > 0) {
         const double rate = job_.frame_desc.frames_per_second.value_or(1 / job_.step);
         out.number = static_cast<std::size_t>(std::llround(std::floor(played_ * rate + 1e-6))) % source_->frames();

@@ -51,7 +51,7 @@ class Viewer {
     /// Is the picture of a stored frame shown without the look? A scene draws its own then.
     [[nodiscard]] bool is_off() const { return !is_post_on_ && scene_ == nullptr; }
     [[nodiscard]] bool is_fixed() const { return job_.frames_to_show.has_value(); }
-    [[nodiscard]] const darkroom::Look& look_of(Side side) const;
+    [[nodiscard]] darkroom::Look look_of(Side side) const;
 
     // viewer_keys.cpp
     void obey_keys();

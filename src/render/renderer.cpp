@@ -152,6 +152,7 @@ void Renderer::State::apply(const DrawOptions& options) {
     desc.draw = options;
     settings.debug = options.debug;
     settings.is_tone_mapped = desc.is_tone_mapped && options.debug == DebugView::None;
+    settings.exposure = options.debug == DebugView::None ? options.exposure : 1;
 }
 
 Result<> Renderer::State::warm_up() {

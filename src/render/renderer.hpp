@@ -32,6 +32,7 @@ struct DrawOptions {
     bool has_grid = true;
     bool has_wireframe_overlay = false;
     bool has_normal_arrows = false;
+    float exposure = 1;                 ///< multiplies light, but not in debug views; of Output::Display alone
     DebugView debug = DebugView::None;  ///< others need Output::Display, and are neither tone-mapped nor encoded
 };
 

@@ -57,7 +57,8 @@ blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& 
     block.camera_position = vec4(camera.position, camera.kind == scene::Projection::Perspective ? 1 : 0);
     block.camera_forward = vec4(-camera.view[0].z, -camera.view[1].z, -camera.view[2].z, 0);
     block.target_size = vec4(width, height, 1 / width, 1 / height);
-    block.planes = vec4(camera.near_distance, camera.far_distance, static_cast<float>(snapshot.time), 0);
+    block.planes =
+        vec4(camera.near_distance, camera.far_distance, static_cast<float>(snapshot.time), settings.exposure);
     block.light_counts =
         uvec4(directional_lights(snapshot).size(), lights_of(snapshot, LightType::Point, most_point_lights).size(),
               lights_of(snapshot, LightType::Spot, most_spot_lights).size(), 0);

@@ -18,6 +18,7 @@ struct FrameSettings {
     VkExtent2D extent{};
     Output output = Output::Hdr;
     bool is_tone_mapped = true;
+    float exposure = 1;
     DebugView debug = DebugView::None;
     scene::Environment environment;
     std::array<scene::vec3, 9> irradiance{};

@@ -328,8 +328,8 @@ TEST_F(CliRenderPixels, CurvesAreThoseOfTheLight) {
             brightest = std::max(brightest, light);
             EXPECT_NEAR(tonemapped.at(x, y)[c], encoded(narkowicz(0.25 * light)), 1.0 / 255) << x << ", " << y;
             EXPECT_NEAR(linear.at(x, y)[c], encoded(0.25 * light), 1.0 / 255) << x << ", " << y;
-            EXPECT_NEAR(off.at(x, y)[c], encoded(narkowicz(light)), 2.0 / 255) << x << ", " << y;
-            EXPECT_NEAR(both_off.at(x, y)[c], encoded(light), 2.0 / 255) << x << ", " << y;
+            EXPECT_NEAR(off.at(x, y)[c], encoded(narkowicz(0.25 * light)), 2.0 / 255) << x << ", " << y;
+            EXPECT_NEAR(both_off.at(x, y)[c], encoded(0.25 * light), 2.0 / 255) << x << ", " << y;
         }
     });
     EXPECT_GT(brightest, 1) << "light that a display cuts off";

@@ -148,8 +148,7 @@ class Render {
         if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;
         for (const std::string& warning : assets_.warnings) warn(warning);
         std::vector<std::filesystem::path> inputs = assets_.files;
-        if (!flags_.look.file.empty()) inputs.emplace_back(flags_.look.file);
-        if (!flags_.look.events.empty()) inputs.emplace_back(flags_.look.events);
+        std::ranges::move(flags_.look.input_files(), std::back_inserter(inputs));
         std::ranges::move(ui_files(look_), std::back_inserter(inputs));
         const FileSet files(inputs);
         for (const Shot& shot : job_.shots)
@@ -224,6 +223,7 @@ class Render {
         const bool has_frames = !job_.shots.back().frame.empty();
         if (way_ == Way::Display) {
             desc.output = render::Output::Display;
+            desc.draw.exposure = darkroom::exposure_of(look_);
             // Its own shaders encode it, so the rasteriser smooths its edges.
             if (desc.draw.debug == render::DebugView::None && !flags_.drawn.has_msaa()) desc.samples = usual_msaa;
             // What the file holds more of than eight bits: half floats have eleven, and no range to leave.

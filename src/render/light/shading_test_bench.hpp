@@ -95,7 +95,7 @@ class FragmentBench {
         frame.camera_position = vec4(toward_camera * 10.0F, 0);
         frame.camera_forward = vec4(-toward_camera, 0);
         frame.target_size = vec4(size, size, 1.0F / size, 1.0F / size);
-        frame.planes = vec4(1, 100, 0, 0);
+        frame.planes = vec4(1, 100, 0, 1);
         material.base_color = vec4(1);
         material.factors = vec4(0, 1, 1, 1);
         for (std::size_t i = 0; i < 5; ++i) {

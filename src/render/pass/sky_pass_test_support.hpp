@@ -89,7 +89,7 @@ class Stage {
         frame.camera_forward = -vec4(state.view[0].z, state.view[1].z, state.view[2].z, 0);
         const vec2 size(extent.width, extent.height);
         frame.target_size = vec4(size, 1.0F / size);
-        frame.planes = {state.near_distance, state.far_distance, 0, 0};
+        frame.planes = {state.near_distance, state.far_distance, 0, 1};
     }
 
     /// Clears the targets to `clear_color`, normals and velocity to 7, depth to `clear_depth`, and calls

@@ -8,7 +8,7 @@ mat4 inverse_view_projection;
 vec4 camera_position;  // world space; w: 1 perspective, 0 orthographic
 vec4 camera_forward;   // world space, normalised
 vec4 target_size;      // pixels: width, height, 1 / width, 1 / height
-vec4 planes;           // near distance, far distance, time in seconds, 0
+vec4 planes;           // near distance, far distance, time in seconds, exposure of the finished picture
 uvec4 light_counts;    // directional, point, spot, 0
 uvec4 modes;           // output (Output_...), tone-maps (0 or 1), debug view (Debug_...), 0
 vec4 ambient_sky;      // hemisphere from above; used where there is no environment

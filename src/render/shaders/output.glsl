@@ -20,6 +20,7 @@ vec4 finish(vec3 scene_linear, float alpha, uint output_mode, bool is_tone_mappe
     vec3 light = finite_light(scene_linear);
     float opacity = alpha > 0.0 ? min(alpha, 1.0) : 0.0;
     if (output_mode == Output_hdr) return vec4(light, opacity);
+    light = finite_light(light * frame.planes.w);
     vec3 display = mix(light, tone_map(light), bvec3(is_tone_mapped));
     return vec4(srgb_encode(clamp(display, 0.0, 1.0)), opacity);
 }

@@ -100,7 +100,7 @@ class ShadowRig {
         blocks::Frame frame{};
         frame.camera_position = vec4(snapshot.camera.position, 1);
         frame.camera_forward = -vec4(vec3(glm::transpose(snapshot.camera.view)[2]), 0);
-        frame.planes = vec4(snapshot.camera.near_distance, snapshot.camera.far_distance, 0, 0);
+        frame.planes = vec4(snapshot.camera.near_distance, snapshot.camera.far_distance, 0, 1);
         std::memcpy(frame_.memory.mapped, &frame, sizeof frame);
         blocks::Shadows shadows{};
         pass.fill(shadows);
