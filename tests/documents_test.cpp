@@ -115,6 +115,24 @@ std::string all_text(const std::vector<fs::path>& folders, const std::string& en
     return out;
 }
 
+// Who writes against an effect's struct reads its header; what the program says comes from the effect's source.
+TEST(Documents, HeadersOfEffectsSayWhatTheirMembersAre) {
+    for (const EffectInfo* const effect : all_effects()) {
+        const std::string page = fmt::format("effects/{0}/{0}.hpp", effect->name);
+        const std::string text = std::regex_replace(one_line(page), std::regex(" /// "), " ");
+        for (const ParamInfo& row : effect->parameters.rows) {
+            const bool has_interval =
+                row.kind != Kind::Choice && row.kind != Kind::Toggle && row.kind != Kind::Resource;
+            const std::string comment = std::string(row.doc) + (has_interval ? " " + interval(row) : "");
+            const std::size_t at = text.find(comment);
+            ASSERT_NE(at, std::string::npos) << page << ": no comment '" << comment << "'";
+            const std::string member = text.substr(at + comment.size(), text.find(';', at + comment.size()) - at);
+            EXPECT_TRUE(std::regex_search(member, std::regex("^ [A-Za-z0-9_:]+ " + std::string(row.name) + "[ ={;]")))
+                << page << ": '" << comment << "' stands before" << member << ", not " << row.name;
+        }
+    }
+}
+
 TEST(Documents, EveryFlagIsRunByATest) {
     // Those of parameters are run by Cli.EveryParameterIsAFlag; the lines of recipes by CliRecipes. The first are
     // CMake's and pkg-config's.

@@ -16,7 +16,9 @@ enum class ArenaBloomSource : std::uint32_t {
 };
 
 struct ArenaBloom {
+    /// How much of the glow is added. [0, 4]
     float intensity = 1.0f;
+    /// Whether colour is limited to a display's range and alpha masks the glow.
     ArenaBloomSource source_kind = ArenaBloomSource::Masked;
 };
 

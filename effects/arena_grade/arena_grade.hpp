@@ -13,7 +13,9 @@ struct EffectInfo;
 enum class ArenaTable : std::uint32_t { Arena, Identity, Sepia };
 
 struct ArenaGrade {
+    /// A table, read at 16 steps of each channel; without one the preset.
     Resource table;
+    /// Which of the built-in tables.
     ArenaTable preset = ArenaTable::Arena;
 };
 

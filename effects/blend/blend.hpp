@@ -11,7 +11,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Blend {
+    /// How the second picture goes over the picture.
     BlendMode mode = BlendMode::Mix;
+    /// Share of the blended picture; at 0 the picture stays as it is. [0, 1]
     float amount = 0.5f;
 };
 

@@ -17,12 +17,20 @@ enum class BloomMode : std::uint32_t {
 };
 
 struct Bloom {
+    /// How much of the glow is added; in the mode energy_conserving, how far the picture is mixed with it, where 1 and
+    /// more mean wholly. [0, 16]
     float intensity = 0.04f;
+    /// Light above this glows; not used in the mode energy_conserving. [0, 65504]
     float threshold = 1.0f;
+    /// Width of the soft knee as a part of the threshold: 0 is a hard edge. [0, 1]
     float soft_threshold = 0.5f;
+    /// Averages the first level by inverse luminance, so that lone bright pixels do not flicker.
     Toggle firefly_filter = true;
+    /// Whether the glow is added to the picture or mixed with it.
     BloomMode mode = BloomMode::Additive;
+    /// Weight of each wider level relative to the one below it, in the mode energy_conserving. [0, 1]
     float scatter = 0.7f;
+    /// Most levels of the pyramid that are used; small pictures have fewer. [1, 5]
     std::int32_t levels = 5;
 };
 

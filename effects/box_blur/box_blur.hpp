@@ -10,7 +10,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct BoxBlur {
+    /// Half-width of the square; 0 leaves the picture as it is. [0, 64] px
     std::int32_t radius = 4;
+    /// How many times the picture is blurred: 2 make a pyramid, 3 nearly a bell curve. [1, 4]
     std::int32_t iterations = 1;
 };
 

@@ -16,9 +16,13 @@ enum class ClassicBloomSource : std::uint32_t {
 };
 
 struct ClassicBloom {
+    /// How much of the glow is added. [0, 16]
     float intensity = 0.5f;
+    /// What glows; the layer is named by the entry's source, for example alpha.
     ClassicBloomSource source_kind = ClassicBloomSource::Hdr;
+    /// Light above this glows; not used with a layer. [0, 65504]
     float threshold = 1.0f;
+    /// Half-width of the glow, which is not below 7. [1, 64] px
     std::int32_t radius = 16;
 };
 

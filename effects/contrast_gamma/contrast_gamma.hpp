@@ -9,7 +9,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct ContrastGamma {
+    /// Factor of the encoded picture. [1, 2]
     float contrast = 1.0f;
+    /// Exponent behind it: below 1 brightens. [0.1, 4]
     float gamma = 1.0f;
 };
 

@@ -15,8 +15,11 @@ enum class DitherEnds : std::uint32_t {
 };
 
 struct Dither {
+    /// Width of the noise, in units of the encoded range; 2/255 hides the steps of 8 bits. [0, 1]
     float intensity = 2.0f / 255.0f;
+    /// Which mean stays near black and white: that of the rounded picture, or that before.
     DitherEnds ends = DitherEnds::Rounded;
+    /// The noise is another one in each frame while time runs, for what averages frames.
     Toggle moves = false;
 };
 

@@ -14,8 +14,11 @@ struct EffectInfo;
 enum class FrameBlendArea : std::uint32_t { Quarter, Sixteenth };
 
 struct FrameBlend {
+    /// Weight of all earlier frames together. [0, 1]
     float amount = 0.6f;
+    /// Length of the trail, in steps of 1/60 s. [1, 7]
     std::int32_t frames = 7;
+    /// Of the picture's area, how much each earlier frame is kept at.
     FrameBlendArea area = FrameBlendArea::Sixteenth;
 };
 

@@ -18,8 +18,11 @@ enum class GaussianBlurResolution : std::uint32_t {
 };
 
 struct GaussianBlur {
+    /// Half-width of the blur; 0 leaves the picture as it is. [0, 64] px
     std::int32_t radius = 4;
+    /// Standard deviation of the bell curve; 0 takes a third of the radius. [0, 64] px
     float sigma = 0.0f;
+    /// Whether a wide blur works on a smaller picture.
     GaussianBlurResolution resolution = GaussianBlurResolution::Automatic;
 };
 

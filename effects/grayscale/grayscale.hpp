@@ -9,6 +9,7 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Grayscale {
+    /// How much of the colour goes; at 0 the picture stays as it is. [0, 1]
     float amount = 1.0f;
 };
 

@@ -20,7 +20,9 @@ enum class TonemapOperator : std::uint32_t {
 };
 
 struct Tonemap {
+    /// The tone mapping operator.
     TonemapOperator curve = TonemapOperator::AcesNarkowicz;
+    /// Luminance that reinhard_extended maps to white; the other operators ignore it. [0.1, 1024]
     float white = 4.0f;
 };
 

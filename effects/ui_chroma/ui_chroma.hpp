@@ -10,6 +10,7 @@ namespace darkroom {
 struct EffectInfo;
 
 struct UiChroma {
+    /// How much the barrels of red and blue differ from green's, for 1080 lines: less on taller pictures. [0, 1]
     float strength = 0.0f;
 };
 

@@ -9,7 +9,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct UiComposite {
+    /// Of the interface; it never fades below 0.1. [0, 1]
     float ui_opacity = 1.0f;
+    /// From laid over (0) to added as light (1), which is dimmed to 0.7. [0, 1]
     float additive = 0.0f;
 };
 

@@ -10,7 +10,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct UiWarp {
+    /// Barrel distortion: below 0 the corners bend outward, above 0 inward. [-4, 4]
     float strength = 0.0f;
+    /// Where the layer is read, moved in uv: the interface goes the other way. [-1, 1]
     Vec2 offset;
 };
 

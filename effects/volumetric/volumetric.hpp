@@ -10,9 +10,13 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Volumetric {
+    /// How much light the haze scatters toward the camera, in hundredths a metre. [0, 1000]
     float density = 1.0f;
+    /// Steps of the march. Brightness does not depend on it, smoothness does. [1, 256]
     std::int32_t samples = 32;
+    /// How far the march goes; the sky is marched as far. [0.01, 1000000] m
     float max_distance = 100.0f;
+    /// What is left of the light after each thirty-second of the march. [0.01, 1]
     float decay = 0.98f;
 };
 
