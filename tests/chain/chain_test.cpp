@@ -335,6 +335,69 @@ TEST_F(ChainLooks, EveryShippedLookDevelopsAsItsReference) {
     }
 }
 
+std::filesystem::path shipped(const std::string& name) {
+    return std::filesystem::path(test::source_folder) / "looks" / (name + ".toml");
+}
+/// By the references alone.
+ReferenceImage developed(const Look& look, const ReferenceImage& picture, double time = 0.5) {
+    Composer composer(gpu::test::device());
+    test::must(apply(look, composer));
+    return test::must(run_reference(composer, {.color = &picture, .time = time})).picture;
+}
+
+TEST_F(ChainLooks, DazeShimmerAndBlastWaveMoveThePictureThatIsThere) {
+    const auto base = read_look(shipped("bright"), {.is_strict = true});
+    ASSERT_TRUE(base) << base.error().text;
+    const ReferenceImage picture = scene(131, 77), still = developed(*base, picture);
+    for (const char* const name : {"daze", "heat_shimmer", "blast_wave"}) {
+        SCOPED_TRACE(name);
+        Look moved = *base;
+        const Result<> laid = lay_over(moved, shipped(name), {.is_strict = true});
+        ASSERT_TRUE(laid) << laid.error().text;
+        const ReferenceImage out = developed(moved, picture);
+        EXPECT_GT(test::worst_codes(out, still), 20);
+        // It is the same picture, elsewhere: as bright, and with the glow of the look beneath.
+        const auto mean = [](const ReferenceImage& of) {
+            double sum = 0;
+            for (const Rgba& p : of.pixels) sum += (p.r + p.g + p.b) / 3;
+            return sum / static_cast<double>(of.pixels.size());
+        };
+        EXPECT_NEAR(mean(out), mean(still), 0.05 * mean(still));
+        EXPECT_NE(test::worst_codes(out, developed(moved, picture, 0.7)), 0) << "it moves";
+    }
+}
+
+/// Black but for a square of this light.
+ReferenceImage spot(std::uint32_t x, std::uint32_t y, double light) {
+    ReferenceImage out = test::uniform(480, 270, {0, 0, 0, 1});
+    for (std::uint32_t i = 0; i < 64; ++i) out.at(x + i % 8, y + i / 8) = {light, light, light, 1};
+    return out;
+}
+
+TEST_F(ChainLooks, ComposedRaysRunThroughTheLightsPlace) {
+    const auto look = read_look(shipped("composed_rays"), {.is_strict = true});
+    ASSERT_TRUE(look) << look.error().text;
+    // To the right of the light's place, (240, 81), and as high.
+    const ReferenceImage out = developed(*look, spot(356, 77, 50));
+    const auto row = [&](std::uint32_t y, std::uint32_t first, std::uint32_t last) {
+        double sum = 0;
+        for (std::uint32_t x = first; x < last; ++x) sum += out.at(x, y).r;
+        return sum / (last - first);
+    };
+    EXPECT_GT(row(81, 390, 430), 0.1) << "beyond it";
+    EXPECT_GT(row(81, 310, 340), 0.1) << "before it";
+    for (const std::uint32_t y : {30U, 51U, 111U, 150U}) EXPECT_LT(row(y, 310, 430), 0.01) << "beside it, line " << y;
+    EXPECT_EQ(developed(*look, spot(356, 77, 0.4)).at(400, 81).r, 0) << "what is not bright throws none";
+}
+
+TEST_F(ChainLooks, PlainBloomIsBlackBelowItsThreshold) {
+    const auto look = read_look(shipped("plain_bloom"), {.is_strict = true});
+    ASSERT_TRUE(look) << look.error().text;
+    const auto beside = [&](double light) { return developed(*look, spot(240, 120, light)).at(256, 124).r; };
+    EXPECT_EQ(beside(0.99), 0);
+    EXPECT_GT(beside(1.01), 0);
+}
+
 TEST_F(ChainLooks, TheShippedOrdersGiveNoRemark) {
     for (const char* const order : {"documented", "scene_linear"}) {
         const auto look = parse_look("[post_process]\norder = \"" + std::string(order) +

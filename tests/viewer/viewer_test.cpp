@@ -34,6 +34,40 @@ TEST_F(CliViewer, APictureIsThatOfRender) {
     }
 }
 
+TEST_F(CliViewer, EveryFlagOfThePicturesIsObeyed) {
+    const std::string file = scenes + "forge.scene.toml";
+    const auto pictures = [&](const std::vector<std::string>& flags) {
+        std::vector<std::string> render{"render",    file, "--size", "160x90", "--fps", "60",
+                                        "--samples", "1",  "--msaa", "4",      "-o",    path("render.png")};
+        std::vector<std::string> play{"play", file, "--size", "160x90", "--screenshot", path("shown.png")};
+        for (std::vector<std::string>* const line : {&render, &play}) {
+            line->insert(line->end(), {"--fxaa-enabled", "off"});
+            line->insert(line->end(), flags.begin(), flags.end());
+            const Outcome outcome = run(*line);
+            EXPECT_EQ(outcome.code, 0) << outcome.err;
+        }
+        return std::pair(picture("render.png"), picture("shown.png"));
+    };
+    const Picture plain = pictures({}).second;
+    for (const std::vector<std::string>& flags :
+         std::vector<std::vector<std::string>>{{"--exposure", "2"},
+                                               {"--bloom-intensity", "0.6", "--bloom-threshold", "0.2"},
+                                               {"--fog-density", "0.1"},
+                                               {"--fog-height-falloff", "0.2"},
+                                               {"--vignette-intensity", "0.9"},
+                                               {"--ssao-intensity", "3"},
+                                               {"--radial-blur", "2"},
+                                               {"--chromatic-aberration", "0.05"},
+                                               {"--tonemap-curve", "agx"},
+                                               {"--dither-intensity", "0.1"},
+                                               {"--layer", std::string(test::source_folder) + "/looks/daze.toml"},
+                                               {"--no-postprocess", "--exposure", "3"}}) {
+        const auto [rendered, shown] = pictures(flags);
+        EXPECT_GT(difference(plain, shown), 2.0 / 255) << flags.front();
+        EXPECT_LE(difference(rendered, shown), 1.001 / 255) << flags.front();
+    }
+}
+
 TEST_F(CliViewer, AStoredFrameIsDevelopedAsByDevelop) {
     ASSERT_EQ(run({"render", scenes + "dungeon.scene.toml", "--size", "161x97", "-o", path("r.png"), "--frame",
                    path("frame.exr")})
