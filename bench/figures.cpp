@@ -40,6 +40,9 @@ constexpr std::array races{
     Race{"gaussian, radius 64 / its fastest form", "gaussian/64/automatic/auto", "gaussian/64/", 1.1},
 };
 constexpr std::array targets{
+    Target{"the sun's soft shadows, dungeon / without", dungeon_scene_name, dungeon_unshadowed_name},
+    Target{"the sun's plain shadows, dungeon / without", dungeon_plain_name, dungeon_unshadowed_name},
+    Target{"lamps' shadows, street / without", street_name, street_unshadowed_name},
     Target{"calibration / plain copy", calibration_name, "copy/plain/raster"},
     Target{"tail fused / calibration", "tail/fused/auto", calibration_name, 3.0},
     Target{"tail fused / tail unfused", "tail/fused/auto", "tail/unfused/auto", 0.35},

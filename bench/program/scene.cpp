@@ -28,14 +28,20 @@ struct Drawing {
     std::optional<render::Renderer> renderer;
 };
 
-Result<std::shared_ptr<Drawing>> draw(Bed& bed, scene::Scene scene) {
+/// How the shadows of a row are drawn.
+enum class Shadows : std::uint8_t { None, Plain, Soft };
+
+Result<std::shared_ptr<Drawing>> draw(Bed& bed, scene::Scene scene, Shadows shadows = Shadows::Soft) {
     const auto out = std::make_shared<Drawing>();
     out->scene = std::move(scene);
     out->assets = scene::load_assets(out->scene);
     constexpr float aspect = static_cast<float>(scene_extent.width) / static_cast<float>(scene_extent.height);
     out->snapshot = scene::snapshot(out->scene, out->assets, {.aspect = aspect});
-    auto renderer = render::Renderer::create(bed.device, out->scene, out->assets,
-                                             {.extent = scene_extent, .draw = {.has_grid = out->scene.has_grid}});
+    const render::RenderDesc desc{
+        .extent = scene_extent,
+        .cascades = {.filter = shadows == Shadows::Plain ? render::ShadowFilter::Plain : render::ShadowFilter::Soft},
+        .draw = {.has_shadows = shadows != Shadows::None, .has_grid = out->scene.has_grid}};
+    auto renderer = render::Renderer::create(bed.device, out->scene, out->assets, desc);
     if (!renderer) return failure(std::move(renderer));
     out->renderer.emplace(std::move(*renderer));
     if (auto done = out->renderer->prepare(out->snapshot); !done) return failure(std::move(done));
@@ -47,24 +53,30 @@ Row drawing_row(const std::string& name, const std::shared_ptr<Drawing>& drawing
             .record = [drawing](VkCommandBuffer commands) { return drawing->renderer->record(commands); }};
 }
 
-std::filesystem::path dungeon_path() { return DARKROOM_SOURCE_FOLDER "/scenes/dungeon.scene.toml"; }
-
-/// Nothing where the file is not on this machine.
-Result<std::shared_ptr<Drawing>> draw_dungeon(Bed& bed, const std::string& row) {
-    std::error_code error;
-    if (!std::filesystem::exists(dungeon_path(), error)) {
-        fmt::print(stderr, "{}: left out, {} is not there\n", row, dungeon_path().string());
-        return std::shared_ptr<Drawing>();
-    }
-    auto scene = scene::read_scene(dungeon_path());
-    if (!scene) return failure(std::move(scene));
-    return draw(bed, std::move(*scene));
+std::filesystem::path path_of(std::string_view scene) {
+    return fmt::format(DARKROOM_SOURCE_FOLDER "/scenes/{}.scene.toml", scene);
 }
 
-Result<Row> dungeon_scene_row(Bed& bed, const std::string& name) {
-    const auto drawing = draw_dungeon(bed, name);
-    if (!drawing) return failure(drawing.error());
-    return *drawing ? drawing_row(name, *drawing) : Row{.name = name};
+/// Nothing where the file is not on this machine.
+Result<std::shared_ptr<Drawing>> draw_shipped(Bed& bed, const std::string& row, std::string_view name,
+                                              Shadows shadows = Shadows::Soft) {
+    std::error_code error;
+    const std::filesystem::path path = path_of(name);
+    if (!std::filesystem::exists(path, error)) {
+        fmt::print(stderr, "{}: left out, {} is not there\n", row, path.string());
+        return std::shared_ptr<Drawing>();
+    }
+    auto scene = scene::read_scene(path);
+    if (!scene) return failure(std::move(scene));
+    return draw(bed, std::move(*scene), shadows);
+}
+
+Recipe shipped_recipe(std::string_view row, std::string_view scene, Shadows shadows) {
+    return {std::string(row), [=](Bed& bed, const std::string& name) -> Result<Row> {
+                const auto drawing = draw_shipped(bed, name, scene, shadows);
+                if (!drawing) return failure(drawing.error());
+                return *drawing ? drawing_row(name, *drawing) : Row{.name = name};
+            }};
 }
 
 /// The look of the scene on the frame of the scene, which is drawn once.
@@ -76,10 +88,10 @@ struct Post {
 };
 
 Result<Row> dungeon_post_row(Bed& bed, const std::string& name) {
-    const auto drawing = draw_dungeon(bed, name);
+    const auto drawing = draw_shipped(bed, name, "dungeon");
     if (!drawing) return failure(drawing.error());
     if (!*drawing) return Row{.name = name};
-    auto look = read_look(dungeon_path(), {.is_scene = true});
+    auto look = read_look(path_of("dungeon"), {.is_scene = true});
     if (!look) return failure(std::move(look));
     const auto post = std::make_shared<Post>();
     post->drawing = *drawing;
@@ -157,7 +169,11 @@ Result<Row> boxes_host_row(Bed& bed, const std::string& name) {
 }  // namespace
 
 std::vector<Recipe> scene_recipes() {
-    return {{std::string(dungeon_scene_name), dungeon_scene_row},
+    return {shipped_recipe(dungeon_scene_name, "dungeon", Shadows::Soft),
+            shipped_recipe(dungeon_plain_name, "dungeon", Shadows::Plain),
+            shipped_recipe(dungeon_unshadowed_name, "dungeon", Shadows::None),
+            shipped_recipe(street_name, "street", Shadows::Soft),
+            shipped_recipe(street_unshadowed_name, "street", Shadows::None),
             {std::string(dungeon_post_name), dungeon_post_row},
             {"scene: 10,000 boxes", boxes_row},
             {"scene: 10,000 boxes, snapshot and prepare", boxes_host_row}};
