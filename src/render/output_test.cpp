@@ -15,11 +15,13 @@ namespace {
 using scene::vec4;
 
 /// finish() of these colours and alphas.
-std::vector<vec4> finished(const std::vector<vec4>& colors, const std::string& arguments) {
+std::vector<vec4> finished(const std::vector<vec4>& colors, const std::string& arguments, float exposure = 1) {
     return test::evaluate("finish " + arguments,
                           test::frame_stand_in() + test::shader_part("output.glsl") +
                               "vec4 shade(Pixel pixel) {\n    vec4 color = load(input_0, pixel.texel);\n"
-                              "    frame.modes = uvec4(1u, 1u, 0u, 0u);\n"
+                              "    frame.modes = uvec4(1u, 1u, 0u, 0u);\n    frame.planes.w = " +
+                              std::to_string(exposure) +
+                              ";\n"
                               "    return finish(color.rgb, color.a" +
                               arguments + ");\n}\n",
                           {colors});
@@ -95,6 +97,15 @@ TEST(RenderGpuOutput, CodesAreThoseOfTheStandard) {
     }
     const std::vector<vec4> half = finished({vec4(0.5F)}, ", Output_display, false");
     EXPECT_EQ(std::lround(half[0].x * 255), 188);
+}
+
+TEST(RenderGpuOutput, ExposureIsOfWhatIsShownAndNotOfWhatIsStored) {
+    const std::vector<vec4> colors = ramp();
+    std::vector<vec4> brighter = colors;
+    for (vec4& color : brighter) color = vec4(4 * color.x, 4 * color.y, 4 * color.z, color.w);
+    EXPECT_EQ(finished(colors, ", Output_hdr, true", 4), colors);
+    for (const char* arguments : {", Output_display, false", ", Output_display, true"})
+        EXPECT_EQ(finished(colors, arguments, 4), finished(brighter, arguments)) << arguments;
 }
 
 TEST(RenderGpuOutput, ModesOfTheFrameAreTheSameModes) {
