@@ -103,7 +103,8 @@ Failure io_error(const fs::path& path, const char* doing, int code) {
 
 // A wrong name is the user's to mend; a disk that fails is not.
 Failure open_error(const fs::path& path, int code) {
-    const std::string text = fmt::format("{}: cannot open: {}", path.string(), std::strerror(code));
+    const std::string text = code == ENOENT ? fmt::format("{}: there is no such file", path.string())
+                                            : fmt::format("{}: cannot open: {}", path.string(), std::strerror(code));
     return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG ? user_error(text) : machine_error(text);
 }
 

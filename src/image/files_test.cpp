@@ -32,7 +32,7 @@ TEST_F(ImageFiles, MissingFileNamesThePathAndIsTheUsersFault) {
     const auto missing = read_file(file("none.bin"));
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.error().fault, Fault::User);
-    EXPECT_EQ(missing.error().text, file("none.bin").string() + ": cannot open: No such file or directory");
+    EXPECT_EQ(missing.error().text, file("none.bin").string() + ": there is no such file");
     EXPECT_FALSE(read_file(folder_));
 }
 

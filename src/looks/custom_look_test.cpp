@@ -105,7 +105,7 @@ TEST_F(CustomLook, IsRefusedUnlessTheHostAllowsIt) {
 
 TEST_F(CustomLook, ErrorsAreThoseOfOtherEffects) {
     EXPECT_EQ(error_of("[[stack]]\neffect = \"absent.glsl\"\n"),
-              "a.toml:2:10: effect = \"absent.glsl\": absent.glsl: cannot open: No such file or directory");
+              "a.toml:2:10: effect = \"absent.glsl\": absent.glsl: there is no such file");
     write("broken.glsl", "// @effect broken: Broken.\n// @needs money\n");
     EXPECT_EQ(
         error_of("[[stack]]\neffect = \"broken.glsl\"\n"),

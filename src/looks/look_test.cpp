@@ -214,10 +214,8 @@ TEST(Look, StackErrorsNameBothEnds) {
         error_of(blur + blur),
         "a.toml:6:10: output 'blurred' is made by stack entry 1 (gaussian_blur) and by stack entry 2 (gaussian_blur)");
     EXPECT_EQ(error_of(blur + "[[stack]]\neffect = \"blend\"\nsecond = \"blured\"\n"),
-              "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, known are scene, "
-              "alpha, ui, "
-              "blurred, did you "
-              "mean 'blurred'?");
+              "a.toml:6:10: second = \"blured\" of stack entry 2 (blend): no entry has this output, did you mean "
+              "'blurred'? known are scene, alpha, ui and blurred");
     EXPECT_TRUE(contains(error_of("[[stack]]\neffect = \"blom\"\n"), "did you mean 'bloom'?"));
     EXPECT_TRUE(contains(error_of("[[stack]]\nradius = 1\n"), "stack entry 1 has no key 'effect'"));
     EXPECT_TRUE(contains(error_of("stack = 1\n"), "expected [[stack]] entries"));
@@ -327,7 +325,7 @@ TEST(Look, OverridesThatDoNotFitAreErrors) {
         return done ? "accepted" : done.error().text;
     };
     EXPECT_EQ(error("bloom_intensity", "1"),
-              "--bloom_intensity: a.toml has no entry 'bloom', it has negative, negative#2");
+              "--bloom_intensity: a.toml has no entry 'bloom': it has negative and negative#2");
     EXPECT_EQ(error("negative#2.opacity", "0.5"), "accepted");
     EXPECT_EQ(look.entries[1].state.opacity, 0.5f);
     EXPECT_EQ(error("negative#2.opacity", "1.5"), "--negative#2.opacity = 1.5: allowed is [0, 1]");
@@ -456,7 +454,7 @@ TEST(Look, WiresToTheFrameBeforeNameAnOutput) {
         return error_of(fmt::format("[[stack]]\neffect = \"blend\"\nsecond = \"{}\"\noutput = \"a\"\n", wire));
     };
     EXPECT_EQ(error("a.previous"), "accepted");
-    EXPECT_TRUE(contains(error("b.previous"), "no entry has this output, known are scene, alpha, ui, a"))
+    EXPECT_TRUE(contains(error("b.previous"), "no entry has this output: known are scene, alpha, ui and a"))
         << error("b.previous");
     EXPECT_TRUE(contains(error("alpha.previous"), "no entry has this output")) << error("alpha.previous");
     EXPECT_TRUE(contains(error(".previous"), "expected a name")) << error(".previous");

@@ -183,8 +183,9 @@ TEST_F(LookModulation, SlipsAreToldWithTheirPlaces) {
     EXPECT_NE(error("[[pulse]]\nevent = \"hit\"\nparameter = \"exposure\"\namount = [1, 2]\n").find("a.toml:4:10: "),
               std::string::npos);
     EXPECT_EQ(error(layer), "a.toml:1:1: a layer has either a 'look' or 'values'");
-    EXPECT_EQ(error(layer + "values = { exposure = \"much\" }\n"),
-              "a.toml:3:23: exposure = \"much\": expected a number, allowed is [0, 1024] x");
+    EXPECT_EQ(
+        error(layer + "values = { exposure = \"much\" }\n"),
+        "a.toml:3:23: exposure = \"much\": 'much' is not a number, allowed is [0, 1024] x, also in ev, stop or stops");
     EXPECT_NE(error(layer + "values = { \"fog.enabled\" = 3 }\n").find("a.toml:3:"), std::string::npos);
     EXPECT_EQ(error(layer + "values = { exposure = 1 }\n" + layer + "values = { exposure = 2 }\n"),
               "a.toml:5:8: two layers are named 'cave'");

@@ -93,8 +93,7 @@ class CubeParser {
     Failure refuse_unknown(std::string_view word) const {
         std::vector<std::string> names{"TITLE"};
         for (const Keyword& known : keywords_) names.emplace_back(known.name);
-        return refuse(fmt::format("unknown keyword '{}': allowed is one of {}{}", printable(word),
-                                  fmt::join(names, ", "), suggestion(word, names)));
+        return refuse(fmt::format("unknown keyword '{}'{}", printable(word), alternatives(word, names)));
     }
 
     // Quotes belong to the format; some programs leave them out.

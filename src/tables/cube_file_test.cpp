@@ -73,7 +73,7 @@ TEST(TablesCube, ErrorsNameLineThingValueAndWhatIsAllowed) {
              std::pair(head + head, "a.cube:2: LUT_3D_SIZE: is in line 1 already"),
              std::pair(head + "0 0 0\nDOMAIN_MIN 0 0 0\n", "a.cube:3: DOMAIN_MIN: stands behind entries"),
              std::pair(head + "DOMAIN_MIM 0 0 0\n",
-                       "a.cube:2: unknown keyword 'DOMAIN_MIM': allowed is one of TITLE, "),
+                       "a.cube:2: unknown keyword 'DOMAIN_MIM', did you mean 'DOMAIN_MIN'? allowed is TITLE, "),
              std::pair(head + "\n# c\n0 0\n", "a.cube:4: 2 values: expected 3 numbers"),
              std::pair(head + "0 0 0 0\n", "a.cube:2: 4 values: expected 3 numbers"),
              std::pair(head + "0 0 zero\n", "a.cube:2: 'zero' is not a finite number"),

@@ -49,7 +49,7 @@ TEST_F(CliFlags, EveryNumberIsRefusedWithFlagValueAndRange) {
         {"render", "--pitch", "90.5", " = 90.5: allowed is [-90, 90] deg"},
         {"render", "--fov", "x", ": 'x' is not a number, allowed is (0, 180) deg"},
         {"render", "--shadow-resolution", "15", " = 15: allowed is [16, 16384] texels"},
-        {"render", "--shadow-filter", "sofd", " sofd: allowed is plain, soft, did you mean 'soft'?"},
+        {"render", "--shadow-filter", "sofd", " sofd, did you mean 'soft'? allowed is plain or soft"},
         {"render", "--msaa", "abc", ": 'abc' is not a whole number, allowed is [1, 64]"},
         {"develop", "--fov", "nan", ": 'nan' is not a number, allowed is (0, 180) deg"},
         {"develop", "--time", "1e30", " = 1e30: allowed is [0, 1000000000] s"},

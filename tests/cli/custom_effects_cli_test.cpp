@@ -132,7 +132,7 @@ TEST_F(CliCustomEffects, AreRefusedWhereTheyAreNotWanted) {
 }
 
 TEST_F(CliCustomEffects, WhatIsWrongIsOneLine) {
-    expect_refused({"plan", "--effect", path("absent.glsl")}, 1, "absent.glsl: cannot open");
+    expect_refused({"plan", "--effect", path("absent.glsl")}, 1, "absent.glsl: there is no such file");
     fs::create_directories(path("folder.glsl"));
     expect_refused({"plan", "--effect", path("folder.glsl")}, 1, "folder.glsl: is no regular file");
     ASSERT_EQ(mkfifo(path("pipe.glsl").c_str(), 0600), 0);

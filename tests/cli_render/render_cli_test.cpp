@@ -486,7 +486,7 @@ TEST_F(CliRenderRefused, WrongValuesAreRefused) {
     for (const char* const target : {"1,2", "1,2,3,4", "a,b,c", "", "1,2,1e300"})
         expect_render_refused({std::string("--target=") + target}, "--target");
     expect_render_refused({"--debug-mode", "wirefrane"},
-                          "wireframe, normals, depth, uv, unlit, metalrough, did you mean 'wireframe'?");
+                          "did you mean 'wireframe'? allowed is wireframe, normals, depth, uv, unlit or metalrough");
     expect_render_refused({"--no-such-flag"}, "--no-such-flag");
     expect_render_refused({"--device", "none such"}, "none such");
     expect_render_refused({"--kernels", "magic"}, "auto, compute or raster");

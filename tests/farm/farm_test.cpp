@@ -127,7 +127,7 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
     expect_farm_refuses(shot + "-- --exposur 2", 1,
                         "develop: unknown argument '--exposur', did you mean '--exposure'?");
     expect_farm_refuses(shot + "-- --exposure 2000", 1, "--exposure = 2000: allowed is [0, 1024] x");
-    expect_farm_refuses(shot + "--look none.toml", 1, "none.toml: cannot open: No such file or directory");
+    expect_farm_refuses(shot + "--look none.toml", 1, "none.toml: there is no such file");
     expect_farm_refuses(shot + "--frames 20-30", 1, "--frames 20-30: none of the 12 inputs has such a number");
     expect_farm_refuses(shot + "--chunk 0", 1, "--chunk = 0: allowed is [1, 100000]");
     expect_farm_refuses(shot + "--partition 'a b'", 1, "--partition a b: allowed are letters, digits and _ - . , : @");

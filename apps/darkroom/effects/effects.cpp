@@ -113,8 +113,8 @@ int show(const Options& options) {
     if (effect == nullptr) {
         std::vector<std::string> names;
         for (const darkroom::EffectInfo* const known : darkroom::all_effects()) names.emplace_back(known->name);
-        return fail_user(fmt::format("effects: no effect '{}': there are {}{}", darkroom::printable(name),
-                                     fmt::join(names, ", "), darkroom::suggestion(name, names)));
+        return fail_user(fmt::format("effects: no effect '{}'{}", darkroom::printable(name),
+                                     darkroom::alternatives(name, names, "there are")));
     }
     if (options.is_json) return print_json({&effect, 1});
     const std::string page = fmt::format("{}.md", effect->name);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/text/param_text.hpp"
+#include "core/text/quantity.hpp"
 
 namespace app {
 
@@ -28,7 +29,7 @@ Flag NumberFlag::add_to(CommandFlags command, const std::string& doc) {
 
 Result<std::optional<double>> NumberFlag::value() const {
     if (!text_) return std::optional<double>();
-    const std::optional<double> number = darkroom::parse_number(*text_);
+    const std::optional<double> number = darkroom::parse_quantity(*text_, range_.unit);
     if (!number || (range_.is_whole && *number != std::floor(*number)))
         return user_error(fmt::format("{}: '{}' is not a {}, allowed is {}", name_, darkroom::printable(*text_),
                                       range_.is_whole ? "whole number" : "number", interval(range_)));

@@ -35,16 +35,14 @@ Result<DebugView> parse_debug_mode(const std::string& text) {
         if (text == mode.name) return mode.view;
         names.emplace_back(mode.name);
     }
-    return user_error(fmt::format("--debug-mode {}: allowed is {}{}", printable(text), fmt::join(names, ", "),
-                                  darkroom::suggestion(text, names)));
+    return user_error(fmt::format("--debug-mode {}{}", printable(text), darkroom::alternatives(text, names)));
 }
 
 Result<darkroom::render::ShadowFilter> parse_shadow_filter(const std::string& text) {
     const std::vector<std::string> names{"plain", "soft"};
     if (text == names[0]) return darkroom::render::ShadowFilter::Plain;
     if (text == names[1]) return darkroom::render::ShadowFilter::Soft;
-    return user_error(fmt::format("--shadow-filter {}: allowed is {}{}", printable(text), fmt::join(names, ", "),
-                                  darkroom::suggestion(text, names)));
+    return user_error(fmt::format("--shadow-filter {}{}", printable(text), darkroom::alternatives(text, names)));
 }
 
 std::string_view trimmed(std::string_view text) {

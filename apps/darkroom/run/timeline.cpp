@@ -65,8 +65,8 @@ class TimelineReader {
         return at(node.source().begin, text);
     }
     [[nodiscard]] darkroom::Error unknown(const toml::key& key, const std::vector<std::string>& known) const {
-        return at(key.source().begin, fmt::format("unknown key '{}': allowed are {}{}", printable(key.str()),
-                                                  fmt::join(known, ", "), darkroom::suggestion(key.str(), known)));
+        return at(key.source().begin, fmt::format("unknown key '{}'{}", printable(key.str()),
+                                                  darkroom::alternatives(key.str(), known, "allowed are")));
     }
 
     Result<> read_event(const toml::table& table) {
@@ -159,9 +159,9 @@ class TimelineReader {
             for (const darkroom::LookPulse& pulse : look_.pulses)
                 if (std::ranges::count(known, pulse.event) == 0) known.push_back(pulse.event);
             if (name == nullptr || std::ranges::count(known, name->get()) == 0)
-                return failure(at(one, fmt::format("fire = {}: no pulse of {} has this event, known are {}{}",
-                                                   show(one), look_.shown_name, fmt::join(known, ", "),
-                                                   name == nullptr ? "" : darkroom::suggestion(name->get(), known))));
+                return failure(at(
+                    one, fmt::format("fire = {}: no pulse of {} has this event{}", show(one), look_.shown_name,
+                                     darkroom::alternatives(name == nullptr ? "" : name->get(), known, "known are"))));
             event.fired.push_back(name->get());
         }
         return {};
@@ -214,9 +214,8 @@ class TimelineReader {
         std::vector<std::string> known;
         for (const darkroom::LookLayer& layer : look_.layers) known.push_back(layer.name);
         if (found == look_.layers.end())
-            return failure(
-                at(node, fmt::format("layer '{}': {} has none of this name, known are {}{}", printable(name),
-                                     look_.shown_name, fmt::join(known, ", "), darkroom::suggestion(name, known))));
+            return failure(at(node, fmt::format("layer '{}': {} has none of this name{}", printable(name),
+                                                look_.shown_name, darkroom::alternatives(name, known, "known are"))));
         const Result<float> weight = read_number(weight_row, node, printable(name));
         if (!weight) return failure(weight.error());
         if (std::ranges::count(out_.ways_, name, &Timeline::Way::layer) == 0)

@@ -84,6 +84,22 @@ std::string suggestion(std::string_view wrong, std::span<const std::string> name
     return name.empty() ? std::string() : fmt::format(", did you mean '{}'?", name);
 }
 
+std::string some_of(std::span<const std::string> names, std::string_view last) {
+    constexpr std::size_t most = 12;
+    // A list is not cut for the sake of one name.
+    const std::size_t count = names.size() <= most + 1 ? names.size() : most;
+    if (count < names.size())
+        return fmt::format("{} and {} more", fmt::join(names.first(count), ", "), names.size() - count);
+    if (count < 2) return names.empty() ? "none" : names.front();
+    return fmt::format("{} {} {}", fmt::join(names.first(count - 1), ", "), last, names.back());
+}
+
+std::string alternatives(std::string_view wrong, std::span<const std::string> names, std::string_view lead) {
+    const std::string near = suggestion(wrong, names);
+    return fmt::format("{} {} {}", near.empty() ? ":" : near, lead,
+                       some_of(names, lead.starts_with("allowed") ? "or" : "and"));
+}
+
 std::string printable(std::string_view text) {
     constexpr std::size_t longest = 200;
     std::string out;

@@ -10,6 +10,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/text/quantity.hpp"
+
 namespace darkroom {
 
 namespace {
@@ -127,9 +129,8 @@ class Assignment {
         const auto found = std::find(info_.choices.begin(), info_.choices.end(), *name);
         if (found == info_.choices.end()) {
             const std::vector<std::string> names(info_.choices.begin(), info_.choices.end());
-            ParamProblem problem = out_of_range();
-            problem.text += suggestion(*name, names);
-            return problem;
+            return ParamProblem{Why::OutOfRange,
+                                fmt::format("{} = {}{}", shown_, show(value_), alternatives(*name, names))};
         }
         out.push_back(static_cast<std::uint32_t>(found - info_.choices.begin()));
         return std::nullopt;
@@ -216,11 +217,10 @@ std::optional<ParamValue> value_of(const ParamInfo& info, std::span<const std::u
 
 bool takes_stops(const ParamInfo& info) { return info.unit.symbol == unit::multiplier.symbol; }
 
-// "1.5" as it is, "-2ev" as two stops less.
-std::optional<double> parse_multiplier(std::string_view text) {
-    if (!text.ends_with("ev") && !text.ends_with("EV")) return parse_number(text);
-    const std::optional<double> stops = parse_number(text.substr(0, text.size() - 2));
-    return stops ? std::optional(std::exp2(*stops)) : std::nullopt;
+// What else may stand behind a number.
+std::string typed_with(const ParamInfo& info) {
+    const std::string suffixes = other_suffixes(info.unit.symbol);
+    return suffixes.empty() ? "" : fmt::format(", also in {}", suffixes);
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -284,8 +284,8 @@ std::optional<double> parse_number(std::string_view text) {
 
 Result<ParamValue> parse_text(const ParamInfo& info, std::string_view text) {
     const auto refuse = [&] {
-        return user_error(
-            fmt::format("'{}' is not {}, allowed is {}", printable(text), expected_kind(info.kind), interval(info)));
+        return user_error(fmt::format("'{}' is not {}, allowed is {}{}", printable(text), expected_kind(info.kind),
+                                      interval(info), typed_with(info)));
     };
     if (info.kind == Kind::Choice) return ParamValue(std::string(text));
     if (info.kind == Kind::Toggle) {
@@ -308,14 +308,14 @@ Result<ParamValue> parse_text(const ParamInfo& info, std::string_view text) {
     if (is_vector(info.kind)) {
         std::vector<double> numbers;
         for (const std::string_view part : split(text, ',')) {
-            const std::optional<double> number = parse_number(part);
+            const std::optional<double> number = parse_quantity(part, info.unit.symbol);
             if (!number) return refuse();
             numbers.push_back(*number);
         }
         if (numbers.size() != info.words) return refuse();
         return ParamValue(std::move(numbers));
     }
-    const std::optional<double> number = takes_stops(info) ? parse_multiplier(text) : parse_number(text);
+    const std::optional<double> number = parse_quantity(text, info.unit.symbol);
     if (!number) return refuse();
     return ParamValue(*number);
 }
@@ -360,7 +360,7 @@ std::string interval(const ParamInfo& info) {
 }
 
 std::string full_doc(const ParamInfo& info) {
-    return std::string(info.doc) + (takes_stops(info) ? " As text also in stops: 1ev is 2." : "") +
+    return std::string(info.doc) + (takes_stops(info) ? " Also in stops: 1ev is 2." : "") +
            (info.is_at_compile ? " A change takes full effect with the next compile." : "");
 }
 
@@ -402,6 +402,10 @@ std::string documentation(const ParamTable& table, std::string_view effect) {
         out += fmt::format("| `{}` | `{}` | {} | {} |\n", flat_key(effect, row.name), format(row, table.defaults),
                            interval(row), what);
     }
+    const std::string prefix = fmt::format("{}_", effect);
+    if (std::ranges::any_of(table.rows,
+                            [&](const ParamInfo& row) { return flat_key(effect, row.name).starts_with(prefix); }))
+        out += fmt::format("\nIn an entry of a `[[stack]]` the keys stand without `{}`.\n", prefix);
     return out;
 }
 

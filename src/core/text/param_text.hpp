@@ -66,6 +66,12 @@ struct ParamProblem {
 [[nodiscard]] std::string nearest(std::string_view wrong, std::span<const std::string> names);
 /// ", did you mean 'x'?" or nothing.
 [[nodiscard]] std::string suggestion(std::string_view wrong, std::span<const std::string> names);
+/// What could stand in the place of `wrong`: ", did you mean 'x'? allowed is x, y and 20 more", or ": allowed is x, y
+/// and 20 more" where no name is near.
+[[nodiscard]] std::string alternatives(std::string_view wrong, std::span<const std::string> names,
+                                       std::string_view lead = "allowed is");
+/// "a, b and c", with `last` before the last; of many names the first, and how many more there are.
+[[nodiscard]] std::string some_of(std::span<const std::string> names, std::string_view last);
 /// Text from outside made fit for one line of a terminal: control bytes and broken UTF-8 as \x1B, long texts cut.
 [[nodiscard]] std::string printable(std::string_view text);
 

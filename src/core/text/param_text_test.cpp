@@ -67,7 +67,7 @@ TEST(ParamText, RefusesWhatIsOutOfRange) {
     EXPECT_EQ(error_of("taps", infinity, OutOfRange), "taps = inf: allowed is [1, 64]");
     EXPECT_EQ(error_of("taps", std::int64_t{65}, OutOfRange), "taps = 65: allowed is [1, 64]");
     EXPECT_EQ(error_of("curve", "habble", OutOfRange),
-              "curve = \"habble\": allowed is aces_narkowicz or hable, did you mean 'hable'?");
+              "curve = \"habble\", did you mean 'hable'? allowed is aces_narkowicz or hable");
     EXPECT_EQ(error_of("tint", std::vector<double>{1, 0, nan}, OutOfRange), "tint = [1, 0, nan]: allowed is [0, 10]");
     EXPECT_NE(error_of("response", CurvePoints{{1, 0}, {1, 1}}, OutOfRange), "accepted");
     EXPECT_NE(error_of("response", CurvePoints(17), OutOfRange), "accepted");
@@ -130,7 +130,13 @@ TEST(ParamText, MultipliersAreReadInStops) {
     EXPECT_EQ(read("-2EV"), 0.25);
     EXPECT_EQ(read("+0.5ev"), std::exp2(0.5));
     EXPECT_EQ(read("0ev"), 1);
-    for (const char* const text : {"ev", "1 ev", "1eV", "1evev", "nanev", ""})
+    EXPECT_EQ(read("2stops"), 4);
+    EXPECT_EQ(read("1 stop"), 2);
+    EXPECT_EQ(read("2x"), 2);
+    const Result<ParamValue> wrong = parse_text(gain, "2evs");
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().text, "'2evs' is not a number, allowed is [0, 1024] x, also in ev, stop or stops");
+    for (const char* const text : {"ev", "1evev", "nanev", "1K", "1 s", ""})
         EXPECT_TRUE(std::isnan(read(text))) << text;
     EXPECT_EQ(from_text("amount", "1ev"), "'1ev' is not a number, allowed is [0, 16] px") << "it is no multiplier";
     EXPECT_EQ(interval(gain), "[0, 1024] x");

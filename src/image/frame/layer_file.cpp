@@ -111,11 +111,7 @@ Result<FileLayer> LayerFile::find(std::string_view name) const {
     if (name == "color") return error(why_no_frame_);
     std::vector<std::string> known;
     for (const FileLayer& layer : layers_) known.push_back(one_printable_line(layer.name));
-    constexpr std::size_t most = 24;
-    const std::string more = known.size() > most ? fmt::format(" and {} more", known.size() - most) : "";
-    return error(fmt::format("has no layer '{}': there are {}{}{}", printable(name),
-                             fmt::join(known.begin(), known.begin() + std::min(most, known.size()), ", "), more,
-                             suggestion(name, known)));
+    return error(fmt::format("has no layer '{}'{}", printable(name), alternatives(name, known, "there are")));
 }
 
 std::vector<std::string> LayerFile::channel_names(const FileLayer& layer) const {

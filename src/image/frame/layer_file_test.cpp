@@ -41,9 +41,9 @@ TEST_F(ImageLayers, EveryChannelIsInOneLayer) {
     EXPECT_EQ(opened->find("N.Y")->channels.size(), 1u);
     const auto unknown = opened->find("nromals");
     ASSERT_FALSE(unknown);
-    EXPECT_TRUE(unknown.error().text.starts_with(file("a.exr").string() + ": has no layer 'nromals': there are color"))
+    EXPECT_TRUE(unknown.error().text.starts_with(file("a.exr").string() +
+                                                 ": has no layer 'nromals', did you mean 'normals'? there are color"))
         << unknown.error().text;
-    EXPECT_TRUE(unknown.error().text.ends_with(", did you mean 'normals'?")) << unknown.error().text;
 }
 
 TEST_F(ImageLayers, SamplesAreAsTheFileHasThem) {

@@ -54,15 +54,15 @@ class Finder {
         }
         for (const ParamInfo& row : entry_rows.rows) members.emplace_back(row.name);
         for (const ParamInfo& row : entry->effect->parameters.rows) members.emplace_back(row.name);
-        return user_error(fmt::format("{}: '{}' has no parameter '{}', it has {}{}", shown, printable(name),
-                                      printable(member), fmt::join(members, ", "), suggestion(member, members)));
+        return user_error(fmt::format("{}: '{}' has no parameter '{}'{}", shown, printable(name), printable(member),
+                                      alternatives(member, members, "it has")));
     }
 
     Failure unheld(const std::string& shown, std::string_view name) const {
         const std::vector<std::string> names = entry_names(look_);
         if (names.empty()) return user_error(fmt::format("{}: {} has no entries", shown, look_.shown_name));
-        return user_error(fmt::format("{}: {} has no entry '{}', it has {}{}", shown, look_.shown_name, printable(name),
-                                      fmt::join(names, ", "), suggestion(name, names)));
+        return user_error(fmt::format("{}: {} has no entry '{}'{}", shown, look_.shown_name, printable(name),
+                                      alternatives(name, names, "it has")));
     }
 
     /// Those that are built in, and those of files.

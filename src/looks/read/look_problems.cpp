@@ -84,8 +84,8 @@ class Checker {
         const auto found = makers.find(name);
         if (found == makers.end())
             return report(index, wire.key,
-                          fmt::format("{} = \"{}\" of {}: no entry has this output, known are {}{}", wire.key, name,
-                                      shown_(index), fmt::join(known, ", "), suggestion(name, known)));
+                          fmt::format("{} = \"{}\" of {}: no entry has this output{}", wire.key, name, shown_(index),
+                                      alternatives(name, known, "known are")));
         if (found->second < index || is_previous) return;
         report(index, wire.key,
                fmt::format("{} = \"{}\" of {}: made only later, by {}", wire.key, name, shown_(index),

@@ -38,9 +38,9 @@ class LookReader {
     void take(const WireInfo& wire, LookEntry& entry, const std::string& file, const toml::node& node);
     /// The same for one of the entry's own values.
     bool take(const ParamInfo& row, EntryState& state, const toml::node& node, std::string_view key);
-    /// `allowed` says what the nearest known key takes.
+    /// `allowed` says what the nearest known key takes. `meant`: the known key that it stands for; empty: the nearest.
     void report_unknown(const toml::key& key, const toml::node& node, std::span<const std::string> known,
-                        const std::function<std::string(const std::string&)>& allowed);
+                        const std::function<std::string(const std::string&)>& allowed, const std::string& meant = {});
 
   private:
     struct Problem {

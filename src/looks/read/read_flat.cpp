@@ -129,7 +129,12 @@ class FlatReader {
     }
 
     void read_unknown(const toml::key& key, const toml::node& node) {
-        reader_.report_unknown(key, node, names_, [&](const std::string& near) { return allowed(near); });
+        // An effect's own name stands for how much of it there is.
+        std::string meant;
+        for (const auto& [name, target] : targets_)
+            if (target.entry->effect->name == key.str() && target.row->is_amount) meant = name;
+        reader_.report_unknown(
+            key, node, names_, [&](const std::string& near) { return allowed(near); }, meant);
     }
 
     LookReader& reader_;

@@ -41,7 +41,17 @@ void LookReader::read_top(const toml::table& file) {
 
 bool LookReader::take(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node,
                       std::string_view key) {
-    const std::optional<ParamValue> value = value_of(node);
+    std::optional<ParamValue> value = value_of(node);
+    const auto* const text = node.as_string();
+    const bool is_number = row.kind != Kind::Choice && row.kind != Kind::Toggle;
+    if (is_number && text != nullptr && !parse_number(text->get())) {
+        Result<ParamValue> parsed = parse_text(row, text->get());
+        if (!parsed) {
+            report(node, Weight::Wrong, fmt::format("{} = {}: {}", key, show(node), parsed.error().text));
+            return false;
+        }
+        value = std::move(*parsed);
+    }
     if (!value) {
         report(node, Weight::Wrong,
                fmt::format("{} = {}: expected {}, allowed is {}", key, show(node), expected_kind(row.kind),
@@ -80,9 +90,10 @@ bool LookReader::take(const ParamInfo& row, EntryState& state, const toml::node&
 }
 
 void LookReader::report_unknown(const toml::key& key, const toml::node& node, std::span<const std::string> known,
-                                const std::function<std::string(const std::string&)>& allowed) {
+                                const std::function<std::string(const std::string&)>& allowed,
+                                const std::string& meant) {
     std::string text = fmt::format("unknown key '{}' = {}", printable(key.str()), show(node));
-    const std::string near = nearest(key.str(), known);
+    const std::string near = meant.empty() ? nearest(key.str(), known) : meant;
     if (!near.empty()) text += fmt::format(", did you mean '{}', which takes {}?", near, allowed(near));
     report(key.source().begin, Weight::Slip, std::move(text));
 }

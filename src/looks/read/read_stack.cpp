@@ -67,10 +67,9 @@ class StackReader {
         if (effect != nullptr) return entry_of(*effect);
         std::vector<std::string> names;
         for (const EffectInfo* const known : all_effects()) names.emplace_back(known->name);
-        const std::string near = name == nullptr ? std::string() : suggestion(name->get(), names);
         reader_.report(*node, Weight::Wrong,
-                       fmt::format("effect = {}: allowed is one of {}, and the file of one (.glsl){}", show(*node),
-                                   fmt::join(names, ", "), near));
+                       fmt::format("effect = {}{}, and the file of one (.glsl)", show(*node),
+                                   alternatives(name == nullptr ? "" : name->get(), names)));
         return std::nullopt;
     }
 
@@ -133,13 +132,18 @@ class StackReader {
         std::vector<std::string> known{"effect"};
         for (const WireInfo& wire : wires) known.emplace_back(wire.key);
         for (const ParamInfo& row : entry_rows.rows) known.emplace_back(row.name);
-        for (const ParamInfo& row : effect.parameters.rows) known.emplace_back(row.name);
-        reader_.report_unknown(key, node, known, [&](const std::string& near) {
+        std::string meant;
+        for (const ParamInfo& row : effect.parameters.rows) {
+            known.emplace_back(row.name);
+            if (key.str() == flat_key(effect.name, row.name)) meant = row.name;
+        }
+        const auto allowed = [&](const std::string& near) {
             const ParamInfo* row = effect.parameters.find(near);
             for (const ParamInfo& own : entry_rows.rows)
                 if (own.name == near) row = &own;
             return row == nullptr ? "a name" : interval(*row);
-        });
+        };
+        reader_.report_unknown(key, node, known, allowed, meant);
     }
 
     std::string shown(std::size_t index) const {

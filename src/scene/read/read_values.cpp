@@ -263,8 +263,8 @@ std::optional<std::size_t> TableReader::choice_at(std::string_view key, std::spa
         if (names[i] == value->text) return i;
     report().slip(value->place, [&] {
         const std::vector<std::string> known(names.begin(), names.end());
-        return fmt::format("{} = \"{}\": allowed is {}{}{}", name(key), printable(value->text), list_of(names),
-                           report().suggestion(value->text, known), used(current));
+        return fmt::format("{} = \"{}\"{}{}", name(key), printable(value->text), alternatives(value->text, known),
+                           used(current));
     });
     return std::nullopt;
 }

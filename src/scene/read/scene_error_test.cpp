@@ -94,8 +94,8 @@ TEST(SceneError, OutOfRangeIsAWarningWithTheValueUsed) {
 
 TEST(SceneError, UnknownChoicesNameTheNearest) {
     EXPECT_EQ(warning_of("[camera]\nprojection = \"perspectiv\"\n"),
-              "a.toml:2:14: camera.projection = \"perspectiv\": allowed is perspective or orthographic, did you mean "
-              "'perspective'?; perspective is used");
+              "a.toml:2:14: camera.projection = \"perspectiv\", did you mean 'perspective'? allowed is perspective "
+              "or orthographic; perspective is used");
     EXPECT_TRUE(contains(warning_of("[entities.a.particle_emitter]\nblend_mode = \"multiply\"\n"),
                          "allowed is alpha or additive"));
     EXPECT_EQ(
