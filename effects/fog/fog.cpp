@@ -64,6 +64,7 @@ const EffectInfo& effect_info(const Fog&) {
         .needs = {.depth = true},
         .flat = {.documented = 80, .scene_linear = 30, .starts_on = false},
         .toggle_key = 8,
+        .is_in_traced_light = true,
         .build =
             [](PassBuilder& builder) {
                 builder.loaded_side("fog_depth", builder.frame_image(FrameImage::Depth), {});

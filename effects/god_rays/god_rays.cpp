@@ -116,6 +116,7 @@ const EffectInfo& effect_info(const GodRays&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
         .flat = {.documented = 42, .scene_linear = 40},
+        .is_in_traced_light = true,
         .build = build,
         .reference = god_rays_reference,
         .is_identity = [](const void* parameters) { return god_rays_of(parameters).intensity == 0.0f; },

@@ -157,6 +157,7 @@ const EffectInfo& effect_info(const MotionBlur&) {
         .accepts = Domains::only(Domain::SceneLinear),
         .needs = {.depth = true},
         .flat = {.documented = 45, .scene_linear = 50, .starts_on = false},
+        .is_in_traced_light = true,
         .build = build,
         .reference = motion_blur_reference,
         .is_identity = [](const void* parameters) { return blur_of(parameters).shutter_angle == 0.0f; },

@@ -246,6 +246,7 @@ const EffectInfo& effect_info(const Ssao&) {
         .needs = {.depth = true},
         .flat = {.documented = 30, .scene_linear = 10, .starts_on = true},
         .toggle_key = 7,
+        .is_in_traced_light = true,
         .build = build,
         .reference = ssao_reference,
         .conflict = conflict,

@@ -173,6 +173,7 @@ const EffectInfo& effect_info(const Volumetric&) {
         .needs = {.depth = true, .shadows = true},
         .flat = {.documented = 40, .scene_linear = 20, .starts_on = false},
         .toggle_key = 10,
+        .is_in_traced_light = true,
         .build = build,
         .reference = volumetric_reference,
         .is_identity = [](const void* parameters) { return volumetric_of(parameters).density == 0.0f; },

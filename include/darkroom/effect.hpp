@@ -220,6 +220,8 @@ struct EffectInfo {
     bool is_ui = false;           ///< of the interface's own chain: see EntryDesc::is_ui
     bool works_encoded =
         false;  ///< where the picture is not sRGB-encoded yet, it is for this effect, and back behind it
+    /// What a path tracer or a camera puts into its pictures itself: occlusion, light in the air, motion.
+    bool is_in_traced_light = false;
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
     std::function<void(PassBuilder&)> build{};
     /// The published equation in double precision; see reference.hpp.

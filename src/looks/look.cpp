@@ -130,6 +130,13 @@ Look default_look(LookOrder order) {
     return look;
 }
 
+Look default_look_of_traced_light() {
+    Look look = default_look();
+    for (LookEntry& entry : look.entries)
+        if (entry.effect->is_in_traced_light) entry.state.enabled = false;
+    return look;
+}
+
 void set_order(Look& look, LookOrder order) {
     for (LookEntry& entry : look.entries) {
         const LookEntry was = flat_entry(*entry.effect, look.order), is = flat_entry(*entry.effect, order);

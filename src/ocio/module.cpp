@@ -1,38 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include <OpenColorIO/OpenColorIO.h>
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <exception>
 #include <optional>
 #include <vector>
 
 #include "core/program_module.hpp"
-#include "core/text/param_text.hpp"
 #include "image/table/color_chain.hpp"
+#include "ocio/config_chain.hpp"
+#include "ocio/ocio_support.hpp"
 
 namespace darkroom {
 namespace {
 
-namespace ocio = OCIO_NAMESPACE;
 using Color = std::array<float, 3>;
 
 constexpr std::uint32_t usual_cube_size = 65, usual_shaper_size = 4096;
-
-/// Of the message the reason that the file's own format gave; the path, and what other formats said, are left out.
-Error error_of(const std::exception& exception) {
-    std::string_view text = exception.what();
-    constexpr std::string_view mark = " failed with: ", next = "    '";
-    if (const std::size_t at = text.find(mark); at != std::string_view::npos) text.remove_prefix(at + mark.size());
-    return {Fault::User, printable(text.substr(0, text.find(next)))};
-}
-
-void run(const ocio::ConstProcessorRcPtr& processor, std::span<Color> colors) {
-    if (colors.empty()) return;
-    ocio::PackedImageDesc image(colors.data(), static_cast<long>(colors.size()), 1, 3);
-    // As the operations are, so that what is compared is no faster approximation of them.
-    processor->getOptimizedCPUProcessor(ocio::OPTIMIZATION_NONE)->apply(image);
-}
 
 /// Of a step that scales and shifts every channel by itself: out = in * scale + offset.
 struct Affine {
@@ -204,6 +186,7 @@ Result<std::unique_ptr<ColorChain>> open(const std::filesystem::path& path) {
 }  // namespace darkroom
 
 extern "C" DARKROOM_MODULE_EXPORT const darkroom::ColorChains* darkroom_ocio_chains() {
-    static const darkroom::ColorChains chains{.open = darkroom::open};
+    static const darkroom::ColorChains chains{
+        .open = darkroom::open, .from_space = darkroom::chain_from_space, .to_view = darkroom::chain_to_view};
     return &chains;
 }

@@ -82,7 +82,7 @@ TEST_F(Cli, ResamplesTheFrame) {
         return picture("out.png");
     };
     for (const auto& [width, height] : {std::pair{20u, 10u}, {96u, 40u}}) {
-        const Picture sized = at_size(fmt::format("{}x{}", width, height));
+        const Picture sized = at_size(fmt::format("{}x{}:stretch", width, height));
         ASSERT_TRUE(sized.width == width && sized.height == height) << sized.width << 'x' << sized.height;
         EXPECT_EQ(*sized.at(width / 4, height / 2), 0.0f);
         EXPECT_EQ(*sized.at(width - width / 4, height / 2), 1.0f);
@@ -119,7 +119,7 @@ TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     expect_refused({"develop", frame, "-o", frame}, 1, "would be overwritten");
     for (const char* const size : {"0x0", "5", "5x", "-1x4", "4294967297x1", "3x4x5"})
         expect_refused({"develop", frame, "-o", out, "--size", size}, 1, "--size");
-    expect_refused({"develop", frame, "-o", out, "--size", "99999x2"}, 1, "allows 1x1 to");
+    expect_refused({"develop", frame, "-o", out, "--size", "99999x2:stretch"}, 1, "allows 1x1 to");
     expect_refused({"develop", frame, "-o", out, "--device", "none such"}, 1, "none such");
     expect_refused({"develop", frame, "-o", out, "--kernels", "magic"}, 1, "auto, compute or raster");
     expect_refused({"develop", frame, "-o", out, "--bits", "12"}, 1, "--bits 12");

@@ -100,7 +100,7 @@ TEST_F(CliProbe, CodesAreThoseOfTheDevelopedFile) {
 }
 
 TEST_F(CliProbe, EveryEntryHasItsValues) {
-    const json seen = document({"--exposure", "2", "--dither-enabled", "on"}, {"5,6"});
+    const json seen = document({"--exposure", "2", "--dither-enabled", "on", "--ssao"}, {"5,6"});
     const json& pixel = seen.at("pixels")[0];
     const json& entries = pixel.at("entries");
     const auto entry = [&](const std::string& name) -> const json& {

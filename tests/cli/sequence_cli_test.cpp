@@ -135,10 +135,19 @@ TEST_F(CliSequence, SignsAreDigits) {
     EXPECT_TRUE(fs::exists(path("a#1.png"))) << "one sign is a name";
 }
 
+TEST_F(CliSequence, TellsOnceOfTheViewThatItAssumes) {
+    const Outcome outcome = develop("v", {"--fog-density", "0.1"});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.err, "darkroom: warning: " + path(in(1)) +
+                               ": has depth and no projection: a vertical field of view of 45 degrees is assumed, "
+                               "--fov or --camera says another\n");
+    EXPECT_EQ(develop("v").err, "") << "nothing asks for depth";
+}
+
 TEST_F(CliSequence, TellsWhereWhatIsLeftOutChanges) {
     make_frame(3, false);
     make_frame(4, false);
-    const Outcome outcome = develop("e", {"--fog-density", "0.1"});
+    const Outcome outcome = develop("e", {"--fog-density", "0.1", "--fov", "45"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 2) << outcome.err;
     EXPECT_NE(outcome.err.find("f.0003.exr: left out: fog: needs depth"), std::string::npos) << outcome.err;

@@ -107,7 +107,7 @@ TEST_F(CliStatistics, LoopsThatNobodyKnowsAreGuessedOrTold) {
 }
 
 TEST_F(CliStatistics, TextSaysForWhat) {
-    const Outcome outcome = run({"plan", "--statistics", "--chip", "rx 6800 xt"});
+    const Outcome outcome = run({"plan", "--ssao", "--statistics", "--chip", "rx 6800 xt"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     for (const char* const part : {"Null hardware (RADV NAVI21)", "ms: on RX 6800 XT, 144 SIMDs, 2.25 GHz, 512 GB/s",
                                    "VGPR", "waves", "bound", "a frame: ", "left out: "})

@@ -67,7 +67,7 @@ struct Job {
     darkroom::FrameOptions frame;
     darkroom::WriteOptions write;
     darkroom::DevelopDesc develop;
-    std::optional<VkExtent2D> size;
+    std::optional<darkroom::NewSize> size;
     std::optional<double> time, frames_per_second;
     std::optional<StreamDesc> stream;
 };
@@ -99,9 +99,9 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
         if (!samples) return failure(samples.error());
         if (options.keeps_layers && *darkroom::file_kind(output) != darkroom::FileKind::OpenExr)
             return no_place_for_layers(output);
-        job.develop.target = target_for(*samples);
+        job.develop.target = target_for(*samples, job.write);
     }
-    suit(job.look, job.develop.target);
+    suit(job.look, job.develop.target, job.write);
     const std::vector<long long> numbers = numbers_of(*inputs);
     bool is_any_asked_for = false;
     std::size_t next_written = inputs->size();
@@ -129,7 +129,7 @@ Result<Job> job_of(const Options& options) {
     if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
     if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
         return failure(std::move(done));
-    Result<darkroom::FrameOptions> frame = options.frame.options();
+    Result<darkroom::FrameOptions> frame = options.frame.options(options.write.ocio.configuration);
     if (!frame) return failure(std::move(frame));
     job.frame = std::move(*frame);
     Result<darkroom::WriteOptions> write = options.write.options();
@@ -145,7 +145,7 @@ Result<Job> job_of(const Options& options) {
     if (!jobs) return failure(jobs.error());
     job.jobs = *jobs;
     if (!options.size.empty()) {
-        const Result<VkExtent2D> size = parse_size(options.size);
+        const Result<darkroom::NewSize> size = parse_new_size(options.size);
         if (!size) return failure(size.error());
         job.size = *size;
     }
@@ -154,7 +154,7 @@ Result<Job> job_of(const Options& options) {
     job.develop.kernels = *stage;
     job.develop.fuse = options.device.is_fused();
     job.develop.frames_in_flight = 2;
-    Result<darkroom::Look> look = options.look.look();
+    Result<darkroom::Look> look = options.look.look_of_frames();
     if (!look) return failure(std::move(look));
     job.look = std::move(*look);
     if (!options.look.events.empty()) {
@@ -237,10 +237,11 @@ class Develop {
         Result<darkroom::FrameFile> frame = darkroom::read_frame(step.input, job_.frame);
         if (!frame) return failure(std::move(frame));
         if (Result<> done = make_composer(); !done) return done;
-        const VkExtent2D extent = job_.size.value_or(VkExtent2D{frame->color.width, frame->color.height});
-        if (Result<> done = darkroom::check_extent(*device_, extent); !done)
+        const darkroom::NewSize size = job_.size.value_or(darkroom::NewSize{frame->color.width, frame->color.height})
+                                           .of(frame->color.width, frame->color.height);
+        if (Result<> done = darkroom::check_extent(*device_, {size.width, size.height}); !done)
             return failure(darkroom::Error{done.error().fault, fmt::format("{}: {}", shown(i), done.error().text)});
-        Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), extent.width, extent.height);
+        Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*frame), size);
         if (!sized) return failure(std::move(sized));
         Item& item = items_[i];
         item.frame = std::move(*sized);
@@ -263,6 +264,7 @@ class Develop {
     Result<> begin(std::size_t i) {
         Item& item = items_[i];
         for (const std::string& warning : item.frame.warnings) warn(fmt::format("{}: {}", shown(i), warning));
+        if (i == 0) tell_of_assumed_view(item.frame, shown(i));
         item.input.camera.is_cut = job_.steps[i].place != next_place_;
         next_place_ = job_.steps[i].place + 1;
         if (Result<> done = job_.timeline.advance(*composer_, item.input.time); !done) return done;
@@ -386,7 +388,11 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
                     "{name}; - is standard output, with --format")
         .type_name("OUT")
         .required();
-    command.add_option("--size", options->size, "Develops at this size; the frame is resampled first").type_name("WxH");
+    command
+        .add_option("--size", options->size,
+                    "Develops at this size; the frame is resampled first, to within it, or with :fill or "
+                    ":stretch behind it, to all of it")
+        .type_name("WxH[:fit|fill|stretch]");
     command.add_flag("--keep-layers", options->keeps_layers,
                      "Puts the frame's other layers, as they are, beside the picture in an .exr file");
     command.add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");

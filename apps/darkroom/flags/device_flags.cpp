@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <vector>
 
 #include "apps/darkroom/run/report.hpp"
 #include "core/text/param_text.hpp"
@@ -62,6 +64,20 @@ Result<VkExtent2D> parse_size(const std::string& text) {
     return VkExtent2D{sides[0], sides[1]};
 }
 
+Result<darkroom::NewSize> parse_new_size(const std::string& text) {
+    // In the order of Sizing.
+    const std::vector<std::string> names{"fit", "fill", "stretch"};
+    const std::size_t colon = text.find(':');
+    const std::string name = colon == std::string::npos ? names.front() : text.substr(colon + 1);
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end())
+        return user_error(fmt::format("--size {}: '{}' is no way to resize{}", darkroom::printable(text),
+                                      darkroom::printable(name), darkroom::alternatives(name, names)));
+    const Result<VkExtent2D> size = parse_size(text.substr(0, colon));
+    if (!size) return failure(size.error());
+    return darkroom::NewSize{size->width, size->height, static_cast<darkroom::Sizing>(found - names.begin())};
+}
+
 Result<darkroom::SampleKind> parse_bits(const std::string& text) {
     if (text == "8") return darkroom::SampleKind::Integer8;
     if (text == "16") return darkroom::SampleKind::Integer16;
@@ -74,6 +90,10 @@ darkroom::DevelopTarget target_for(darkroom::SampleKind samples) {
     if (samples == darkroom::SampleKind::Integer8) return darkroom::DevelopTarget::Encoded8;
     if (samples == darkroom::SampleKind::Integer16) return darkroom::DevelopTarget::EncodedFloat;
     return darkroom::DevelopTarget::SceneLinear;
+}
+
+darkroom::DevelopTarget target_for(darkroom::SampleKind samples, const darkroom::WriteOptions& options) {
+    return options.view ? darkroom::DevelopTarget::SceneLinear : target_for(samples);
 }
 
 darkroom::DevelopTarget target_for(darkroom::VideoFormat format) {

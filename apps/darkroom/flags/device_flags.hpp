@@ -8,6 +8,7 @@
 
 #include "develop/developer.hpp"
 #include "flags.hpp"
+#include "image/picture/resize.hpp"
 #include "image/picture/video_frame.hpp"
 #include "image/picture/write.hpp"
 
@@ -33,9 +34,13 @@ class DeviceFlags {
 
 /// "1920x1080". Each side at least 1.
 [[nodiscard]] darkroom::Result<VkExtent2D> parse_size(const std::string& text);
+/// The same with what becomes of another ratio behind it: "1280x1280:fill".
+[[nodiscard]] darkroom::Result<darkroom::NewSize> parse_new_size(const std::string& text);
 /// "8", "16", "half", "float".
 [[nodiscard]] darkroom::Result<darkroom::SampleKind> parse_bits(const std::string& text);
 [[nodiscard]] darkroom::DevelopTarget target_for(darkroom::SampleKind samples);
+/// What such files are made of: encoded pictures, or for a view of a display linear ones.
+[[nodiscard]] darkroom::DevelopTarget target_for(darkroom::SampleKind samples, const darkroom::WriteOptions& options);
 [[nodiscard]] darkroom::DevelopTarget target_for(darkroom::VideoFormat format);
 /// Exit code 2 if the validation layer has spoken.
 [[nodiscard]] int finish(const darkroom::Device& device, int code);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "frame_flags.hpp"
 
+#include <fmt/format.h>
+
+#include "image/color/configuration.hpp"
+
 namespace app {
 
 using darkroom::Result;
@@ -13,14 +17,31 @@ void FrameFlags::add_to(CommandFlags command) {
         .group(group);
     fov_.add_to(command, "Vertical field of view, where the file has no projection").type_name("DEGREES").group(group);
     command.add_option("--camera", camera_, "A camera file (TOML)").type_name("FILE").group(group);
+    command
+        .add_option("--input-space", input_space_,
+                    fmt::format("What the numbers of the colour mean, whatever the file says: {}, or a space of --ocio",
+                                darkroom::input_space_names()))
+        .type_name("SPACE")
+        .group(group);
 }
 
-Result<darkroom::FrameOptions> FrameFlags::options() const {
+Result<darkroom::FrameOptions> FrameFlags::options(const std::string& configuration) const {
     darkroom::FrameOptions out;
     if (Result<> done = fov_.read_to(out.vertical_field_of_view); !done) return failure(std::move(done));
     for (const std::string& map : maps_)
         if (Result<> added = darkroom::add_mapping(out.names, map); !added) return failure(std::move(added));
     out.camera_file = camera_;
+    if (!input_space_.empty() && !configuration.empty()) {
+        Result<std::shared_ptr<const darkroom::ColorChain>> chain =
+            darkroom::space_of_configuration(configuration, input_space_);
+        if (!chain) return failure(std::move(chain));
+        out.input_chain = std::move(*chain);
+    } else if (!input_space_.empty()) {
+        Result<darkroom::InputSpace> space = darkroom::find_input_space(input_space_);
+        if (!space)
+            return failure(darkroom::Error{space.error().fault, fmt::format("--input-space: {}", space.error().text)});
+        out.input_space = *space;
+    }
     return out;
 }
 

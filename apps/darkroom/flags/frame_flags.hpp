@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The flags that say what is in the file of a frame where the file does not: names of layers, the camera.
+// The flags that say what is in the file of a frame where the file does not: names of layers, the camera,
+// the colour space.
 
 #include <darkroom/result.hpp>
 #include <string>
@@ -12,15 +13,16 @@
 
 namespace app {
 
-/// --map, --fov, --camera.
+/// --map, --fov, --camera, --input-space.
 class FrameFlags {
   public:
     void add_to(CommandFlags command);
-    [[nodiscard]] darkroom::Result<darkroom::FrameOptions> options() const;
+    /// `configuration`: that --input-space names a space of; empty: none.
+    [[nodiscard]] darkroom::Result<darkroom::FrameOptions> options(const std::string& configuration) const;
 
   private:
     std::vector<std::string> maps_;
-    std::string camera_;
+    std::string camera_, input_space_;
     NumberFlag fov_{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
 };
 

@@ -108,7 +108,7 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
         command
             .add_option("--look", file,
                         "A look file (TOML), or a scene (.scene.toml) for the look in it. Default: the scene's own, or "
-                        "the flat table at its defaults")
+                        "the defaults, of which frames of files get no occlusion and no light in the air")
             .type_name("FILE")
             .group(group);
     command
@@ -284,10 +284,14 @@ Result<> LookFlags::change(Look& look, bool keeps_what_is_off) const {
 }
 
 Result<Look> LookFlags::look(const std::filesystem::path& scene) const {
+    return look(file.empty() ? scene : std::filesystem::path(file), darkroom::default_look());
+}
+
+Result<Look> LookFlags::look_of_frames() const { return look(file, darkroom::default_look_of_traced_light()); }
+
+Result<Look> LookFlags::look(const std::filesystem::path& path, const Look& without_path) const {
     std::vector<std::string> warnings;
-    const std::filesystem::path path = file.empty() ? scene : std::filesystem::path(file);
-    Result<Look> look =
-        path.empty() ? Result<Look>(darkroom::default_look()) : darkroom::read_look(path, options(&warnings));
+    Result<Look> look = path.empty() ? Result<Look>(without_path) : darkroom::read_look(path, options(&warnings));
     for (const std::string& warning : warnings) warn(warning);
     if (!look) return look;
     resolve_ui(*look, path.parent_path());

@@ -27,6 +27,8 @@ class LookFlags {
     /// Reads the look and applies the flags. Prints warnings. Without a file of its own it is that of the scene. The
     /// document of its interface is as it can be opened.
     [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& scene = {}) const;
+    /// The same for frames of files, whose light nobody knows: without a file, default_look_of_traced_light().
+    [[nodiscard]] darkroom::Result<darkroom::Look> look_of_frames() const;
     /// How it reads the files of looks. `warnings` outlives what is returned.
     [[nodiscard]] darkroom::LookOptions options(std::vector<std::string>* warnings) const;
     /// What the flags say of any look: what look() does to the one that it has read. Those that are off keep their
@@ -60,6 +62,8 @@ class LookFlags {
     [[nodiscard]] darkroom::Result<std::vector<darkroom::LookOverride>> overrides() const;
     /// Puts those of --effect behind the look's entries, at their defaults.
     [[nodiscard]] darkroom::Result<> add_custom_effects(darkroom::Look& look) const;
+    [[nodiscard]] darkroom::Result<darkroom::Look> look(const std::filesystem::path& path,
+                                                        const darkroom::Look& without_path) const;
     [[nodiscard]] darkroom::Result<> lay_layers(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_order(darkroom::Look& look) const;
     [[nodiscard]] darkroom::Result<> set_ui(darkroom::Look& look) const;

@@ -44,6 +44,7 @@ void WriteFlags::add_to(CommandFlags command) {
         .type_name(fmt::format("{}", fmt::join(format_names, "|")))
         .group(group);
     quality_.add_to(command, "Of JPEG files").type_name("N").default_str("95").group(group);
+    ocio.add_to(command, true);
 }
 
 Result<darkroom::WriteOptions> WriteFlags::options() const {
@@ -54,6 +55,9 @@ Result<darkroom::WriteOptions> WriteFlags::options() const {
         out.samples = *bits;
     }
     if (Result<> done = quality_.read_to(out.quality); !done) return failure(std::move(done));
+    Result<std::shared_ptr<const darkroom::ColorChain>> view = ocio.view();
+    if (!view) return failure(std::move(view));
+    out.view = std::move(*view);
     return out;
 }
 
@@ -72,7 +76,7 @@ Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, dou
                           .has_alpha = has_alpha_};
     for (const auto& [is_given, flag] :
          {std::pair(bits_.has_value(), "--bits"), std::pair(!compression_.empty(), "--compression"),
-          std::pair(quality_.is_given(), "--quality")})
+          std::pair(quality_.is_given(), "--quality"), std::pair(ocio.has_display(), "--display")})
         if (is_given) return user_error(fmt::format("{}: is of files, and not of --format {}", flag, *format_));
     if (has_alpha_ && desc.format != darkroom::VideoFormat::Rgba64le)
         return user_error(fmt::format("--alpha: --format {} has none; rgba64le has", *format_));

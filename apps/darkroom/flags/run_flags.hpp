@@ -13,10 +13,11 @@
 #include "flags.hpp"
 #include "image/picture/write.hpp"
 #include "number_flag.hpp"
+#include "ocio_flags.hpp"
 
 namespace app {
 
-/// --bits, --alpha, --compression, --quality, --format.
+/// --bits, --alpha, --compression, --quality, --format, and those of OcioFlags.
 class WriteFlags {
   public:
     void add_to(CommandFlags command);
@@ -25,6 +26,8 @@ class WriteFlags {
     /// flags of files say nothing of a stream, and a terminal shows no pictures.
     [[nodiscard]] darkroom::Result<std::optional<StreamDesc>> stream(const std::string& out,
                                                                      double frames_per_second) const;
+
+    OcioFlags ocio;
 
   private:
     std::optional<std::string> bits_, format_;

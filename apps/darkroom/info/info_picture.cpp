@@ -130,7 +130,8 @@ Result<Json> default_look_of(const FrameFile& frame) {
     Json left_out = Json::array(), left_out_if_on = Json::array();
     for (const std::string& text : plan->left_out) {
         const std::optional<darkroom::Handle> entry = composer.find(text.substr(0, text.find(':')));
-        (entry && composer.desc(*entry)->enabled ? left_out : left_out_if_on).push_back(text);
+        const bool is_on = entry && composer.desc(*entry)->enabled && !composer.info(*entry)->is_in_traced_light;
+        (is_on ? left_out : left_out_if_on).push_back(text);
     }
     return Json{{"left_out", std::move(left_out)}, {"would_be_left_out_if_on", std::move(left_out_if_on)}};
 }

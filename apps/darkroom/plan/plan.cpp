@@ -58,7 +58,7 @@ void add_layers_of_scenes(darkroom::CompileDesc& compile) {
 }
 
 Result<std::string> text_of(const Options& options) {
-    Result<darkroom::Look> look = options.look.look();
+    Result<darkroom::Look> look = options.look.look_of_frames();
     if (!look) return failure(look.error());
     if (options.wants_stack) {
         if (look->is_flat) darkroom::make_stack(*look);

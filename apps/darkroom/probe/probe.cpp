@@ -11,6 +11,7 @@
 #include "apps/darkroom/flags/frame_flags.hpp"
 #include "apps/darkroom/flags/look_flags.hpp"
 #include "apps/darkroom/flags/number_flag.hpp"
+#include "apps/darkroom/flags/ocio_flags.hpp"
 #include "apps/darkroom/run/frames.hpp"
 #include "apps/darkroom/run/json.hpp"
 #include "apps/darkroom/run/outputs.hpp"
@@ -34,6 +35,7 @@ struct Options {
     LookFlags look;
     DeviceFlags device;
     FrameFlags frame;
+    OcioFlags ocio;
     std::string input, size;
     std::vector<std::string> at;
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
@@ -129,7 +131,7 @@ class Probe {
   private:
     /// The look and the frame, as develop reads them.
     Result<> read() {
-        Result<darkroom::Look> look = options_.look.look();
+        Result<darkroom::Look> look = options_.look.look_of_frames();
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
         if (!options_.look.events.empty()) {
@@ -137,24 +139,25 @@ class Probe {
             if (!timeline) return failure(std::move(timeline));
             timeline_ = std::move(*timeline);
         }
-        Result<darkroom::FrameOptions> frame = options_.frame.options();
+        Result<darkroom::FrameOptions> frame = options_.frame.options(options_.ocio.configuration);
         if (!frame) return failure(std::move(frame));
         if (const auto needs = add_needs(look_, input_.delta_time, timeline_, *frame); !needs)
             return failure(needs.error());
         frame->keeps_halves = true;
         Result<darkroom::FrameFile> file = darkroom::read_frame(options_.input, *frame);
         if (!file) return failure(std::move(file));
-        VkExtent2D extent{file->color.width, file->color.height};
+        darkroom::NewSize new_size{file->color.width, file->color.height};
         if (!options_.size.empty()) {
-            const Result<VkExtent2D> size = parse_size(options_.size);
+            const Result<darkroom::NewSize> size = parse_new_size(options_.size);
             if (!size) return failure(size.error());
-            extent = *size;
+            new_size = *size;
         }
-        Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*file), extent.width, extent.height);
+        Result<darkroom::FrameFile> sized = darkroom::resize(std::move(*file), new_size);
         if (!sized) return failure(std::move(sized));
         file_ = std::move(*sized);
         const std::string shown = darkroom::printable(options_.input);
         for (const std::string& warning : file_.warnings) warn(fmt::format("{}: {}", shown, warning));
+        tell_of_assumed_view(file_, shown);
         lights_ = take_lights(file_);
         input_ = develop_input(file_, lights_);
         const std::filesystem::path path = options_.input;
@@ -361,9 +364,10 @@ Command add_probe(CommandFlags program, std::span<const darkroom::LookEntry> nam
         .repeated()
         .required();
     command.add_flag("--json", options->is_json, "For programs");
-    command.add_option("--size", options->size, "Develops at this size; the frame is resampled first").type_name("WxH");
+    command.add_option("--size", options->size, "As of develop").type_name("WxH[:fit|fill|stretch]");
     options->time.add_to(command, "For effects that move; default: what the frame says, or 0").type_name("S");
     options->frame.add_to(command);
+    options->ocio.add_to(command, false);
     options->device.add_to(command);
     options->look.add_to(command, true, named);
     return {command, [options] { return run(*options); }};

@@ -99,6 +99,14 @@ std::vector<ReferenceLight> take_lights(darkroom::FrameFile& frame) {
     return lights;
 }
 
+void tell_of_assumed_view(const darkroom::FrameFile& frame, std::string_view shown) {
+    if (frame.depth && !frame.camera.projection)
+        warn(
+            fmt::format("{}: has depth and no projection: a vertical field of view of {} degrees is assumed, --fov or "
+                        "--camera says another",
+                        shown, assumed_field_of_view));
+}
+
 DevelopInput develop_input(const darkroom::FrameFile& frame, std::span<const ReferenceLight> lights) {
     const auto [width, height] = std::pair(frame.color.width, frame.color.height);
     DevelopInput input{.extent = {width, height},
@@ -171,7 +179,12 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, T
     return frames;
 }
 
-void suit(darkroom::Look& look, darkroom::DevelopTarget target) {
+void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::WriteOptions& options) {
+    using darkroom::Domain;
+    for (darkroom::LookEntry& entry : look.entries)
+        if (options.view && entry.effect->makes != nullptr &&
+            entry.effect->makes(Domain::SceneLinear, entry.words.data()) == Domain::DisplayLinear)
+            entry.state.enabled = false;
     if (target == darkroom::DevelopTarget::Encoded8) return;
     for (darkroom::LookEntry& entry : look.entries)
         if (entry.effect->is_last_step && entry.effect->makes == nullptr && look.is_flat && !entry.is_asked_for)

@@ -18,6 +18,8 @@ inline constexpr double assumed_field_of_view = 45;
 /// The frame's lights, with the depths of their cascades moved out of it. Where those stayed in the file, a light casts
 /// no shadow.
 [[nodiscard]] std::vector<darkroom::ReferenceLight> take_lights(darkroom::FrameFile& frame);
+/// A warning, where the frame has depth and no projection: what develop_input() assumes. `shown` is the file.
+void tell_of_assumed_view(const darkroom::FrameFile& frame, std::string_view shown);
 /// Refers to the memory of both.
 [[nodiscard]] darkroom::DevelopInput develop_input(const darkroom::FrameFile& frame,
                                                    std::span<const darkroom::ReferenceLight> lights);
@@ -30,8 +32,9 @@ inline constexpr double assumed_field_of_view = 45;
 /// frames are `delta_time` seconds apart, at the worst of the moments of a timeline.
 [[nodiscard]] darkroom::Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time,
                                                         Timeline timeline, darkroom::FrameOptions& frame);
-/// Switches off noise that nobody asked for where the picture has more than 8 bits: it hides their steps.
-void suit(darkroom::Look& look, darkroom::DevelopTarget target);
+/// Switches off noise that nobody asked for where the picture has more than 8 bits, whose steps it hides, and tone
+/// mapping where a view of a display has its own.
+void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::WriteOptions& options);
 /// One warning, `frame` first, for each entry that is on and has no place in the plan, but for those that are on by
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,

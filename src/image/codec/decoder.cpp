@@ -43,6 +43,7 @@ Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max
 }
 
 FileKind Decoder::kind() const { return state_->opened.kind; }
+FileColor Decoder::color() const { return file_color(kind(), state_->bytes); }
 std::span<const FilePart> Decoder::parts() const { return state_->opened.source->parts(); }
 
 std::vector<float> Decoder::numbers(std::size_t part, const std::string& attribute) const {

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "image/color/file_color.hpp"
 #include "image/exr/attributes.hpp"
 #include "image/picture/picture_source.hpp"
 
@@ -31,6 +32,8 @@ class Decoder {
     ~Decoder();
 
     [[nodiscard]] FileKind kind() const;
+    /// What a file of integers says of its colour.
+    [[nodiscard]] FileColor color() const;
     [[nodiscard]] std::span<const FilePart> parts() const;
     /// The numbers of an attribute of a part (one number, a point, a matrix by rows), empty if it has none of that
     /// name, whose case does not matter.

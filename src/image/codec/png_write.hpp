@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Internal to src/image: display-encoded samples made into a PNG file in memory (ISO/IEC 15948), deflated by
-// libdeflate: four to six times as fast as libpng with zlib, and no larger. It says that the samples are sRGB.
+// libdeflate: four to six times as fast as libpng with zlib, and no larger. It says that the samples are sRGB, where
+// they are.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,7 @@ struct PngDesc {
     std::uint32_t channels = 3;     ///< 3, or 4 with alpha
     std::uint32_t bytes = 1;        ///< of a sample, 1 or 2, in the order of this machine
     const void* samples = nullptr;  ///< rows from the top
+    bool is_srgb = true;            ///< false: the file says nothing of its colour
     std::optional<int> level;       ///< of libdeflate, 0 to 12; not given: fast, and better where that costs little
 };
 

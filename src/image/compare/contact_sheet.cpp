@@ -42,7 +42,7 @@ Result<Picture> cell(Picture picture) {
     const std::uint32_t width = scaled(picture.width), height = scaled(picture.height);
     FrameFile frame;
     frame.color = std::move(picture);
-    Result<FrameFile> small = resize(std::move(frame), width, height);
+    Result<FrameFile> small = resize(std::move(frame), {width, height});
     if (!small) return failure(std::move(small));
     return std::move(small->color);
 }

@@ -16,8 +16,10 @@
 #include <vector>
 
 #include "image/codec/decoder.hpp"
+#include "image/color/color_coding.hpp"
 #include "image/frame/channels.hpp"
 #include "image/picture/picture.hpp"
+#include "image/table/color_chain.hpp"
 
 namespace darkroom {
 
@@ -71,6 +73,8 @@ struct FrameOptions {
     std::filesystem::path camera_file;
     /// False: these stay in the file, for those who do not need them.
     bool has_depth = true, has_normals = true, has_velocity = true;
+    std::optional<InputSpace> input_space;          ///< goes before what the file says of its colour
+    std::shared_ptr<const ColorChain> input_chain;  ///< goes before that: from the file's numbers to linear Rec. 709
     /// False: so do the depths of cascades, which are most of a file.
     bool has_shadow_depths = true;
     /// Layers that are halves in the file, and are what they should be, come in FrameFile::halves.
@@ -121,8 +125,8 @@ struct FrameFile {
 /// Gives the layers of `halves` their numbers as floats, and leaves no halves.
 void widen(FrameFile& frame);
 
-/// Reads any known image file. Integers are decoded as sRGB; floats are linear, and converted if the file names
-/// primaries other than Rec. 709. The error text begins with the path.
+/// Reads any known image file. Where neither the options nor the file say otherwise, integers are decoded as sRGB and
+/// floats are linear Rec. 709; other primaries are converted. The error text begins with the path.
 [[nodiscard]] Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options = {});
 
 /// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, worldToCamera,

@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/primaries.hpp"
-#include "core/srgb.hpp"
+#include "image/color/configuration.hpp"
+#include "image/color/convert_picture.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
 #include "image/frame/layer_read.hpp"
@@ -67,28 +67,6 @@ void make_finite(Picture& color, PixelCounts& counts) {
     }
 }
 
-// Every code of an 8- or 16-bit file decoded once; a picture has more pixels than there are codes.
-void decode_srgb(Picture& color, SampleKind samples) {
-    const float largest = samples == SampleKind::Integer8 ? 255.0f : 65535.0f;
-    std::vector<float> decoded(static_cast<std::size_t>(largest) + 1);
-    for (std::size_t code = 0; code < decoded.size(); ++code)
-        decoded[code] = srgb_decode(static_cast<float>(code) / largest);
-    for (std::size_t i = 0; i < color.pixels.size(); ++i)
-        if (i % 4 != 3) color.pixels[i] = decoded[static_cast<std::size_t>(std::lround(color.pixels[i] * largest))];
-}
-
-void convert(Picture& color, const ColorMatrix& matrix) {
-    constexpr double largest = std::numeric_limits<float>::max();
-    for (std::size_t i = 0; i < color.pixels.size(); i += 4) {
-        float* pixel = &color.pixels[i];
-        const std::array<double, 3> in{pixel[0], pixel[1], pixel[2]};
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double value = matrix[c * 3] * in[0] + matrix[c * 3 + 1] * in[1] + matrix[c * 3 + 2] * in[2];
-            pixel[c] = static_cast<float>(std::clamp(value, -largest, largest));
-        }
-    }
-}
-
 class FrameReader {
   public:
     FrameReader(Decoder& decoder, const FrameOptions& options) : decoder_(decoder), options_(options) {}
@@ -105,7 +83,9 @@ class FrameReader {
     void finish_velocity();
     Result<> read_camera_of_file();
     void read_time_of_file();
-    [[nodiscard]] std::optional<ColorMatrix> conversion_of_color();
+    [[nodiscard]] bool is_integer() const;
+    [[nodiscard]] ColorCoding coding_of_color();
+    void find_conversion();
     [[nodiscard]] bool are_halves(const ChannelSet& set, std::uint32_t components) const;
     void add_place(const ChannelSet& set, std::uint32_t components, std::vector<float>& plane);
     void add_half_place(const ChannelSet& set, std::uint32_t components, std::vector<std::uint16_t>& plane);
@@ -120,7 +100,8 @@ class FrameReader {
     FrameFile frame_;
     std::vector<LayerPlace> places_;  // of what is read
     bool is_vray_ = false;
-    std::optional<ColorMatrix> to_rec709_;  // of the colour
+    TransferCurve curve_;                   // of the colour
+    std::optional<ColorMatrix> to_rec709_;  // of its light; none: it is that
     std::optional<Matrix> vray_normals_;    // world to camera, of what V-Ray wrote
 };
 
@@ -175,27 +156,44 @@ void FrameReader::add_half_place(const ChannelSet& set, std::uint32_t components
                        .plane = reinterpret_cast<std::byte*>(plane.data())});
 }
 
-// What turns the colour into Rec. 709, if that is anything.
-std::optional<ColorMatrix> FrameReader::conversion_of_color() {
-    if (frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16) return {};
-    const std::vector<float> values = decoder_.numbers(found_.color.part, "chromaticities");
-    if (values.size() != 8) {
-        const std::string& red = part(found_.color).channels[static_cast<std::size_t>(found_.color.channels[0])];
-        if (red.ends_with("X") || red.ends_with("x"))
-            frame_.warnings.emplace_back(
-                "the color is in X, Y, Z and no chromaticities are given: taken as linear Rec. 709");
-        return {};
+bool FrameReader::is_integer() const {
+    return frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16;
+}
+
+// What is asked for goes before what the file says, and that before what is usual.
+ColorCoding FrameReader::coding_of_color() {
+    if (options_.input_chain) return {.curve = {}};
+    if (const std::optional<InputSpace>& space = options_.input_space)
+        return {space->primaries, is_integer() ? space->integers : space->floats};
+    if (is_integer()) {
+        const FileColor color = decoder_.color();
+        if (!color.warning.empty()) frame_.warnings.push_back(color.warning);
+        return color.coding.value_or(ColorCoding{});
     }
-    if (found_.is_gray) return {};
-    const Chromaticities primaries{.red = {values[0], values[1]},
-                                   .green = {values[2], values[3]},
-                                   .blue = {values[4], values[5]},
-                                   .white = {values[6], values[7]}};
-    const auto matrix = to_rec709(primaries);
-    if (!matrix) frame_.warnings.emplace_back("the chromaticities span no color space: taken as linear Rec. 709");
+    ColorCoding coding{.curve = {}};
+    const std::vector<float> values = decoder_.numbers(found_.color.part, "chromaticities");
+    if (values.size() == 8) {
+        coding.primaries = {.red = {values[0], values[1]},
+                            .green = {values[2], values[3]},
+                            .blue = {values[4], values[5]},
+                            .white = {values[6], values[7]}};
+        return coding;
+    }
+    const std::string& red = part(found_.color).channels[static_cast<std::size_t>(found_.color.channels[0])];
+    if (red.ends_with("X") || red.ends_with("x"))
+        frame_.warnings.emplace_back(
+            "the color is in X, Y, Z and no chromaticities are given: taken as linear Rec. 709");
+    return coding;
+}
+
+void FrameReader::find_conversion() {
+    const ColorCoding coding = coding_of_color();
+    curve_ = coding.curve;
+    if (found_.is_gray) return;
+    to_rec709_ = to_rec709(coding.primaries);
+    if (!to_rec709_) frame_.warnings.emplace_back("the chromaticities span no color space: taken as linear Rec. 709");
     // Not even the sign of a zero may change in a picture that is in our primaries.
-    if (!matrix || *matrix == ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) return {};
-    return *matrix;
+    if (to_rec709_ == ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) to_rec709_.reset();
 }
 
 Result<> FrameReader::make_color() {
@@ -210,14 +208,14 @@ Result<> FrameReader::make_color() {
     if (auto checked = check(found_.color, 4, "the color"); !checked) return checked;
     frame_.samples = source.kinds[static_cast<std::size_t>(found_.color.channels[0])];
     frame_.has_alpha = found_.color.channels[3] >= 0;
-    to_rec709_ = conversion_of_color();
+    find_conversion();
     const auto fill_alpha = [&](auto& values, auto one) {
         for (std::size_t i = 0; i < pixels; ++i)
             if (is_inside(source, static_cast<std::uint32_t>(i % source.display_width),
                           static_cast<std::uint32_t>(i / source.display_width)))
                 values[i * 4 + 3] = one;
     };
-    if (!to_rec709_ && are_halves(found_.color, 4)) {
+    if (!to_rec709_ && curve_.is_linear() && !options_.input_chain && are_halves(found_.color, 4)) {
         frame_.halves.color.resize(pixels * 4);
         if (!frame_.has_alpha) fill_alpha(frame_.halves.color, half_one);
         add_half_place(found_.color, 4, frame_.halves.color);
@@ -235,10 +233,11 @@ void FrameReader::finish_color() {
         return;
     }
     make_finite(frame_.color, frame_.counts);
-    if (frame_.samples == SampleKind::Integer8 || frame_.samples == SampleKind::Integer16)
-        decode_srgb(frame_.color, frame_.samples);
-    else if (to_rec709_)
-        convert(frame_.color, *to_rec709_);
+    if (options_.input_chain)
+        apply(*options_.input_chain, frame_.color);
+    else
+        decode(frame_.color, frame_.samples, curve_);
+    if (to_rec709_) convert(frame_.color, *to_rec709_);
 }
 
 Result<> FrameReader::make_depth() {

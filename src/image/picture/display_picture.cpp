@@ -1,28 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "image/picture/display_picture.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "core/primaries.hpp"
+#include "image/color/convert_picture.hpp"
 
 namespace darkroom {
 
 namespace {
-
-void convert(Picture& picture, const ColorMatrix& matrix) {
-    constexpr double largest = std::numeric_limits<float>::max();
-    for (std::size_t i = 0; i < picture.pixels.size(); i += 4) {
-        float* const pixel = &picture.pixels[i];
-        const std::array<double, 3> in{pixel[0], pixel[1], pixel[2]};
-        if (!std::ranges::all_of(in, [](double value) { return std::isfinite(value); })) continue;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double value = matrix[c * 3] * in[0] + matrix[c * 3 + 1] * in[1] + matrix[c * 3 + 2] * in[2];
-            pixel[c] = static_cast<float>(std::clamp(value, -largest, largest));
-        }
-    }
-}
 
 // To red, green, blue and alpha: one channel or two are grey, and what has no alpha is opaque wherever there are data.
 Picture picture_of(const LayerSamples& samples, const FilePart& part) {

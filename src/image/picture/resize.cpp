@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "image/codec/codecs.hpp"
 
@@ -36,11 +37,64 @@ Plane<Channels> nearest_pixels(const Plane<Channels>& plane, std::uint32_t width
     return out;
 }
 
+/// Columns and rows of a plane.
+template <class Of>
+Of part_of(const Of& plane, std::uint32_t left, std::uint32_t top, std::uint32_t width, std::uint32_t height) {
+    Of out(width, height);
+    const auto values = static_cast<std::size_t>(out.at(1, 0) - out.at(0, 0));
+    for (std::uint32_t y = 0; y < height; ++y) std::copy_n(plane.at(left, top + y), values * width, out.at(0, y));
+    return out;
+}
+
+/// The middle of a frame, with the ratio of width to height. What the camera saw of the rest is cut off its projection,
+/// too, whose first two rows make x and y.
+FrameFile cropped(FrameFile frame, std::uint32_t width, std::uint32_t height) {
+    const std::uint32_t old_width = frame.color.width, old_height = frame.color.height;
+    const double ratio = double(width) / height;
+    const auto kept = [](std::uint32_t most, double side) {
+        return static_cast<std::uint32_t>(std::clamp(std::lround(side), 1L, long{most}));
+    };
+    const std::uint32_t new_width = kept(old_width, old_height * ratio);
+    const std::uint32_t new_height = kept(old_height, old_width / ratio);
+    const std::uint32_t left = (old_width - new_width) / 2, top = (old_height - new_height) / 2;
+    if (new_width == old_width && new_height == old_height) return frame;
+    widen(frame);
+    const auto cut = [&](auto& plane) { plane = part_of(plane, left, top, new_width, new_height); };
+    cut(frame.color);
+    if (frame.depth) cut(*frame.depth);
+    if (frame.normals) cut(*frame.normals);
+    if (frame.velocity) cut(*frame.velocity);
+    for (std::optional<Matrix>* const projection : {&frame.camera.projection, &frame.camera.previous_projection}) {
+        if (!*projection) continue;
+        const auto narrow = [&](std::size_t row, double old_side, double new_side, double first) {
+            const double scale = old_side / new_side, middle = (2 * first + new_side) / old_side - 1;
+            for (std::size_t column = 0; column < 4; ++column) {
+                float& value = (**projection)[column * 4 + row];
+                value = static_cast<float>(scale * (double{value} - middle * double{(**projection)[column * 4 + 3]}));
+            }
+        };
+        narrow(0, old_width, new_width, left);
+        narrow(1, old_height, new_height, top);
+    }
+    return frame;
+}
+
 }  // namespace
 
-Result<FrameFile> resize(FrameFile frame, std::uint32_t width, std::uint32_t height) {
+NewSize NewSize::of(std::uint32_t old_width, std::uint32_t old_height) const {
+    if (sizing != Sizing::Fit || old_width == 0 || old_height == 0) return *this;
+    const double scale = std::min(double(width) / old_width, double(height) / old_height);
+    const auto scaled = [&](std::uint32_t side) {
+        return static_cast<std::uint32_t>(std::max(1L, std::lround(side * scale)));
+    };
+    return {std::min(width, scaled(old_width)), std::min(height, scaled(old_height)), Sizing::Stretch};
+}
+
+Result<FrameFile> resize(FrameFile frame, const NewSize& asked_for) {
+    const auto [width, height, sizing] = asked_for.of(frame.color.width, frame.color.height);
     if (width == 0 || height == 0)
         return user_error(fmt::format("size {}x{}: a picture has at least 1x1", width, height));
+    if (sizing == Sizing::Fill) frame = cropped(std::move(frame), width, height);
     const std::uint32_t old_width = frame.color.width, old_height = frame.color.height;
     if (width == old_width && height == old_height) return frame;
     widen(frame);

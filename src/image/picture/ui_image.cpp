@@ -34,7 +34,7 @@ Result<std::vector<std::uint8_t>> read_ui_image(const std::filesystem::path& pat
         frame.color.width = image->width;
         frame.color.height = image->height;
         frame.color.pixels = std::move(image->rgba);
-        Result<FrameFile> sized = resize(std::move(frame), width, height);
+        Result<FrameFile> sized = resize(std::move(frame), {width, height});
         if (!sized)
             return failure(
                 Error{sized.error().fault, fmt::format("{}: {}", printable(path.string()), sized.error().text)});

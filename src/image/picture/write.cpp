@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "image/picture/write.hpp"
+#include "image/color/configuration.hpp"
 
 #include <fmt/format.h>
 
@@ -126,6 +127,9 @@ Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOpt
         return user_error(fmt::format("{}: {} has no alpha; .png .tif .exr have", path.string(), name_of(*kind)));
     if (auto checked = check_coding(path, *kind, options); !checked) return failure(std::move(checked));
     const SampleKind samples = options.samples.value_or(format.samples.front());
+    if (options.view && samples != SampleKind::Integer8 && samples != SampleKind::Integer16)
+        return user_error(fmt::format("{}: {} samples hold light, and no view of a display; .png .jpg .tif hold one",
+                                      path.string(), name_of(samples)));
     if (std::find(format.samples.begin(), format.samples.end(), samples) != format.samples.end()) return samples;
     std::string allowed;
     for (const SampleKind known : format.samples)
@@ -144,7 +148,8 @@ Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc
                         .height = desc.height,
                         .channels = desc.channels,
                         .bytes = static_cast<std::uint32_t>(size_of(desc.kind)),
-                        .samples = desc.samples};
+                        .samples = desc.samples,
+                        .is_srgb = options.view == nullptr};
             if (!options.compression.empty()) png.level = std::stoi(options.compression);
             return encode_png(png);
         }
@@ -209,8 +214,16 @@ Result<> write_picture(const std::filesystem::path& path, const Picture& picture
         desc->samples = samples.data();
         return write_samples(path, *desc, options);
     };
-    if (desc->kind == SampleKind::Integer8) return write(integers<std::uint8_t>(picture, desc->channels));
-    if (desc->kind == SampleKind::Integer16) return write(integers<std::uint16_t>(picture, desc->channels));
+    const auto write_integers = [&](const Picture& encoded) {
+        return desc->kind == SampleKind::Integer8 ? write(integers<std::uint8_t>(encoded, desc->channels))
+                                                  : write(integers<std::uint16_t>(encoded, desc->channels));
+    };
+    if (options.view) {
+        Picture viewed = picture;
+        apply(*options.view, viewed);
+        return write_integers(viewed);
+    }
+    if (desc->kind == SampleKind::Integer8 || desc->kind == SampleKind::Integer16) return write_integers(picture);
     // Radiance: no negative values, and a shared exponent of at most 2^127.
     constexpr float largest_radiance = 1.7e38f;
     constexpr float largest_float = std::numeric_limits<float>::max();

@@ -15,6 +15,7 @@
 #include "image/codec/decoder.hpp"
 #include "image/frame/kept_layers.hpp"
 #include "image/picture/picture.hpp"
+#include "image/table/color_chain.hpp"
 
 namespace darkroom {
 
@@ -28,7 +29,9 @@ struct WriteOptions {
     std::string compression;
     std::shared_ptr<const ExrAttributes> attributes;  ///< of the frame that the picture was made of: into OpenEXR files
     std::shared_ptr<const KeptLayers> layers;         ///< of that frame, into OpenEXR files of its size; null: none
-    std::size_t max_threads = 0;                      ///< that compress, 0: as many as there are processors
+    /// For pictures of linear Rec. 709: integer files get what this makes of it, and do not say that they are sRGB.
+    std::shared_ptr<const ColorChain> view;
+    std::size_t max_threads = 0;  ///< that compress, 0: as many as there are processors
 };
 
 /// The kind that a path's extension asks for. Known: .png .jpg .jpeg .tif .tiff .exr .hdr, in any case.

@@ -12,7 +12,7 @@
 
 namespace darkroom {
 
-/// The operations of one file.
+/// The operations of one file, or of a configuration's spaces.
 class ColorChain {
   public:
     ColorChain() = default;
@@ -30,6 +30,12 @@ class ColorChain {
 struct ColorChains {
     /// The kind of file is told by its extension. The file has been checked by read_table_file().
     Result<std::unique_ptr<ColorChain>> (*open)(const std::filesystem::path& path);
+    /// From a colour space of a configuration (.ocio) to linear Rec. 709.
+    Result<std::unique_ptr<ColorChain>> (*from_space)(const std::filesystem::path& configuration,
+                                                      const std::string& space);
+    /// From linear Rec. 709 to a view of a display of a configuration; no view: the display's usual one.
+    Result<std::unique_ptr<ColorChain>> (*to_view)(const std::filesystem::path& configuration,
+                                                   const std::string& display, const std::string& view);
 };
 
 /// Loads the module the first time. The error is the machine's: the module is not where it was installed.

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "ocio_flags.hpp"
+
+#include "image/color/configuration.hpp"
+
+namespace app {
+
+using darkroom::user_error;
+using Chain = std::shared_ptr<const darkroom::ColorChain>;
+
+void OcioFlags::add_to(CommandFlags command, bool has_view) {
+    const std::string group = has_view ? "The files" : "The frame";
+    command.add_option("--ocio", configuration, "A configuration of OpenColorIO (.ocio)")
+        .type_name("FILE")
+        .group(group);
+    if (!has_view) return;
+    command
+        .add_option("--display", display_,
+                    "Makes the picture for this display of it: instead of the look's tone mapping and encoding")
+        .type_name("NAME")
+        .group(group);
+    command.add_option("--view", view_, "A view of that display; default: its usual one")
+        .type_name("NAME")
+        .group(group);
+}
+
+darkroom::Result<Chain> OcioFlags::view() const {
+    if (display_.empty()) {
+        if (!view_.empty()) return user_error("--view: is one of a display, --display NAME is needed");
+        return Chain();
+    }
+    if (configuration.empty()) return user_error("--display: is one of a configuration, --ocio FILE is needed");
+    return darkroom::view_of_configuration(configuration, display_, view_);
+}
+
+}  // namespace app

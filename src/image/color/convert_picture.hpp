@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The numbers of a picture, as a file has them, to light, and the light to linear Rec. 709. Alpha stays.
+
+#include "core/primaries.hpp"
+#include "image/codec/file_kind.hpp"
+#include "image/color/color_coding.hpp"
+#include "image/picture/picture.hpp"
+
+namespace darkroom {
+
+/// `samples`: of the file; its integers are in 0..1 here.
+void decode(Picture& color, SampleKind samples, const TransferCurve& curve);
+
+/// Pixels that are not finite stay as they are.
+void convert(Picture& color, const ColorMatrix& matrix);
+
+}  // namespace darkroom

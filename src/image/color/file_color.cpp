@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+#include "image/color/file_color.hpp"
+
+#include <fmt/format.h>
+#include <libdeflate.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "image/color/icc_profile.hpp"
+
+namespace darkroom {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+using Kind = TransferCurve::Kind;
+
+std::uint32_t big_endian(Bytes bytes) {
+    std::uint32_t value = 0;
+    for (const std::byte byte : bytes.first(4)) value = value << 8 | std::to_integer<std::uint32_t>(byte);
+    return value;
+}
+
+/// The chunks before the pixels, the first of each name.
+std::map<std::string_view, Bytes> chunks_of(Bytes file) {
+    std::map<std::string_view, Bytes> out;
+    for (std::size_t position = 8; file.size() >= position + 12;) {
+        const std::size_t length = big_endian(file.subspan(position));
+        const std::string_view type(reinterpret_cast<const char*>(file.data()) + position + 4, 4);
+        if (type == "IDAT" || type == "IEND" || length > file.size() - position - 12) break;
+        out.try_emplace(type, file.subspan(position + 8, length));
+        position += length + 12;
+    }
+    return out;
+}
+
+/// The numbers of ITU-T H.273 for primaries and curves, as far as pictures have them.
+std::optional<ColorCoding> coding_of_video(unsigned primaries, unsigned curve) {
+    ColorCoding out;
+    switch (primaries) {
+        case 1:
+            break;
+        case 9:
+            out.primaries = find_input_space("rec2020")->primaries;
+            break;
+        case 12:
+            out.primaries = find_input_space("p3")->primaries;
+            break;
+        default:
+            return std::nullopt;
+    }
+    constexpr std::array<std::pair<unsigned, TransferCurve>, 10> curves{{{1, {Kind::Video}},
+                                                                         {4, {Kind::Power, 2.2}},
+                                                                         {5, {Kind::Power, 2.8}},
+                                                                         {6, {Kind::Video}},
+                                                                         {8, {Kind::Linear}},
+                                                                         {13, {Kind::Srgb}},
+                                                                         {14, {Kind::Video}},
+                                                                         {15, {Kind::Video}},
+                                                                         {16, {Kind::Pq}},
+                                                                         {18, {Kind::Hlg}}}};
+    for (const auto& [number, of] : curves)
+        if (number == curve) {
+            out.curve = of;
+            return out;
+        }
+    return std::nullopt;
+}
+
+constexpr double gamma_unit = 100000, usual_gamma = 45455;
+
+/// 1 / 2.2 stands for the curve of sRGB, for which it is the nearest that gAMA can say.
+std::optional<TransferCurve> curve_of_gamma(std::uint32_t gamma) {
+    if (std::abs(gamma - usual_gamma) <= 100) return TransferCurve{Kind::Srgb};
+    if (gamma == static_cast<std::uint32_t>(gamma_unit)) return TransferCurve{Kind::Linear};
+    if (gamma < gamma_unit / 10 || gamma > gamma_unit * 10) return std::nullopt;
+    return TransferCurve{Kind::Power, gamma_unit / gamma};
+}
+
+std::optional<Chromaticities> primaries_of(Bytes data) {
+    std::array<double, 8> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = big_endian(data.subspan(i * 4)) / gamma_unit;
+    const Chromaticities out{.red = {values[2], values[3]},
+                             .green = {values[4], values[5]},
+                             .blue = {values[6], values[7]},
+                             .white = {values[0], values[1]}};
+    return to_rec709(out) ? std::optional(out) : std::nullopt;
+}
+
+/// Many profiles are those of the two spaces that screens have, and say so. No profile: nothing.
+FileColor color_of_profile(Bytes profile) {
+    if (profile.empty()) return {};
+    const std::string name = profile_description(profile);
+    if (name.find("sRGB") != std::string::npos) return {.coding = ColorCoding{}};
+    if (name.find("Display P3") != std::string::npos)
+        return {.coding = ColorCoding{find_input_space("p3")->primaries, {Kind::Srgb}}};
+    return {.warning = fmt::format("its ICC profile{} is not read: taken as sRGB, --input-space says otherwise",
+                                   name.empty() ? "" : fmt::format(" '{}'", name))};
+}
+
+/// Of iCCP, unpacked: name, 0, method, deflate.
+std::vector<std::byte> profile_of_png(Bytes chunk) {
+    const auto name_end = std::ranges::find(chunk, std::byte{0});
+    const auto begin = static_cast<std::size_t>(name_end - chunk.begin()) + 2;
+    if (begin >= chunk.size()) return {};
+    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
+        libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
+    std::vector<std::byte> out(max_profile);
+    std::size_t size = 0;
+    const Bytes packed = chunk.subspan(begin);
+    if (libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), out.data(), out.size(), &size) !=
+        LIBDEFLATE_SUCCESS)
+        size = 0;
+    out.resize(size);
+    return out;
+}
+
+FileColor png_color(Bytes file) {
+    const std::map<std::string_view, Bytes> chunks = chunks_of(file);
+    const auto chunk = [&](std::string_view type, std::size_t bytes) -> std::optional<Bytes> {
+        const auto found = chunks.find(type);
+        return found == chunks.end() || found->second.size() != bytes ? std::nullopt : std::optional(found->second);
+    };
+    FileColor out;
+    if (const auto data = chunk("cICP", 4)) {
+        const auto number = [&](std::size_t i) { return std::to_integer<unsigned>((*data)[i]); };
+        // A matrix and a limited range belong to video, not to PNG.
+        if (number(2) == 0 && number(3) == 1) out.coding = coding_of_video(number(0), number(1));
+        if (out.coding) return out;
+        out.warning = fmt::format("cICP {} {} {} {} is not read", number(0), number(1), number(2), number(3));
+    }
+    if (const auto found = chunks.find("iCCP"); found != chunks.end()) {
+        const std::vector<std::byte> profile = profile_of_png(found->second);
+        if (!profile.empty()) return color_of_profile(profile);
+        out.warning = "iCCP holds no profile of at most 4 MiB and is not read";
+    }
+    if (chunk("sRGB", 1)) {
+        out.coding = ColorCoding{};
+        return out;
+    }
+    const auto gamma = chunk("gAMA", 4), primaries = chunk("cHRM", 32);
+    if (!gamma && !primaries) return out;
+    ColorCoding coding;
+    if (gamma) {
+        const std::optional<TransferCurve> curve = curve_of_gamma(big_endian(*gamma));
+        if (curve)
+            coding.curve = *curve;
+        else
+            out.warning = fmt::format("gAMA {:g} is not read, [0.1, 10] is", big_endian(*gamma) / gamma_unit);
+    }
+    if (primaries) {
+        const std::optional<Chromaticities> found = primaries_of(*primaries);
+        if (found)
+            coding.primaries = *found;
+        else
+            out.warning = "cHRM spans no color space and is not read";
+    }
+    out.coding = coding;
+    return out;
+}
+
+/// The first piece of the profile, which holds its name: APP2 "ICC_PROFILE", 0, number, count.
+Bytes profile_of_jpeg(Bytes file) {
+    constexpr std::string_view mark("ICC_PROFILE\0", 12);
+    for (std::size_t position = 2; file.size() >= position + 4;) {
+        const auto marker = std::to_integer<unsigned>(file[position + 1]);
+        const std::size_t length = big_endian(file.subspan(position)) & 0xffffU;
+        constexpr unsigned start_of_scan = 0xda, second_application = 0xe2;
+        if (file[position] != std::byte{0xff} || marker == start_of_scan || length < 2 ||
+            length > file.size() - position - 2)
+            break;
+        const Bytes data = file.subspan(position + 4, length - 2);
+        if (marker == second_application && data.size() > mark.size() + 2 &&
+            std::ranges::equal(data.first(mark.size()), std::as_bytes(std::span(mark))))
+            return data.subspan(mark.size() + 2);
+        position += length + 2;
+    }
+    return {};
+}
+
+}  // namespace
+
+FileColor file_color(FileKind kind, Bytes file) {
+    if (kind == FileKind::Png) return png_color(file);
+    if (kind == FileKind::Jpeg) return color_of_profile(profile_of_jpeg(file));
+    return {};
+}
+
+}  // namespace darkroom

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What a file of integers says of its colour: the chunks cICP, iCCP, sRGB, gAMA and cHRM of PNG, in that order of
+// precedence (PNG, third edition, 11.3.2), and the ICC profile of JPEG. Of profiles the name alone is read.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "image/codec/file_kind.hpp"
+#include "image/color/color_coding.hpp"
+
+namespace darkroom {
+
+/// The largest ICC profile that is looked at, unpacked: those of printers have some 2 MB.
+inline constexpr std::size_t max_profile = std::size_t{4} << 20;
+
+struct FileColor {
+    std::optional<ColorCoding> coding;  ///< none: the file says nothing that is understood
+    std::string warning;                ///< what is not obeyed; empty: nothing
+};
+
+/// Of a file whose structure has been checked.
+[[nodiscard]] FileColor file_color(FileKind kind, std::span<const std::byte> file);
+
+}  // namespace darkroom

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "image/color/file_color.hpp"
+#include "image/color/icc_profile.hpp"
+#include "image/frame/frame_file.hpp"
+#include "image/picture/write.hpp"
+#include "image/test_files.hpp"
+
+namespace darkroom {
+namespace {
+
+class ImageInputSpace : public WithFolder {
+  protected:
+    using Color = std::array<float, 3>;
+
+    static std::string number(std::uint32_t value) {
+        std::string out;
+        for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(value >> shift & 0xffU);
+        return out;
+    }
+    /// ISO 3309, bit by bit: what PNG chunks end with.
+    static std::uint32_t checksum(const std::string& data) {
+        std::uint32_t crc = ~0U;
+        for (const char c : data) {
+            crc ^= static_cast<unsigned char>(c);
+            for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xedb88320U : 0);
+        }
+        return ~crc;
+    }
+    static std::string chunk(const std::string& type, const std::string& data) {
+        return number(static_cast<std::uint32_t>(data.size())) + type + data + number(checksum(type + data));
+    }
+    /// A picture of one colour whose sRGB chunk gives way to these.
+    [[nodiscard]] std::filesystem::path png(const Color& color, const std::string& chunks) const {
+        Picture picture(2, 2);
+        for (std::size_t i = 0; i < 16; ++i) picture.pixels[i] = i % 4 < 3 ? color[i % 4] : 1;
+        EXPECT_TRUE(write_picture(file("plain.png"), picture));
+        std::string text = content(file("plain.png"));
+        const std::size_t at = text.find("sRGB");
+        EXPECT_NE(at, std::string::npos);
+        text.replace(at - 4, 13, chunks);
+        put(file("a.png"), text);
+        return file("a.png");
+    }
+    static Color color_of(const Result<FrameFile>& frame) {
+        EXPECT_TRUE(frame) << frame.error().text;
+        if (!frame) return {};
+        const float* const pixel = frame->color.at(1, 1);
+        return {pixel[0], pixel[1], pixel[2]};
+    }
+    static void expect_near(const Color& color, const Color& expected) {
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(color[i], expected[i], 2e-4) << i;
+    }
+    static Result<FrameFile> read_as(const std::filesystem::path& path, std::string_view space) {
+        return read_frame(path, {.input_space = *find_input_space(space)});
+    }
+    static std::string first_warning(const std::filesystem::path& path) {
+        const auto frame = read_frame(path);
+        return frame && !frame->warnings.empty() ? frame->warnings.front() : "";
+    }
+};
+
+TEST(ImageColor, CurvesHaveTheirPublishedPlaces) {
+    using Kind = TransferCurve::Kind;
+    EXPECT_NEAR(TransferCurve{Kind::Srgb}.decode(0.5), 0.214041, 1e-6);
+    EXPECT_NEAR((TransferCurve{Kind::Power, 2.4}.decode(0.5)), 0.189465, 1e-6);
+    EXPECT_NEAR(TransferCurve{Kind::Video}.decode(0.409), 0.18, 1e-4);
+    // ITU-R BT.2408-7: 58.1 % and 75 % are reference white; PQ ends at 10,000 cd/m2.
+    EXPECT_NEAR(TransferCurve{Kind::Pq}.decode(0.5807), 1, 1e-3);
+    EXPECT_NEAR(TransferCurve{Kind::Pq}.decode(1), 10000.0 / 203, 1e-9);
+    EXPECT_NEAR(TransferCurve{Kind::Hlg}.decode(0.75), 1, 1e-12);
+    EXPECT_NEAR(TransferCurve{Kind::Hlg}.decode(0.5), 1.0 / 12 / 0.265, 1e-3);
+    for (const Kind kind : {Kind::Linear, Kind::Srgb, Kind::Video, Kind::Pq, Kind::Hlg}) {
+        const TransferCurve curve{kind};
+        EXPECT_EQ(curve.decode(0), 0);
+        EXPECT_EQ(curve.decode(-0.3), -curve.decode(0.3));
+    }
+}
+
+TEST_F(ImageInputSpace, FloatsAreOfTheSpaceThatIsAskedFor) {
+    FrameFile frame;
+    frame.color = Picture(2, 2);
+    for (std::size_t i = 0; i < 16; i += 4) frame.color.pixels[i] = 0.5F;
+    frame.samples = SampleKind::Float;
+    ASSERT_TRUE(write_frame(file("a.exr"), frame));  // it says Rec. 709
+    expect_near(color_of(read_as(file("a.exr"), "rec709")), {0.5F, 0, 0});
+    // Half of the first column of the published matrices to Rec. 709.
+    expect_near(color_of(read_as(file("a.exr"), "acescg")), {0.85253F, -0.06513F, -0.01200F});
+    expect_near(color_of(read_as(file("a.exr"), "ACES2065-1")), {1.26084F, -0.13824F, -0.00769F});
+    expect_near(color_of(read_as(file("a.exr"), "rec2020")), {0.83025F, -0.06228F, -0.00908F});
+    expect_near(color_of(read_as(file("a.exr"), "p3")), {0.61247F, -0.02103F, -0.00982F});
+    expect_near(color_of(read_as(file("a.exr"), "srgb")), {0.214041F, 0, 0});
+}
+
+TEST_F(ImageInputSpace, IntegersAreOfTheSpaceThatIsAskedFor) {
+    const auto grey = png({128 / 255.0F, 128 / 255.0F, 128 / 255.0F}, chunk("gAMA", number(100000)));
+    expect_near(color_of(read_as(grey, "srgb")), {0.215861F, 0.215861F, 0.215861F});
+    expect_near(color_of(read_as(grey, "acescg")), {0.501961F, 0.501961F, 0.501961F});
+    expect_near(color_of(read_as(grey, "rec709")), {0.191253F, 0.191253F, 0.191253F});
+}
+
+TEST_F(ImageInputSpace, PngSaysItself) {
+    const Color half{128 / 255.0F, 128 / 255.0F, 128 / 255.0F}, green{0, 1, 0};
+    const auto grey = [](float value) { return Color{value, value, value}; };
+    const std::string rec2020 = chunk("cICP", {9, 13, 0, 1}), linear = chunk("gAMA", number(100000));
+    expect_near(color_of(read_frame(png(half, ""))), grey(0.215861F));
+    expect_near(color_of(read_frame(png(half, linear))), grey(0.501961F));
+    expect_near(color_of(read_frame(png(half, chunk("gAMA", number(45455))))), grey(0.215861F));
+    expect_near(color_of(read_frame(png(half, chunk("gAMA", number(55556))))), grey(0.289056F));  // 1 / 1.8
+    expect_near(color_of(read_frame(png(green, rec2020))), {-0.58764F, 1.13290F, -0.10058F});
+    expect_near(color_of(read_frame(png(half, chunk("cICP", {1, 8, 0, 1})))), grey(0.501961F));
+    // cICP goes before gAMA, and sRGB too.
+    expect_near(color_of(read_frame(png(half, linear + chunk("cICP", {1, 13, 0, 1})))), grey(0.215861F));
+    expect_near(color_of(read_frame(png(half, linear + chunk("sRGB", std::string(1, 0))))), grey(0.215861F));
+    std::string primaries;
+    for (const std::uint32_t value : {31270, 32900, 70800, 29200, 17000, 79700, 13100, 4600})
+        primaries += number(value);
+    expect_near(color_of(read_frame(png(green, chunk("cHRM", primaries)))), {-0.58764F, 1.13290F, -0.10058F});
+}
+
+TEST_F(ImageInputSpace, WhatIsNotReadIsSaid) {
+    const Color white{1, 1, 1};
+    EXPECT_EQ(first_warning(png(white, "")), "");
+    EXPECT_EQ(first_warning(png(white, chunk("cICP", {22, 13, 0, 1}))), "cICP 22 13 0 1 is not read");
+    EXPECT_EQ(first_warning(png(white, chunk("gAMA", number(1)))), "gAMA 1e-05 is not read, [0.1, 10] is");
+    EXPECT_EQ(first_warning(png(white, chunk("cHRM", std::string(32, 0)))),
+              "cHRM spans no color space and is not read");
+    EXPECT_EQ(first_warning(png(white, chunk("iCCP", "x"))), "iCCP holds no profile of at most 4 MiB and is not read");
+}
+
+/// A profile with one tag.
+std::string profile_with(const std::string& desc) {
+    const auto number = [](std::size_t value) {
+        return std::string({static_cast<char>(value >> 24), static_cast<char>(value >> 16),
+                            static_cast<char>(value >> 8), static_cast<char>(value)});
+    };
+    std::string out(36, 0);
+    out += "acsp";
+    out.resize(128);
+    return out + number(1) + "desc" + number(144) + number(desc.size()) + desc;
+}
+
+std::string described(const std::string& profile) { return profile_description(std::as_bytes(std::span(profile))); }
+
+TEST(ImageIccProfile, SaysItsNameInBothForms) {
+    using namespace std::string_literals;
+    EXPECT_EQ(described(profile_with("desc\0\0\0\0\0\0\0\x0A"
+                                     "Adobe RGB\0"s)),
+              "Adobe RGB");
+    EXPECT_EQ(described(profile_with("mluc\0\0\0\0\0\0\0\1\0\0\0\x0C"
+                                     "enUS\0\0\0\4\0\0\0\x1C\0P\0\x33"s)),
+              "P3");
+    EXPECT_EQ(described(""), "");
+    const std::string whole = profile_with(
+        "desc\0\0\0\0\xff\xff\xff\xff"
+        "Adobe RGB\0"s);
+    EXPECT_EQ(described(whole), "");
+    for (std::size_t size = 0; size < whole.size(); ++size) described(whole.substr(0, size));
+}
+
+TEST_F(ImageInputSpace, ProfilesOfJpegAreNamed) {
+    using namespace std::string_literals;
+    Picture picture(8, 8);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] = i % 4 == 0 || i % 4 == 3 ? 1.0F : 0.0F;
+    ASSERT_TRUE(write_picture(file("plain.jpg"), picture));
+    const auto jpeg = [&](const std::string& name) {
+        std::string desc = "desc\0\0\0\0\0\0\0"s;
+        desc += static_cast<char>(name.size() + 1);
+        desc += name + '\0';
+        const std::string data = "ICC_PROFILE\0\1\1"s + profile_with(desc);
+        const std::size_t length = data.size() + 2;
+        std::string text = content(file("plain.jpg"));
+        text.insert(2, "\xff\xe2"s + static_cast<char>(length >> 8) + static_cast<char>(length & 0xff) + data);
+        put(file("a.jpg"), text);
+        return file("a.jpg");
+    };
+    EXPECT_EQ(first_warning(jpeg("sRGB IEC61966-2.1")), "");
+    EXPECT_EQ(first_warning(jpeg("Adobe RGB (1998)")),
+              "its ICC profile 'Adobe RGB (1998)' is not read: taken as sRGB, --input-space says otherwise");
+    const Color red = color_of(read_frame(jpeg("Display P3")));
+    EXPECT_NEAR(red[0], 1.2249F, 0.03F);
+    EXPECT_NEAR(red[1], -0.0421F, 0.005F);
+    EXPECT_EQ(first_warning(jpeg("Display P3")), "");
+}
+
+TEST(ImageColor, UnknownSpacesAreTold) {
+    const auto space = find_input_space("acescc");
+    ASSERT_FALSE(space);
+    EXPECT_EQ(space.error().text,
+              "'acescc' is no known color space, did you mean 'acescg'? allowed is srgb, rec709, rec2020, p3, acescg "
+              "or aces2065-1");
+}
+
+}  // namespace
+}  // namespace darkroom

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// What the numbers of a frame mean, which size it gets and what is done to it by itself, as flags say it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <darkroom/effects.hpp>
+#include <string>
+#include <vector>
+
+#include "cli_support.hpp"
+#include "image/frame/frame_file.hpp"
+
+namespace darkroom {
+namespace {
+
+using test::content;
+using test::Outcome;
+
+class CliColor : public test::CliFixture {
+  protected:
+    static constexpr float grey = 0.25F;
+
+    void make_files() override {
+        FrameFile frame;
+        frame.color = Picture(32, 18);
+        for (std::size_t i = 0; i < frame.color.pixels.size(); ++i) frame.color.pixels[i] = i % 4 == 3 ? 1.0F : grey;
+        frame.samples = SampleKind::Float;
+        ASSERT_TRUE(write_frame(path("frame.exr"), frame));
+        write("plain.toml", "[[stack]]\neffect = \"exposure\"\n");
+        // lin_rec709 is the reference of this configuration; a view takes the root.
+        write("config.ocio", R"(ocio_profile_version: 2
+roles: {default: lin_rec709, scene_linear: lin_rec709}
+file_rules:
+  - !<Rule> {name: Default, colorspace: default}
+displays:
+  screen:
+    - !<View> {name: root, colorspace: rooted}
+    - !<View> {name: half, colorspace: doubled}
+colorspaces:
+  - !<ColorSpace> {name: lin_rec709}
+  - !<ColorSpace>
+    name: rooted
+    from_scene_reference: !<ExponentTransform> {value: [0.5, 0.5, 0.5, 1]}
+  - !<ColorSpace>
+    name: doubled
+    to_scene_reference: !<MatrixTransform> {matrix: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]}
+)");
+    }
+    [[nodiscard]] Outcome develop(std::vector<std::string> flags, const std::string& out = "out.exr") const {
+        flags.insert(flags.begin(), {"develop", path("frame.exr"), "--look", path("plain.toml"), "-o", path(out)});
+        return run(flags);
+    }
+    /// Of a pixel in the middle.
+    [[nodiscard]] std::array<float, 3> color_after(const std::vector<std::string>& flags,
+                                                   const std::string& out = "out.exr") const {
+        const Outcome outcome = develop(flags, out);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        const Picture made = picture(out);
+        const float* const pixel = made.at(made.width / 2, made.height / 2);
+        return {pixel[0], pixel[1], pixel[2]};
+    }
+    void expect_error(const std::vector<std::string>& flags, const std::string& text) const {
+        const Outcome outcome = develop(flags, "none.png");
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_EQ(outcome.err, "darkroom: " + text + "\n");
+        EXPECT_FALSE(std::filesystem::exists(path("none.png")));
+    }
+};
+
+TEST_F(CliColor, InputSpaceSaysWhatTheNumbersMean) {
+    EXPECT_NEAR(color_after({})[0], grey, 1e-3);
+    EXPECT_NEAR(color_after({"--input-space", "srgb"})[0], 0.0508761, 1e-4);
+    for (const char* const space : {"acescg", "aces2065-1", "rec2020", "p3", "rec709"})
+        EXPECT_NEAR(color_after({"--input-space", space})[1], grey, 1e-3) << space << ": grey is grey";
+    expect_error({"--input-space", "p33"},
+                 "--input-space: 'p33' is no known color space, did you mean 'p3'? allowed is srgb, rec709, rec2020, "
+                 "p3, acescg or aces2065-1");
+}
+
+TEST_F(CliColor, SpacesOfAConfigurationAreRead) {
+    const std::string config = path("config.ocio");
+    EXPECT_NEAR(color_after({"--ocio", config, "--input-space", "doubled"})[2], 2 * grey, 1e-3);
+    EXPECT_NEAR(color_after({"--ocio", config, "--input-space", "rooted"})[2], grey * grey, 1e-3);
+    expect_error(
+        {"--ocio", config, "--input-space", "dubled"},
+        config + ": has no color space 'dubled', did you mean 'doubled'? there are lin_rec709, rooted and doubled");
+    expect_error({"--ocio", path("none.ocio"), "--input-space", "rooted"},
+                 path("none.ocio") + ": there is no such file");
+    write("bad.ocio", "ocio_profile_version: 2\n");
+    const Outcome bad = develop({"--ocio", path("bad.ocio"), "--input-space", "rooted"}, "none.png");
+    EXPECT_EQ(bad.code, 1);
+    EXPECT_TRUE(bad.err.starts_with("darkroom: " + path("bad.ocio") + ": ")) << bad.err;
+    EXPECT_EQ(std::ranges::count(bad.err, '\n'), 1) << bad.err;
+}
+
+TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
+    const std::string config = path("config.ocio");
+    for (const char* const out : {"a.png", "a.tif", "a.jpg"})
+        EXPECT_NEAR(color_after({"--ocio", config, "--display", "screen"}, out)[0], 0.5, 0.51 / 255) << out;
+    EXPECT_NEAR(color_after({"--ocio", config, "--display", "screen", "--bits", "16"}, "b.png")[0], 0.5, 1.0 / 65535);
+    EXPECT_NEAR(color_after({"--ocio", config, "--display", "screen", "--view", "half"}, "c.png")[0], grey / 2,
+                0.5 / 255);
+    EXPECT_EQ(content(path("a.png")).find("sRGB"), std::string::npos) << "the display need not be one";
+    // The look's own curve gives way to the view's.
+    const Outcome outcome =
+        run({"develop", path("frame.exr"), "-o", path("d.png"), "--ocio", config, "--display", "screen"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NEAR(*picture("d.png").at(9, 9), 0.5, 1.0 / 255);
+    expect_error({"--ocio", config, "--display", "scren"},
+                 config + ": has no display 'scren', did you mean 'screen'? there are screen");
+    expect_error({"--ocio", config, "--display", "screen", "--view", "x"},
+                 config + ": has no view 'x': there are root and half");
+    expect_error({"--display", "screen"}, "--display: is one of a configuration, --ocio FILE is needed");
+    expect_error({"--view", "root"}, "--view: is one of a display, --display NAME is needed");
+    expect_error({"--ocio", config, "--display", "screen", "--bits", "half"},
+                 path("none.png") + ": half samples hold light, and no view of a display; .png .jpg .tif hold one");
+}
+
+TEST_F(CliColor, AnotherRatioIsFittedInUnlessItIsSaid) {
+    const auto size_of = [&](const std::string& size) {
+        EXPECT_EQ(develop({"--size", size}, "out.png").code, 0);
+        const Picture made = picture("out.png");
+        return fmt::format("{}x{}", made.width, made.height);
+    };
+    EXPECT_EQ(size_of("64x64"), "64x36");
+    EXPECT_EQ(size_of("64x64:fit"), "64x36");
+    EXPECT_EQ(size_of("64x64:fill"), "64x64");
+    EXPECT_EQ(size_of("64x64:stretch"), "64x64");
+    expect_error({"--size", "64x64:stretsh"},
+                 "--size 64x64:stretsh: 'stretsh' is no way to resize, did you mean 'stretch'? allowed is fit, fill or "
+                 "stretch");
+}
+
+// A path tracer's picture is as dark in its corners as it should be.
+TEST_F(CliColor, FramesOfFilesGetNoOcclusionByThemselves) {
+    if (find_effect("ssao") == nullptr) GTEST_SKIP() << "this build has no ssao";
+    FrameFile frame;
+    frame.color = Picture(64, 36);
+    std::ranges::fill(frame.color.pixels, 0.5F);
+    frame.depth = Plane<1>(64, 36);
+    for (std::uint32_t y = 0; y < 36; ++y)
+        for (std::uint32_t x = 0; x < 64; ++x)
+            *frame.depth->at(x, y) = 3 - 0.06F * std::abs(static_cast<float>(x) - 31.5F);
+    ASSERT_TRUE(write_frame(path("corner.exr"), frame));
+    const auto made = [&](const std::vector<std::string>& flags) {
+        std::vector<std::string> all{"develop", path("corner.exr"), "--fov", "60", "-o", path("out.png"), "-q"};
+        all.insert(all.end(), flags.begin(), flags.end());
+        EXPECT_EQ(run(all).code, 0);
+        return content(path("out.png"));
+    };
+    write("empty.toml", "[post_process]\norder = \"scene_linear\"\n");
+    const std::string plain = made({});
+    EXPECT_EQ(plain, made({"--no-ssao"}));
+    EXPECT_NE(plain, made({"--ssao"}));
+    EXPECT_EQ(made({"--ssao"}), made({"--look", path("empty.toml")})) << "a look that is named is as it is";
+}
+
+}  // namespace
+}  // namespace darkroom
