@@ -21,8 +21,8 @@ namespace app {
 /// All that flags and files say, before there is a window.
 struct ViewerJob {
     bool is_edit = false;
-    std::filesystem::path scene;                ///< or a model; empty: frames
-    std::vector<std::filesystem::path> frames;  ///< of files
+    std::filesystem::path scene;                 ///< or a model; empty: frames
+    std::vector<darkroom::NumberedFile> frames;  ///< of files
     SceneSource::Desc scene_desc;
     FrameSource::Desc frame_desc;
     darkroom::scene::OrbitOverride orbit;

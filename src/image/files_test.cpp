@@ -9,7 +9,6 @@
 #include <csignal>
 #include <thread>
 
-#include "image/frame/sequence.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {
@@ -103,41 +102,6 @@ TEST_F(ImageFiles, ASignalLeavesNoTemporaryFile) {
         for (const auto& entry : std::filesystem::directory_iterator(folder_))
             EXPECT_TRUE(entry.path().filename().string().starts_with("a")) << entry.path();
     }
-}
-
-class ImageSequence : public WithFolder {};
-
-TEST_F(ImageSequence, PatternFindsFilesByNumber) {
-    for (const char* name : {"shot.0010.exr", "shot.0002.exr", "shot.0001.exr", "shot.12.exr", "shot.12345.exr",
-                             "shot.00x1.exr", "other.0003.exr"})
-        put(file(name), "");
-    const std::vector<std::string> inputs{file("shot.%04d.exr").string(), "plain.png"};
-    const auto files = expand_inputs(inputs);
-    ASSERT_TRUE(files);
-    const std::vector<std::filesystem::path> expected{file("shot.0001.exr"), file("shot.0002.exr"),
-                                                      file("shot.0010.exr"), file("shot.12345.exr"), "plain.png"};
-    EXPECT_EQ(*files, expected);
-}
-
-TEST_F(ImageSequence, RangeLimitsAndNothingIsAnError) {
-    for (int i = 1; i < 9; ++i) put(numbered(file("s%02d.exr"), i), "");
-    const auto within = expand_inputs(std::vector<std::string>{file("s%02d.exr[3-5]").string()});
-    ASSERT_TRUE(within);
-    EXPECT_EQ(within->size(), 3u);
-    EXPECT_EQ(frame_number(within->front()), 3);
-    const auto none = expand_inputs(std::vector<std::string>{file("s%02d.exr[30-50]").string()});
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().text, file("s%02d.exr[30-50]").string() + ": no file matches");
-    EXPECT_FALSE(expand_inputs(std::vector<std::string>{file("s%02d.exr[5-3]").string()}));
-    EXPECT_FALSE(expand_inputs(std::vector<std::string>{file("no/s%02d.exr").string()}));
-}
-
-TEST(ImageSequenceNames, NumbersGoIntoPatterns) {
-    EXPECT_EQ(numbered("a/b.%04d.png", 7), "a/b.0007.png");
-    EXPECT_EQ(numbered("a/b.%d.png", 12345), "a/b.12345.png");
-    EXPECT_EQ(numbered("a/b.png", 7), "a/b.png");
-    EXPECT_EQ(frame_number("v2.shot_0042.exr"), 42);
-    EXPECT_EQ(frame_number("shot.exr"), std::nullopt);
 }
 
 }  // namespace

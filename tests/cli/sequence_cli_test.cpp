@@ -135,6 +135,41 @@ TEST_F(CliSequence, SignsAreDigits) {
     EXPECT_TRUE(fs::exists(path("a#1.png"))) << "one sign is a name";
 }
 
+// Versions, shots and takes have numbers, too.
+TEST_F(CliSequence, ThePatternSaysWhichNumberIsTheFrames) {
+    for (int number = 1; number <= 3; ++number)
+        fs::copy_file(path(in(number)), path(fmt::format("shot_{:04}_v2.exr", number + 9)));
+    ASSERT_EQ(run({"develop", path("shot_####_v2.exr"), "-o", path("out_####.png")}).code, 0);
+    ASSERT_EQ(run({"develop", path("shot_$F4_v2.exr"), "--frames", "10,12", "-o", path("some_$F4.png")}).code, 0);
+    for (int number = 10; number <= 12; ++number) {
+        const std::string out_file = content(path(fmt::format("out_{:04}.png", number)));
+        EXPECT_FALSE(out_file.empty()) << number;
+        const std::string some = path(fmt::format("some_{:04}.png", number));
+        EXPECT_EQ(fs::exists(some), number != 11);
+        if (number == 11) continue;
+        EXPECT_EQ(content(some), out_file);
+    }
+    const Outcome none = run({"develop", path("shot_####_v2.exr"), "--frames", "1-3", "-o", path("none_####.png")});
+    EXPECT_EQ(none.code, 1);
+    EXPECT_EQ(none.err, "darkroom: --frames 1-3: none of the 3 inputs has such a number\n");
+}
+
+TEST_F(CliSequence, FramesBeforeTheFirstOneAndEverySecondOne) {
+    for (int number = 1; number <= 4; ++number)
+        fs::copy_file(path(in(number)), path(fmt::format("n.{:04}.exr", number - 3)));
+    ASSERT_EQ(run({"develop", path("n.%04d.exr"), "--frames", "-2-1x2", "--fps", "24", "-o", path("m.%04d.png")}).code,
+              0);
+    EXPECT_TRUE(fs::exists(path("m.-002.png")));
+    EXPECT_FALSE(fs::exists(path("m.-001.png")));
+    EXPECT_TRUE(fs::exists(path("m.0000.png")));
+    EXPECT_FALSE(fs::exists(path("m.0001.png")));
+    for (const char* const wrong : {"1-", "2-1", "1-5x0", "1..5"}) {
+        const Outcome outcome = run({"develop", path("n.%04d.exr"), "--frames", wrong, "-o", path("m.%04d.png")});
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_TRUE(outcome.err.starts_with(fmt::format("darkroom: --frames {}: ", wrong))) << outcome.err;
+    }
+}
+
 TEST_F(CliSequence, TellsOnceOfTheViewThatItAssumes) {
     const Outcome outcome = develop("v", {"--fog-density", "0.1"});
     EXPECT_EQ(outcome.code, 0);

@@ -272,7 +272,7 @@ TEST_F(FarmFiles, AFileThatIsNoRecordIsAWarning) {
         {R"({"format":1,"chunk":3})", "chunk is of another kind"},
         {R"({"format":1,"chunk":"","frames":[[0,99999999]])" + rest + "}",
          "frames: allowed are [first, last] in order, 100000 frames at most"},
-        {R"({"format":1,"chunk":"","frames":[[-9,3]])" + rest + "}",
+        {R"({"format":1,"chunk":"","frames":[[-9999999999,3]])" + rest + "}",
          "frames: allowed are [first, last] in order, 100000 frames at most"},
         {R"({"format":1,"chunk":"","frames":[[1]])" + rest + "}", "frames are no pairs of frames"},
         {R"({"format":1,"chunk":"","frames":[[0,5],[0,5]])" + rest + "}",

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <system_error>
 
 #include "core/text/param_text.hpp"
+#include "image/frame/frame_set.hpp"
 #include "image/frame/sequence.hpp"
 #include "image/picture/write.hpp"
 
@@ -52,30 +52,13 @@ Result<Files> files_of_folder(const fs::path& folder) {
     return files;
 }
 
-// The number that makes this name of the pattern: one of the groups of digits in it.
-std::optional<long long> number_in(const fs::path& pattern, const fs::path& file) {
-    const std::string name = file.filename().string();
-    constexpr std::string_view digits = "0123456789";
-    for (std::size_t at = name.find_first_of(digits); at != std::string::npos; at = name.find_first_of(digits, at)) {
-        const std::size_t end = std::min(name.find_first_not_of(digits, at), name.size());
-        // Digits of the name may stand right before those of the number.
-        for (; at < end; ++at) {
-            long long number = 0;
-            const auto [rest, code] = std::from_chars(name.data() + at, name.data() + end, number);
-            if (code == std::errc() && darkroom::numbered(pattern.filename(), number).string() == name) return number;
-        }
-    }
-    return std::nullopt;
-}
-
 Result<Files> files_of_sequence(const std::string& input) {
-    const Result<std::vector<fs::path>> paths = darkroom::expand_inputs({&input, 1});
-    if (!paths) return failure(paths.error());
-    const std::size_t range = input.ends_with(']') ? input.rfind('[') : std::string::npos;
+    const Result<std::vector<darkroom::NumberedFile>> found = darkroom::expand_inputs({&input, 1});
+    if (!found) return failure(found.error());
     Files files;
-    for (const fs::path& path : *paths)
-        if (const std::optional<long long> number = number_in(input.substr(0, range), path))
-            files.emplace(fmt::format("{:020}", *number), path);
+    // In the order of their numbers, whatever their signs.
+    for (const auto& [path, number] : *found)
+        files.emplace(fmt::format("{:020}", number + darkroom::FrameSet::most_number), path);
     return files;
 }
 

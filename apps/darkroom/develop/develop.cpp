@@ -79,15 +79,15 @@ darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
 
 /// The frames that are asked for and are not there yet, each with those before it that histories need.
 Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
-    const Result<std::vector<std::filesystem::path>> inputs = darkroom::expand_inputs(options.inputs);
+    const Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(options.inputs);
     if (!inputs) return failure(inputs.error());
-    FrameRange range{.first = 0, .last = ~std::uint64_t{0}};
+    std::optional<darkroom::FrameSet> frames;
     if (options.frames) {
-        const Result<FrameRange> parsed = parse_frames(*options.frames);
-        if (!parsed) return failure(parsed.error());
-        range = *parsed;
+        Result<darkroom::FrameSet> parsed = parse_frames(*options.frames);
+        if (!parsed) return failure(std::move(parsed));
+        frames = std::move(*parsed);
     }
-    const auto is_in_range = [&](long long number) { return !options.frames || range.contains(number); };
+    const auto is_in_range = [&](long long number) { return !frames || frames->contains(number); };
     using Paths = std::vector<std::filesystem::path>;
     const Result<Paths> outputs = job.stream ? Result<Paths>(Paths(inputs->size(), stream_name))
                                              : output_paths(*inputs, options.out, ui_files(job.look), is_in_range);
@@ -102,16 +102,15 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
         job.develop.target = target_for(*samples, job.write);
     }
     suit(job.look, job.develop.target, job.write);
-    const std::vector<long long> numbers = numbers_of(*inputs);
     bool is_any_asked_for = false;
     std::size_t next_written = inputs->size();
     for (std::size_t i = inputs->size(); i-- > 0;) {
-        const bool is_asked_for = is_in_range(numbers[i]);
+        const bool is_asked_for = is_in_range((*inputs)[i].number);
         is_any_asked_for |= is_asked_for;
         const bool is_written = is_asked_for && !options.run.is_skipped((*outputs)[i]);
         if (is_written) next_written = i;
         if (next_written < inputs->size() && next_written - i <= pre_roll)
-            job.steps.push_back({i, (*inputs)[i], (*outputs)[i], numbers[i], is_written});
+            job.steps.push_back({i, (*inputs)[i].path, (*outputs)[i], (*inputs)[i].number, is_written});
     }
     std::ranges::reverse(job.steps);
     if (!is_any_asked_for)
@@ -257,7 +256,7 @@ class Develop {
         if (!item.frame.frame_index) item.input.frame_index = number;
         if (job_.time) item.input.time = *job_.time;
         if (!job_.frames_per_second) return;
-        item.input.time = static_cast<double>(number) / *job_.frames_per_second;
+        item.input.time = static_cast<double>(step.number) / *job_.frames_per_second;
         item.input.delta_time = 1 / *job_.frames_per_second;
     }
 
@@ -380,7 +379,8 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
         "darkroom develop frame.exr --ssao --no-bloom --tonemap-curve agx -o picture.exr");
     command
         .add_option("INPUT", options->inputs,
-                    "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.%04d.exr or shot.####.exr stands for all that match")
+                    "Frames (EXR, HDR, PNG, JPEG, TIFF); shot.####.exr, shot.%04d.exr or shot.$F4.exr stands for all "
+                    "that match")
         .required();
     command
         .add_option("-o,--output,--out", options->out,
@@ -396,7 +396,9 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
     command.add_flag("--keep-layers", options->keeps_layers,
                      "Puts the frame's other layers, as they are, beside the picture in an .exr file");
     command.add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
-    command.add_option("--frames", options->frames, "Of the inputs those with these numbers").type_name("A-B");
+    command
+        .add_option("--frames", options->frames, "Of the inputs those with these numbers: 8, 1-100, 1-100x2, 1,5,9-12")
+        .type_name("A-B");
     options->time.add_to(command, "For effects that move; default: what the frame says, or 0").type_name("S");
     options->frames_per_second
         .add_to(command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")

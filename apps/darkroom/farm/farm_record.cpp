@@ -69,7 +69,7 @@ FrameNumbers numbers_of(const Json& json, const char* key) {
             throw Wrong{fmt::format("{} are no pairs of frames", key)};
         const std::int64_t first = range.elements()[0].whole(), last = range.elements()[1].whole();
         const bool is_behind = out.empty() || first > *out.rbegin();
-        if (first < 0 || last < first || !is_behind ||
+        if (std::abs(first) > darkroom::FrameSet::most_number || last < first || !is_behind ||
             static_cast<std::size_t>(last - first) >= most_frames - out.size())
             throw Wrong{fmt::format("{}: allowed are [first, last] in order, {} frames at most", key, most_frames)};
         for (std::int64_t number = first; number <= last; ++number) out.insert(out.end(), number);

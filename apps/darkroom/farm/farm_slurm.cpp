@@ -61,8 +61,8 @@ std::string shell_quoted(const std::vector<std::string>& words) {
     return out;
 }
 
-/// "A-B" of at most `size` frames each that follow one another in the sequence. Between those that are missing there
-/// may be some that are there, which tasks pass over.
+/// Of at most `size` frames each that follow one another in the sequence, as --frames has them. Between those that are
+/// missing there may be some that are there, which tasks pass over.
 std::vector<std::string> chunks_of(const FarmWork& work, const FrameNumbers& done, std::size_t size) {
     std::vector<std::string> out;
     for (std::size_t i = 0; i < work.frames.size();) {
@@ -74,7 +74,10 @@ std::vector<std::string> chunks_of(const FarmWork& work, const FrameNumbers& don
         std::size_t last = i;
         for (; i < work.frames.size() && i - first < size; ++i)
             if (!done.contains(work.frames[i].number)) last = i;
-        out.push_back(fmt::format("{}-{}", work.frames[first].number, work.frames[last].number));
+        std::vector<long long> numbers;
+        for (std::size_t frame = first; frame <= last; ++frame) numbers.push_back(work.frames[frame].number);
+        out.push_back(work.is_range ? fmt::format("{}-{}", numbers.front(), numbers.back())
+                                    : darkroom::frame_set_text(numbers));
     }
     return out;
 }
@@ -193,6 +196,11 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
         tell(fmt::format("all {} pictures are there, nothing is submitted", job.frames.size()));
         return {};
     }
+    // The records of a chunk are files of its name.
+    constexpr std::size_t longest_name = 200;
+    if (std::ranges::any_of(chunks, [](const std::string& name) { return name.size() > longest_name; }))
+        return user_error(
+            fmt::format("--chunk {}: its frames are too scattered for one name; a smaller one is needed", chunk));
     if (chunks.size() > most_chunks)
         return user_error(fmt::format("--chunk {}: {} chunks, an array job holds {}: --chunk {} is enough", chunk,
                                       chunks.size(), most_chunks,

@@ -74,9 +74,11 @@ class Task {
     [[nodiscard]] bool is_done() const { return record_.done.size() == record_.frames.size(); }
 
     Result<> begin() {
-        const Result<FrameRange> range = parse_frames(flags_.frames());
-        if (!range) return failure(range.error());
-        record_.name = fmt::format("{}-{}", range->first, range->last);
+        const Result<darkroom::FrameSet> frames = parse_frames(flags_.frames());
+        if (!frames) return failure(frames.error());
+        const std::vector<long long> numbers = frames->numbers();
+        record_.name = frames->is_range() ? fmt::format("{}-{}", numbers.front(), numbers.back())
+                                          : darkroom::frame_set_text(numbers);
         record_.node = node_name();
         record_.job = job_name();
         record_.begun = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/effects/named_effects.hpp"
@@ -91,22 +92,21 @@ Result<> FarmFlags::check_arguments() const {
     return {};
 }
 
-Result<std::vector<FarmFrame>> FarmFlags::frames_in(const FrameRange& range) const {
+Result<std::vector<FarmFrame>> FarmFlags::frames_in(const std::optional<darkroom::FrameSet>& frames) const {
     std::vector<FarmFrame> out;
     if (is_scene()) {
-        for (std::uint64_t number = range.first; number <= range.last; ++number) {
-            const auto i = static_cast<long long>(number);
-            out.push_back({i, darkroom::numbered(out_, i)});
+        for (const long long number : frames->numbers()) {
+            if (number < 0)
+                return user_error(fmt::format("--frames {}: a scene begins at frame 0", printable(frames_)));
+            out.push_back({number, darkroom::numbered(out_, number)});
         }
         return out;
     }
-    const Result<std::vector<fs::path>> inputs = darkroom::expand_inputs(std::span(&input_, 1));
+    const Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(std::span(&input_, 1));
     if (!inputs) return failure(inputs.error());
-    const std::vector<long long> numbers = numbers_of(*inputs);
     const bool is_folder = is_output_folder(out_);
-    for (std::size_t i = 0; i < inputs->size(); ++i)
-        if (range.contains(numbers[i]))
-            out.push_back({numbers[i], output_path((*inputs)[i], numbers[i], out_, is_folder)});
+    for (const auto& [path, number] : *inputs)
+        if (!frames || frames->contains(number)) out.push_back({number, output_path(path, number, out_, is_folder)});
     if (out.empty())
         return user_error(
             fmt::format("--frames {}: none of the {} inputs has such a number", printable(frames_), inputs->size()));
@@ -116,10 +116,13 @@ Result<std::vector<FarmFrame>> FarmFlags::frames_in(const FrameRange& range) con
 
 Result<FarmWork> FarmFlags::work() const {
     if (Result<> done = check_arguments(); !done) return failure(std::move(done));
-    const Result<FrameRange> range =
-        frames_.empty() ? Result<FrameRange>({.first = 0, .last = ~std::uint64_t{0}}) : parse_frames(frames_);
-    if (!range) return failure(range.error());
-    Result<std::vector<FarmFrame>> frames = frames_in(*range);
+    std::optional<darkroom::FrameSet> asked_for;
+    if (!frames_.empty()) {
+        Result<darkroom::FrameSet> parsed = parse_frames(frames_);
+        if (!parsed) return failure(std::move(parsed));
+        asked_for = std::move(*parsed);
+    }
+    Result<std::vector<FarmFrame>> frames = frames_in(asked_for);
     if (!frames) return failure(std::move(frames));
     if (frames->size() > most_frames)
         return user_error(fmt::format("{}: {} frames, a farm takes {} at once; --frames says which", printable(input_),
@@ -132,7 +135,9 @@ Result<FarmWork> FarmFlags::work() const {
     const auto made = [&](std::int64_t number) {
         return output_path(darkroom::numbered(input_, number), number, out_, is_output_folder(out_));
     };
-    return FarmWork{.frames = std::move(*frames), .folder = farm_folder(made(0), made(9))};
+    return FarmWork{.frames = std::move(*frames),
+                    .folder = farm_folder(made(0), made(9)),
+                    .is_range = !asked_for || asked_for->is_range()};
 }
 
 // The command itself reads the arguments: what it would refuse is refused here, once, instead of by every task.

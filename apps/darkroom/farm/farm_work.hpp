@@ -24,6 +24,7 @@ struct FarmFrame {
 struct FarmWork {
     std::vector<FarmFrame> frames;  ///< in the order of their numbers
     std::filesystem::path folder;   ///< of its records
+    bool is_range = true;           ///< false: between the first and the last there are some that are not asked for
 };
 
 class FarmFlags {
@@ -42,7 +43,8 @@ class FarmFlags {
   private:
     [[nodiscard]] bool is_scene() const;
     [[nodiscard]] darkroom::Result<> check_arguments() const;
-    [[nodiscard]] darkroom::Result<std::vector<FarmFrame>> frames_in(const FrameRange& range) const;
+    [[nodiscard]] darkroom::Result<std::vector<FarmFrame>> frames_in(
+        const std::optional<darkroom::FrameSet>& frames) const;
 
     std::string input_, out_, look_, frames_;
     std::vector<std::string> more_;

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <system_error>
 
 #include "apps/darkroom/run/outputs.hpp"
 #include "core/text/param_text.hpp"
@@ -84,27 +82,14 @@ Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, dou
     return desc;
 }
 
-Result<FrameRange> parse_frames(const std::string& text) {
-    FrameRange range;
-    const char* const end = text.data() + text.size();
-    const auto [dash, first_error] = std::from_chars(text.data(), end, range.first);
-    std::errc error = first_error;
-    const char* last = dash;
-    range.last = range.first;
-    if (error == std::errc() && dash != end && *dash == '-') {
-        const auto parsed = std::from_chars(dash + 1, end, range.last);
-        last = parsed.ptr;
-        error = parsed.ec;
-    }
-    constexpr std::uint64_t most_number = 1'000'000'000;  // what fits a file name and a float file's attributes
-    if (error != std::errc() || last != end || range.first > most_number || range.last > most_number)
-        return user_error(
-            fmt::format("--frames {}: expected A or A-B, whole numbers in [0, {}]", printable(text), most_number));
-    if (range.last < range.first)
-        return user_error(fmt::format("--frames {}: the last frame is before the first", printable(text)));
-    if (range.last - range.first >= most_frames)
-        return user_error(fmt::format("--frames {}: at most {} frames at once", printable(text), most_frames));
-    return range;
+Result<darkroom::FrameSet> parse_frames(const std::string& text) {
+    const auto refuse = [&](std::string_view why) {
+        return user_error(fmt::format("--frames {}: {}", printable(text), why));
+    };
+    Result<darkroom::FrameSet> frames = darkroom::FrameSet::parse(text);
+    if (!frames) return refuse(frames.error().text);
+    if (frames->count() > most_frames) return refuse(fmt::format("at most {} frames at once", most_frames));
+    return frames;
 }
 
 void RunFlags::add_to(CommandFlags command) {

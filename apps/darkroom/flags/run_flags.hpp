@@ -11,6 +11,7 @@
 
 #include "apps/darkroom/run/picture_stream.hpp"
 #include "flags.hpp"
+#include "image/frame/frame_set.hpp"
 #include "image/picture/write.hpp"
 #include "number_flag.hpp"
 #include "ocio_flags.hpp"
@@ -36,17 +37,10 @@ class WriteFlags {
     bool has_alpha_ = false;
 };
 
-struct FrameRange {
-    std::uint64_t first = 0, last = 0;
-    [[nodiscard]] bool contains(long long number) const {
-        return number >= 0 && static_cast<std::uint64_t>(number) >= first && static_cast<std::uint64_t>(number) <= last;
-    }
-};
-
 inline constexpr std::size_t most_frames = 100'000;  ///< that are asked for at once
 
-/// "A-B" or "A", as --frames takes it.
-[[nodiscard]] darkroom::Result<FrameRange> parse_frames(const std::string& text);
+/// What --frames takes: see FrameSet. At most `most_frames`.
+[[nodiscard]] darkroom::Result<darkroom::FrameSet> parse_frames(const std::string& text);
 
 /// --jobs, --skip-existing, --keep-going, --timings.
 class RunFlags {

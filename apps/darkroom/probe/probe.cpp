@@ -160,9 +160,9 @@ class Probe {
         tell_of_assumed_view(file_, shown);
         lights_ = take_lights(file_);
         input_ = develop_input(file_, lights_);
-        const std::filesystem::path path = options_.input;
         if (!file_.frame_index)
-            input_.frame_index = static_cast<std::uint64_t>(std::max(0LL, numbers_of({&path, 1}).front()));
+            input_.frame_index =
+                static_cast<std::uint64_t>(std::max(0LL, darkroom::frame_number(options_.input).value_or(1)));
         return options_.time.read_to(input_.time);
     }
 

@@ -58,7 +58,9 @@ void RenderFlags::add_moments(CommandFlags command) {
     time_.add_to(command, "Since the scene's beginning, default: what the scene says, or 0")
         .type_name("S")
         .group(group);
-    command.add_option("--frames", frames_, "Several frames; the time of a frame is its number / fps")
+    command
+        .add_option("--frames", frames_,
+                    "Several frames: 1-100, 1-100x2, 1,5,9-12; the time of one is its number / fps")
         .type_name("A-B")
         .group(group);
     frames_per_second_.add_to(command, "Frames a second, for --frames and for motion")
@@ -83,11 +85,13 @@ Result<std::vector<Shot>> RenderFlags::shots() const {
                     .frame = darkroom::numbered(frame_.value_or(""), static_cast<long long>(number))};
     };
     if (!frames_) return std::vector{shot(0, time)};
-    const Result<FrameRange> range = parse_frames(*frames_);
-    if (!range) return failure(range.error());
+    const Result<darkroom::FrameSet> frames = parse_frames(*frames_);
+    if (!frames) return failure(frames.error());
     std::vector<Shot> out;
-    for (std::uint64_t number = range->first; number <= range->last; ++number)
-        out.push_back(shot(number, static_cast<double>(number) / frames_per_second));
+    for (const long long number : frames->numbers()) {
+        if (number < 0) return user_error(fmt::format("--frames {}: a scene begins at frame 0", printable(*frames_)));
+        out.push_back(shot(static_cast<std::uint64_t>(number), static_cast<double>(number) / frames_per_second));
+    }
     return out;
 }
 

@@ -11,7 +11,6 @@
 
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
-#include "image/frame/sequence.hpp"
 
 namespace app {
 
@@ -38,18 +37,6 @@ bool FileSet::contains(const fs::path& file) const {
     for (const fs::path& name : std::exchange(names_, {}))
         if (const auto known = identity_of(name)) files_.insert(*known);
     return files_.contains(*identity);
-}
-
-std::vector<long long> numbers_of(std::span<const fs::path> inputs) {
-    std::vector<long long> numbers;
-    std::set<long long> seen;
-    for (const fs::path& input : inputs)
-        if (const std::optional<long long> number = darkroom::frame_number(input))
-            if (seen.insert(*number).second) numbers.push_back(*number);
-    if (numbers.size() == inputs.size()) return numbers;
-    numbers.clear();
-    for (std::size_t i = 0; i < inputs.size(); ++i) numbers.push_back(static_cast<long long>(i) + 1);
-    return numbers;
 }
 
 bool is_there(const fs::path& picture) {
@@ -82,7 +69,7 @@ fs::path output_path(const fs::path& input, long long number, const std::string&
     return darkroom::has_number_pattern(out) ? darkroom::numbered(text, number) : fs::path(text);
 }
 
-Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, const std::string& out,
+Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFile> inputs, const std::string& out,
                                            std::span<const fs::path> also_read,
                                            const std::function<bool(long long)>& is_asked_for) {
     std::error_code error;
@@ -94,19 +81,18 @@ Result<std::vector<fs::path>> output_paths(std::span<const fs::path> inputs, con
     if (inputs.size() > 1 && !is_folder && !has_name)
         return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d, #### or {{name}}",
                                       printable(out), inputs.size()));
-    const std::vector<long long> numbers = numbers_of(inputs);
     std::vector<fs::path> outputs;
     std::map<fs::path, fs::path> makers;
-    std::vector<fs::path> read(inputs.begin(), inputs.end());
-    read.insert(read.end(), also_read.begin(), also_read.end());
+    std::vector<fs::path> read(also_read.begin(), also_read.end());
+    for (const darkroom::NumberedFile& input : inputs) read.push_back(input.path);
     const FileSet files(read);
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-        fs::path path = output_path(inputs[i], numbers[i], out, is_folder);
-        const auto [maker, is_new] = makers.try_emplace(path, inputs[i]);
+    for (const auto& [input, number] : inputs) {
+        fs::path path = output_path(input, number, out, is_folder);
+        const auto [maker, is_new] = makers.try_emplace(path, input);
         if (!is_new)
             return user_error(fmt::format("{}: would be made of {} and of {}", printable(path.string()),
-                                          printable(maker->second.string()), printable(inputs[i].string())));
-        if (is_asked_for(numbers[i]))
+                                          printable(maker->second.string()), printable(input.string())));
+        if (is_asked_for(number))
             if (Result<> done = check_output(path, files); !done) return failure(std::move(done));
         outputs.push_back(std::move(path));
     }

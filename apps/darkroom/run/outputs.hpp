@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "image/frame/sequence.hpp"
+
 namespace app {
 
 /// Files as the machine knows them, whatever their names. They are looked at when a file that is there is asked for:
@@ -33,9 +35,6 @@ class FileSet {
 /// Can this file be written, and is it none of the inputs? Told before any work is done.
 [[nodiscard]] darkroom::Result<> check_output(const std::filesystem::path& output, const FileSet& inputs);
 
-/// The frames' own numbers where all have one and no two the same, else 1, 2, 3.
-[[nodiscard]] std::vector<long long> numbers_of(std::span<const std::filesystem::path> inputs);
-
 /// Does OUT name a folder?
 [[nodiscard]] bool is_output_folder(const std::string& out);
 /// What an input of this number becomes. Nothing is looked at.
@@ -46,7 +45,7 @@ class FileSet {
 /// developed in many pieces. Errors: one file for several inputs, two inputs for one output, an output that is one of
 /// the inputs or of what is `also_read`, a folder that does not exist, a name that cannot be written.
 [[nodiscard]] darkroom::Result<std::vector<std::filesystem::path>> output_paths(
-    std::span<const std::filesystem::path> inputs, const std::string& out,
+    std::span<const darkroom::NumberedFile> inputs, const std::string& out,
     std::span<const std::filesystem::path> also_read, const std::function<bool(long long number)>& is_asked_for);
 
 }  // namespace app

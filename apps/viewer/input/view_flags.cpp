@@ -100,7 +100,7 @@ Result<> ViewFlags::read_subject(ViewerJob& job) const {
         job.scene = inputs_.front();
         return {};
     }
-    Result<std::vector<std::filesystem::path>> files = darkroom::expand_inputs(inputs_);
+    Result<std::vector<darkroom::NumberedFile>> files = darkroom::expand_inputs(inputs_);
     if (!files) return failure(std::move(files));
     job.frames = std::move(*files);
     for (const std::string& map : maps_)
@@ -159,7 +159,7 @@ Result<> ViewFlags::read_window(ViewerJob& job) const {
     job.turns = turns_;
     job.is_paused = is_paused_;
     job.obeys_input = obeys_input_;
-    const std::string subject = (job.scene.empty() ? job.frames.front() : job.scene).filename().string();
+    const std::string subject = (job.scene.empty() ? job.frames.front().path : job.scene).filename().string();
     job.window = {.title = fmt::format("{} - Darkroom", printable(subject)),
                   .size = job.scene_desc.render.extent,
                   .is_fullscreen = is_fullscreen_};
@@ -167,7 +167,8 @@ Result<> ViewFlags::read_window(ViewerJob& job) const {
     job.screenshot = screenshot_;
     job.window_screenshot = window_screenshot_;
     if (!screenshot_.empty() || !window_screenshot_.empty()) job.frames_to_show = job.frames_to_show.value_or(1);
-    std::vector<std::filesystem::path> inputs = job.frames;
+    std::vector<std::filesystem::path> inputs;
+    for (const darkroom::NumberedFile& frame : job.frames) inputs.push_back(frame.path);
     if (!job.scene.empty()) inputs.push_back(job.scene);
     std::ranges::copy(look_.input_files(), std::back_inserter(inputs));
     darkroom::Look look = job.document->look();

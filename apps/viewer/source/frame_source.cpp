@@ -13,7 +13,7 @@ namespace app {
 
 using darkroom::Result;
 
-FrameSource::FrameSource(darkroom::Device& device, std::vector<std::filesystem::path> files, const Desc& desc)
+FrameSource::FrameSource(darkroom::Device& device, std::vector<darkroom::NumberedFile> files, const Desc& desc)
     : device_(device), files_(std::move(files)), desc_(desc) {}
 
 FrameSource::~FrameSource() {
@@ -25,7 +25,7 @@ FrameSource::~FrameSource() {
 }
 
 Result<std::unique_ptr<FrameSource>> FrameSource::create(darkroom::Device& device,
-                                                         std::vector<std::filesystem::path> files, const Desc& desc) {
+                                                         std::vector<darkroom::NumberedFile> files, const Desc& desc) {
     std::unique_ptr<FrameSource> out(new FrameSource(device, std::move(files), desc));
     Result<std::shared_ptr<Decoded>> first = out->decode(0);
     if (!first) return failure(std::move(first));
@@ -37,19 +37,25 @@ Result<std::unique_ptr<FrameSource>> FrameSource::create(darkroom::Device& devic
 }
 
 Result<std::shared_ptr<FrameSource::Decoded>> FrameSource::decode(std::size_t number) const {
-    Result<darkroom::FrameFile> file = darkroom::read_frame(files_[number], desc_.options);
+    Result<darkroom::FrameFile> file = darkroom::read_frame(files_[number].path, desc_.options);
     if (!file) return failure(std::move(file));
     auto out = std::make_shared<Decoded>();
     out->number = number;
     out->file = std::move(*file);
     out->lights = take_lights(out->file);
     out->input = develop_input(out->file, out->lights);
-    const long long told = darkroom::frame_number(files_[number]).value_or(static_cast<long long>(number));
-    if (!out->file.frame_index) out->input.frame_index = static_cast<std::uint64_t>(std::max(0LL, told));
+    if (!out->file.frame_index)
+        out->input.frame_index = static_cast<std::uint64_t>(std::max(0LL, files_[number].number));
     if (desc_.frames_per_second) {
         out->input.time = static_cast<double>(out->input.frame_index) / *desc_.frames_per_second;
         out->input.delta_time = 1 / *desc_.frames_per_second;
     }
+    return out;
+}
+
+std::vector<std::filesystem::path> FrameSource::files() const {
+    std::vector<std::filesystem::path> out;
+    for (const darkroom::NumberedFile& file : files_) out.push_back(file.path);
     return out;
 }
 
@@ -175,7 +181,7 @@ darkroom::CompileDesc FrameSource::compile_desc(VkExtent2D most) const {
 }
 
 std::string FrameSource::shown_frame(std::size_t number) const {
-    return number < files_.size() ? darkroom::printable(files_[number].filename().string()) : std::string();
+    return number < files_.size() ? darkroom::printable(files_[number].path.filename().string()) : std::string();
 }
 
 }  // namespace app

@@ -11,6 +11,7 @@
 #include "apps/darkroom/run/frames.hpp"
 #include "develop/upload.hpp"
 #include "image/frame/frame_file.hpp"
+#include "image/frame/sequence.hpp"
 #include "live_source.hpp"
 
 namespace app {
@@ -22,9 +23,8 @@ class FrameSource final : public LiveSource {
         std::optional<double> frames_per_second;
     };
     /// Reads the first frame. Errors are those of the file.
-    [[nodiscard]] static darkroom::Result<std::unique_ptr<FrameSource>> create(darkroom::Device& device,
-                                                                               std::vector<std::filesystem::path> files,
-                                                                               const Desc& desc);
+    [[nodiscard]] static darkroom::Result<std::unique_ptr<FrameSource>> create(
+        darkroom::Device& device, std::vector<darkroom::NumberedFile> files, const Desc& desc);
     ~FrameSource() override;
 
     [[nodiscard]] std::optional<VkExtent2D> extent() const override;
@@ -35,7 +35,7 @@ class FrameSource final : public LiveSource {
     [[nodiscard]] darkroom::CompileDesc compile_desc(VkExtent2D most) const override;
     [[nodiscard]] std::size_t frames() const override { return files_.size() > 1 ? files_.size() : 0; }
     [[nodiscard]] std::string shown_frame(std::size_t number) const override;
-    [[nodiscard]] std::vector<std::filesystem::path> files() const override { return files_; }
+    [[nodiscard]] std::vector<std::filesystem::path> files() const override;
     [[nodiscard]] std::vector<std::string> take_warnings() override;
     /// Is the frame that was asked for last the one that is shown? For who waits for it.
     [[nodiscard]] bool is_up_to_date() const;
@@ -50,13 +50,13 @@ class FrameSource final : public LiveSource {
         std::vector<darkroom::ReferenceLight> lights;
         darkroom::DevelopInput input;  ///< refers to both
     };
-    FrameSource(darkroom::Device& device, std::vector<std::filesystem::path> files, const Desc& desc);
+    FrameSource(darkroom::Device& device, std::vector<darkroom::NumberedFile> files, const Desc& desc);
     [[nodiscard]] darkroom::Result<std::shared_ptr<Decoded>> decode(std::size_t number) const;
     void work();
     [[nodiscard]] std::shared_ptr<Decoded> find(std::size_t number) const;  ///< with the lock
 
     darkroom::Device& device_;
-    std::vector<std::filesystem::path> files_;
+    std::vector<darkroom::NumberedFile> files_;
     Desc desc_;
 
     /// Frames that are kept in main memory, the newest first.
