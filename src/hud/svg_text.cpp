@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <charconv>
+#include <utility>
 
 #include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
@@ -16,6 +19,7 @@ namespace {
 /// librsvg and what it is made of go into each by a call.
 constexpr std::size_t most_depth = 200;
 constexpr std::string_view blanks = " \t\r\n";
+constexpr std::string_view style_blanks = " \t\r\n\f";
 
 std::size_t line_of(std::string_view text, std::size_t at) {
     return 1 + static_cast<std::size_t>(std::ranges::count(text.substr(0, at), '\n'));
@@ -24,6 +28,69 @@ std::size_t line_of(std::string_view text, std::size_t at) {
 std::string_view without_prefix(std::string_view name) {
     const std::size_t colon = name.rfind(':');
     return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+/// A character as CSS compares it; of those beyond ASCII none matters here.
+char narrow(std::uint32_t code) { return code < 128 ? static_cast<char>(code) : '?'; }
+
+/// What an XML parser makes of the text of an element or an attribute: the five entities that every document has, and
+/// characters by number. All else stays, as no document has entities of its own.
+std::string without_entities(std::string_view text) {
+    constexpr std::array<std::pair<std::string_view, char>, 5> known{
+        {{"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}}};
+    std::string out;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const std::size_t end = text[at] == '&' ? text.find(';', at) : std::string_view::npos;
+        if (end == std::string_view::npos) {
+            out += text[at];
+            continue;
+        }
+        const std::string_view name = text.substr(at + 1, end - at - 1);
+        const auto* const entity = std::ranges::find(known, name, &std::pair<std::string_view, char>::first);
+        const bool is_hexadecimal = name.starts_with("#x");
+        const std::string_view digits = name.substr(std::min<std::size_t>(is_hexadecimal ? 2 : 1, name.size()));
+        std::uint32_t code = 0;
+        const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), code, is_hexadecimal ? 16 : 10);
+        if (entity != known.end()) {
+            out += entity->second;
+        } else if (name.starts_with('#') && read.ec == std::errc() && read.ptr == digits.data() + digits.size()) {
+            out += narrow(code);
+        } else {
+            out += '&';
+            continue;
+        }
+        at = end;
+    }
+    return out;
+}
+
+/// CSS Syntax Level 3, 4.3.7: a backslash and up to six hexadecimal digits with one blank behind them, or any other
+/// character as itself. What is neither a letter nor a mark of a reference becomes '?', so that no escaped quote or '#'
+/// makes a target look like the document's own.
+std::string without_escapes(std::string_view text) {
+    std::string out;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        if (text[at] != '\\') {
+            out += text[at];
+            continue;
+        }
+        const std::size_t most = std::min(text.size(), at + 7);
+        std::size_t end = at + 1;
+        std::uint32_t code = 0;
+        for (; end < most && std::isxdigit(static_cast<unsigned char>(text[end])) != 0; ++end)
+            code = code * 16 + static_cast<std::uint32_t>(std::stoi(std::string(1, text[end]), nullptr, 16));
+        if (end == at + 1) {
+            if (end < text.size()) code = static_cast<unsigned char>(text[end++]);
+        } else if (text.substr(end).starts_with("\r\n")) {
+            end += 2;
+        } else if (end < text.size() && style_blanks.find(text[end]) != std::string_view::npos) {
+            ++end;
+        }
+        const char plain = narrow(code);
+        out += std::isalpha(static_cast<unsigned char>(plain)) != 0 || plain == '@' || plain == '(' ? plain : '?';
+        at = end - 1;
+    }
+    return out;
 }
 
 /// Reads a document from its beginning to its end, and stops at the first thing that is refused.
@@ -37,7 +104,7 @@ class Checker {
         if (text_.find('\0') != std::string_view::npos) return refuse("a zero byte: allowed is text in UTF-8");
         while (error_.empty() && at_ < text_.size()) {
             const std::size_t tag = std::min(text_.find('<', at_), text_.size());
-            if (is_in_style_) check_style(text_.substr(at_, tag - at_));
+            if (is_in_style_) style_ += without_entities(text_.substr(at_, tag - at_));
             at_ = tag;
             if (error_.empty() && at_ < text_.size()) read_markup();
         }
@@ -70,7 +137,8 @@ class Checker {
         if (rest().starts_with("<![CDATA[")) {
             const std::size_t begin = at_;
             skip_past("]]>");
-            if (is_in_style_) check_style(text_.substr(begin, at_ - begin));
+            constexpr std::size_t mark = std::string_view("<![CDATA[").size(), end_mark = 3;
+            if (is_in_style_ && error_.empty()) style_ += text_.substr(begin + mark, at_ - begin - mark - end_mark);
             return;
         }
         if (rest().starts_with("<!")) {
@@ -97,6 +165,8 @@ class Checker {
     }
 
     void read_end() {
+        // As a whole: comments and CDATA may cut its words in pieces.
+        if (is_in_style_) check_style(style_);
         is_in_style_ = false;
         const std::size_t end = std::min(text_.find_first_of(" \t\r\n>", at_), text_.size());
         const std::string_view name = text_.substr(at_ + 2, end - at_ - 2);
@@ -124,6 +194,10 @@ class Checker {
         }
         const std::size_t begin = at_++;
         const std::string_view full_name = read_name(), element = without_prefix(full_name);
+        if (is_in_style_) {
+            refuse(fmt::format("<{}> in <style>, which holds text alone", printable(element)));
+            return;
+        }
         if (element == "image" || element == "feImage" || element == "include") {
             refuse(fmt::format("<{}> takes in other files: a document stands by itself", element));
             return;
@@ -132,6 +206,7 @@ class Checker {
             at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
             if (rest().starts_with(">") || rest().starts_with("/>")) {
                 is_in_style_ = element == "style" && rest().front() == '>';
+                style_.clear();
                 if (rest().front() == '>') open_.push_back({full_name, begin});
                 if (open_.size() > most_depth) refuse(fmt::format("elements in more than {} others", most_depth));
                 at_ += rest().front() == '>' ? 1 : 2;
@@ -160,21 +235,25 @@ class Checker {
         // What a link or a script names is nothing that is drawn.
         if (is_reference && element != "a" && element != "script" && !value.starts_with('#'))
             refuse(fmt::format("{}=\"{}\": allowed is #name, of an element of the document", name, printable(value)));
-        check_style(value);
+        check_style(without_entities(value));
         at_ = end + 1;
     }
 
-    /// References as CSS and presentation attributes have them.
+    /// References as CSS and presentation attributes have them, in what the parser of XML makes of a text.
     void check_style(std::string_view text) {
-        if (text.find_first_of("(@") == std::string_view::npos) return;
-        const std::string words = lower(text);
+        if (text.find_first_of("(@\\") == std::string_view::npos) return;
+        const std::string words = lower(without_escapes(text));
         if (words.find("@import") != std::string::npos) refuse("@import: a document stands by itself");
         for (std::size_t i = words.find("url("); i != std::string::npos; i = words.find("url(", i + 1)) {
-            const std::size_t target = words.find_first_not_of(" \t\r\n\"'", i + 4);
-            const bool is_own = target != std::string::npos && words[target] == '#';
-            if (!is_own && !words.substr(i + 4).starts_with("&quot;#"))
+            const auto first_after = [&](std::size_t at) {
+                return std::min(words.find_first_not_of(style_blanks, at), words.size());
+            };
+            std::size_t target = first_after(i + 4);
+            if (target < words.size() && (words[target] == '"' || words[target] == '\''))
+                target = first_after(target + 1);
+            if (target == words.size() || words[target] != '#')
                 refuse(fmt::format("{}: allowed is url(#name), of an element of the document",
-                                   printable(text.substr(i, 60))));
+                                   printable(words.substr(i, 60))));
         }
     }
 
@@ -189,11 +268,12 @@ class Checker {
     std::size_t at_ = 0, start_ = 0;
     std::uint32_t elements_ = 0;
     bool is_in_style_ = false;
+    std::string style_;  // the text of the <style> that is being read
     std::string error_;
 };
 
-/// As text of a tag's content or of an attribute in either kind of quotes, and as no word of CSS that refers:
-/// check_svg() shall refuse documents, not what the game says in them.
+/// As text of a tag's content or of an attribute in either kind of quotes. In a style or an attribute a value may still
+/// be a word of CSS that refers, which check_svg() refuses there.
 void append_escaped(std::string& out, std::string_view text) {
     for (const char c : text) {
         switch (c) {
@@ -210,9 +290,7 @@ void append_escaped(std::string& out, std::string_view text) {
                 out += "&quot;";
                 break;
             case '\'':
-            case '(':
-            case '@':
-                out += fmt::format("&#{};", static_cast<int>(c));
+                out += "&apos;";
                 break;
             default:
                 out += c;

@@ -18,7 +18,8 @@ using HudValue = std::variant<double, std::string>;
 using HudValues = std::map<std::string, HudValue, std::less<>>;
 
 /// A document that stands by itself: tags that close each other, no document type (and so no entities), no processing
-/// instructions, UTF-8, and no reference but to its own elements (#name). The error is "line: reason".
+/// instructions, UTF-8, and no reference but to its own elements (#name), as it reads once XML's entities and CSS's
+/// escapes are undone. The error is "line: reason".
 [[nodiscard]] Result<> check_svg(std::string_view document, std::uint32_t most_elements);
 
 /// A document cut at its bindings, which may stand wherever text may: between tags and in attributes' values.

@@ -45,6 +45,27 @@ TEST(HudText, RefusesWhatLeadsOutOfTheDocument) {
     EXPECT_TRUE(checked(std::string("<svg>\0</svg>", 12)).starts_with("1: "));
 }
 
+// An attribute, or the content of <style>, as the parsers of XML and CSS read it.
+TEST(HudText, RefusesReferencesBehindEntitiesAndEscapes) {
+    for (const std::string& text :
+         {std::string("filter:&#117;rl(data:image/svg+xml,x#f)"), std::string("filter:&#x75;&#x0072;l(data:x#f)"),
+          std::string("filter:url&#40;data:x#f)"), std::string("filter:\\75rl(data:x#f)"),
+          std::string("filter:\\000075 rl(data:x#f)"), std::string("filter:u\\r\\l(data:x#f)"),
+          std::string("filter:&#92;75rl(data:x#f)"), std::string("filter:ur\\6c(data:x#f)"),
+          std::string("filter:url(\\23 f)"), std::string("filter:url(&apos;&apos;#f)"),
+          std::string("@\\69mport &quot;a.css&quot;"), std::string("&#64;import &quot;a.css&quot;")}) {
+        EXPECT_TRUE(checked("<svg>\n<g style=\"" + text + "\"/></svg>").starts_with("2: ")) << text;
+        EXPECT_TRUE(checked("<svg>\n<style>" + text + "</style></svg>").starts_with("2: ")) << text;
+    }
+    for (const std::string text :
+         {"u<!-- -->rl(data:x)", "u<![CDATA[rl(data:x)]]>", "u<g/>rl(data:x)", "u<g>x</g>rl(data:x)"})
+        EXPECT_TRUE(checked("<svg>\n<style>a{fill:" + text + "}</style></svg>").starts_with("2: ")) << text;
+    EXPECT_EQ(
+        checked("<svg><g style=\"fill:url(&quot;#a&quot;);content:'\\2014 \\(';font-family:&apos;A &amp; B&apos;\"/>"
+                "<style>a{fill:url(#b)}<!-- -->.a\\:b{}</style><text>&#117;rl(x) \\75rl(x)</text></svg>"),
+        "");
+}
+
 TEST(HudText, RefusesEntitiesAndTooManyElements) {
     EXPECT_EQ(checked("<!DOCTYPE svg [<!ENTITY a \"ha\"><!ENTITY b \"&a;&a;&a;&a;&a;&a;&a;&a;\">]><svg>&b;</svg>"),
               "1: a document type or an entity: a document stands by itself, without");
@@ -80,13 +101,15 @@ TEST(HudText, FillsTextAndAttributes) {
 
 TEST(HudText, ValuesAreTextAndNeverTags) {
     const std::string out = filled("<text a=\"{{name}}\" b='{{name}}'>{{name}}</text>",
-                                   {{"name", "\"/><image href='file:///etc/passwd'/> & {{name}} url(x) \n\x01\xFF"}});
+                                   {{"name", "\"/><image href='file:///etc/passwd'/> & {{name}} (x) \n\x01\xFF"}});
     EXPECT_EQ(out.find("<image"), std::string::npos);
     EXPECT_EQ(std::ranges::count(out, '"'), 2);
     EXPECT_EQ(std::ranges::count(out, '\''), 2);
     EXPECT_EQ(std::ranges::count(out, '\n'), 0);
-    EXPECT_NE(out.find("&amp; {{name}} url&#40;x)"), std::string::npos) << out;
+    EXPECT_NE(out.find("&amp; {{name}} (x)"), std::string::npos) << out;
     EXPECT_EQ(checked(out), "");
+    EXPECT_EQ(checked(filled("<text>{{name}}</text>", {{"name", "url(x), @import"}})), "") << "what the game says";
+    EXPECT_NE(checked(filled("<g fill=\"{{name}}\"/>", {{"name", "url(file:///etc/passwd)"}})), "");
 }
 
 TEST(HudText, NamesTheLineOfABindingThatCannotBeFilled) {
