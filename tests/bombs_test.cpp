@@ -8,7 +8,9 @@
 
 #include <chrono>
 
+#include "image/codec/png_write.hpp"
 #include "image/picture/write.hpp"
+#include "image/test_bytes.hpp"
 #include "scene/gltf/test_model.hpp"
 #include "tests/cli/cli_support.hpp"
 
@@ -75,6 +77,15 @@ class CliBombs : public CliFixture {
             EXPECT_LE(bomb.mebibytes, usual.mebibytes + 256) << file;
         }
         EXPECT_FALSE(std::filesystem::exists(path("out.png"))) << file;
+    }
+    void expect_cheap(const std::string& file, const Cost& usual) const {
+        const Cost cheap = cost(command(file));
+        EXPECT_EQ(cheap.code, 0) << file << ": " << cheap.err;
+        EXPECT_LE(cheap.seconds, usual.seconds + 2) << file;
+        if (is_memory_known) {
+            EXPECT_LE(cheap.mebibytes, usual.mebibytes + 256) << file;
+        }
+        std::filesystem::remove(path("out.png"));
     }
     /// What the command takes for a file that asks for nothing.
     [[nodiscard]] Cost usual(const std::string& file) const {
@@ -161,20 +172,15 @@ TEST_F(CliBombs, Models) {
 TEST_F(CliBombs, BuffersThatAreOneCostOne) {
     write("one.gltf", Bomb().text());
     const Cost usual = this->usual("one.gltf");
-    const auto expect_cheap = [&](const std::string& name, const json& buffer, std::size_t count) {
+    const auto expect = [&](const std::string& name, const json& buffer, std::size_t count) {
         Bomb bomb;
         for (std::size_t i = 0; i < count; ++i) bomb.json["buffers"].push_back(buffer);
         write(name, bomb.text());
-        const Cost cheap = cost(command(name));
-        EXPECT_EQ(cheap.code, 0) << cheap.err;
-        EXPECT_LE(cheap.seconds, usual.seconds + 2) << name;
-        if (is_memory_known) {
-            EXPECT_LE(cheap.mebibytes, usual.mebibytes + 256) << name;
-        }
+        this->expect_cheap(name, usual);
     };
-    expect_cheap("nowhere.gltf", {{"byteLength", 1 << 20}}, 20'000);
+    expect("nowhere.gltf", {{"byteLength", 1 << 20}}, 20'000);
     write("data.bin", std::string(1 << 20, '\0'));
-    expect_cheap("same_file.gltf", {{"byteLength", 1 << 20}, {"uri", "data.bin"}}, 4000);
+    expect("same_file.gltf", {{"byteLength", 1 << 20}, {"uri", "data.bin"}}, 4000);
 }
 
 TEST_F(CliBombs, Scenes) {
@@ -248,6 +254,59 @@ TEST_F(CliBombs, Pictures) {
           std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x40\0\0\0\x40\0\x10\x06\0\0\0\xf9\x58\xcc\xc7", 33) +
               std::string(2 << 20, '\0'));
     expect_refused_cheaply("png.png", "its pixels need 2147483648 bytes", usual);
+}
+
+// Of what inflates, or is gone over, again and again.
+TEST_F(CliBombs, PicturesThatAreMuchWork) {
+    ASSERT_TRUE(write_picture(path("one.png"), Picture(1, 1)));
+    const Cost usual = this->usual("one.png");
+    const std::vector<std::uint8_t> letters(std::size_t{1620} * 1620 * 3, 'A');
+    const auto packed = encode_png({.width = 1620, .height = 1620, .samples = letters.data(), .level = 9});
+    ASSERT_TRUE(packed);
+    const std::string file(reinterpret_cast<const char*>(packed->data()), packed->size());
+    const std::size_t start = file.find("IDAT") + 4;
+    const std::string stream = file.substr(start, file.rfind("IEND") - 8 - start);  // of 7.9 MB
+    const auto png = [&](const std::string& between) {
+        return png_start + png_header(1, 1, 8, 2) + between + png_chunk("IDAT", stored(std::string("\0\1\2\3", 4))) +
+               png_chunk("IEND", "");
+    };
+    std::string texts;
+    for (int i = 0; i < 400; ++i) texts += png_chunk("zTXt", "k" + std::to_string(i) + '\0' + '\0' + stream);
+    write("texts.png", png(texts));
+    expect_cheap("texts.png", usual);
+    write("profile.png", png(png_chunk("iCCP", std::string("name\0\0", 6) + stream)));
+    expect_refused_cheaply("profile.png", "the profile of its colors has more than 4194304 bytes", usual);
+
+    Bomb model;
+    model.json["images"] = {{{"uri", "texts.png"}}};
+    model.json["textures"] = {{{"source", 0}}};
+    model.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    model.primitive()["material"] = 0;
+    write("one.gltf", Bomb().text());
+    write("texts.gltf", model.text());
+    expect_cheap("texts.gltf", this->usual("one.gltf"));
+
+    // Scans of all blocks by runs of 32767 that hold nothing (ITU-T T.81, annex G): 100 bytes each.
+    const auto segment = [](char code, const std::string& data) {
+        return std::string("\xff") + code + big_endian(static_cast<std::uint32_t>(data.size() + 2), 2) + data;
+    };
+    const std::string zeros(15, '\0');
+    std::string jpeg = "\xff\xd8" + segment('\xdb', '\0' + std::string(64, '\1')) +
+                       segment('\xc2', '\x08' + big_endian(8192, 2) + big_endian(8192, 2) + "\x01\x01\x11" + '\0') +
+                       segment('\xc4', std::string("\0\1", 2) + zeros + '\0') +
+                       segment('\xc4', std::string("\x10\1", 2) + zeros + '\xe0') +
+                       segment('\xda', std::string("\1\1\0\0\0\0", 6)) + std::string(131072, '\0');
+    for (int i = 0; i < 1000; ++i) jpeg += segment('\xda', std::string("\1\1\0\1\x3f\0", 6)) + std::string(91, '\0');
+    write("scans.jpg", jpeg + "\xff\xd9");
+    expect_refused_cheaply("scans.jpg", "1001 scans", usual);
+
+    TestTiff tile = TestTiff::gray(16, 16);
+    tile.tags.erase(273), tile.tags.erase(278), tile.tags.erase(279);
+    tile.tags[259] = {8}, tile.tags[322] = {65536}, tile.tags[323] = {32768};
+    tile.tags[324] = {TestTiff::samples_here}, tile.tags[325] = {static_cast<std::uint32_t>(stream.size())};
+    tile.samples = stream;
+    write("tile.tif", tile.text());
+    expect_refused_cheaply("tile.tif", "tiles of 65536x32768", usual);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "image/exr/check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
+#include "image/test_bytes.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {
@@ -123,11 +124,6 @@ TEST_F(ImageTruncated, WhatIsNoImageIsRefused) {
     EXPECT_FALSE(read_frame(file("missing.exr")));
 }
 
-template <class T>
-std::string little_endian(T value) {
-    return {reinterpret_cast<const char*>(&value), sizeof(T)};
-}
-
 std::string attribute(const std::string& name, const std::string& type, const std::string& value) {
     return name + '\0' + type + '\0' + little_endian(static_cast<std::int32_t>(value.size())) + value;
 }
@@ -185,26 +181,9 @@ TEST(ImageProportions, AChunkOfAnExrIsBounded) {
               "chunks of 65536x128 pixel");
 }
 
-std::string big_endian(std::uint32_t value, int bytes) {
-    std::string out;
-    for (int shift = bytes * 8 - 8; shift >= 0; shift -= 8) out += static_cast<char>(value >> shift & 0xff);
-    return out;
-}
-
-std::uint32_t crc_of(const std::string& text) {
-    std::uint32_t crc = 0xffffffffU;
-    for (const char c : text) {
-        crc ^= static_cast<unsigned char>(c);
-        for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? 0xedb88320U ^ (crc >> 1) : crc >> 1;
-    }
-    return ~crc;
-}
-
 TEST(ImageProportions, PngAndJpegAreRefusedForWhatTheyAskFor) {
     const auto png = [](std::uint32_t width, std::uint32_t height) {
-        const std::string header =
-            "IHDR" + big_endian(width, 4) + big_endian(height, 4) + "\x10\x06" + std::string(3, 0);
-        std::string file = "\x89PNG\r\n\x1a\n" + big_endian(13, 4) + header + big_endian(crc_of(header), 4);
+        std::string file = png_start + png_header(width, height, 16, 6);
         file.resize(4 << 20);
         return refusal(check_png, file);
     };

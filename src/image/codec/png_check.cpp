@@ -4,10 +4,15 @@
 #include <fmt/format.h>
 #include <libdeflate.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <string_view>
 
+#include "image/codec/file_kind.hpp"
+#include "image/codec/png_palette.hpp"
 #include "image/exr/check.hpp"
 
 namespace darkroom {
@@ -29,7 +34,8 @@ Result<> check_header(std::span<const std::byte> data, std::size_t file_size) {
     constexpr std::array<std::uint64_t, 7> samples_of_color_type{1, 0, 3, 1, 2, 0, 4};
     const auto depth = std::to_integer<std::uint64_t>(data[8]);
     const auto color_type = std::to_integer<std::size_t>(data[9]);
-    if (color_type >= samples_of_color_type.size() || samples_of_color_type[color_type] == 0 || depth > 16)
+    if (color_type >= samples_of_color_type.size() || samples_of_color_type[color_type] == 0 || depth == 0 ||
+        depth > 16)
         return user_error(fmt::format("malformed header: color type {} with {} bits", color_type, depth));
     // Deflate makes at most 1032 bytes from one.
     const std::uint64_t bytes = width * height * samples_of_color_type[color_type] * depth / 8;
@@ -40,24 +46,179 @@ Result<> check_header(std::span<const std::byte> data, std::size_t file_size) {
     return check_decoded_size(bytes, file_size);
 }
 
+struct Chunk {
+    std::string_view type;
+    std::span<const std::byte> data, whole;
+};
+
+void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
+    out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+std::vector<std::byte> chunk_of(std::string_view type, std::span<const std::byte> data) {
+    std::vector<std::byte> out;
+    const auto number = [&](std::uint32_t value) {
+        for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::byte>(value >> shift & 0xff));
+    };
+    number(static_cast<std::uint32_t>(data.size()));
+    append(out, std::as_bytes(std::span(type)));
+    append(out, data);
+    number(libdeflate_crc32(0, out.data() + 4, out.size() - 4));
+    return out;
+}
+
+// Chunks of PNG's third edition (W3C, 2025), section 11, that say of few numbers how colours or pixels are meant.
+bool is_small_and_known(const Chunk& chunk) {
+    struct Known {
+        std::string_view type;
+        std::size_t least, most;
+    };
+    constexpr std::array<Known, 8> known{{{"gAMA", 4, 4},
+                                          {"cHRM", 32, 32},
+                                          {"sRGB", 1, 1},
+                                          {"cICP", 4, 4},
+                                          {"sBIT", 1, 4},
+                                          {"bKGD", 1, 6},
+                                          {"pHYs", 9, 9},
+                                          {"tRNS", 1, 256}}};
+    return std::ranges::any_of(known, [&](const Known& one) {
+        return one.type == chunk.type && chunk.data.size() >= one.least && chunk.data.size() <= one.most;
+    });
+}
+
+// A name of at most 79 letters, a zero, the method (0), and a stream of zlib.
+Result<> check_profile(std::span<const std::byte> data) {
+    const auto end = std::find(data.begin(), data.end(), std::byte{0});
+    const auto start = static_cast<std::size_t>(end - data.begin()) + 2;
+    if (start > 81 || start > data.size()) return user_error("damaged: the profile of its colors has no name");
+    const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> inflate(
+        libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
+    std::vector<std::byte> profile(std::min(most_png_profile_bytes, (data.size() - start) * 1032));
+    std::size_t size = 0;
+    const libdeflate_result result = libdeflate_zlib_decompress(inflate.get(), data.data() + start, data.size() - start,
+                                                                profile.data(), profile.size(), &size);
+    if (result == LIBDEFLATE_INSUFFICIENT_SPACE)
+        return user_error(fmt::format("the profile of its colors has more than {} bytes", most_png_profile_bytes));
+    if (result != LIBDEFLATE_SUCCESS) return user_error("damaged: the profile of its colors cannot be inflated");
+    return {};
+}
+
+// EXIF 2.32: the first directory of a TIFF file, tag 274. 1 (upright) where there is none.
+std::uint8_t orientation_of(std::span<const std::byte> exif) {
+    if (exif.size() < 14) return 1;
+    const bool is_little = exif[0] == std::byte{'I'};
+    const auto number = [&](std::size_t at, std::size_t size) {
+        std::size_t value = 0;
+        for (std::size_t i = 0; i < size; ++i)
+            value = value << 8 | std::to_integer<std::size_t>(exif[at + (is_little ? size - 1 - i : i)]);
+        return value;
+    };
+    const std::size_t directory = number(4, 4);
+    if (directory > exif.size() - 2) return 1;
+    const std::size_t count = number(directory, 2);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t at = directory + 2 + i * 12;
+        if (exif.size() - 12 < at) return 1;
+        const std::size_t value = number(at + 8, 2);
+        if (number(at, 2) == 274 && number(at + 2, 2) == 3 && value >= 1 && value <= 8)
+            return static_cast<std::uint8_t>(value);
+    }
+    return 1;
+}
+
+std::vector<std::byte> exif_of(std::uint8_t orientation) {
+    std::array<char, 26> text{'M', 'M', 0, 42, 0, 0, 0, 8, 0, 1, 1, 18, 0, 3, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0};
+    text[19] = static_cast<char>(orientation);
+    return chunk_of("eXIf", std::as_bytes(std::span(text)));
+}
+
+/// Chunk by chunk, into a file that holds what a decoder shall see.
+class PngChecker {
+  public:
+    explicit PngChecker(std::span<const std::byte> file) : file_(file) {}
+
+    Result<std::vector<std::byte>> run() {
+        append(out_, file_.first(8));
+        for (std::size_t position = 8;;) {
+            const Result<Chunk> chunk = chunk_at(position);
+            if (!chunk) return failure(chunk.error());
+            if (auto done = take(*chunk, position == 8); !done) return failure(std::move(done));
+            position += chunk->whole.size();
+            if (chunk->type == "IEND") break;
+        }
+        if (header_[9] == std::byte{3})
+            if (auto checked = check_palette({.width = big_endian(header_),
+                                              .height = big_endian(std::span(header_).subspan(4)),
+                                              .bits = std::to_integer<std::uint32_t>(header_[8]),
+                                              .is_interlaced = header_[12] != std::byte{0},
+                                              .colors = colors_},
+                                             packed_);
+                !checked)
+                return failure(std::move(checked));
+        return is_as_it_was_ ? std::vector<std::byte>() : std::move(out_);
+    }
+
+  private:
+    [[nodiscard]] Result<Chunk> chunk_at(std::size_t position) const {
+        if (file_.size() < position + 12) return user_error("truncated: unexpected end of file");
+        const std::size_t length = big_endian(file_.subspan(position));
+        const std::string_view type(reinterpret_cast<const char*>(file_.data()) + position + 4, 4);
+        if (length > file_.size() - position - 12) return user_error("truncated: unexpected end of file");
+        const auto covered = file_.subspan(position + 4, length + 4);
+        if (libdeflate_crc32(0, covered.data(), covered.size()) != big_endian(file_.subspan(position + 8 + length)))
+            return user_error(fmt::format("damaged: the checksum of the chunk at byte {} does not match", position));
+        return Chunk{type, covered.subspan(4), file_.subspan(position, length + 12)};
+    }
+
+    Result<> take(const Chunk& chunk, bool is_first) {
+        if (is_first != (chunk.type == "IHDR"))
+            return user_error("malformed header: the first chunk alone must be IHDR");
+        if (is_first) {
+            if (auto checked = check_header(chunk.data, file_.size()); !checked) return checked;
+            std::ranges::copy(chunk.data, header_.begin());
+        }
+        if (chunk.type == "PLTE") {
+            if (colors_ != 0) return user_error("malformed header: two palettes");
+            colors_ = chunk.data.size() / 3;
+            if (chunk.data.size() % 3 != 0 || colors_ < 1 || colors_ > 256)
+                return user_error(fmt::format("malformed header: a palette of {} bytes", chunk.data.size()));
+        }
+        if (chunk.type == "IDAT" && header_[9] == std::byte{3}) append(packed_, chunk.data);
+        const bool is_of_picture =
+            chunk.type == "IHDR" || chunk.type == "PLTE" || chunk.type == "IDAT" || chunk.type == "IEND";
+        constexpr char lower_case = 0x20;  // of the first letter: a chunk that decoders need not know
+        if (!is_of_picture && (chunk.type[0] & lower_case) == 0)
+            return user_error(fmt::format("a chunk of the unknown kind {}", one_printable_line(chunk.type)));
+        if (is_of_picture) {
+            append(out_, chunk.whole);
+            return {};
+        }
+        const bool is_again = std::ranges::find(seen_, chunk.type) != seen_.end();
+        if (is_again || !(is_small_and_known(chunk) || chunk.type == "iCCP" || chunk.type == "eXIf")) {
+            is_as_it_was_ = false;
+            return {};
+        }
+        seen_.push_back(chunk.type);
+        if (chunk.type == "iCCP")
+            if (auto checked = check_profile(chunk.data); !checked) return checked;
+        is_as_it_was_ = is_as_it_was_ && chunk.type != "eXIf";
+        if (chunk.type == "eXIf")
+            append(out_, exif_of(orientation_of(chunk.data)));
+        else
+            append(out_, chunk.whole);
+        return {};
+    }
+
+    std::span<const std::byte> file_;
+    std::vector<std::byte> out_, packed_;
+    std::array<std::byte, 13> header_{};
+    std::vector<std::string_view> seen_;
+    std::size_t colors_ = 0;
+    bool is_as_it_was_ = true;
+};
+
 }  // namespace
 
-Result<> check_png(std::span<const std::byte> file) {
-    std::size_t position = 8;
-    for (bool is_first = true;; is_first = false) {
-        if (file.size() < position + 12) return user_error("truncated: unexpected end of file");
-        const std::size_t length = big_endian(file.subspan(position));
-        const std::string_view type(reinterpret_cast<const char*>(file.data()) + position + 4, 4);
-        if (length > file.size() - position - 12) return user_error("truncated: unexpected end of file");
-        const auto covered = file.subspan(position + 4, length + 4);
-        if (libdeflate_crc32(0, covered.data(), covered.size()) != big_endian(file.subspan(position + 8 + length)))
-            return user_error(fmt::format("damaged: the checksum of the chunk at byte {} does not match", position));
-        if (is_first && type != "IHDR") return user_error("malformed header: the first chunk must be IHDR");
-        if (is_first)
-            if (auto checked = check_header(covered.subspan(4), file.size()); !checked) return checked;
-        if (type == "IEND") return {};
-        position += length + 12;
-    }
-}
+Result<std::vector<std::byte>> check_png(std::span<const std::byte> file) { return PngChecker(file).run(); }
 
 }  // namespace darkroom

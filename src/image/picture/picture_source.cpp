@@ -11,17 +11,22 @@
 #include "image/codec/codecs.hpp"
 #include "image/codec/jpeg_check.hpp"
 #include "image/codec/png_check.hpp"
+#include "image/codec/tiff_check.hpp"
 #include "image/exr/check.hpp"
 #include "image/exr/source.hpp"
 
 namespace darkroom {
 namespace {
 
-Result<> check_structure(FileKind kind, std::span<const std::byte> bytes) {
-    if (kind == FileKind::OpenExr) return check_exr(bytes);
+/// What a decoder may see of a file, empty: all of it.
+Result<std::vector<std::byte>> check_structure(FileKind kind, std::span<const std::byte> bytes) {
     if (kind == FileKind::Png) return check_png(bytes);
-    if (kind == FileKind::Jpeg) return check_jpeg(bytes);
-    return {};
+    if (kind == FileKind::Tiff) return check_tiff(bytes);
+    Result<> checked;
+    if (kind == FileKind::OpenExr) checked = check_exr(bytes);
+    if (kind == FileKind::Jpeg) checked = check_jpeg(bytes);
+    if (!checked) return failure(std::move(checked));
+    return std::vector<std::byte>();
 }
 
 // The fewest bytes that a picture of this kind can take, so that a few damaged bytes of header cannot ask for
@@ -113,9 +118,11 @@ Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path
 Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads) {
     const Result<FileKind> kind = kind_of_file(bytes);
     if (!kind) return failure(kind.error());
-    if (auto checked = check_structure(*kind, bytes); !checked) return failure(std::move(checked));
-    auto source = open(*kind, bytes, max_threads);
+    auto cleaned = check_structure(*kind, bytes);
+    if (!cleaned) return failure(std::move(cleaned));
+    auto source = open(*kind, cleaned->empty() ? bytes : std::span<const std::byte>(*cleaned), max_threads);
     if (!source) return failure(std::move(source));
+    (*source)->keep(std::move(*cleaned));
     for (const FilePart& part : (*source)->parts())
         if (auto checked = check_size(*kind, part, bytes.size()); !checked) return failure(std::move(checked));
     return OpenedSource{*kind, std::move(*source)};

@@ -44,11 +44,14 @@ class PictureSource {
                                      std::span<const SamplePlace> places);
     /// Rows that are read together without decoding anything twice: a multiple of this many.
     [[nodiscard]] virtual std::uint32_t row_unit(std::size_t part) const = 0;
+    /// Holds the bytes that it reads for as long as it lives, where they are not its caller's.
+    void keep(std::vector<std::byte> bytes) { bytes_ = std::move(bytes); }
 
   protected:
     std::vector<FilePart> parts_;
 
   private:
+    std::vector<std::byte> bytes_;
     /// May throw what the library under it throws. `places` is not empty.
     [[nodiscard]] virtual Result<> read(std::size_t part, std::uint32_t row, std::uint32_t rows,
                                         std::span<const SamplePlace> places) = 0;

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// For the tests of hostile image files, which are written byte by byte.
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace darkroom {
+
+template <class T>
+std::string little_endian(T value) {
+    return {reinterpret_cast<const char*>(&value), sizeof(T)};
+}
+
+inline std::string big_endian(std::uint32_t value, int bytes) {
+    std::string out;
+    for (int shift = bytes * 8 - 8; shift >= 0; shift -= 8) out += static_cast<char>(value >> shift & 0xff);
+    return out;
+}
+
+inline std::uint32_t crc_of(const std::string& text) {
+    std::uint32_t crc = 0xffffffffU;
+    for (const char c : text) {
+        crc ^= static_cast<unsigned char>(c);
+        for (int bit = 0; bit < 8; ++bit) crc = (crc & 1) != 0 ? 0xedb88320U ^ (crc >> 1) : crc >> 1;
+    }
+    return ~crc;
+}
+
+inline const std::string png_start = "\x89PNG\r\n\x1a\n";
+
+inline std::string png_chunk(const std::string& type, const std::string& data) {
+    return big_endian(static_cast<std::uint32_t>(data.size()), 4) + type + data + big_endian(crc_of(type + data), 4);
+}
+
+/// Colour types: 0 grey, 2 colour, 3 of a palette, 6 colour and alpha.
+inline std::string png_header(std::uint32_t width, std::uint32_t height, char bits, char color_type,
+                              bool is_interlaced = false) {
+    return png_chunk("IHDR", big_endian(width, 4) + big_endian(height, 4) + bits + color_type + '\0' + '\0' +
+                                 static_cast<char>(is_interlaced ? 1 : 0));
+}
+
+/// A stream of zlib that packs nothing; at most 65535 bytes.
+inline std::string stored(const std::string& text) {
+    std::uint32_t low = 1, high = 0;
+    for (const unsigned char c : text) {
+        low = (low + c) % 65521;
+        high = (high + low) % 65521;
+    }
+    const auto size = static_cast<std::uint16_t>(text.size());
+    return "\x78\x01\x01" + little_endian(size) + little_endian(static_cast<std::uint16_t>(~size)) + text +
+           big_endian(high << 16 | low, 4);
+}
+
+/// A TIFF file: its directory, what lists of the tags need, and its samples, which lie at the end.
+struct TestTiff {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> tags;
+    std::string samples;
+    std::uint32_t next = 0;  ///< where another directory lies
+
+    /// Grey of 8 bits, in one strip.
+    static TestTiff gray(std::uint32_t width, std::uint32_t height) {
+        return {.tags = {{256, {width}},
+                         {257, {height}},
+                         {258, {8}},
+                         {259, {1}},
+                         {262, {1}},
+                         {273, {samples_here}},
+                         {277, {1}},
+                         {278, {height}},
+                         {279, {width * height}}},
+                .samples = std::string(std::size_t{width} * height, 'x')};
+    }
+    /// As one of a tag's values: where the samples begin.
+    static constexpr std::uint32_t samples_here = 0xffffffffU;
+
+    [[nodiscard]] std::string text() const {
+        std::uint32_t lists = static_cast<std::uint32_t>(8 + 2 + 12 * tags.size() + 4), end = lists;
+        for (const auto& [tag, values] : tags)
+            if (values.size() > 1) end += static_cast<std::uint32_t>(4 * values.size());
+        std::string directory, rest;
+        for (const auto& [tag, values] : tags) {
+            std::string all;
+            for (const std::uint32_t value : values) all += little_endian(value == samples_here ? end : value);
+            directory += little_endian(static_cast<std::uint16_t>(tag)) + little_endian(std::uint16_t{4}) +
+                         little_endian(static_cast<std::uint32_t>(values.size()));
+            directory += values.size() == 1 ? all : little_endian(lists);
+            if (values.size() == 1) continue;
+            rest += all;
+            lists += static_cast<std::uint32_t>(all.size());
+        }
+        return std::string("II*\0", 4) + little_endian(8U) + little_endian(static_cast<std::uint16_t>(tags.size())) +
+               directory + little_endian(next) + rest + samples;
+    }
+};
+
+}  // namespace darkroom
