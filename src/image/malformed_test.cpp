@@ -135,6 +135,7 @@ struct EmptyExr {
     char compression = 3;  // ZIP
     std::uint32_t tile = 0;
     std::size_t size = std::size_t{2} << 20;
+    std::string attributes = "";  // besides
 
     [[nodiscard]] std::string text() const {
         std::string channels;
@@ -149,7 +150,7 @@ struct EmptyExr {
                           attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window);
         if (tile > 0)
             out += attribute("tiles", "tiledesc", little_endian(tile) + little_endian(tile) + std::string(1, '\0'));
-        out += '\0';
+        out += attributes + '\0';
         out.resize(std::max(out.size(), size));
         return out;
     }
@@ -179,6 +180,28 @@ TEST(ImageProportions, AChunkOfAnExrIsBounded) {
               "chunks of 4097x4097 pixels need 268566544 bytes each, at most 268435456 are allowed");
     EXPECT_EQ(told({.width = 65536, .height = 128, .float_channels = 16, .compression = 9}).substr(0, 25),
               "chunks of 65536x128 pixel");
+}
+
+TEST(ImageProportions, AttributesOfAnExrAreCounted) {
+    const auto told = [](const std::string& attributes) {
+        return refusal(check_exr, EmptyExr{.size = std::size_t{40} << 20, .attributes = attributes}.text());
+    };
+    const auto many = [](std::size_t count) {
+        std::string out;
+        for (std::size_t i = 0; i < count; ++i) out += attribute("a" + std::to_string(i), "x", "");
+        return out;
+    };
+    constexpr std::size_t own = 4;  // of EmptyExr
+    EXPECT_TRUE(told(many(65536 - own)).starts_with("unfinished"));
+    EXPECT_EQ(told(many(65536 - own + 1)), "malformed header: more than 65536 attributes");
+    EXPECT_EQ(told(attribute("list", "stringvector", std::string(std::size_t{65536} * 4, '\0'))),
+              "malformed header: more than 65536 attributes")
+        << "strings count";
+    const std::size_t left = (std::size_t{32} << 20) - (4 * 18 + 1 + 1 + 16 + 16);
+    EXPECT_TRUE(told(attribute("a", "x", std::string(left, 'x'))).starts_with("unfinished"));
+    EXPECT_EQ(
+        told(attribute("a", "x", std::string(left / 2, 'x')) + attribute("b", "x", std::string(left / 2 + 2, 'x'))),
+        "malformed header: attributes of more than 33554432 bytes");
 }
 
 TEST(ImageProportions, PngAndJpegAreRefusedForWhatTheyAskFor) {

@@ -64,14 +64,13 @@ std::string table_of(const Json& rows, std::string_view indent) {
             line.push_back(value == nullptr ? "-" : line_of(*value, key));
         }
     }
+    std::vector<std::size_t> widths(keys.size());
+    for (const std::vector<std::string>& line : lines)
+        for (std::size_t i = 0; i + 1 < keys.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
     std::string out;
     for (const std::vector<std::string>& line : lines) {
         std::string text = fmt::format("{} ", indent);
-        for (std::size_t i = 0; i < keys.size(); ++i) {
-            std::size_t width = 0;
-            for (const std::vector<std::string>& other : lines) width = std::max(width, other[i].size());
-            text += fmt::format(" {:<{}} ", line[i], i + 1 == keys.size() ? 0 : width);
-        }
+        for (std::size_t i = 0; i < keys.size(); ++i) text += fmt::format(" {:<{}} ", line[i], widths[i]);
         text.erase(text.find_last_not_of(' ') + 1);
         out += text + '\n';
     }

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <numeric>
 #include <string_view>
+#include <unordered_map>
 
 namespace darkroom {
 namespace {
@@ -59,18 +60,16 @@ std::vector<Layer> layers_of(std::span<const FilePart> parts) {
     const bool has_several = count_frame_parts(parts) > 1;
     for (std::size_t part = 0; part < parts.size(); ++part) {
         if (is_shadow_part(parts[part])) continue;
-        const std::size_t first = layers.size();
+        std::unordered_map<std::string_view, std::size_t> places;  // of this part's layers
         for (std::size_t i = 0; i < parts[part].channels.size(); ++i) {
             const std::string& channel = parts[part].channels[i];
-            const std::string prefix(parent(channel));
-            auto layer = std::find_if(layers.begin() + static_cast<std::ptrdiff_t>(first), layers.end(),
-                                      [&](const Layer& known) { return known.prefix == prefix; });
-            if (layer == layers.end()) {
-                const bool is_named_by_part = prefix.empty() && has_several;
-                layers.push_back(Layer{part, prefix, is_named_by_part ? parts[part].name : prefix, {}});
-                layer = layers.end() - 1;
+            const std::string_view prefix = parent(channel);
+            const auto [place, is_new] = places.try_emplace(prefix, layers.size());
+            if (is_new) {
+                const std::string name(prefix.empty() && has_several ? parts[part].name : prefix);
+                layers.push_back(Layer{part, std::string(prefix), name, {}});
             }
-            layer->components.emplace(last_component(channel), static_cast<int>(i));
+            layers[place->second].components.emplace(last_component(channel), static_cast<int>(i));
         }
     }
     return layers;

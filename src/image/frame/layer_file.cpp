@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include "core/text/param_text.hpp"
 #include "image/frame/channels.hpp"
@@ -25,10 +29,6 @@ FileLayer layer_of(std::string name, const ChannelSet& set) {
 std::string prefix_of(const std::string& channel) {
     const std::size_t dot = channel.rfind('.');
     return dot == std::string::npos ? std::string() : channel.substr(0, dot);
-}
-
-bool holds(const FileLayer& layer, std::size_t part, std::uint32_t channel) {
-    return layer.part == part && std::ranges::find(layer.channels, channel) != layer.channels.end();
 }
 
 }  // namespace
@@ -74,24 +74,29 @@ void LayerFile::list_layers() {
     } else {
         why_no_frame_ = found.error().text;
     }
+    std::set<std::pair<std::size_t, std::uint32_t>> taken;
+    std::unordered_set<std::string> names;
+    for (const FileLayer& layer : layers_) {
+        names.insert(layer.name);
+        for (const std::uint32_t channel : layer.channels) taken.emplace(layer.part, channel);
+    }
     for (std::size_t part = 0; part < parts.size(); ++part) {
         const std::size_t first = layers_.size();
+        std::unordered_map<std::string, std::size_t> places;  // of this part's layers
         for (std::uint32_t channel = 0; channel < parts[part].channels.size(); ++channel) {
-            const auto is_taken = [&](const FileLayer& layer) { return holds(layer, part, channel); };
-            if (std::any_of(layers_.begin(), layers_.begin() + static_cast<std::ptrdiff_t>(first), is_taken)) continue;
+            if (taken.contains({part, channel})) continue;
             // Plain channels are a layer together only where they have a part of their own.
             std::string name = prefix_of(parts[part].channels[channel]);
             if (name.empty()) name = parts.size() > 1 ? parts[part].name : parts[part].channels[channel];
-            const auto is_same = [&](const FileLayer& layer) { return layer.name == name; };
-            auto layer = std::find_if(layers_.begin() + static_cast<std::ptrdiff_t>(first), layers_.end(), is_same);
-            if (layer == layers_.end()) layer = layers_.insert(layer, {.name = name, .file_name = name, .part = part});
-            layer->channels.push_back(channel);
+            const auto [place, is_new] = places.try_emplace(name, layers_.size());
+            if (is_new) layers_.push_back({.name = name, .file_name = name, .part = part});
+            layers_[place->second].channels.push_back(channel);
         }
         // Two parts may have layers of one name, as the two views of a stereo picture do.
         for (std::size_t i = first; i < layers_.size(); ++i)
-            if (std::any_of(layers_.begin(), layers_.begin() + static_cast<std::ptrdiff_t>(first),
-                            [&](const FileLayer& other) { return other.name == layers_[i].file_name; }))
+            if (names.contains(layers_[i].file_name))
                 layers_[i].name = fmt::format("{}.{}", part, layers_[i].file_name);
+        for (std::size_t i = first; i < layers_.size(); ++i) names.insert(layers_[i].name);
     }
 }
 
