@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Ctrl-C: what files do then is told beside AtomicPath; here, that the program asks for it and ends by the signal.
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 
+#include "image/frame/frame_file.hpp"
 #include "tests/cli/cli_support.hpp"
 
 namespace darkroom::test {
@@ -21,13 +21,18 @@ std::uint64_t caught_signals(pid_t process) {
 }
 
 TEST_F(CliSignal, TheProgramEndsByItAndLeavesNothing) {
-    // Opened by nobody else: the program waits for it.
-    const std::string pipe = path("in.exr"), out = path("out.png");
-    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    // More than a pipe holds, and nobody takes it: the program waits.
+    FrameFile frame;
+    frame.color = Picture(512, 512);
+    const std::string in = path("in.exr");
+    ASSERT_TRUE(write_frame(in, frame));
+    int ends[2];
+    ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
     for (const int signal : {SIGINT, SIGTERM}) {
         const pid_t child = ::fork();
         if (child == 0) {
-            ::execl(program.c_str(), program.c_str(), "develop", pipe.c_str(), "-o", out.c_str(), nullptr);
+            ::dup2(ends[1], STDOUT_FILENO);
+            ::execl(program.c_str(), program.c_str(), "develop", in.c_str(), "-o", "-", "--format", "rgb24", nullptr);
             ::_exit(127);
         }
         const std::uint64_t wanted = std::uint64_t{1} << (signal - 1);
@@ -39,6 +44,7 @@ TEST_F(CliSignal, TheProgramEndsByItAndLeavesNothing) {
         EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
         EXPECT_EQ(files(), std::vector<std::string>{"in.exr"});
     }
+    for (const int end : ends) ::close(end);
 }
 
 }  // namespace

@@ -17,6 +17,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/text/param_text.hpp"
+
 namespace darkroom {
 namespace {
 
@@ -98,14 +100,85 @@ struct Descriptor {
 };
 
 Failure io_error(const fs::path& path, const char* doing, int code) {
-    return machine_error(fmt::format("{}: cannot {}: {}", path.string(), doing, std::strerror(code)));
+    return machine_error(fmt::format("{}: cannot {}: {}", printable(path.string()), doing, std::strerror(code)));
 }
 
+Failure read_failure(int code) { return machine_error(fmt::format("cannot read: {}", std::strerror(code))); }
+
 // A wrong name is the user's to mend; a disk that fails is not.
-Failure open_error(const fs::path& path, int code) {
-    const std::string text = code == ENOENT ? fmt::format("{}: there is no such file", path.string())
-                                            : fmt::format("{}: cannot open: {}", path.string(), std::strerror(code));
+Failure open_failure(int code) {
+    if (code == ENOENT) return user_error("there is no such file");
+    const std::string text = fmt::format("cannot open: {}", std::strerror(code));
     return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG ? user_error(text) : machine_error(text);
+}
+
+Failure placed(const fs::path& path, const Error& error) {
+    return failure(Error{error.fault, fmt::format("{}: {}", printable(path.string()), error.text)});
+}
+
+Failure open_error(const fs::path& path, int code) { return placed(path, Result<>(open_failure(code)).error()); }
+
+const char* kind_of(mode_t mode) {
+    if (S_ISFIFO(mode)) return "a pipe";
+    if (S_ISSOCK(mode)) return "a socket";
+    return "a device";
+}
+
+Result<> check_regular(mode_t mode) {
+    if (S_ISDIR(mode)) return user_error("is a folder, a file is needed");
+    if (S_ISREG(mode)) return {};
+    return user_error(fmt::format("is no regular file but {}", kind_of(mode)));
+}
+
+/// Asked before it is opened, since some devices act when they are, and behind it, since a name may have been given to
+/// another file meanwhile. Without waiting: a pipe would be opened when somebody writes into it.
+Result<int> open_regular(const fs::path& path, struct stat& status) {
+    if (::stat(path.c_str(), &status) != 0) return open_failure(errno);
+    if (auto checked = check_regular(status.st_mode); !checked) return failure(std::move(checked));
+    const int number = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (number < 0) return open_failure(errno);
+    Result<> checked;
+    if (::fstat(number, &status) != 0)
+        checked = read_failure(errno);
+    else
+        checked = check_regular(status.st_mode);
+    if (checked) return number;
+    ::close(number);
+    return failure(std::move(checked));
+}
+
+Result<std::vector<std::byte>> read_regular(const fs::path& path, const ReadFileOptions& options) {
+    struct stat status {};
+    const Result<int> opened = open_regular(path, status);
+    if (!opened) return failure(opened.error());
+    const Descriptor file(*opened);
+    const auto most = static_cast<std::size_t>(std::min<std::uintmax_t>(options.max_size, PTRDIFF_MAX));
+    const std::size_t room = options.takes_start ? std::max<std::size_t>(most, 16) : PTRDIFF_MAX;
+
+    std::vector<std::byte> content(16);
+    std::size_t size = 0;
+    bool is_start_checked = !options.check_start;
+    for (bool is_end = false; !is_end;) {
+        const ssize_t count = ::read(file.number, content.data() + size, content.size() - size);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return read_failure(errno);
+        is_end = count == 0;
+        size += static_cast<std::size_t>(count);
+        if (!is_end && size < content.size()) continue;
+        if (!is_start_checked) {
+            is_start_checked = true;
+            if (Result<> checked = options.check_start({content.data(), size}); !checked)
+                return failure(std::move(checked));
+        }
+        const auto known = std::max<std::uintmax_t>(size, static_cast<std::uintmax_t>(status.st_size));
+        if (!options.takes_start && known > most)
+            return user_error(fmt::format("{} bytes, at most {} are read", known, options.max_size));
+        if (size >= room) break;
+        // One byte more than the file says it has, so that the usual file ends without another round of growing.
+        if (!is_end) content.resize(std::min(room, std::max(size * 2, static_cast<std::size_t>(status.st_size) + 1)));
+    }
+    content.resize(std::min(size, most));
+    return content;
 }
 
 Result<> write_all(int descriptor, const fs::path& path, std::span<const std::byte> content) {
@@ -128,40 +201,8 @@ Result<> write_and_close(Descriptor& file, const fs::path& path, std::span<const
 }  // namespace
 
 Result<std::vector<std::byte>> read_file(const fs::path& path, const ReadFileOptions& options) {
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.number < 0) return open_error(path, errno);
-    struct stat status {};
-    if (::fstat(file.number, &status) != 0) return io_error(path, "read", errno);
-    if (S_ISDIR(status.st_mode)) return user_error(fmt::format("{}: is a folder, a file is needed", path.string()));
-    const bool is_regular = S_ISREG(status.st_mode);
-    const auto too_long = [&] {
-        return user_error(fmt::format("{}: more than {} bytes, which is the limit", path.string(), options.max_size));
-    };
-
-    std::vector<std::byte> content(16);
-    std::size_t size = 0;
-    bool is_start_checked = !options.check_start;
-    for (bool is_end = false; !is_end;) {
-        const ssize_t count = ::read(file.number, content.data() + size, content.size() - size);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return io_error(path, "read", errno);
-        is_end = count == 0;
-        size += static_cast<std::size_t>(count);
-        if (!is_end && size < content.size()) continue;
-        if (!is_start_checked) {
-            is_start_checked = true;
-            const Result<> checked = options.check_start({content.data(), size});
-            if (!checked)
-                return failure({checked.error().fault, fmt::format("{}: {}", path.string(), checked.error().text)});
-        }
-        if (size > options.max_size || (is_regular && static_cast<std::uintmax_t>(status.st_size) > options.max_size))
-            return too_long();
-        // One byte more than the file says it has, so that the usual file ends without another round of growing.
-        if (!is_end)
-            content.resize(std::max(size * 2, is_regular ? static_cast<std::size_t>(status.st_size) + 1 : 65536));
-    }
-    content.resize(size);
-    return content;
+    Result<std::vector<std::byte>> content = read_regular(path, options);
+    return content || !options.is_path_in_errors ? std::move(content) : placed(path, content.error());
 }
 
 FileStamp stamp_of(const std::filesystem::path& path) {

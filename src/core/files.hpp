@@ -17,11 +17,14 @@ namespace darkroom {
 
 struct ReadFileOptions {
     std::uintmax_t max_size = std::numeric_limits<std::uintmax_t>::max();  ///< bytes; longer ones are refused
-    /// Is asked about the first bytes, at most 16, before the others are read. The path is put before its error.
+    bool takes_start = false;       ///< of a longer one its first max_size bytes, instead of an error
+    bool is_path_in_errors = true;  ///< put before them; false where the caller names the file by other words
+    /// Is asked about the first bytes, at most 16, before the others are read.
     std::function<Result<>(std::span<const std::byte> start)> check_start;
 };
 
-/// The content of a file. Refuses folders; reads pipes and devices to their end.
+/// The content of a regular file. All that this project opens by a name to read it is opened here. Folders, pipes,
+/// sockets and devices are refused at once, since one may never answer and another never ends.
 [[nodiscard]] Result<std::vector<std::byte>> read_file(const std::filesystem::path& path,
                                                        const ReadFileOptions& options = {});
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <darkroom/custom_effect.hpp>
-#include <system_error>
 #include <utility>
 
 #include "core/files.hpp"
@@ -35,12 +34,7 @@ Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view
 }
 
 Result<CustomEffect> CustomEffect::load(const std::string& file) {
-    const std::filesystem::path path = file;
-    // A pipe might never end.
-    std::error_code error;
-    if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-        return user_error(fmt::format("{}: is no regular file", printable(file)));
-    auto bytes = read_file(path, {.max_size = most_bytes});
+    auto bytes = read_file(file, {.max_size = most_bytes});
     if (!bytes) return failure(std::move(bytes));
     return parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
 }

@@ -118,7 +118,7 @@ TEST_F(CustomLook, ErrorsAreThoseOfOtherEffects) {
     EXPECT_EQ(error_of(tint_entry + "mode = \"hot\"\n").find("a.toml:3:8: mode = \"hot\""), 0u);
     write("folder.glsl/x", "");
     EXPECT_EQ(error_of("[[stack]]\neffect = \"folder.glsl\"\n"),
-              "a.toml:2:10: effect = \"folder.glsl\": folder.glsl: is no regular file");
+              "a.toml:2:10: effect = \"folder.glsl\": folder.glsl: is a folder, a file is needed");
 }
 
 TEST_F(CustomLook, ANameIsThatOfOneEffect) {

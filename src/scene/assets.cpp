@@ -21,9 +21,12 @@ bool is_file(const fs::path& path) {
     return fs::is_regular_file(path, error);
 }
 
+/// What is there and is no file either is what the scene means where there is nothing better: opening it tells why not.
 fs::path first_file(std::span<const fs::path> places) {
     for (const fs::path& place : places)
         if (is_file(place)) return place;
+    for (const fs::path& place : places)
+        if (std::error_code error; fs::exists(place, error) && !fs::is_directory(place, error)) return place;
     return {};
 }
 

@@ -125,13 +125,9 @@ std::vector<Result<Image>> decode_images(std::span<const EncodedImage> sources) 
     parallel_for(sources.size(), 0, [&](std::size_t i) {
         std::span<const std::byte> bytes = sources[i].bytes;
         if (bytes.empty() && !sources[i].file.empty()) {
-            auto file = read_image_file(sources[i].file);
+            auto file = read_image_file(sources[i].file, {.is_path_in_errors = false});
             if (!file) {
-                // The caller names the file.
-                std::string text = file.error().text;
-                const std::string start = sources[i].file.string() + ": ";
-                if (text.starts_with(start)) text.erase(0, start.size());
-                results[i] = failure({file.error().fault, std::move(text)});
+                results[i] = failure(std::move(file));
                 return;
             }
             files[i] = std::move(*file);

@@ -269,10 +269,6 @@ Result<> Run::exec(Words arguments) {
         return user_error(fmt::format("exec {}: allowed is a file of the console's folder, or of one in it", shown));
     if (depth_ >= deepest) return user_error(fmt::format("exec {}: files run files at most {} deep", shown, deepest));
     const std::filesystem::path path = state_.desc.folder / file;
-    std::error_code ignored;
-    const auto status = std::filesystem::status(path, ignored);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-        return user_error(fmt::format("exec {}: it is no file", shown));
     const auto content = read_file(path, {.max_size = longest_file});
     if (!content) return failure(content.error());
     ++depth_;

@@ -134,11 +134,11 @@ TEST_F(CliCustomEffects, AreRefusedWhereTheyAreNotWanted) {
 TEST_F(CliCustomEffects, WhatIsWrongIsOneLine) {
     expect_refused({"plan", "--effect", path("absent.glsl")}, 1, "absent.glsl: there is no such file");
     fs::create_directories(path("folder.glsl"));
-    expect_refused({"plan", "--effect", path("folder.glsl")}, 1, "folder.glsl: is no regular file");
+    expect_refused({"plan", "--effect", path("folder.glsl")}, 1, "folder.glsl: is a folder, a file is needed");
     ASSERT_EQ(mkfifo(path("pipe.glsl").c_str(), 0600), 0);
     expect_refused({"plan", "--effect", path("pipe.glsl")}, 1, "pipe.glsl: is no regular file");
     expect_refused({"effects", path("pipe.glsl")}, 1, "pipe.glsl: is no regular file");
-    expect_file_refused(std::string(1 << 20, '\n'), "wrong.glsl: more than 65536 bytes, which is the limit");
+    expect_file_refused(std::string(1 << 20, '\n'), "wrong.glsl: 1048576 bytes, at most 65536 are read");
     expect_file_refused("", "wrong.glsl:1: no line `// @effect NAME: SENTENCE.` before the code");
     expect_file_refused("// @effect bloom: Mine.\nbloom(",
                         "wrong.glsl:1: bloom: the name of an effect that is built in");

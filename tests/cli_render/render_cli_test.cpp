@@ -476,10 +476,10 @@ TEST_F(CliRenderRefused, DevicesAndEmptyValuesAreRefused) {
         write("sky.scene.toml", std::string(scene_text) + "[environment]\nskybox = \"/dev/zero\"\n");
     const Outcome outcome = run({"render", scene, "--size", "8x8", "-o", path("sky.png")});
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_NE(outcome.err.find("asks for '/dev/zero': there is no such file"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("/dev/zero: is no regular file but a device (asked for by the environment)"), std::string::npos) << outcome.err;
     expect_refused({"render", path("yard.scene.toml"), "--size=", "-o", path("x.png")}, 1,
                    "--size: one value is needed");
-    expect_refused({"develop", "/dev/zero", "-o", path("x.png")}, 1, "is a device");
+    expect_refused({"develop", "/dev/zero", "-o", path("x.png")}, 1, "/dev/zero: is no regular file but a device");
 }
 
 TEST_F(CliRenderRefused, WrongValuesAreRefused) {

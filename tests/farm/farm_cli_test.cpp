@@ -3,7 +3,6 @@
 // programs where they are installed, with a task killed and a node taken down on the way.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <chrono>
@@ -52,6 +51,10 @@ class FarmFixture : public test::CliFixture {
         return json::parse(content(path("out/shot.farm/" + name + ".json")), nullptr, false);
     }
     [[nodiscard]] json status() const { return json::parse(run_lines("darkroom farm status out --json").out); }
+    /// A frame that comes when it is told to: until then, who reads it waits.
+    void hold_back(int number) const { write(in(number) + ".held", ""); }
+    void let_come(int number) const { fs::remove(path(in(number) + ".held")); }
+    inline static const std::string hold_back_library = std::string(test::binary_folder) + "/bin/darkroom_hold_back.so";
 };
 
 class CliFarm : public FarmFixture {
@@ -96,6 +99,20 @@ TEST_F(CliFarm, AFrameThatFailsIsTriedThreeTimesMoreAndLeavesTheOthersAlone) {
     EXPECT_EQ(content(path(out("out", 0))), "there");
 }
 
+// What the test of a cluster relies on.
+TEST_F(CliFarm, AFrameThatIsHeldBackIsWaitedFor) {
+    if (!fs::exists(hold_back_library)) GTEST_SKIP() << hold_back_library << " is not built";
+    hold_back(1);
+    const std::string task = "env LD_PRELOAD=" + test::quoted(hold_back_library) +
+                             " darkroom farm task 'shot.####.exr' -o out/ --frames 0-1 -q";
+    EXPECT_EQ(run_lines("timeout 5 " + task).code, 124);
+    EXPECT_TRUE(fs::exists(path(out("out", 0))));
+    EXPECT_FALSE(fs::exists(path(out("out", 1))));
+    let_come(1);
+    EXPECT_EQ(run_lines(task).code, 0);
+    EXPECT_TRUE(fs::exists(path(out("out", 1))));
+}
+
 TEST_F(CliFarm, AScenesFramesAreThoseOfRender) {
     write("box.scene.toml", "[entities.box]\nbounds = { min = [-1, 0, -1], max = [1, 1, 1] }\n");
     ASSERT_EQ(run_lines("darkroom render box.scene.toml --frames 3-4 --size 32x18 --yaw 30 -o 'one/box.##.png'").code,
@@ -117,6 +134,7 @@ class SoakFarm : public FarmFixture {
             if (std::system(fmt::format("PATH=$PATH:/usr/sbin command -v {} >/dev/null", name).c_str()) != 0)
                 GTEST_SKIP() << name << " is not installed: slurmctld, slurmd, slurm-client and munge are needed";
         FarmFixture::SetUp();
+        if (!fs::exists(hold_back_library)) GTEST_SKIP() << hold_back_library << " is not built";
         setenv("SLURM_CONF", path("cluster/slurm.conf").c_str(), 1);
         const Outcome started = run_lines(cluster("start"));
         ASSERT_EQ(started.code, 0) << started.err;
@@ -143,12 +161,6 @@ class SoakFarm : public FarmFixture {
     [[nodiscard]] bool are_there(const std::vector<int>& numbers) const {
         return std::ranges::all_of(numbers, [&](int number) { return fs::exists(path(out("out", number))); });
     }
-    /// A frame that comes when it is told to: until then, who reads it waits.
-    void hold_back(int number) const {
-        fs::rename(path(in(number)), path(in(number) + ".held"));
-        ASSERT_EQ(mkfifo(path(in(number)).c_str(), 0600), 0);
-    }
-    void let_come(int number) const { fs::rename(path(in(number) + ".held"), path(in(number))); }
     /// Ends processes whose command line ends the one, and whose environment says the other.
     void kill_processes(const std::string& words, const std::string& variable) const {
         const auto lines = [](std::string text) {
@@ -172,7 +184,8 @@ class SoakFarm : public FarmFixture {
 
 TEST_F(SoakFarm, WhatSurvivesAKilledTaskAndALostNodeIsByteForByteThatOfOneMachine) {
     ASSERT_EQ(run_lines("darkroom develop 'shot.####.exr' -o one/ -q").code, 0);
-    const std::string submit = "darkroom farm slurm 'shot.####.exr' -o out/ --chunk 4";
+    const std::string submit =
+        "LD_PRELOAD=" + test::quoted(hold_back_library) + " darkroom farm slurm 'shot.####.exr' -o out/ --chunk 4";
     for (const int number : {2, 6, 10}) hold_back(number);
     ASSERT_EQ(run_lines(submit).out, "job 1: 24 of 24 pictures in 6 chunks; darkroom farm status out/shot.farm\n");
     ASSERT_TRUE(wait_until([&] { return are_there({0, 1, 4, 5}); })) << "two tasks run, each half-way";
@@ -194,8 +207,8 @@ TEST_F(SoakFarm, WhatSurvivesAKilledTaskAndALostNodeIsByteForByteThatOfOneMachin
     for (const int number : {2, 6}) let_come(number);
     // Of the third one what does the work is killed; the task begins it anew.
     ASSERT_TRUE(wait_until([&] { return are_there({8, 9}); }));
-    let_come(10);
     kill_processes("develop", "SLURM_ARRAY_TASK_ID=2");
+    let_come(10);
 
     ASSERT_TRUE(wait_until([&] { return is_over(); })) << run_lines("squeue; scontrol show nodes").out;
     EXPECT_EQ(record("0-3")["state"], "begun");

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <system_error>
@@ -11,6 +10,7 @@
 #include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/effects/named_effects.hpp"
 #include "apps/darkroom/run/report.hpp"
+#include "core/files.hpp"
 #include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "info_documents.hpp"
@@ -94,13 +94,10 @@ Result<Head> head_of(const fs::path& path) {
     const std::string shown = printable(path.string());
     std::error_code error;
     if (!fs::exists(path, error)) return user_error(fmt::format("{}: there is no such file", shown));
-    if (!fs::is_regular_file(path, error)) return user_error(fmt::format("{}: is no regular file", shown));
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) return user_error(fmt::format("{}: cannot be opened", shown));
-    Head head{.start = std::string(4096, '\0'), .extension = darkroom::lower(path.extension().string())};
-    stream.read(head.start.data(), static_cast<std::streamsize>(head.start.size()));
-    head.start.resize(static_cast<std::size_t>(stream.gcount()));
-    return head;
+    const auto start = darkroom::read_file(path, {.max_size = 4096, .takes_start = true});
+    if (!start) return failure(start.error());
+    return Head{.start = std::string(reinterpret_cast<const char*>(start->data()), start->size()),
+                .extension = darkroom::lower(path.extension().string())};
 }
 
 Result<Json> document_of(const fs::path& path, const Options& options) {

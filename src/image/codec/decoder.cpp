@@ -26,11 +26,6 @@ Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 Decoder::~Decoder() = default;
 
 Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max_threads) {
-    // A pipe ends, a device may not.
-    std::error_code ignored;
-    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
-        return user_error(fmt::format("{}: is a device, expected an image file", one_printable_line(path.string())));
     auto state = std::make_unique<State>();
     state->path = path.string();
     auto bytes = read_image_file(path);

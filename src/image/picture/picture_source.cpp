@@ -107,12 +107,13 @@ Result<FileKind> kind_of_file(std::span<const std::byte> start) {
     return user_error("is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)");
 }
 
-Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path) {
-    const auto check_start = [](std::span<const std::byte> start) -> Result<> {
+Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path, ReadFileOptions options) {
+    options.max_size = max_image_file;
+    options.check_start = [](std::span<const std::byte> start) -> Result<> {
         const Result<FileKind> kind = kind_of_file(start);
         return kind ? Result<>() : failure(kind.error());
     };
-    return read_file(path, {.max_size = max_image_file, .check_start = check_start});
+    return read_file(path, options);
 }
 
 Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads) {

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/files.hpp"
 #include "image/codec/file_kind.hpp"
 
 namespace darkroom {
@@ -69,7 +70,8 @@ struct OpenedSource {
 inline constexpr std::uintmax_t max_image_file = std::uintmax_t{4} << 30;
 
 /// The bytes of a file whose first ones are those of a known kind; no others are read to their end.
-[[nodiscard]] Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path);
+[[nodiscard]] Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path,
+                                                             ReadFileOptions options = {});
 
 /// Tells the kind of file by its content, checks its structure and its sizes, and opens it. The bytes outlive the
 /// source. `max_threads` decode one picture, 0: as many as there are processors. Errors name no file.

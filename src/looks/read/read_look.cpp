@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <darkroom/look.hpp>
-#include <system_error>
 
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
@@ -131,14 +130,6 @@ Result<Look> parse_look(std::string_view text, std::string shown_name, const Loo
 }
 
 Result<std::string> read_look_text(const std::filesystem::path& path) {
-    const std::string shown = printable(path.string());
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
-        return user_error(fmt::format("{}: is a device, expected a look file", shown));
-    const std::uintmax_t size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
-    if (!error && size > most_toml_bytes)
-        return user_error(fmt::format("{}: {} bytes, a look file has at most {}", shown, size, most_toml_bytes));
     const Result<std::vector<std::byte>> bytes = read_file(path, {.max_size = most_toml_bytes});
     if (!bytes) return failure(bytes.error());
     return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());

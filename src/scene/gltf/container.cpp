@@ -7,9 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <exception>
-#include <fstream>
 #include <optional>
 
+#include "core/files.hpp"
 #include "image/codec/decoder.hpp"
 
 namespace darkroom::scene::gltf {
@@ -241,17 +241,7 @@ Result<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
 }
 
 Result<std::vector<std::byte>> read_bounded(const fs::path& path, std::size_t most, bool must_fit) {
-    std::error_code error;
-    if (!fs::is_regular_file(path, error)) return user_error("is no regular file");
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error) return machine_error(error.message());
-    if (must_fit && size > most) return user_error(fmt::format("{} bytes, at most {} are read", size, most));
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) return machine_error("cannot be opened");
-    std::vector<std::byte> bytes(static_cast<std::size_t>(std::min<std::uintmax_t>(size, most)));
-    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) return machine_error("cannot be read to its end");
-    return bytes;
+    return read_file(path, {.max_size = most, .takes_start = !must_fit, .is_path_in_errors = false});
 }
 
 }  // namespace darkroom::scene::gltf

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <unordered_map>
 
+#include "core/files.hpp"
 #include "core/text/lower.hpp"
 #include "core/text/param_text.hpp"
 #include "scene/read/scene_file.hpp"
@@ -247,9 +248,8 @@ void SceneReader::inherit_base_colors() {
 namespace {
 
 Result<Scene> scene_of_model(const std::filesystem::path& path) {
+    if (const auto start = read_file(path, {.max_size = 1, .takes_start = true}); !start) return failure(start.error());
     std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error))
-        return user_error(fmt::format("{}: is no file, expected a model", printable(path.string())));
     const std::filesystem::path whole = std::filesystem::absolute(path, error);
     Scene scene{.name = path.stem().string(), .file = path, .folder = path.parent_path(), .has_grid = false};
     scene.entities.push_back({.name = "model", .model = ModelReference{.asset = (error ? path : whole).string()}});
