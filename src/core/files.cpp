@@ -109,7 +109,7 @@ Failure read_failure(int code) { return machine_error(fmt::format("cannot read: 
 Failure open_failure(int code) {
     if (code == ENOENT) return user_error("there is no such file");
     const std::string text = fmt::format("cannot open: {}", std::strerror(code));
-    return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG ? user_error(text) : machine_error(text);
+    return code == ENOTDIR || code == ENAMETOOLONG ? user_error(text) : machine_error(text);
 }
 
 Failure placed(const fs::path& path, const Error& error) {

@@ -8,6 +8,7 @@
 #include "image/table/color_chain.hpp"
 #include "ocio/config_chain.hpp"
 #include "ocio/ocio_support.hpp"
+#include "ocio/references.hpp"
 
 namespace darkroom {
 namespace {
@@ -64,8 +65,13 @@ class Chain final : public ColorChain {
     explicit Chain(const std::filesystem::path& path) : config_(ocio::Config::CreateRaw()) {
         // It remembers files by their names, and what is behind a name may have changed.
         ocio::ClearAllCaches();
+        // What the table names is looked for beside it (ocio/references.hpp).
+        const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
+        const ocio::ConfigRcPtr config = config_->createEditableCopy();
+        config->setWorkingDir(whole.parent_path().c_str());
+        config_ = config;
         const ocio::FileTransformRcPtr file = ocio::FileTransform::Create();
-        file->setSrc(std::filesystem::absolute(path).c_str());
+        file->setSrc(whole.c_str());
         file->setInterpolation(ocio::INTERP_TETRAHEDRAL);
         whole_ = config_->getProcessor(file);
         const ocio::GroupTransformRcPtr group = whole_->createGroupTransform();
@@ -176,6 +182,7 @@ Result<std::unique_ptr<ColorChain>> open(const std::filesystem::path& path) {
     try {
         // What it would tell is told by errors, on one line.
         ocio::SetLoggingLevel(ocio::LOGGING_LEVEL_NONE);
+        if (Result<> checked = check_references(path); !checked) return failure(std::move(checked));
         return std::make_unique<Chain>(path);
     } catch (const std::exception& exception) {
         return failure(error_of(exception));

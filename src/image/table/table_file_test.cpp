@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <random>
 
@@ -202,6 +203,89 @@ TEST_F(ImageTablesData, EveryFileThatOpenColorIOTakesIsItsTable) {
     }
     // It refuses a TITLE before a shaper.
     EXPECT_EQ(taken, 11u);
+}
+
+std::string list_of(const std::string& inside) {
+    return "<?xml version=\"1.0\"?>\n<ProcessList id=\"a\" compCLFversion=\"3.0\">\n" + inside + "</ProcessList>\n";
+}
+std::string range_to(double greatest) {
+    return fmt::format(
+        "<Range inBitDepth=\"32f\" outBitDepth=\"32f\"><minInValue>0</minInValue><maxInValue>1"
+        "</maxInValue><minOutValue>0</minOutValue><maxOutValue>{}</maxOutValue></Range>\n",
+        greatest);
+}
+std::string reference(const std::string& attribute) {
+    return "<Reference " + attribute + " inBitDepth=\"32f\" outBitDepth=\"32f\"/>\n";
+}
+
+TEST_F(ImageTables, ATableMayNameOthersOfItsFolder) {
+    write("half.clf", list_of(range_to(0.5)));
+    std::filesystem::create_directory(file("more"));
+    write("more/half.clf", list_of(range_to(0.5)));
+    const auto greatest = [&](const std::string& inside) {
+        const Result<FoundTable> found = read_table_file(write("a.clf", list_of(inside)));
+        EXPECT_TRUE(found) << found.error().text;
+        return found ? *std::ranges::max_element(found->file.table.shaper) : -1.0f;
+    };
+    EXPECT_NEAR(greatest(reference("path=\"half.clf\"")), 0.5, 1e-6);
+    EXPECT_NEAR(greatest(reference("path=\"more/half.clf\"")), 0.5, 1e-6);
+    EXPECT_NEAR(greatest(reference("path=\"" + file("half.clf").string() + "\"")), 0.5, 1e-6);
+    EXPECT_NEAR(greatest(range_to(0.5) + reference("path=\"half.clf\"")), 0.5 * 0.5, 1e-6);
+    // From another working folder, too: the name is of the table's.
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(file("more"));
+    EXPECT_TRUE(read_table_file("../a.clf"));
+    std::filesystem::current_path(before);
+}
+
+TEST_F(ImageTables, ATableNamesNoOtherFiles) {
+    write("half.clf", list_of(range_to(0.5)));
+    write("to_device.clf", list_of(reference("path=\"/dev/zero\"")));
+    write("back.clf", list_of(reference("path=\"a.clf\"")));
+    ASSERT_EQ(::mkfifo(file("pipe.clf").c_str(), 0600), 0);
+    std::filesystem::create_symlink("/dev/zero", file("zero.clf"));
+    // Each names the one before twice.
+    write("twice0.clf", list_of(range_to(0.9)));
+    for (int i = 1; i < 30; ++i) {
+        const std::string before = reference(fmt::format("path=\"twice{}.clf\"", i - 1));
+        write(fmt::format("twice{}.clf", i), list_of(before + before));
+    }
+    const std::string outside = "allowed is a file of the table's folder, or below";
+    const std::vector<std::array<std::string, 2>> cases{
+        {"path=\"/dev/zero\"", "a.clf: line 3: <Reference path = \"/dev/zero\">: " + outside},
+        {"path=\"&#47;dev&#x2f;zero\"", "\"/dev/zero\">: " + outside},
+        {"PATH=\"/dev/zero\"", "\"/dev/zero\">: " + outside},
+        {"path=\"../a.clf\"", outside},
+        {"path=\"more/../../a.clf\"", outside},
+        {"path=\"$HOME/a.clf\"", "allowed is a name without $ and %"},
+        {"path=\"\"", "is no name of a file"},
+        {"path=\"none.clf\"", "cannot open: No such file or directory"},
+        {"path=\"pipe.clf\"", "is no regular file but a pipe"},
+        {"path=\"zero.clf\"", "is no regular file but a device"},
+        {"path=\".\"", "is a folder, a file is needed"},
+        {"path=\"to_device.clf\"", "a.clf: to_device.clf, line 3: <Reference path = \"/dev/zero\">: " + outside},
+        {"path=\"a.clf\"", "names a table that names this one"},
+        {"path=\"back.clf\"", "names a table that names this one"},
+        {"path=\"twice29.clf\"", "at most 64 of"},
+        {"basePath=\"/dev\" path=\"half.clf\"", "<Reference basepath = \"/dev\">: allowed is a path"},
+        {"alias=\"x\"", "<Reference alias = \"x\">: allowed is a path"},
+    };
+    for (const auto& [attribute, part] : cases) {
+        const Result<FoundTable> found = read_table_file(write("a.clf", list_of(reference(attribute))));
+        ASSERT_FALSE(found) << attribute;
+        EXPECT_NE(found.error().text.find(part), std::string::npos) << attribute << ": " << found.error().text;
+        EXPECT_EQ(found.error().fault, Fault::User) << attribute;
+    }
+    // Entities are what the parser makes of them, and what is under another name's end is read as it is, too.
+    const std::string entity =
+        "<?xml version=\"1.0\"?>\n<!DOCTYPE a [<!ENTITY d \"/dev/zero\">]>\n<ProcessList id=\"a\" "
+        "compCLFversion=\"3.0\">" +
+        reference("path=\"&d;\"") + "</ProcessList>\n";
+    for (const char* const name : {"b.clf", "b.csp", "b.spi1d", "b.3dl"}) {
+        const Result<FoundTable> found = read_table_file(write(name, entity));
+        ASSERT_FALSE(found) << name;
+        EXPECT_NE(found.error().text.find(outside), std::string::npos) << name << ": " << found.error().text;
+    }
 }
 
 }  // namespace
