@@ -114,6 +114,7 @@ TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
     expect_error({"--ocio", config, "--display", "screen", "--view", "x"},
                  config + ": has no view 'x': there are root and half");
     expect_error({"--display", "screen"}, "--display: is one of a configuration, --ocio FILE is needed");
+    expect_error({"--ocio", config}, "--ocio: is for --input-space and --display, none of which is given");
     expect_error({"--view", "root"}, "--view: is one of a display, --display NAME is needed");
     expect_error({"--ocio", config, "--display", "screen", "--bits", "half"},
                  path("none.png") + ": half samples hold light, and no view of a display; .png .jpg .tif hold one");

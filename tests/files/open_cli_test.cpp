@@ -97,6 +97,7 @@ TEST_F(CliOpen, FlagsOfAllCommands) {
                                                {"--camera", {".toml"}},
                                                {"--effect", {".glsl"}},
                                                {"--input", {".exr"}},
+                                               {"--ocio", {".ocio"}},
                                                {"--lut", {".cube", ".clf", ".png"}},
                                                {"--lut-fade-to", {".cube"}},
                                                {"--arena-grade-table", {".cube", ".png"}},

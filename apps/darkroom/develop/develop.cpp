@@ -128,6 +128,8 @@ Result<Job> job_of(const Options& options) {
     if (Result<> done = options.time.read_to(job.time); !done) return failure(std::move(done));
     if (Result<> done = options.frames_per_second.read_to(job.frames_per_second); !done)
         return failure(std::move(done));
+    if (Result<> done = options.write.ocio.check(options.frame.has_input_space()); !done)
+        return failure(std::move(done));
     Result<darkroom::FrameOptions> frame = options.frame.options(options.write.ocio.configuration);
     if (!frame) return failure(std::move(frame));
     job.frame = std::move(*frame);

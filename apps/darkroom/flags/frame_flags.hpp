@@ -20,6 +20,8 @@ class FrameFlags {
     /// `configuration`: that --input-space names a space of; empty: none.
     [[nodiscard]] darkroom::Result<darkroom::FrameOptions> options(const std::string& configuration) const;
 
+    [[nodiscard]] bool has_input_space() const { return !input_space_.empty(); }
+
   private:
     std::vector<std::string> maps_;
     std::string camera_, input_space_;

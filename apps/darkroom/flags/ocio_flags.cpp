@@ -24,6 +24,12 @@ void OcioFlags::add_to(CommandFlags command, bool has_view) {
         .group(group);
 }
 
+darkroom::Result<> OcioFlags::check(bool has_input_space) const {
+    if (configuration.empty() || has_display() || has_input_space) return {};
+    if (const auto read = darkroom::check_configuration(configuration); !read) return failure(read.error());
+    return user_error("--ocio: is for --input-space and --display, none of which is given");
+}
+
 darkroom::Result<Chain> OcioFlags::view() const {
     if (display_.empty()) {
         if (!view_.empty()) return user_error("--view: is one of a display, --display NAME is needed");

@@ -19,6 +19,8 @@ class OcioFlags {
     /// Null: no display was named. Errors: a display without a configuration, and what the configuration lacks.
     [[nodiscard]] darkroom::Result<std::shared_ptr<const darkroom::ColorChain>> view() const;
 
+    /// A configuration that nothing asks for is an error.
+    [[nodiscard]] darkroom::Result<> check(bool has_input_space) const;
     [[nodiscard]] bool has_display() const { return !display_.empty(); }
 
     std::string configuration;  ///< empty: none

@@ -139,6 +139,7 @@ class Probe {
             if (!timeline) return failure(std::move(timeline));
             timeline_ = std::move(*timeline);
         }
+        if (Result<> done = options_.ocio.check(options_.frame.has_input_space()); !done) return done;
         Result<darkroom::FrameOptions> frame = options_.frame.options(options_.ocio.configuration);
         if (!frame) return failure(std::move(frame));
         if (const auto needs = add_needs(look_, input_.delta_time, timeline_, *frame); !needs)

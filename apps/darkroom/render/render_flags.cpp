@@ -153,6 +153,7 @@ Result<RenderJob> RenderFlags::job() const {
     const Result<darkroom::scene::OrbitOverride> orbit = drawn.orbit();
     if (!orbit) return failure(orbit.error());
     job.orbit = *orbit;
+    if (Result<> done = write.ocio.check(false); !done) return failure(std::move(done));
     Result<darkroom::WriteOptions> options = write.options();
     if (!options) return failure(std::move(options));
     job.write = std::move(*options);

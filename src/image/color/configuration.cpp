@@ -21,7 +21,7 @@ Result<std::shared_ptr<const ColorChain>> made_of(const std::filesystem::path& p
     const auto refuse = [&](const Error& error) {
         return failure(Error{error.fault, fmt::format("{}: {}", printable(path.string()), error.text)});
     };
-    if (const auto text = read_file(path, {.max_size = max_configuration}); !text) return failure(text.error());
+    if (auto checked = check_configuration(path); !checked) return failure(std::move(checked));
     const Result<const ColorChains*> chains = color_chains();
     if (!chains) return refuse(chains.error());
     Result<std::unique_ptr<ColorChain>> chain = make(**chains);
@@ -30,6 +30,11 @@ Result<std::shared_ptr<const ColorChain>> made_of(const std::filesystem::path& p
 }
 
 }  // namespace
+
+Result<> check_configuration(const std::filesystem::path& configuration) {
+    const auto text = read_file(configuration, {.max_size = max_configuration});
+    return text ? Result<>() : failure(text.error());
+}
 
 Result<std::shared_ptr<const ColorChain>> space_of_configuration(const std::filesystem::path& configuration,
                                                                  const std::string& space) {

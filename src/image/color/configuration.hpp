@@ -13,6 +13,9 @@
 
 namespace darkroom {
 
+/// Can it be read, and is it no larger than 16 MiB? What is in it is not looked at.
+[[nodiscard]] Result<> check_configuration(const std::filesystem::path& configuration);
+
 /// From that space to linear Rec. 709. The error text begins with the path.
 [[nodiscard]] Result<std::shared_ptr<const ColorChain>> space_of_configuration(
     const std::filesystem::path& configuration, const std::string& space);

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "image/codec/png_check.hpp"
 #include "image/color/icc_profile.hpp"
 
 namespace darkroom {
@@ -104,14 +105,14 @@ FileColor color_of_profile(Bytes profile) {
                                    name.empty() ? "" : fmt::format(" '{}'", name))};
 }
 
-/// Of iCCP, unpacked: name, 0, method, deflate.
+/// Of iCCP, unpacked: name, 0, method, deflate. check_png() has seen that it can be.
 std::vector<std::byte> profile_of_png(Bytes chunk) {
     const auto name_end = std::ranges::find(chunk, std::byte{0});
     const auto begin = static_cast<std::size_t>(name_end - chunk.begin()) + 2;
     if (begin >= chunk.size()) return {};
     const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)> decompressor(
         libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
-    std::vector<std::byte> out(max_profile);
+    std::vector<std::byte> out(most_png_profile_bytes);
     std::size_t size = 0;
     const Bytes packed = chunk.subspan(begin);
     if (libdeflate_zlib_decompress(decompressor.get(), packed.data(), packed.size(), out.data(), out.size(), &size) !=
@@ -138,7 +139,6 @@ FileColor png_color(Bytes file) {
     if (const auto found = chunks.find("iCCP"); found != chunks.end()) {
         const std::vector<std::byte> profile = profile_of_png(found->second);
         if (!profile.empty()) return color_of_profile(profile);
-        out.warning = "iCCP holds no profile of at most 4 MiB and is not read";
     }
     if (chunk("sRGB", 1)) {
         out.coding = ColorCoding{};

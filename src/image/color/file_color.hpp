@@ -13,9 +13,6 @@
 
 namespace darkroom {
 
-/// The largest ICC profile that is looked at, unpacked: those of printers have some 2 MB.
-inline constexpr std::size_t max_profile = std::size_t{4} << 20;
-
 struct FileColor {
     std::optional<ColorCoding> coding;  ///< none: the file says nothing that is understood
     std::string warning;                ///< what is not obeyed; empty: nothing

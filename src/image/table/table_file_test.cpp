@@ -259,7 +259,7 @@ TEST_F(ImageTables, ATableNamesNoOtherFiles) {
         {"path=\"more/../../a.clf\"", outside},
         {"path=\"$HOME/a.clf\"", "allowed is a name without $ and %"},
         {"path=\"\"", "is no name of a file"},
-        {"path=\"none.clf\"", "cannot open: No such file or directory"},
+        {"path=\"none.clf\"", "there is no such file"},
         {"path=\"pipe.clf\"", "is no regular file but a pipe"},
         {"path=\"zero.clf\"", "is no regular file but a device"},
         {"path=\".\"", "is a folder, a file is needed"},
