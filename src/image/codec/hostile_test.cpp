@@ -45,8 +45,10 @@ TEST_F(HostilePictures, TiffIsWhatItsDirectorySays) {
 }
 
 TEST_F(HostilePictures, TiffAsksForNoMoreThanIsAllowed) {
-    const auto tiled = [&](std::uint32_t width, std::uint32_t height, std::uint32_t samples = 1) {
+    const auto tiled = [&](std::uint32_t width, std::uint32_t height, std::uint32_t samples = 1,
+                           std::uint32_t side = 16) {
         TestTiff file = TestTiff::gray(16, 16);
+        file.tags[256] = file.tags[257] = {side};
         file.tags.erase(273), file.tags.erase(278), file.tags.erase(279);
         file.tags[259] = {8};
         file.tags[277] = {samples};
@@ -56,9 +58,14 @@ TEST_F(HostilePictures, TiffAsksForNoMoreThanIsAllowed) {
     };
     EXPECT_EQ(tiled(65536, 32768), "tiles of 65536x32768, [1, 8192] a side is allowed");
     EXPECT_EQ(tiled(8192, 8193), "tiles of 8192x8193, [1, 8192] a side is allowed");
-    EXPECT_EQ(tiled(8192, 8192, 4), "") << "256 MiB";
-    EXPECT_EQ(tiled(8192, 8192, 5),
+    EXPECT_EQ(tiled(8192, 8192, 4, 8192), "") << "256 MiB";
+    EXPECT_EQ(tiled(8192, 8192, 5, 8192),
               "tiles of 8192x8192 pixels need 335544320 bytes each, at most 268435456 are allowed");
+    EXPECT_EQ(tiled(4096, 4096), "") << "16 MiB";
+    EXPECT_EQ(tiled(4096, 4112), "tiles of 4096x4112 pixels need 16842752 bytes each, at most 16777216 are allowed");
+    EXPECT_EQ(tiled(6016, 6016, 1, 6001), "") << "the picture in one tile";
+    EXPECT_EQ(tiled(6032, 6016, 1, 6001),
+              "tiles of 6032x6016 pixels need 36288512 bytes each, at most 36192256 are allowed");
     TestTiff wide = TestTiff::gray(16, 16);
     wide.tags[256] = {65537};
     EXPECT_EQ(told(check_tiff, wide.text()), "the picture is 65537x16, [1, 65536] a side is allowed");

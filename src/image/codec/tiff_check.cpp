@@ -43,7 +43,9 @@ constexpr std::array<std::uint32_t, 31> kept_tags{256, 257, 258, 259, 262, 266, 
                                                   325, 332, 338, 339, 347, 529, 530, 531, 532};
 
 constexpr std::uint64_t most_tile_side = 8192;
-constexpr std::uint64_t most_chunk_bytes = std::uint64_t{1} << 28;
+// A tile may be as large as the picture, between these.
+constexpr std::uint64_t always_tile_bytes = std::uint64_t{1} << 24;
+constexpr std::uint64_t most_tile_bytes = std::uint64_t{1} << 28;
 constexpr std::uint64_t most_tags = 4096;
 constexpr std::uint64_t most_samples = 1024;
 // A decoder reads each strip's bytes, be they those of another, too.
@@ -228,9 +230,13 @@ class TiffChecker {
         const std::uint64_t lines = (height_ + chunk_height_ - 1) / chunk_height_;
         const std::uint64_t planes = planar_ == 2 ? samples_ : 1;
         const std::uint64_t chunk_bytes = bytes_of(chunk_width_, chunk_height_);
-        if (is_tiled && chunk_bytes > most_chunk_bytes)
+        // A decoder takes a tile several times over, however little of it is in the picture. Sides are multiples of 16.
+        const auto rounded = [](std::uint64_t side) { return (side + 15) / 16 * 16; };
+        const std::uint64_t most_bytes =
+            std::clamp(bytes_of(rounded(width_), rounded(height_)), always_tile_bytes, most_tile_bytes);
+        if (is_tiled && chunk_bytes > most_bytes)
             return user_error(fmt::format("tiles of {}x{} pixels need {} bytes each, at most {} are allowed",
-                                          chunk_width_, chunk_height_, chunk_bytes, most_chunk_bytes));
+                                          chunk_width_, chunk_height_, chunk_bytes, most_bytes));
         if (auto checked = check_decoded_size(chunk_bytes * (is_tiled ? columns * lines : 1) * planes, file_.size());
             !checked)
             return checked;

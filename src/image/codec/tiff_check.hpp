@@ -11,8 +11,9 @@
 namespace darkroom {
 
 /// The file as a decoder may see it: one picture, of whose tags those alone are left that say how its samples lie. An
-/// error names no file. Refused: what is cut off; a tile of more than 8192 pixels a side; a tile, or a strip that is
-/// packed, of more than 256 MiB; compressions that no renderer writes.
+/// error names no file. Refused: what is cut off; a tile of more than 8192 pixels a side, of more than 256 MiB, or of
+/// more than 16 MiB and the picture; strips that are the same bytes again and again; compressions that no renderer
+/// writes.
 [[nodiscard]] Result<std::vector<std::byte>> check_tiff(std::span<const std::byte> file);
 
 }  // namespace darkroom
