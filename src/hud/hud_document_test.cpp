@@ -3,6 +3,7 @@
 #include "tests/places.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -216,6 +217,40 @@ TEST_F(HudDocuments, LeavingDoesNotWaitForALongDrawing) {
     const auto start = std::chrono::steady_clock::now();
     document.reset();
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+// What it may not do, tests/confine_test.cpp tries.
+TEST(HudProcess, IsConfinedBeforeItReads) {
+    SvgProcess process;
+    ASSERT_TRUE(process.draw("<svg xmlns='http://www.w3.org/2000/svg'><text y='9'>a</text></svg>", 10, 10));
+    std::size_t found = 0;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+        std::ifstream stream(entry.path() / "status");
+        const std::string status{std::istreambuf_iterator<char>(stream), {}};
+        if (!status.starts_with("Name:\tdarkroom_svg\n") ||
+            status.find("\nPPid:\t" + std::to_string(::getpid()) + "\n") == std::string::npos)
+            continue;
+        ++found;
+        EXPECT_NE(status.find("\nNoNewPrivs:\t1\n"), std::string::npos) << status;
+        EXPECT_NE(status.find("\nSeccomp:\t2\n"), std::string::npos) << status;
+    }
+    EXPECT_EQ(found, 1u);
+}
+
+// The picture is copied out of memory that has one size.
+TEST(HudProcess, PicturesOfManySizesFollowEachOther) {
+    SvgProcess process;
+    const std::string document =
+        "<svg xmlns='http://www.w3.org/2000/svg' width='100%' height='100%'>"
+        "<rect width='100%' height='100%' fill='lime'/></svg>";
+    for (const auto& [width, height] : {std::pair(64U, 64U), std::pair(2000U, 1000U), std::pair(1U, 1U),
+                                        std::pair(7680U, 4320U), std::pair(300U, 200U)}) {
+        const auto picture = process.draw(document, width, height);
+        ASSERT_TRUE(picture) << picture.error().text;
+        const auto shared = std::make_shared<const HudPicture>(*picture);
+        EXPECT_EQ(pixel(shared, 0, 0), (Pixel{0, 255, 0, 255}));
+        EXPECT_EQ(pixel(shared, width - 1, height - 1), (Pixel{0, 255, 0, 255}));
+    }
 }
 
 TEST(HudProcess, ADrawingCanBeCancelled) {

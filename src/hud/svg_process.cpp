@@ -73,7 +73,16 @@ Result<> SvgProcess::start() {
         socket_ = lifted(ends[0]);
         if (is_cancelled_) shutdown(socket_, SHUT_RDWR);
     }
-    memory_ = lifted(memfd_create("darkroom_svg", MFD_CLOEXEC));
+    // Of one size, which neither side can change: no page of it is ever missing. It takes what is drawn alone.
+    memory_ = lifted(memfd_create("darkroom_svg", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    if (ftruncate(memory_, static_cast<off_t>(limits_.pixels) * 4) != 0 ||
+        fcntl(memory_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
+        const int reason = errno;
+        close(other);
+        stop();
+        errno = reason;
+        return failed("memory for a picture");
+    }
     // A drawing ends itself in time; a second more, and it hangs.
     const timeval most{.tv_sec = static_cast<time_t>(limits_.seconds) + 1, .tv_usec = 0};
     setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &most, sizeof most);
@@ -125,8 +134,11 @@ Result<HudPicture> SvgProcess::draw(std::string_view document, std::uint32_t wid
         return user_error(fmt::format("{} bytes: allowed are {}", document.size(), limits_.document_bytes));
     if (auto started = start(); !started) return failure(std::move(started));
 
-    const std::size_t size = pixels * 4;
-    if (ftruncate(memory_, static_cast<off_t>(size)) != 0) return failed("memory for a picture");
+    // What larger pictures left is given back.
+    const std::size_t size = pixels * 4, all = std::size_t{limits_.pixels} * 4;
+    if (all > size)
+        static_cast<void>(fallocate(memory_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(size),
+                                    static_cast<off_t>(all - size)));
     const SvgRequest request{static_cast<std::uint32_t>(document.size()), width, height, limits_.seconds};
     SvgReply reply;
     std::string error;
@@ -143,11 +155,13 @@ Result<HudPicture> SvgProcess::draw(std::string_view document, std::uint32_t wid
     }
     if (!error.empty()) return user_error(std::move(error));
 
-    void* const memory = mmap(nullptr, size, PROT_READ, MAP_SHARED, memory_, 0);
-    if (memory == MAP_FAILED) return failed("memory of a picture");
-    const auto* const first = static_cast<const std::uint8_t*>(memory);
-    HudPicture picture{width, height, {first, first + size}};
-    munmap(memory, size);
+    HudPicture picture{width, height, std::vector<std::uint8_t>(size)};
+    for (std::size_t at = 0; at < size;) {
+        const ssize_t got = pread(memory_, picture.rgba.data() + at, size - at, static_cast<off_t>(at));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) return failed("memory of a picture");
+        at += static_cast<std::size_t>(got);
+    }
     return picture;
 }
 

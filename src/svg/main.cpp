@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // darkroom_svg: draws SVG documents for the program that started it (hud/svg_process.hpp), by librsvg. A process of its
-// own, so that no document can hold up that program, take its memory or read files: it has no base for references.
+// own, so that no document can hold up that program, take its memory or read files: it has no base for references, and
+// the process is confined before it reads a document (svg/confine.hpp). Fonts are what it may read.
+#include <fontconfig/fontconfig.h>
 #include <librsvg/rsvg.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -13,6 +15,7 @@
 #include <vector>
 
 #include "hud/svg_messages.hpp"
+#include "svg/confine.hpp"
 
 namespace darkroom {
 namespace {
@@ -94,6 +97,17 @@ std::string draw(const std::string& document, const SvgRequest& request) {
     return {};
 }
 
+/// Where fonts lie, once they are listed: caches of them are written here, while that can be.
+std::vector<std::string> folders_of_fonts() {
+    std::vector<std::string> out;
+    FcInit();
+    FcStrList* const folders = FcConfigGetFontDirs(nullptr);
+    while (const FcChar8* const folder = folders == nullptr ? nullptr : FcStrListNext(folders))
+        out.emplace_back(reinterpret_cast<const char*>(folder));
+    if (folders != nullptr) FcStrListDone(folders);
+    return out;
+}
+
 void serve() {
     SvgRequest request;
     while (receive(&request, sizeof request)) {
@@ -116,6 +130,7 @@ int main() {
     setrlimit(RLIMIT_AS, &memory);
 #endif
     setrlimit(RLIMIT_CORE, &nothing);
+    darkroom::confine(darkroom::folders_of_fonts());
     darkroom::serve();
     return 0;
 }

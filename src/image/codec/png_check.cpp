@@ -138,6 +138,7 @@ class PngChecker {
     explicit PngChecker(std::span<const std::byte> file) : file_(file) {}
 
     Result<std::vector<std::byte>> run() {
+        if (file_.size() < 8) return user_error("truncated: unexpected end of file");
         append(out_, file_.first(8));
         for (std::size_t position = 8;;) {
             const Result<Chunk> chunk = chunk_at(position);

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// What a process can still do once it is confined, tried in a process of its own.
+#include "svg/confine.hpp"
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <thread>
+
+#include "image/test_files.hpp"
+
+namespace darkroom::test {
+namespace {
+
+class Confined : public WithFolder {
+  protected:
+    /// Whether the work says yes in a process that may read this test's folder.
+    template <class Work>
+    [[nodiscard]] bool can(const Work& work) const {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            const Confinement done = confine({folder_.string()});
+            ::_exit(!done.has_seccomp ? 3 : work() ? 0 : 1);
+        }
+        int status = 0;
+        EXPECT_EQ(::waitpid(child, &status, 0), child);
+        EXPECT_TRUE(WIFEXITED(status)) << "by signal " << WTERMSIG(status);
+        EXPECT_NE(WEXITSTATUS(status), 3) << "no seccomp";
+        return WEXITSTATUS(status) == 0;
+    }
+    [[nodiscard]] static bool has_landlock() {
+        const pid_t child = ::fork();
+        if (child == 0) ::_exit(confine({}).has_landlock ? 0 : 1);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    }
+};
+
+TEST_F(Confined, ReadsItsFoldersAlone) {
+    put(file("a"), "text");
+    std::filesystem::create_directory(file("folder"));
+    put(file("folder/b"), "text");
+    const auto reads = [&](const std::string& path) {
+        return can([&] {
+            char letter = 0;
+            const int opened = ::open(path.c_str(), O_RDONLY);
+            return opened >= 0 && ::read(opened, &letter, 1) == 1;
+        });
+    };
+    EXPECT_TRUE(reads(file("a")));
+    EXPECT_TRUE(reads(file("folder/b")));
+    if (!has_landlock()) GTEST_SKIP() << "this kernel has no Landlock";
+    EXPECT_FALSE(reads("/etc/passwd"));
+    EXPECT_FALSE(reads("/proc/self/maps"));
+    EXPECT_FALSE(reads(file("folder/../../../etc/passwd")));
+}
+
+TEST_F(Confined, WritesNothing) {
+    put(file("a"), "text");
+    for (const int flags : {O_WRONLY, O_RDWR, O_RDONLY | O_TRUNC, O_RDONLY | O_CREAT, O_WRONLY | O_APPEND})
+        EXPECT_FALSE(can([&] { return ::open(file("a").c_str(), flags, 0600) >= 0; })) << flags;
+    EXPECT_FALSE(can([&] { return ::unlink(file("a").c_str()) == 0; }));
+    EXPECT_FALSE(can([&] { return ::rename(file("a").c_str(), file("b").c_str()) == 0; }));
+    EXPECT_FALSE(can([&] { return ::mkdir(file("c").c_str(), 0700) == 0; }));
+    EXPECT_FALSE(can([&] { return ::symlink("a", file("d").c_str()) == 0; }));
+    EXPECT_EQ(content(file("a")), "text");
+    EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(Confined, HasNoNetworkAndNoOtherProcess) {
+    for (const int family : {AF_INET, AF_INET6, AF_UNIX, AF_NETLINK})
+        EXPECT_FALSE(can([&] { return ::socket(family, SOCK_STREAM, 0) >= 0; })) << family;
+    EXPECT_FALSE(can([] {
+        const pid_t child = ::fork();
+        if (child == 0) ::_exit(0);
+        return child > 0;
+    }));
+    EXPECT_FALSE(can([] {
+        ::execl("/bin/true", "true", nullptr);
+        return errno != EPERM && errno != EACCES;
+    }));
+    EXPECT_FALSE(can([] { return ::kill(::getppid(), 0) == 0; }));
+    EXPECT_TRUE(can([] {
+        int value = 0;
+        std::thread([&] { value = 1; }).join();
+        return value == 1;
+    })) << "threads are no processes";
+}
+
+}  // namespace
+}  // namespace darkroom::test
