@@ -192,12 +192,21 @@ class CubeParser {
         ColorTable& table = out_.table;
         if (rows_wanted() == 0)
             return refuse("no LUT_1D_SIZE and no LUT_3D_SIZE before the first entry: one of them is needed");
+        // Real files state the range of the other table beside the one that they have. It says nothing of that one, to
+        // OpenColorIO neither.
+        const ColorTable plain;
+        if (table.shaper_size == 0) {
+            table.shaper_min = plain.shaper_min;
+            table.shaper_max = plain.shaper_max;
+        }
+        if (table.size == 0) {
+            table.min = plain.min;
+            table.max = plain.max;
+        }
         const bool has_domain = has("DOMAIN_MIN") || has("DOMAIN_MAX");
         for (const auto& [range, size] :
              {std::pair("LUT_1D_INPUT_RANGE", table.shaper_size), std::pair("LUT_3D_INPUT_RANGE", table.size)}) {
-            if (!has(range)) continue;
-            if (size == 0) return refuse(fmt::format("{}: there is no such table", range));
-            if (has_domain)
+            if (has(range) && size > 0 && has_domain)
                 return refuse(fmt::format("{} beside DOMAIN_MIN or DOMAIN_MAX: one of them is allowed", range));
         }
         if (has_domain && table.shaper_size > 0 && table.size > 0)
