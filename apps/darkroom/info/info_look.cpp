@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/text/param_text.hpp"
 #include "image/table/resource_file.hpp"
@@ -78,10 +77,8 @@ Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects)
     const std::string shown = path.string();
     const Result<::toml::table> file = darkroom::parse_toml(*text, shown);
     if (!file) return failure(file.error());
-    constexpr std::array<std::string_view, 8> tables{"scene",     "camera",     "environment", "prefabs",
-                                                     "templates", "archetypes", "entities",    "prefab"};
-    const bool is_scene = std::ranges::any_of(tables, [&](std::string_view key) { return file->contains(key); });
-    const bool has_look = file->contains("post_process") || file->contains("stack");
+    const bool is_scene = darkroom::scene::reading::is_scene(*file),
+               has_look = darkroom::scene::reading::has_look(*file);
     if (!is_scene && !has_look)
         return darkroom::user_error(fmt::format(
             "{}: is neither a scene nor a look: it has no table [entities], [post_process] or [[stack]], nor any other "

@@ -152,10 +152,12 @@ Result<> add_frame(const std::filesystem::path& path, Json& out) {
     if (frame->delta_time) out["delta_time"] = json_number(*frame->delta_time);
     if (frame->frame_index) out["frame_index"] = *frame->frame_index;
     if (!frame->lights.empty()) out["lights"] = lights_of(frame->lights);
-    const Result<Json> look = default_look_of(*frame);
-    if (!look) return failure(look.error());
-    out["default_look"] = *look;
     if (!frame->warnings.empty()) out["warnings"] = frame->warnings;
+    // A picture may be larger than what GPUs develop.
+    if (const Result<Json> look = default_look_of(*frame))
+        out["default_look"] = *look;
+    else
+        out["warnings"].push_back(fmt::format("cannot be developed: {}", look.error().text));
     return {};
 }
 

@@ -4,16 +4,14 @@
 #include <cmath>
 
 #include "core/files.hpp"
+#include "image/frame/camera_check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "toml/toml_text.hpp"
 
 namespace darkroom {
 namespace {
 
-std::optional<double> number(const toml::node& node) {
-    const std::optional<double> value = node.value<double>();
-    return value && std::isfinite(*value) ? value : std::nullopt;
-}
+std::optional<double> number(const toml::node& node) { return node.value<double>(); }
 
 // Written by rows, kept by columns.
 std::optional<Matrix> matrix(const toml::node& node) {
@@ -51,13 +49,14 @@ Result<> read_entry(std::string_view key, const toml::node& node, FrameCamera& c
                                       one_printable_line(key)));
     if (key == "fov") {
         camera.vertical_field_of_view = number(node);
-        if (!camera.vertical_field_of_view || *camera.vertical_field_of_view <= 0 ||
-            *camera.vertical_field_of_view >= 180)
+        if (!camera.vertical_field_of_view ||
+            !(*camera.vertical_field_of_view > 0 && *camera.vertical_field_of_view < 180))
             return user_error("fov: a number of degrees in (0, 180) is needed");
         return {};
     }
     const auto value = matrix(node);
     if (!value) return user_error(fmt::format("{}: an array of 16 numbers is needed", key));
+    if (auto checked = check_camera_matrix(key, *value); !checked) return checked;
     if (key == "projection") {
         camera.projection = value;
         return {};

@@ -27,7 +27,8 @@ FrameFile full_frame() {
     for (std::size_t i = 0; i < 45; ++i) frame.normals->values[i] = static_cast<float>(i % 5) / 4 - 0.5f;
     for (std::size_t i = 0; i < 30; ++i) frame.velocity->values[i] = static_cast<float>(i) / 7 - 2;
     Matrix matrix{};
-    for (std::size_t i = 0; i < 16; ++i) matrix[i] = static_cast<float>(i) + 0.25f;
+    // All sixteen differ, and the matrix has an inverse.
+    for (std::size_t i = 0; i < 16; ++i) matrix[i] = static_cast<float>(i) + (i % 5 == 0 ? 20.25f : 0.25f);
     frame.camera.world_to_camera = matrix;
     matrix[3] = -7;
     frame.camera.projection = matrix;

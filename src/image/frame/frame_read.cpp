@@ -9,6 +9,7 @@
 
 #include "image/color/configuration.hpp"
 #include "image/color/convert_picture.hpp"
+#include "image/frame/camera_check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
 #include "image/frame/layer_read.hpp"
@@ -107,8 +108,7 @@ class FrameReader {
 
 std::optional<Matrix> FrameReader::matrix(const char* attribute) const {
     const std::vector<float> values = decoder_.numbers(found_.color.part, attribute);
-    if (values.size() != 16 || !std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
-        return std::nullopt;
+    if (values.size() != 16) return std::nullopt;
     Matrix result{};
     std::copy(values.begin(), values.end(), result.begin());
     return result;
@@ -264,7 +264,7 @@ Result<> FrameReader::make_normals() {
     if (auto checked = check(*found_.normals, 3, "the normals"); !checked) return checked;
     if (is_vray_ && !options_.names.contains("normals")) {
         vray_normals_ = world_to_camera();
-        if (!vray_normals_) {
+        if (!vray_normals_ || !check_camera_matrix("", *vray_normals_)) {
             frame_.warnings.emplace_back(
                 "V-Ray normals without cameraTransform cannot be turned to world space: left out");
             return {};
@@ -394,7 +394,8 @@ Result<> FrameReader::read_camera_of_file() {
     }
     if (!camera.projection && camera.vertical_field_of_view)
         camera.projection = perspective(*camera.vertical_field_of_view, aspect);
-    return {};
+    // What a flag has replaced may have been anything.
+    return check_camera(camera);
 }
 
 void FrameReader::read_time_of_file() {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <system_error>
 #include <unordered_map>
@@ -256,7 +257,22 @@ Result<Scene> scene_of_model(const std::filesystem::path& path) {
     return scene;
 }
 
+Result<Scene> scene_of(const toml::table& table, std::string_view text, const std::filesystem::path& file,
+                       const SceneOptions& options) {
+    Result<Scene> scene = SceneReader(table, file, options).read();
+    if (scene) scene->file_bytes += text.size();
+    return scene;
+}
+
 }  // namespace
+
+bool is_scene(const toml::table& file) {
+    constexpr std::array<std::string_view, 8> tables{"scene",     "camera",     "environment", "prefabs",
+                                                     "templates", "archetypes", "entities",    "prefab"};
+    return std::ranges::any_of(tables, [&](std::string_view key) { return file.contains(key); });
+}
+
+bool has_look(const toml::table& file) { return file.contains("post_process") || file.contains("stack"); }
 
 }  // namespace reading
 
@@ -264,9 +280,7 @@ Result<Scene> parse_scene(std::string_view text, const std::filesystem::path& fi
     const std::string shown = printable(file.string());
     const Result<toml::table> table = parse_toml(text, shown);
     if (!table) return failure(table.error());
-    Result<Scene> scene = reading::SceneReader(*table, file, options).read();
-    if (scene) scene->file_bytes += text.size();
-    return scene;
+    return reading::scene_of(*table, text, file, options);
 }
 
 bool is_model_path(const std::filesystem::path& path) {
@@ -282,7 +296,15 @@ Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& 
             fmt::format("{}: expected a scene (.toml) or a model (.glb, .gltf)", printable(path.string())));
     const Result<std::string> text = reading::read_scene_text(path);
     if (!text) return failure(text.error());
-    return parse_scene(*text, path, options);
+    const std::string shown = printable(path.string());
+    const Result<toml::table> table = parse_toml(*text, shown);
+    if (!table) return failure(table.error());
+    if (!reading::is_scene(*table))
+        return user_error(
+            fmt::format("{}: is no scene: it has no table [scene], [camera], [environment], [entities], "
+                        "[prefabs], nor any other of theirs{}",
+                        shown, reading::has_look(*table) ? "; a look is what --look takes" : ""));
+    return reading::scene_of(*table, *text, path, options);
 }
 
 vec4 archetype_color(std::string_view archetype) {

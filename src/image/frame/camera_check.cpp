@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "image/frame/camera_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace darkroom {
+namespace {
+
+/// By elimination with pivots. What is lost to rounding is far below the bound that it is held against.
+double determinant(const Matrix& matrix) {
+    std::array<std::array<double, 4>, 4> m{};
+    for (std::size_t i = 0; i < 16; ++i) m[i / 4][i % 4] = double{matrix[i]};
+    double out = 1;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto pivot =
+            std::max_element(m.begin() + static_cast<std::ptrdiff_t>(i), m.end(),
+                             [i](const auto& a, const auto& b) { return std::abs(a[i]) < std::abs(b[i]); });
+        if ((*pivot)[i] == 0) return 0;
+        if (pivot != m.begin() + static_cast<std::ptrdiff_t>(i)) {
+            std::swap(*pivot, m[i]);
+            out = -out;
+        }
+        out *= m[i][i];
+        for (std::size_t row = i + 1; row < 4; ++row) {
+            const double part = m[row][i] / m[i][i];
+            for (std::size_t column = i; column < 4; ++column) m[row][column] -= part * m[i][column];
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+Result<> check_camera_matrix(std::string_view name, const Matrix& matrix) {
+    for (std::size_t i = 0; i < 16; ++i)
+        if (!std::isfinite(matrix[i]))
+            return user_error(
+                fmt::format("{}: number {} of 16 is {}: allowed are finite numbers", name, i + 1, matrix[i]));
+    if (std::ranges::all_of(matrix, [](float value) { return value == 0; }))
+        return user_error(fmt::format("{}: all 16 numbers are 0: allowed is a matrix with an inverse", name));
+    // Of the largest determinant that vectors of these lengths can have (Hadamard 1893).
+    double most = 1;
+    for (std::size_t column = 0; column < 4; ++column) {
+        double square = 0;
+        for (std::size_t row = 0; row < 4; ++row) square += std::pow(double{matrix[column * 4 + row]}, 2);
+        most *= std::sqrt(square);
+    }
+    if (const double found = determinant(matrix); !(std::abs(found) > 1e-16 * most))
+        return user_error(fmt::format("{}: the determinant is {:g}: allowed is a matrix with an inverse", name, found));
+    return {};
+}
+
+Result<> check_camera(const FrameCamera& camera) {
+    for (const auto& [name, matrix] :
+         {std::pair("worldToCamera", &camera.world_to_camera), std::pair("darkroom:projection", &camera.projection),
+          std::pair("darkroom:previousWorldToCamera", &camera.previous_world_to_camera),
+          std::pair("darkroom:previousProjection", &camera.previous_projection)})
+        if (*matrix)
+            if (auto checked = check_camera_matrix(name, **matrix); !checked) return checked;
+    return {};
+}
+
+}  // namespace darkroom
