@@ -130,12 +130,19 @@ class OiioSource final : public PictureSource {
         if (found == nullptr) return {};
         std::vector<double> values(static_cast<std::size_t>(found->type().basevalues()));
         for (std::size_t i = 0; i < values.size(); ++i) {
-            if (found->type().basetype == OIIO::TypeDesc::FLOAT)
-                values[i] = static_cast<double>(static_cast<const float*>(found->data())[i]);
-            else if (found->type().basetype == OIIO::TypeDesc::INT32)
-                values[i] = static_cast<const int*>(found->data())[i];
-            else
-                return {};
+            switch (found->type().basetype) {
+                case OIIO::TypeDesc::FLOAT:
+                    values[i] = static_cast<double>(static_cast<const float*>(found->data())[i]);
+                    break;
+                case OIIO::TypeDesc::INT32:
+                    values[i] = static_cast<const int*>(found->data())[i];
+                    break;
+                case OIIO::TypeDesc::UINT16:
+                    values[i] = static_cast<const std::uint16_t*>(found->data())[i];
+                    break;
+                default:
+                    return {};
+            }
         }
         return values;
     }

@@ -7,6 +7,7 @@
 
 #include "core/files.hpp"
 #include "image/exr/source.hpp"
+#include "image/picture/oriented_source.hpp"
 
 namespace darkroom {
 
@@ -31,7 +32,7 @@ Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max
     auto bytes = read_image_file(path);
     if (!bytes) return failure(std::move(bytes));
     state->bytes = std::move(*bytes);
-    auto opened = open_source(state->bytes, max_threads);
+    auto opened = open_upright(state->bytes, max_threads);
     if (!opened) return state->error(opened.error());
     state->opened = std::move(*opened);
     return Decoder(std::move(state));

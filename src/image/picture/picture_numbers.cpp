@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "core/text/param_text.hpp"
-#include "image/picture/picture_source.hpp"
+#include "image/picture/oriented_source.hpp"
 
 namespace darkroom {
 namespace {
 
 Result<ResourceImage> read(std::span<const std::byte> bytes, Result<> (*check)(const FilePart&)) {
-    const Result<OpenedSource> opened = open_source(bytes);
+    const Result<OpenedSource> opened = open_upright(bytes);
     if (!opened) return failure(opened.error());
     const FilePart& part = opened->source->parts().front();
     if (check != nullptr)
