@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/primaries.hpp"
+#include "core/text/param_text.hpp"
 #include "ocio/ocio_support.hpp"
 
 namespace darkroom {
@@ -77,11 +78,11 @@ Failure unknown(std::string_view what, const std::string& name, const Names& nam
 }
 
 template <class Make>
-Result<std::unique_ptr<ColorChain>> guarded(const Make& make) {
+Result<std::unique_ptr<ColorChain>> guarded(const std::filesystem::path& configuration, const Make& make) {
     try {
         return make();
     } catch (const std::exception& exception) {
-        return failure(error_of(exception));
+        return failure(error_of(exception, configuration));
     }
 }
 
@@ -89,7 +90,7 @@ Result<std::unique_ptr<ColorChain>> guarded(const Make& make) {
 
 Result<std::unique_ptr<ColorChain>> chain_from_space(const std::filesystem::path& configuration,
                                                      const std::string& space) {
-    return guarded([&]() -> Result<std::unique_ptr<ColorChain>> {
+    return guarded(configuration, [&]() -> Result<std::unique_ptr<ColorChain>> {
         const Result<Opened> opened = open_config(configuration);
         if (!opened) return failure(opened.error());
         const auto& [config, link] = *opened;
@@ -109,7 +110,7 @@ Result<std::unique_ptr<ColorChain>> chain_from_space(const std::filesystem::path
 
 Result<std::unique_ptr<ColorChain>> chain_to_view(const std::filesystem::path& configuration,
                                                   const std::string& display, const std::string& view) {
-    return guarded([&]() -> Result<std::unique_ptr<ColorChain>> {
+    return guarded(configuration, [&]() -> Result<std::unique_ptr<ColorChain>> {
         const Result<Opened> opened = open_config(configuration);
         if (!opened) return failure(opened.error());
         const auto& [config, link] = *opened;

@@ -62,7 +62,7 @@ ocio::ConstLut1DTransformRcPtr plain_lut_of(const ocio::ConstTransformRcPtr& ste
 
 class Chain final : public ColorChain {
   public:
-    explicit Chain(const std::filesystem::path& path) : config_(ocio::Config::CreateRaw()) {
+    explicit Chain(const std::filesystem::path& path) : path_(path), config_(ocio::Config::CreateRaw()) {
         // It remembers files by their names, and what is behind a name may have changed.
         ocio::ClearAllCaches();
         // What the table names is looked for beside it (ocio/references.hpp).
@@ -84,7 +84,7 @@ class Chain final : public ColorChain {
         try {
             return sample();
         } catch (const std::exception& exception) {
-            return failure(error_of(exception));
+            return failure(error_of(exception, path_));
         }
     }
 
@@ -173,6 +173,7 @@ class Chain final : public ColorChain {
         return out;
     }
 
+    std::filesystem::path path_;
     ocio::ConstConfigRcPtr config_;
     ocio::ConstProcessorRcPtr whole_;
     std::vector<ocio::ConstTransformRcPtr> steps_;
@@ -185,7 +186,7 @@ Result<std::unique_ptr<ColorChain>> open(const std::filesystem::path& path) {
         if (Result<> checked = check_references(path); !checked) return failure(std::move(checked));
         return std::make_unique<Chain>(path);
     } catch (const std::exception& exception) {
-        return failure(error_of(exception));
+        return failure(error_of(exception, path));
     }
 }
 

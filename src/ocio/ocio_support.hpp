@@ -7,20 +7,18 @@
 #include <array>
 #include <darkroom/result.hpp>
 #include <exception>
+#include <filesystem>
 #include <span>
 
-#include "core/text/param_text.hpp"
+#include "ocio/reader_words.hpp"
 
 namespace darkroom {
 
 namespace ocio = OCIO_NAMESPACE;
 
-/// Of the message the reason that the file's own format gave; the path, and what other formats said, are left out.
-inline Error error_of(const std::exception& exception) {
-    std::string_view text = exception.what();
-    constexpr std::string_view mark = " failed with: ", next = "    '";
-    if (const std::size_t at = text.find(mark); at != std::string_view::npos) text.remove_prefix(at + mark.size());
-    return {Fault::User, printable(text.substr(0, text.find(next)))};
+/// What was thrown about this file.
+inline Error error_of(const std::exception& exception, const std::filesystem::path& file) {
+    return {Fault::User, words_of_reader(exception.what(), file)};
 }
 
 inline void run(const ocio::ConstProcessorRcPtr& processor, std::span<std::array<float, 3>> colors) {

@@ -174,7 +174,9 @@ class OiioSource final : public PictureSource {
                 ? input_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, top, bottom, 0, 1, begin, end, type_of(kind),
                                      samples_.data())
                 : input_->read_scanlines(0, 0, top, bottom, 0, begin, end, type_of(kind), samples_.data());
-        if (!is_read) return user_error(fmt::format("damaged or truncated: {}", reason()));
+        if (!is_read)
+            return user_error(fmt::format("damaged or truncated: rows {} to {} of {}: {}", row + 1, row + rows,
+                                          spec_.height, reason()));
         for (const SamplePlace& place : places) {
             const std::byte* from = samples_.data() + (place.channel - least->channel) * size;
             for (std::uint32_t y = 0; y < rows; ++y) {
@@ -186,10 +188,12 @@ class OiioSource final : public PictureSource {
         return {};
     }
 
-    // What the reader says is wrong.
+    // What the reader says is wrong, without who says it.
     std::string reason() const {
-        const std::string message = one_printable_line(input_->geterror());
-        return message.empty() ? "damaged" : message;
+        std::string message = one_printable_line(input_->geterror());
+        for (const std::string_view who : {"PNG read error: ", "JPEG error: "})
+            if (const std::size_t at = message.find(who); at != std::string::npos) message.erase(at, who.size());
+        return message.empty() ? "they cannot be decoded" : message;
     }
 
     std::unique_ptr<OIIO::Filesystem::IOProxy> memory_;

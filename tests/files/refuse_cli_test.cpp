@@ -10,7 +10,9 @@
 namespace darkroom {
 namespace {
 
+using test::content;
 using test::Outcome;
+using Words = std::vector<std::string>;
 
 class CliRefuse : public test::CliFixture {
   protected:
@@ -102,6 +104,39 @@ TEST_F(CliRefuse, PicturesThatAreWiderThanGpusDevelopAreDescribed) {
     const std::string warning = told["warnings"].back();
     EXPECT_NE(warning.find("cannot be developed: "), std::string::npos) << warning;
     EXPECT_NE(warning.find("16384"), std::string::npos) << warning;
+}
+
+// Of what other libraries say, the reason is in our line, with the place and without their names.
+TEST_F(CliRefuse, WordsOfLibrariesAreInOneLineOfOurs) {
+    ASSERT_TRUE(write_picture(path("whole.png"), Picture(200, 200)));
+    const std::string whole = content(path("whole.png"));
+    const auto expect = [&](const std::string& name, const std::string& line) {
+        const Words typed = name.ends_with(".png") ? Words{"develop", path(name), "-o", path("out.exr")}
+                                                   : Words{"lut", "convert", path(name), "-o", path("out.cube")};
+        const Outcome outcome = run(typed);
+        EXPECT_EQ(outcome.code, 1) << outcome.err;
+        // libpng prints its own line before ours while OpenImageIO decodes in this process.
+        const std::string expected = "darkroom: " + path(name) + ": " + line + "\n";
+        EXPECT_TRUE(name.ends_with(".png") ? outcome.err.ends_with(expected) : outcome.err == expected) << outcome.err;
+    };
+    // The pixels of another picture, which are too few.
+    Picture small(200, 100);
+    ASSERT_TRUE(write_picture(path("small.png"), small));
+    const std::string other = content(path("small.png"));
+    const std::size_t header = 8 + 25;
+    write("few.png", whole.substr(0, header) + other.substr(header));
+    expect("few.png", "damaged or truncated: rows 1 to 128 of 200: Not enough image data");
+    const std::string head = "<?xml version=\"1.0\"?>\n<ProcessList id=\"a\" compCLFversion=\"3.0\">\n";
+    write("a.clf", head + "<Range/>\n</ProcessList>\n");
+    expect("a.clf", "line 3: cannot be read as .clf: inBitDepth is missing");
+    write("b.clf", head);
+    expect("b.clf", "line 3: cannot be read as .clf: no element found");
+    write("c.spi1d", "Version 1\nFrom 0 1\nLength 2\nComponents 1\n{\n0\n}\n");
+    expect("c.spi1d", "line 7: cannot be read as .spi1d: Not enough entries found");
+    write("d.spi3d", "SPILUT 1.0\n3 3\n2 2 2\n0 0 0 a\n");
+    expect("d.spi3d", "cannot be read as .spi3d: Not enough entries found");
+    write("e.csp", "LUT\n");
+    expect("e.csp", "cannot be read as .csp: doesn't seem to be a csp LUT, expected 'CSPLUTV100'. First line: 'LUT'");
 }
 
 }  // namespace
