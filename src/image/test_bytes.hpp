@@ -44,16 +44,22 @@ inline std::string png_header(std::uint32_t width, std::uint32_t height, char bi
                                  static_cast<char>(is_interlaced ? 1 : 0));
 }
 
-/// A stream of zlib that packs nothing; at most 65535 bytes.
+/// A stream of zlib that packs nothing.
 inline std::string stored(const std::string& text) {
     std::uint32_t low = 1, high = 0;
     for (const unsigned char c : text) {
         low = (low + c) % 65521;
         high = (high + low) % 65521;
     }
-    const auto size = static_cast<std::uint16_t>(text.size());
-    return "\x78\x01\x01" + little_endian(size) + little_endian(static_cast<std::uint16_t>(~size)) + text +
-           big_endian(high << 16 | low, 4);
+    std::string out = "\x78\x01";
+    constexpr std::size_t most = 65535;
+    for (std::size_t at = 0; at == 0 || at < text.size(); at += most) {
+        const std::string block = text.substr(at, most);
+        const auto size = static_cast<std::uint16_t>(block.size());
+        out += (at + most < text.size() ? '\0' : '\1') + little_endian(size) +
+               little_endian(static_cast<std::uint16_t>(~size)) + block;
+    }
+    return out + big_endian(high << 16 | low, 4);
 }
 
 /// A TIFF file: its directory, what lists of the tags need, and its samples, which lie at the end.

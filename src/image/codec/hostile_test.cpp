@@ -147,7 +147,9 @@ TEST_F(HostilePictures, AProfileOfPngIsInflatedHere) {
                                    png_chunk("iCCP", std::string("name\0\0", 6) + profile) + pixel() +
                                    png_chunk("IEND", ""));
     };
-    EXPECT_EQ(with(stored(std::string(3000, 'p'))), "");
+    EXPECT_EQ(with(stored(std::string(std::size_t{4} << 20, 'p'))), "");
+    EXPECT_EQ(with(stored(std::string((std::size_t{4} << 20) + 1, 'p'))),
+              "the profile of its colors has more than 4194304 bytes");
     EXPECT_EQ(with("no stream"), "damaged: the profile of its colors cannot be inflated");
 }
 
