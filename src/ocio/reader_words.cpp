@@ -49,7 +49,7 @@ std::string words_of_reader(std::string_view said, const std::filesystem::path& 
         remove_all(text, "(" + name + ")");
         remove_all(text, name);
     }
-    for (const std::string_view mark : {"Error is: ", "parsing error: ", "with this error: ", " file . "})
+    for (const std::string_view mark : {"Error is: ", "parsing error: ", "with this error: ", " file . ", "yaml-cpp: error "})
         if (!text.ends_with(mark)) remove_up_to(text, mark);
     const std::string line = take_line(text);
     constexpr std::string_view ends = " .:,\n\t";

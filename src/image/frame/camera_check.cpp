@@ -16,12 +16,12 @@ double determinant(const Matrix& matrix) {
     for (std::size_t i = 0; i < 16; ++i) m[i / 4][i % 4] = double{matrix[i]};
     double out = 1;
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto pivot =
-            std::max_element(m.begin() + static_cast<std::ptrdiff_t>(i), m.end(),
-                             [i](const auto& a, const auto& b) { return std::abs(a[i]) < std::abs(b[i]); });
-        if ((*pivot)[i] == 0) return 0;
-        if (pivot != m.begin() + static_cast<std::ptrdiff_t>(i)) {
-            std::swap(*pivot, m[i]);
+        std::size_t pivot = i;
+        for (std::size_t row = i + 1; row < 4; ++row)
+            if (std::abs(m[row][i]) > std::abs(m[pivot][i])) pivot = row;
+        if (m[pivot][i] == 0) return 0;
+        if (pivot != i) {
+            std::swap(m[pivot], m[i]);
             out = -out;
         }
         out *= m[i][i];

@@ -83,8 +83,9 @@ TEST_F(ImageOriented, JpegByItsExif) {
     const Shown upright = shown(file("plain.jpg"));
     ASSERT_EQ(upright.width, 27U);
     for (int orientation = 0; orientation <= 9; ++orientation) {
-        const std::string tiff = std::string("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0", 18) +
-                                 static_cast<char>(orientation) + std::string(7, '\0');
+        std::string tiff("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0", 18);
+        tiff += static_cast<char>(orientation);
+        tiff.resize(26);
         const std::string exif = std::string("Exif\0\0", 6) + tiff;
         put(file("a.jpg"),
             plain.substr(0, 2) + "\xff\xe1" + '\0' + static_cast<char>(exif.size() + 2) + exif + plain.substr(2));
