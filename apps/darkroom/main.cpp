@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
     darkroom::AtomicPath::remove_on_signals();
     // Exceptions come from third parties and from the allocator alone.
     try {
-        return run(argc, argv);
+        return app::end_output(run(argc, argv));
     } catch (const std::bad_alloc&) {
         app::complain("out of memory");
     } catch (const std::exception& error) {

@@ -17,6 +17,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/spawn.hpp"
 #include "core/text/param_text.hpp"
 
 namespace darkroom {
@@ -84,6 +85,7 @@ void remove_watched(int signal) {
     for (int wait = 0; wait < 1000 && creating > 0; ++wait) ::poll(nullptr, 0, 1);
     for (const Watched& file : watched_files)
         if (file.state == Watched::Used) ::unlink(file.path.data());
+    if (const int process = process_that_ends_with_us; process > 0) ::kill(process, signal);
     ::signal(signal, SIG_DFL);
     ::raise(signal);
 }
@@ -211,7 +213,7 @@ FileStamp stamp_of(const std::filesystem::path& path) {
     return {static_cast<std::uint64_t>(is.st_size), is.st_mtim.tv_sec, is.st_mtim.tv_nsec, is.st_ino};
 }
 
-Result<> write_file(const fs::path& path, std::span<const std::byte> content) {
+Result<> write_file(const fs::path& path, std::span<const std::byte> content, bool waits_for_disk) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
     if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {
@@ -223,7 +225,10 @@ Result<> write_file(const fs::path& path, std::span<const std::byte> content) {
     if (!temporary) return failure(std::move(temporary));
     Descriptor file(::open(temporary->path().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
     if (file.number < 0) return open_error(path, errno);
-    if (auto written = write_and_close(file, path, content); !written) return written;
+    if (auto written = write_all(file.number, path, content); !written) return written;
+    // Renamed first, the name would stand for an empty file behind a power cut.
+    if (waits_for_disk && ::fsync(file.number) != 0) return io_error(path, "write", errno);
+    if (auto closed = write_and_close(file, path, {}); !closed) return closed;
     return temporary->commit();
 }
 
@@ -277,11 +282,15 @@ Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
     if (fs::is_directory(status)) return user_error(fmt::format("{}: is a folder, a file is needed", target.string()));
     if (fs::exists(status) && !fs::is_regular_file(status))
         return user_error(fmt::format("{}: is no regular file and cannot be replaced", target.string()));
-    // Replacing a link would cut it; what it points to is what the user means.
+    // Replacing a link would cut it; what it points to is what the user means, be it there or not.
     fs::path real = target;
+    constexpr int most_links = 40;  // as the system follows
+    for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(real, code)); ++i) {
+        const fs::path to = fs::read_symlink(real, code);
+        if (code) break;
+        real = real.parent_path() / to;
+    }
     if (fs::exists(status)) {
-        const fs::path followed = fs::canonical(target, code);
-        if (!code) real = followed;
         // A rename asks only the folder; a file that its owner protected must stay as well.
         if (::access(real.c_str(), W_OK) != 0) return open_error(target, errno);
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Whole files in and out. What is written appears under its name complete or not at all: it goes to a temporary file in
-// the same folder, which is then renamed. Nothing here knows a format, and nothing waits for the disk (no fsync), so
-// the promise covers errors and kills of this process, not a power cut.
+// the same folder, which is then renamed. Nothing here knows a format. Unless it is asked to, nothing waits for the
+// disk (fsync): the promise covers errors and kills of this process, not a power cut.
 
 #include <cstddef>
 #include <cstdint>
@@ -39,8 +39,10 @@ struct FileStamp {
 [[nodiscard]] FileStamp stamp_of(const std::filesystem::path& path);
 
 /// Writes the file whole or not at all; on failure an existing file stays as it was. A link is followed. A target that
-/// is no regular file (a pipe, /dev/stdout) is written in place, since there is nothing to replace.
-[[nodiscard]] Result<> write_file(const std::filesystem::path& path, std::span<const std::byte> content);
+/// is no regular file (a pipe, /dev/stdout) is written in place, since there is nothing to replace. `waits_for_disk`:
+/// for what cannot be made again.
+[[nodiscard]] Result<> write_file(const std::filesystem::path& path, std::span<const std::byte> content,
+                                  bool waits_for_disk = false);
 
 /// A temporary path beside a target, for writers that want a path rather than bytes. It carries the target's extension,
 /// because such writers choose the format by it. `commit` moves it over the target; without a commit the destructor

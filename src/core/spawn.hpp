@@ -5,10 +5,15 @@
 #include <spawn.h>
 #include <sys/types.h>
 
+#include <atomic>
 #include <span>
 #include <string>
 
 namespace darkroom {
+
+/// Where AtomicPath::remove_on_signals() is in force, the signal that ends this process is sent to that one, too; 0:
+/// none.
+inline std::atomic<pid_t> process_that_ends_with_us{0};
 
 class Spawn {
   public:

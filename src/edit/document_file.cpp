@@ -158,7 +158,7 @@ Result<> LookDocument::write(const std::filesystem::path& file, std::string_view
     if (is_readable && !read) return failure(read.error());
     if (is_readable && !says(*read, look_))
         return user_error(fmt::format("{}: the look cannot be written so that it reads as the same", printable(shown)));
-    if (Result<> done = write_file(file, std::as_bytes(std::span(*text))); !done) return done;
+    if (Result<> done = write_file(file, std::as_bytes(std::span(*text)), true); !done) return done;
     file_ = file;
     text_ = *text;
     options_ = std::move(options);

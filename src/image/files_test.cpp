@@ -66,6 +66,18 @@ TEST_F(ImageFiles, CommitReplacesKeepsPermissionsAndFollowsLinks) {
     EXPECT_EQ(std::filesystem::status(file("a.txt")).permissions(), std::filesystem::perms(0640));
 }
 
+TEST_F(ImageFiles, ALinkToNothingIsFollowedAndStays) {
+    std::filesystem::create_symlink("second.txt", file("first.txt"));
+    std::filesystem::create_symlink("later.txt", file("second.txt"));
+    ASSERT_TRUE(write_file(file("first.txt"), bytes("new")));
+    EXPECT_TRUE(std::filesystem::is_symlink(file("first.txt")));
+    EXPECT_TRUE(std::filesystem::is_symlink(file("second.txt")));
+    EXPECT_EQ(content(file("later.txt")), "new");
+    std::filesystem::create_symlink("round.txt", file("round.txt"));
+    EXPECT_FALSE(write_file(file("round.txt"), bytes("new")));
+    EXPECT_TRUE(std::filesystem::is_symlink(file("round.txt")));
+}
+
 TEST_F(ImageFiles, FullDeviceIsAMachineErrorAndTheDeviceStays) {
     if (!std::filesystem::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
     const auto written = write_file("/dev/full", bytes("x"));

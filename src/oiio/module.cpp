@@ -209,8 +209,9 @@ Result<std::vector<std::byte>> encode(const EncodeDesc& desc) {
     };
     OIIO::ImageSpec spec(static_cast<int>(desc.width), static_cast<int>(desc.height), static_cast<int>(desc.channels),
                          type_of(desc.kind));
-    // OpenImageIO would write the time of day, and no file would be the same twice.
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
+    // OpenImageIO would write the time of day, and no file would be the same twice. An unknown time is blanks
+    // (EXIF 2.3, 4.6.4, DateTime).
+    if (desc.file == FileKind::Tiff) spec.attribute("DateTime", "    :  :     :  :  ");
     // Alpha is carried, never applied: without this, writers divide colour by it.
     spec.attribute("oiio:UnassociatedAlpha", 1);
     if (desc.file == FileKind::Jpeg) {

@@ -104,6 +104,25 @@ TEST_F(CliSequence, WhatIsThereStaysWhereAsked) {
     EXPECT_NE(content(path(out("b", 3))), "there");
 }
 
+TEST_F(CliSequence, WhoReadsTheFirstLineAloneDoesNotEndTheWork) {
+    fs::create_directories(path("h"));
+    const Outcome outcome = run_lines("darkroom develop f.%04d.exr -o h/ --jobs 1 | head -n 1");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    for (int number = 1; number <= count; ++number) EXPECT_TRUE(fs::exists(path(out("h", number)))) << number;
+}
+
+TEST_F(CliSequence, AFullDiskBehindStandardOutputIsTold) {
+    if (!fs::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    for (const std::string command : {"info f.0001.exr", "effects", "plan", "devices", "effects bloom --json", "--help",
+                                      "info f.0001.exr --json", "develop f.0001.exr -o k.png"}) {
+        const Outcome outcome = run_lines("darkroom " + command + " > /dev/full");
+        EXPECT_EQ(outcome.code, 2) << command;
+        EXPECT_NE(outcome.err.find("No space left on device"), std::string::npos) << command << ": " << outcome.err;
+        EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << command << ": " << outcome.err;
+    }
+}
+
 TEST_F(CliSequence, AFailureStopsTheFramesAfterIt) {
     put(path(in(4)), "no picture");
     const Outcome outcome = develop("c", {"--jobs", "3"});

@@ -80,6 +80,26 @@ TEST_F(CliFarm, ATaskMakesWhatDevelopMakesAndWritesWhatItDid) {
     EXPECT_EQ(record("0-0")["made"], 1);
 }
 
+// Slurm sends the task a signal, and not what it has started.
+TEST_F(CliFarm, WhatATaskHasStartedEndsWithIt) {
+    FrameFile large;
+    large.color = Picture(1500, 1500);
+    ASSERT_TRUE(write_frame(path(in(0)), large));
+    for (int number = 1; number < 60; ++number) {
+        fs::remove(path(in(number)));
+        fs::create_symlink(in(0), path(in(number)));
+    }
+    const Outcome outcome = run_lines(
+        "set +e\ndarkroom farm task 'shot.####.exr' -o out/ --frames 0-59 -q &\ntask=$!\n"
+        "for i in $(seq 200); do test -e out/shot.0001.png && break; sleep 0.1; done\n"
+        "child=$(cat /proc/$task/task/$task/children)\ntest -n \"$child\" || echo no child\n"
+        "kill -TERM $task\nwait $task\n"
+        "for i in $(seq 100); do kill -0 $child 2>/dev/null || break; sleep 0.05; done\n"
+        "kill -0 $child 2>/dev/null && echo is running\nexit 0");
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_FALSE(fs::exists(path(out("out", 59))));
+}
+
 TEST_F(CliFarm, AFrameThatFailsIsTriedThreeTimesMoreAndLeavesTheOthersAlone) {
     const std::string good = content(path(in(1)));
     write(in(1), "no picture");

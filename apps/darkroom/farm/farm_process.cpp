@@ -106,6 +106,7 @@ Result<ProcessOutcome> run_process(const std::vector<std::string>& arguments, Pr
     pid_t process = -1;
     const int reason = spawn.start(process, arguments[0], arguments);
     if (reason != 0) return cannot_be_run(reason);
+    darkroom::process_that_ends_with_us = process;
     out.close_end(1);
     errors.close_end(1);
     ProcessOutcome outcome;
@@ -113,6 +114,7 @@ Result<ProcessOutcome> run_process(const std::vector<std::string>& arguments, Pr
     int status = 0;
     while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
     }
+    darkroom::process_that_ends_with_us = 0;
     outcome.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     return outcome;
 }

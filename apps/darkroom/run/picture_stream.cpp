@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 
 #include "report.hpp"
@@ -31,7 +30,7 @@ Result<> write_all(std::span<const std::byte> bytes) {
 
 PictureStream::PictureStream(const StreamDesc& desc) : desc_(desc) {
     leave_standard_output();
-    std::signal(SIGPIPE, SIG_IGN);
+    survive_closed_pipes();
 }
 
 std::vector<std::byte> PictureStream::pack(const darkroom::DevelopedPicture& picture) const {

@@ -5,7 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <mutex>
 
 namespace app {
@@ -15,7 +18,9 @@ namespace {
 Voice voice = Voice::Usual;
 std::FILE* told_to = stdout;
 bool is_bar_shown = false;
-std::mutex terminal;  // whose lines come from several threads
+bool is_anybody_listening = true;
+int output_error = 0;  ///< the first of standard output, as errno has it
+std::mutex terminal;   // whose lines come from several threads
 
 void say(std::string_view prefix, std::string_view text) {
     std::string line(text);
@@ -34,12 +39,30 @@ Voice current_voice() { return voice; }
 void leave_standard_output() { told_to = stderr; }
 
 void answer(std::string_view line) {
-    fmt::print(told_to, "{}\n", line);
-    std::fflush(told_to);
+    std::fwrite(line.data(), 1, line.size(), told_to);
+    std::fputc('\n', told_to);
+    if (std::fflush(told_to) != 0 && output_error == 0) output_error = errno;
 }
 
 void tell(std::string_view line) {
-    if (voice != Voice::Quiet) answer(line);
+    if (voice == Voice::Quiet || !is_anybody_listening) return;
+    answer(line);
+    if (output_error != EPIPE) return;
+    // Whoever read what was done has read enough; the pictures are made all the same.
+    is_anybody_listening = false;
+    output_error = 0;
+    std::clearerr(told_to);
+}
+
+void survive_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
+
+int end_output(int code) {
+    errno = 0;
+    if (std::fflush(stdout) != 0 && output_error == 0) output_error = errno;
+    if (std::ferror(stdout) == 0 && output_error == 0) return code;
+    complain(fmt::format("standard output: cannot write: {}",
+                         output_error == 0 ? "an error before" : std::strerror(output_error)));
+    return code == exit_ok ? exit_machine : code;
 }
 
 void remark(std::string_view text) {

@@ -21,8 +21,12 @@ void leave_standard_output();
 
 /// What was asked for, a line.
 void answer(std::string_view line);
-/// What was done, a line; not where it is to be quiet.
+/// What was done, a line; not where it is to be quiet, and not where nobody reads it any more.
 void tell(std::string_view line);
+/// For work whose lines are told by the way: that nobody reads them does not end it.
+void survive_closed_pipes();
+/// The exit code `code`; where standard output could not be written (a full disk), a line says so and it is another.
+[[nodiscard]] int end_output(int code);
 /// "darkroom: <text>" on one line of standard error, where that was asked for.
 void remark(std::string_view text);
 /// "darkroom: <text>" on one line of standard error.

@@ -30,6 +30,7 @@ void print_stages(const PipelineTimes& times, std::size_t pictures) {
 }  // namespace
 
 Result<> run_sequence(const SequenceDesc& desc, const SequenceStages& stages) {
+    survive_closed_pipes();
     std::vector<darkroom::Error> failures;
     PipelineTimes times;
     std::atomic<bool> is_undeliverable = false;

@@ -122,6 +122,18 @@ TEST_F(ImageWrite, WhatCannotBeIsRefusedInOneLine) {
     EXPECT_EQ(file_count(), 0u);
 }
 
+TEST_F(ImageWrite, NoTimeIsWritten) {
+    for (const char* const name : {"a.jpg", "a.tif", "a.png", "a.exr", "a.hdr"}) {
+        ASSERT_TRUE(write_picture(file(name), codes())) << name;
+        const std::string text = content(file(name));
+        for (const char* const century : {"19", "20"})
+            for (std::size_t at = text.find(century); at != std::string::npos; at = text.find(century, at + 1))
+                EXPECT_FALSE(at + 5 < text.size() && std::isdigit(static_cast<unsigned char>(text[at + 3])) != 0 &&
+                             text[at + 4] == ':')
+                    << name << ": " << text.substr(at, 19);
+    }
+}
+
 TEST_F(ImageWrite, FailureLeavesTheOldFile) {
     const Picture picture(2, 2);
     put(file("a.png"), "old");
