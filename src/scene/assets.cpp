@@ -21,32 +21,40 @@ bool is_file(const fs::path& path) {
     return fs::is_regular_file(path, error);
 }
 
+/// A folder that files are looked for in, and a name there.
+struct FilePlace {
+    fs::path folder, name;
+    [[nodiscard]] fs::path path() const { return folder / name; }
+};
+
 /// What is there and is no file either is what the scene means where there is nothing better: opening it tells why not.
-fs::path first_file(std::span<const fs::path> places) {
-    for (const fs::path& place : places)
-        if (is_file(place)) return place;
-    for (const fs::path& place : places)
-        if (std::error_code error; fs::exists(place, error) && !fs::is_directory(place, error)) return place;
+fs::path first_file(std::span<const FilePlace> places, NamedFiles named_files) {
+    const auto may_be = [&](const FilePlace& place) {
+        return named_files == NamedFiles::Any || lies_in(place.folder, place.path());
+    };
+    for (const FilePlace& place : places)
+        if (is_file(place.path()) && may_be(place)) return place.path();
+    for (const FilePlace& place : places)
+        if (std::error_code error; fs::exists(place.path(), error) && !fs::is_directory(place.path(), error))
+            if (may_be(place)) return place.path();
     return {};
 }
 
-fs::path find_model(const fs::path& folder, const std::string& asset) {
+std::vector<FilePlace> model_places(const fs::path& folder, const std::string& asset) {
     const fs::path name(asset);
     const bool is_model_file = is_model_path(name);
-    const auto with = [&](const char* extension) { return fs::path(asset + extension); };
-    std::vector<fs::path> places;
-    if (is_model_file) places.push_back(folder / name);
+    std::vector<FilePlace> places;
+    if (is_model_file) places.push_back({folder, name});
     for (const char* models : {"models", "../models"}) {
-        if (is_model_file) places.push_back(folder / models / name);
-        places.push_back(folder / models / with(".glb"));
-        places.push_back(folder / models / with(".gltf"));
+        if (is_model_file) places.push_back({folder / models, name});
+        places.push_back({folder / models, asset + ".glb"});
+        places.push_back({folder / models, asset + ".gltf"});
     }
-    return first_file(places);
+    return places;
 }
 
-fs::path find_texture(const fs::path& folder, const fs::path& name) {
-    const std::array places{folder / name, folder / "textures" / name, folder / "../textures" / name};
-    return first_file(places);
+std::vector<FilePlace> texture_places(const fs::path& folder, const fs::path& name) {
+    return {{folder, name}, {folder / "textures", name}, {folder / "../textures", name}};
 }
 
 /// Which files are wanted, each once, in the order in which they are first asked for.
@@ -81,31 +89,32 @@ struct Wanted {
 
 Wanted find_files(const Scene& scene, Assets& assets) {
     Wanted wanted;
-    const auto warn_missing = [&](const std::string& asked_for, const std::string& by) {
-        assets.warnings.push_back(fmt::format("{}: {} asks for '{}': there is no such file",
-                                              one_printable_line(scene.file.string()), by,
-                                              one_printable_line(asked_for)));
+    /// Empty, with a warning, where there is none.
+    const auto find = [&](std::span<const FilePlace> places, const std::string& asked_for, const std::string& by) {
+        fs::path file = first_file(places, scene.named_files);
+        if (!file.empty()) return file;
+        const bool is_there = !first_file(places, NamedFiles::Any).empty();
+        assets.warnings.push_back(fmt::format("{}: {} asks for '{}': {}", one_printable_line(scene.file.string()), by,
+                                              one_printable_line(asked_for),
+                                              is_there ? "leaves the folder of the scene" : "there is no such file"));
+        return file;
     };
     const auto texture = [&](const fs::path& name, const std::string& by) {
         if (name.empty()) return no_index;
-        const fs::path file = find_texture(scene.folder, name);
-        if (!file.empty()) return wanted.images.add(file, by);
-        warn_missing(name.string(), by);
-        return no_index;
+        const fs::path file = find(texture_places(scene.folder, name), name.string(), by);
+        return file.empty() ? no_index : wanted.images.add(file, by);
     };
     if (!scene.environment.skybox.empty()) {
-        wanted.skybox = find_texture(scene.folder, scene.environment.skybox);
-        if (wanted.skybox.empty()) warn_missing(scene.environment.skybox.string(), "the environment");
+        const fs::path& name = scene.environment.skybox;
+        wanted.skybox = find(texture_places(scene.folder, name), name.string(), "the environment");
     }
     for (const Entity& entity : scene.entities) {
         const std::string by = entity_name(entity);
         EntityAssets& found = assets.entities.emplace_back();
         if (entity.model && !entity.model->asset.empty()) {
-            const fs::path file = find_model(scene.folder, entity.model->asset);
-            if (file.empty())
-                warn_missing(entity.model->asset, by);
-            else
-                found.model = wanted.models.add(file, by);
+            const std::string& asset = entity.model->asset;
+            const fs::path file = find(model_places(scene.folder, asset), asset, by);
+            if (!file.empty()) found.model = wanted.models.add(file, by);
         }
         if (entity.material) found.material_texture = texture(entity.material->texture, by);
         if (entity.sprite) found.sprite_texture = texture(entity.sprite->texture, by);
@@ -135,7 +144,7 @@ Assets load_assets(const Scene& scene) {
     std::optional<Result<FrameFile>> sky;
     parallel_for(model_files.size() + 1, 0, [&](std::size_t i) {
         if (i > 0)
-            models[i - 1] = read_model(model_files[i - 1], Budget(0, model_files.size()));
+            models[i - 1] = read_model(model_files[i - 1], Budget(0, model_files.size()), scene.named_files);
         else if (!wanted.skybox.empty())
             sky = read_frame(wanted.skybox, {.has_shadow_depths = false});
     });

@@ -157,6 +157,7 @@ struct Model {
 /// Errors begin with the path and name the fault: damaged structure, an index or accessor out of range, a cycle of
 /// nodes, a URI that leaves the model's folder, a required extension this reader lacks.
 /// More elements, or more data that share bytes, than the budget has room for are refused before they are made.
-[[nodiscard]] Result<Model> read_model(const std::filesystem::path& path, Budget budget = Budget());
+[[nodiscard]] Result<Model> read_model(const std::filesystem::path& path, Budget budget = Budget(),
+                                       NamedFiles named_files = NamedFiles::Own);
 
 }  // namespace darkroom::scene

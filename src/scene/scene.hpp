@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "scene/math.hpp"
+#include "scene/named_files.hpp"
 
 namespace darkroom::scene {
 
@@ -158,6 +159,7 @@ struct Scene {
     double time = 0;               ///< [scene] time: of a picture when no other time is asked for, seconds
     std::uint32_t samples = 0;     ///< [scene] samples: places within a pixel that a picture is made of; 0: not said
     bool has_grid = true;          ///< [scene] grid
+    NamedFiles named_files = NamedFiles::Any;
     bool has_alpha_layer = false;  ///< [scene] alpha_layer: alpha is cleared to 0 and only Writes::Alpha draws write it
     Camera camera;
     Environment environment;
@@ -167,6 +169,7 @@ struct Scene {
 struct SceneOptions {
     bool is_strict = false;                        ///< what is a warning otherwise is an error
     std::vector<std::string>* warnings = nullptr;  ///< "file:line:column: ..."
+    NamedFiles named_files = NamedFiles::Any;
 };
 
 /// Errors and warnings are `shown_name:line:column: thing, value, what is allowed, nearest name`.

@@ -28,6 +28,7 @@ struct Options {
     std::vector<std::string> files;
     bool is_json = false;
     bool has_no_custom_effects = false;
+    bool has_own_files = false;
 };
 
 /// The start of a file, and its extension in lower case for kinds that have no mark.
@@ -81,11 +82,13 @@ struct Kind {
 
 /// A file is the first of them that it looks like.
 std::array<Kind, 4> kinds_of(const Options& options) {
-    const auto toml = [allows = !options.has_no_custom_effects](const fs::path& path) {
-        return info::toml(path, allows);
+    const auto named = options.has_own_files ? darkroom::scene::NamedFiles::Own : darkroom::scene::NamedFiles::Any;
+    const auto toml = [allows = !options.has_no_custom_effects, named](const fs::path& path) {
+        return info::toml(path, allows, named);
     };
+    const auto model = [named](const fs::path& path) { return info::model(path, named); };
     return {Kind{"a picture (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)", is_picture, info::picture},
-            Kind{"a model (glTF)", is_model, info::model},
+            Kind{"a model (glTF)", is_model, model},
             Kind{"a colour table (.cube, .3dl, .spi1d, .spi3d, .csp, .clf)", is_table, info::table},
             Kind{"a scene or a look (TOML)", is_toml, toml}};
 }
@@ -144,6 +147,8 @@ Command add_info(CommandFlags program) {
         "darkroom info frame.exr --json");
     command.add_option("FILE", options->files, "Files of any known kind, which is told by their content").required();
     command.add_flag("--json", options->is_json, "For programs: a document, or an array of them for several files");
+    command.add_flag("--own-files", options->has_own_files,
+                     "Refuses files that a scene, its prefabs or models name outside of their folders");
     command.add_flag(no_custom_effects, options->has_no_custom_effects,
                      "Refuses a look that names the file of an effect");
     return {command, [options] { return run(*options); }};

@@ -71,7 +71,8 @@ Json entries_of(const darkroom::Look& look) {
     return out;
 }
 
-Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects) {
+Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects,
+                  darkroom::scene::NamedFiles named_files) {
     const Result<std::string> text = darkroom::scene::reading::read_scene_text(path);
     if (!text) return failure(text.error());
     const std::string shown = path.string();
@@ -86,7 +87,7 @@ Result<Json> toml(const std::filesystem::path& path, bool allows_custom_effects)
             darkroom::printable(shown)));
     Json out{{"kind", is_scene ? "scene" : "look"}};
     if (is_scene) {
-        const Result<Json> found = scene(*text, path);
+        const Result<Json> found = scene(*text, path, named_files);
         if (!found) return found;
         out.update(*found);
     }

@@ -177,8 +177,8 @@ Json particles_of(const scenes::Scene& scene) {
 
 }  // namespace
 
-Result<Json> model(const std::filesystem::path& path) {
-    const Result<scenes::Model> model = scenes::read_model(path);
+Result<Json> model(const std::filesystem::path& path, scenes::NamedFiles named_files) {
+    const Result<scenes::Model> model = scenes::read_model(path, scenes::Budget(), named_files);
     if (!model) return failure(model.error());
     Counts stored;
     std::size_t targets = 0, joints = 0;
@@ -207,9 +207,10 @@ Result<Json> model(const std::filesystem::path& path) {
     return out;
 }
 
-Result<Json> scene(const std::string& text, const std::filesystem::path& path) {
+Result<Json> scene(const std::string& text, const std::filesystem::path& path, scenes::NamedFiles named_files) {
     std::vector<std::string> warnings;
-    const Result<scenes::Scene> scene = scenes::parse_scene(text, path, {.warnings = &warnings});
+    const Result<scenes::Scene> scene =
+        scenes::parse_scene(text, path, {.warnings = &warnings, .named_files = named_files});
     if (!scene) return failure(scene.error());
     const scenes::Assets assets = scenes::load_assets(*scene);
     const auto count = [&](auto member) {

@@ -130,8 +130,9 @@ class Render {
     Result<> read() {
         if (Result<> done = read_flags(); !done) return done;
         std::vector<std::string> warnings;
-        Result<scene::Scene> scene =
-            scene::read_scene(flags_.scene, {.is_strict = flags_.look.is_strict(), .warnings = &warnings});
+        Result<scene::Scene> scene = scene::read_scene(
+            flags_.scene,
+            {.is_strict = flags_.look.is_strict(), .warnings = &warnings, .named_files = flags_.drawn.named_files()});
         for (const std::string& warning : warnings) warn(warning);
         if (!scene) return failure(std::move(scene));
         scene_ = std::move(*scene);

@@ -75,6 +75,8 @@ void SceneFlags::add_to(CommandFlags command, VkExtent2D usual_extent, std::uint
     width_.add_to(command, "Of the picture").type_name("PIXELS").default_str(fmt::format("{}", usual_extent.width));
     height_.add_to(command, "Of the picture").type_name("PIXELS").default_str(fmt::format("{}", usual_extent.height));
     command.add_option("--size", size_, "Both at once").type_name("WxH");
+    command.add_flag("--own-files", has_own_files_,
+                     "Refuses files that the scene, its prefabs or models name outside of their folders");
     command.add_option("--schemas", schemas_, "Taken for the sake of old command lines; there is nothing to check")
         .repeated()
         .type_name("DIR")

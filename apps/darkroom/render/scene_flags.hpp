@@ -28,6 +28,9 @@ class SceneFlags {
     /// Without `output`: that is for the look to say.
     [[nodiscard]] darkroom::Result<darkroom::render::RenderDesc> desc() const;
     [[nodiscard]] darkroom::Result<std::uint64_t> seed() const;
+    [[nodiscard]] darkroom::scene::NamedFiles named_files() const {
+        return has_own_files_ ? darkroom::scene::NamedFiles::Own : darkroom::scene::NamedFiles::Any;
+    }
     [[nodiscard]] bool has_msaa() const { return msaa_.is_given(); }
     [[nodiscard]] bool is_tone_mapped() const { return !has_no_tone_mapping_; }
     /// Says what is taken and changes nothing.
@@ -56,7 +59,7 @@ class SceneFlags {
                                   {.least = 16, .most = 16384, .is_whole = true, .unit = "texels"}};
     NumberFlag msaa_{"--msaa", {.least = 1, .most = 64, .is_whole = true}};
     bool has_no_grid_ = false, has_wireframe_overlay_ = false, has_normal_arrows_ = false;
-    bool has_no_tone_mapping_ = false, has_no_shadows_ = false;
+    bool has_no_tone_mapping_ = false, has_no_shadows_ = false, has_own_files_ = false;
 };
 
 }  // namespace app

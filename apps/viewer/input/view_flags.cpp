@@ -90,7 +90,8 @@ Result<> ViewFlags::read_subject(ViewerJob& job) const {
     if (!seed) return failure(seed.error());
     const Result<darkroom::scene::OrbitOverride> orbit = drawn_.orbit();
     if (!orbit) return failure(orbit.error());
-    job.scene_desc = {.render = *desc, .seed = *seed, .is_strict = look_.is_strict()};
+    job.scene_desc = {
+        .render = *desc, .seed = *seed, .is_strict = look_.is_strict(), .named_files = drawn_.named_files()};
     job.orbit = *orbit;
     if (Result<> done = time_.read_to(job.time); !done) return done;
     if (Result<> done = frames_per_second_.read_to(job.frame_desc.frames_per_second); !done) return done;

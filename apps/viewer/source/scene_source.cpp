@@ -32,7 +32,8 @@ Result<std::unique_ptr<SceneSource>> SceneSource::create(darkroom::Device& devic
 }
 
 Result<> SceneSource::read() {
-    Result<scene::Scene> read = scene::read_scene(file_, {.is_strict = desc_.is_strict, .warnings = &warnings_});
+    Result<scene::Scene> read = scene::read_scene(
+        file_, {.is_strict = desc_.is_strict, .warnings = &warnings_, .named_files = desc_.named_files});
     if (!read) return failure(std::move(read));
     scene_ = std::move(*read);
     assets_ = scene::load_assets(scene_);

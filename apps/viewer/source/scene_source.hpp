@@ -15,6 +15,7 @@ class SceneSource final : public LiveSource {
         darkroom::render::RenderDesc render;
         std::uint64_t seed = 0;
         bool is_strict = false;
+        darkroom::scene::NamedFiles named_files = darkroom::scene::NamedFiles::Any;
     };
     /// Reads the scene, uploads it. Errors are those of the file and the machine.
     [[nodiscard]] static darkroom::Result<std::unique_ptr<SceneSource>> create(darkroom::Device& device,

@@ -174,7 +174,7 @@ Result<Container> split_container(std::span<const std::byte> file, Budget& budge
 
 bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 
-Result<fs::path> resolve_uri(const fs::path& folder, std::string_view uri) {
+Result<fs::path> resolve_uri(const fs::path& folder, std::string_view uri, NamedFiles named_files) {
     const std::string shown = one_printable_line(uri.substr(0, 200));
     const auto leaves = [&] { return user_error(fmt::format("{}: leaves the folder of the model", shown)); };
     if (uri.empty()) return user_error("an empty URI");
@@ -186,19 +186,17 @@ Result<fs::path> resolve_uri(const fs::path& folder, std::string_view uri) {
     std::string slashes = name;
     std::replace(slashes.begin(), slashes.end(), '\\', '/');
     const fs::path relative = fs::path(slashes).lexically_normal();
-    if (slashes.front() == '/' || relative.is_absolute() || *relative.begin() == "..") return leaves();
+    const bool is_own = named_files == NamedFiles::Own;
+    if (is_own && (slashes.front() == '/' || relative.is_absolute() || *relative.begin() == "..")) return leaves();
 
     std::error_code error;
     fs::path file = folder / fs::path(name);
     if (!fs::exists(file, error)) file = folder / relative;
     if (!fs::exists(file, error)) return user_error(fmt::format("{}: not found", shown));
-    const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
-    if (error) return user_error(fmt::format("{}: {}", shown, error.message()));
+    if (is_own && !lies_in(folder, file)) return leaves();
+    // One file under several names is held once.
     const fs::path target = fs::canonical(file, error);
     if (error) return user_error(fmt::format("{}: {}", shown, error.message()));
-    const auto [root_end, target_end] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
-    if (root_end != root.end() || target_end == target.end()) return leaves();
-    if (!fs::is_regular_file(target, error)) return user_error(fmt::format("{}: is no regular file", shown));
     return target;
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scene/budget.hpp"
+#include "scene/named_files.hpp"
 
 namespace darkroom::scene::gltf {
 
@@ -29,7 +30,8 @@ struct Container {
 
 /// The file that a URI names. Refused are schemes, absolute paths and whatever leaves `folder`, also by percent-encoded
 /// characters or by symbolic links. The error names the URI; a file that does not exist is one.
-[[nodiscard]] Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri);
+[[nodiscard]] Result<std::filesystem::path> resolve_uri(const std::filesystem::path& folder, std::string_view uri,
+                                                        NamedFiles named_files = NamedFiles::Own);
 
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 /// The bytes of a data URI (RFC 2397).

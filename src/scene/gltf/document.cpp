@@ -22,8 +22,9 @@ constexpr std::size_t most_file_bytes = std::size_t{1} << 32;
 
 }  // namespace
 
-Result<Document> Document::open(const std::filesystem::path& path, Budget budget) {
+Result<Document> Document::open(const std::filesystem::path& path, Budget budget, NamedFiles named_files) {
     Document document;
+    document.named_files_ = named_files;
     document.budget_ = std::move(budget);
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return user_error("not found");
@@ -76,7 +77,7 @@ Result<> Document::load_buffer(const json& buffer, std::size_t index, std::size_
         if (bytes.size() > size)
             faults_.warn(fmt::format("{}: has {} bytes, byteLength is {}", pointer, bytes.size(), size));
     } else {
-        const auto path = resolve_uri(folder, uri);
+        const auto path = resolve_uri(folder, uri, named_files_);
         if (!path) return wrong(path.error().text);
         const auto file = file_of_buffer(*path, largest);
         if (!file) return wrong(fmt::format("{}: {}", uri, file.error().text));
@@ -212,7 +213,7 @@ void Document::load_images(const json& images, const std::filesystem::path& fold
             else
                 source.fault = fmt::format("{}: {}", pointer, bytes.error().text);
         } else {
-            auto path = resolve_uri(folder, uri);
+            auto path = resolve_uri(folder, uri, named_files_);
             if (path)
                 source.file = std::move(*path);
             else

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "scene/gltf/schema.hpp"
+#include "scene/named_files.hpp"
 
 namespace darkroom::scene::gltf {
 
@@ -53,7 +54,8 @@ struct ImageSource {
 class Document {
   public:
     /// Errors are without the path.
-    [[nodiscard]] static Result<Document> open(const std::filesystem::path& path, Budget budget);
+    [[nodiscard]] static Result<Document> open(const std::filesystem::path& path, Budget budget,
+                                               NamedFiles named_files);
 
     [[nodiscard]] const tinygltf::Model& model() const { return model_; }
     [[nodiscard]] Faults& faults() { return faults_; }
@@ -96,6 +98,7 @@ class Document {
     std::vector<ImageSource> images_;
     std::vector<std::size_t> image_of_;
     Budget budget_;
+    NamedFiles named_files_ = NamedFiles::Own;
 };
 
 }  // namespace darkroom::scene::gltf

@@ -158,8 +158,8 @@ Result<> check_nodes(Document& document, const NodeOrder& order, Model& model) {
     return {};
 }
 
-Result<Model> read(const std::filesystem::path& path, Budget budget) {
-    auto document = Document::open(path, std::move(budget));
+Result<Model> read(const std::filesystem::path& path, Budget budget, NamedFiles named_files) {
+    auto document = Document::open(path, std::move(budget), named_files);
     if (!document) return failure(std::move(document));
     auto order = order_nodes(*document);
     if (!order) return failure(std::move(order));
@@ -181,9 +181,9 @@ Result<Model> read(const std::filesystem::path& path, Budget budget) {
 
 }  // namespace
 
-Result<Model> read_model(const std::filesystem::path& path, Budget budget) {
+Result<Model> read_model(const std::filesystem::path& path, Budget budget, NamedFiles named_files) {
     try {
-        auto model = read(path, std::move(budget));
+        auto model = read(path, std::move(budget), named_files);
         if (model) return model;
         Error error = model.error();
         error.text = fmt::format("{}: {}", path.string(), one_printable_line(error.text));

@@ -228,6 +228,14 @@ std::optional<PrefabExpander::Template> PrefabExpander::find_template(const Leve
     for (const fs::path& path : places) {
         std::error_code error;
         if (!fs::exists(path, error)) continue;
+        const bool is_own = lies_in(scene_folder_, path) || lies_in(scene_folder_ / ".." / "prefabs", path);
+        if (named_files_ == NamedFiles::Own && !is_own) {
+            report_.error(instance.template_place, [&] {
+                return fmt::format("prefabs.{}.template = \"{}\": leaves the folder of the scene",
+                                   printable(instance.name), printable(name));
+            });
+            return std::nullopt;
+        }
         const LoadedFile* const file = load(path.lexically_normal(), instance);
         if (file == nullptr) return std::nullopt;
         return Template{.identity = file->identity, .shown = name, .level = file->level};

@@ -18,6 +18,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "scene/named_files.hpp"
 #include "scene/read/read_values.hpp"
 
 namespace darkroom::scene::reading {
@@ -52,8 +53,8 @@ struct LoadedFile {
 
 class PrefabExpander {
   public:
-    PrefabExpander(Report& report, TreeBuilder& trees, std::filesystem::path scene_folder)
-        : report_(report), trees_(trees), scene_folder_(std::move(scene_folder)) {}
+    PrefabExpander(Report& report, TreeBuilder& trees, std::filesystem::path scene_folder, NamedFiles named_files)
+        : report_(report), trees_(trees), scene_folder_(std::move(scene_folder)), named_files_(named_files) {}
     PrefabExpander(const PrefabExpander&) = delete;
     PrefabExpander& operator=(const PrefabExpander&) = delete;
     [[nodiscard]] std::vector<RawEntity> expand(const Level& scene);
@@ -92,6 +93,7 @@ class PrefabExpander {
     Report& report_;
     TreeBuilder& trees_;
     std::filesystem::path scene_folder_;
+    NamedFiles named_files_;
     std::deque<LoadedFile> files_;
     std::vector<RawEntity> entities_;
     std::unordered_map<std::string, std::size_t> names_;

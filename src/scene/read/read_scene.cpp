@@ -29,7 +29,7 @@ SceneReader::SceneReader(const toml::table& file, const std::filesystem::path& p
 
 Result<Scene> SceneReader::read() {
     read_top();
-    PrefabExpander prefabs(report_, trees_, scene_.folder);
+    PrefabExpander prefabs(report_, trees_, scene_.folder, options_.named_files);
     const std::vector<RawEntity> entities = prefabs.expand(level_of(file_, 0, scene_.folder));
     scene_.file_bytes = prefabs.file_bytes();
     if (prefabs.is_full()) return failure(report_.finish(options_.warnings).error());
@@ -248,11 +248,15 @@ void SceneReader::inherit_base_colors() {
 
 namespace {
 
-Result<Scene> scene_of_model(const std::filesystem::path& path) {
+Result<Scene> scene_of_model(const std::filesystem::path& path, NamedFiles named_files) {
     if (const auto start = read_file(path, {.max_size = 1, .takes_start = true}); !start) return failure(start.error());
     std::error_code error;
     const std::filesystem::path whole = std::filesystem::absolute(path, error);
-    Scene scene{.name = path.stem().string(), .file = path, .folder = path.parent_path(), .has_grid = false};
+    Scene scene{.name = path.stem().string(),
+                .file = path,
+                .folder = path.parent_path(),
+                .has_grid = false,
+                .named_files = named_files};
     scene.entities.push_back({.name = "model", .model = ModelReference{.asset = (error ? path : whole).string()}});
     return scene;
 }
@@ -260,7 +264,9 @@ Result<Scene> scene_of_model(const std::filesystem::path& path) {
 Result<Scene> scene_of(const toml::table& table, std::string_view text, const std::filesystem::path& file,
                        const SceneOptions& options) {
     Result<Scene> scene = SceneReader(table, file, options).read();
-    if (scene) scene->file_bytes += text.size();
+    if (!scene) return scene;
+    scene->file_bytes += text.size();
+    scene->named_files = options.named_files;
     return scene;
 }
 
@@ -290,7 +296,7 @@ bool is_model_path(const std::filesystem::path& path) {
 
 Result<Scene> read_scene(const std::filesystem::path& path, const SceneOptions& options) {
     const std::string extension = lower(path.extension().string());
-    if (is_model_path(path)) return reading::scene_of_model(path);
+    if (is_model_path(path)) return reading::scene_of_model(path, options.named_files);
     if (!extension.empty() && extension != ".toml")
         return user_error(
             fmt::format("{}: expected a scene (.toml) or a model (.glb, .gltf)", printable(path.string())));
