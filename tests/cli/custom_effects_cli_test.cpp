@@ -126,7 +126,7 @@ TEST_F(CliCustomEffects, AreRefusedWhereTheyAreNotWanted) {
     expect_refused({"develop", path(in(0)), "-o", path("x.png"), "--look", path("all.toml"), no}, 1, part);
     expect_refused({"plan", path("all.toml"), no}, 1, part);
     expect_refused({"info", path("all.toml"), no}, 1, part);
-    const std::string scene = write("a.scene.toml", "[[stack]]\neffect = \"duotone.glsl\"\n");
+    const std::string scene = write("a.scene.toml", "[scene]\n[[stack]]\neffect = \"duotone.glsl\"\n");
     expect_refused({"render", scene, "-o", path("x.png"), no}, 1, part);
     expect_refused({"plan", "--effect", path("duotone.glsl"), no}, 1, "duotone.glsl: --no-custom-effects refuses it");
 }
