@@ -290,6 +290,7 @@ Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
         if (code) break;
         real = real.parent_path() / to;
     }
+    if (fs::is_symlink(fs::symlink_status(real, code))) return open_error(target, ELOOP);
     if (fs::exists(status)) {
         // A rename asks only the folder; a file that its owner protected must stay as well.
         if (::access(real.c_str(), W_OK) != 0) return open_error(target, errno);

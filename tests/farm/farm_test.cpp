@@ -147,7 +147,7 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
 }
 
 TEST_F(FarmFiles, ValuesOfFlagsAreRefusedAsTheCommandRefusesThem) {
-    write("scene.toml", "format = 1\n");
+    write("scene.toml", "[environment]\n");
     const auto expect_alike = [&](const std::string& command, const std::string& work, const std::string& flags) {
         const Outcome refused = run_lines("darkroom " + command + " " + work + " " + flags);
         ASSERT_EQ(refused.code, 1) << flags;
