@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -161,6 +162,29 @@ TEST(EffectClassicBloom, SpotsAreRoundAndNoStars) {
             }
             // A box has 100 % here at some distances, four crossed streaks nearly so.
             EXPECT_LE(most - least, 0.02 * peak) << distance;
+        }
+    }
+}
+
+// Of a spot of 4x4 pixels, which are one of the small picture: its variance is the radius', along and across.
+TEST(EffectClassicBloom, TheGlowIsAsWideAsItIsHigh) {
+    ReferenceImage picture(192, 160);
+    for (std::uint32_t y = 76; y < 80; ++y)
+        for (std::uint32_t x = 92; x < 96; ++x) picture.at(x, y) = {101, 101, 101, 1};
+    for (const std::int32_t radius : {12, 30, 48}) {
+        const ClassicBloom bloom{.intensity = 1, .radius = radius};
+        for (ReferenceImage glow : {reference(bloom, picture), developed(bloom, picture)}) {
+            double sum = 0, across = 0, down = 0;
+            for (std::uint32_t y = 0; y < glow.height; ++y)
+                for (std::uint32_t x = 0; x < glow.width; ++x) {
+                    const double light = glow.at(x, y).r - picture.at(x, y).r;
+                    sum += light;
+                    across += light * (x - 93.5) * (x - 93.5);
+                    down += light * (y - 77.5) * (y - 77.5);
+                }
+            const double variance = radius * radius / 9.0;
+            EXPECT_NEAR(across / sum, variance, 0.1 * variance) << radius;
+            EXPECT_NEAR(down / sum, variance, 0.1 * variance) << radius;
         }
     }
 }
