@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `darkroom render` as its users meet it: what each flag does, what is refused, and which files there are afterwards.
+// `darkroom render` as its users meet it: what each flag does, and which files there are afterwards.
 #include <darkroom/effects.hpp>
 
 #include <map>
@@ -8,91 +8,17 @@
 #include "core/text/param_text.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
-#include "tests/cli/cli_support.hpp"
+#include "tests/cli_render/render_cli_support.hpp"
 
 namespace darkroom {
 namespace {
 
+using test::CliRender;
 using test::content;
 using test::Outcome;
 
-// Sun, floor, a box that moves to the right, a lamp, sparks. Half a metre of everything, so that a few pixels show it.
-constexpr const char* scene_text = R"([scene]
-name = "Yard"
-[camera]
-position = [3, 2, 4]
-target = [0, 0.5, 0]
-fov = 50
-[post_process]
-exposure = 0.6
-[entities.sun.light]
-direction = [-1, 0.8, 0.5]
-intensity = 4
-volumetric_intensity = 2
-[entities.floor]
-archetype = "floor"
-bounds = { min = [-2, -0.1, -2], max = [2, 0, 2] }
-[entities.box]
-bounds = { min = [-0.5, 0, -0.5], max = [0.5, 1, 0.5] }
-material = { color = [0.8, 0.3, 0.1], metallic = 0.5, roughness = 0.4 }
-[[entities.box.transform.path]]
-time = 0
-position = [0, 0, 0]
-[[entities.box.transform.path]]
-time = 4
-position = [2, 0, 0]
-[entities.lamp]
-bounds = { min = [0.8, 0.6, -0.3], max = [1.1, 0.9, 0] }
-material = { color = [1, 1, 1], emissive = [4, 3, 2], emissive_strength = 3 }
-[entities.sparks.transform]
-position = [0, 1, 0]
-[entities.sparks.particle_emitter]
-emission_rate = 40
-size_start = 0.3
-size_end = 0.2
-)";
-
-class CliRender : public test::CliFixture {
-  protected:
-    void make_files() override { write("yard.scene.toml", scene_text); }
-
-    /// A small picture of the yard. Flags that say a size win, since CLI texts are taken in order only for lists.
-    [[nodiscard]] Outcome render(std::vector<std::string> flags, const std::string& out = "out.png") const {
-        flags.insert(flags.begin(), {"render", path("yard.scene.toml"), "-o", path(out)});
-        const bool has_size = std::any_of(flags.begin(), flags.end(), [](const std::string& flag) {
-            return flag == "--size" || flag == "--width" || flag == "--height";
-        });
-        if (!has_size) flags.insert(flags.end(), {"--size", "48x32"});
-        const bool has_frame = std::ranges::find(flags, "--frame") != flags.end();
-        if (has_frame) flags.insert(flags.end(), {"--shadow-resolution", "256"});  // it holds them
-        return run(flags);
-    }
-    /// Each list of flags gives another picture than all others.
-    void expect_all_differ(const std::vector<std::vector<std::string>>& cases) const {
-        std::map<std::string, std::string> seen;
-        for (const std::vector<std::string>& flags : cases) {
-            std::string shown;
-            for (const std::string& flag : flags) shown += flag + " ";
-            const Outcome outcome = render(flags);
-            ASSERT_EQ(outcome.code, 0) << shown << outcome.err;
-            const auto [other, is_new] = seen.try_emplace(content(path("out.png")), shown);
-            EXPECT_TRUE(is_new) << "'" << shown << "' gives the picture of '" << other->second << "'";
-        }
-    }
-    void expect_render_refused(std::vector<std::string> flags, const std::string& part) const {
-        flags.insert(flags.begin(), {"render", path("yard.scene.toml"), "-o", path("x.png")});
-        expect_refused(flags, 1, part);
-    }
-    [[nodiscard]] FrameFile frame(const std::string& name) const {
-        Result<FrameFile> read = read_frame(path(name));
-        EXPECT_TRUE(read) << read.error().text;
-        return read ? std::move(*read) : FrameFile{};
-    }
-};
-
-/// What a flag does; what is refused. Suites of their own, since each of their runs is a process.
+/// What a flag does. A suite of its own, as what is refused is, since each of their runs is a process.
 class CliRenderFlags : public CliRender {};
-class CliRenderRefused : public CliRender {};
 
 TEST_F(CliRender, RendersAScene) {
     const Outcome outcome = render({});
@@ -215,8 +141,9 @@ TEST_F(CliRenderFlags, DefaultsAreThoseOfTheHelp) {
 
 TEST_F(CliRenderFlags, FlagsWinOverTheSceneWhichWinsOverDefaults) {
     if (find_effect("exposure") == nullptr) GTEST_SKIP() << "the effect exposure is not in this build";
-    const std::string plain = write(
-        "plain.scene.toml", std::string(scene_text).replace(std::string(scene_text).find("exposure = 0.6"), 14, ""));
+    const std::string plain =
+        write("plain.scene.toml",
+              std::string(test::yard_scene).replace(std::string(test::yard_scene).find("exposure = 0.6"), 14, ""));
     const auto other = [&](std::vector<std::string> flags, const std::string& out) {
         flags.insert(flags.begin(), {"render", plain, "-o", path(out), "--size", "48x32"});
         return run(flags).code;
@@ -328,9 +255,9 @@ TEST_F(CliRender, PostProcessingOffIsTheShadersOwnCurve) {
     const Result<Comparison> result = compare(picture("off.png"), picture("all_off.png"));
     ASSERT_TRUE(result);
     EXPECT_LE(result->max_error, 2.001 / 255);
-    const std::string off =
-        write("off.scene.toml",
-              std::string(scene_text).replace(std::string(scene_text).find("exposure = 0.6"), 14, "enabled = false"));
+    const std::string off = write(
+        "off.scene.toml", std::string(test::yard_scene)
+                              .replace(std::string(test::yard_scene).find("exposure = 0.6"), 14, "enabled = false"));
     std::vector<std::string> by_scene{"render", off, "-o", path("by_scene.png"), "--size", "48x32"};
     by_scene.insert(by_scene.end(), hard.begin(), hard.end());
     ASSERT_EQ(run(by_scene).code, 0);
@@ -415,7 +342,7 @@ TEST_F(CliRender, RendersAModelAlone) {
 }
 
 TEST_F(CliRender, MissingAssetsAreNamedAndTheRestRenders) {
-    write("gaps.scene.toml", std::string(scene_text) +
+    write("gaps.scene.toml", std::string(test::yard_scene) +
                                  "[entities.wall]\nbounds = { min = [0, 0, -2], max = [1, 1, -1.9] }\n"
                                  "material = { texture = \"no_such.png\" }\n"
                                  "[entities.fox.model]\nasset = \"no_such_fox\"\n");
@@ -432,88 +359,6 @@ TEST_F(CliRenderFlags, OldCommandLinesAreTaken) {
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     EXPECT_NE(outcome.err.find("--schemas"), std::string::npos) << outcome.err;
-}
-
-TEST_F(CliRenderRefused, WrongScenesAreRefused) {
-    const std::string out = path("x.png");
-    expect_refused({"render"}, 1, "SCENE");
-    expect_refused({"render", path("none.scene.toml"), "-o", out}, 1, "none.scene.toml");
-    expect_refused({"render", write("bad.scene.toml", "[scene\n"), "-o", out}, 1, "bad.scene.toml:1:");
-    expect_refused({"render", write("bad.glb", "glTF"), "-o", out}, 1, "bad.glb");
-    expect_refused({"render", path("none.gltf"), "-o", out}, 1, "none.gltf");
-    write("slip.scene.toml", std::string(scene_text) + "[entities.a.transform]\npositoin = [0, 0, 0]\n");
-    const Outcome lenient = run({"render", path("slip.scene.toml"), "-o", path("ok.png"), "--size", "8x8"});
-    EXPECT_EQ(lenient.code, 0) << lenient.err;
-    EXPECT_NE(lenient.err.find("positoin"), std::string::npos) << lenient.err;
-    expect_refused({"render", path("slip.scene.toml"), "-o", out, "--strict"}, 1, "positoin");
-}
-
-TEST_F(CliRenderRefused, WrongSizesAndFilesAreRefused) {
-    for (const char* const size : {"0x0", "5x", "4294967297x1"}) expect_render_refused({"--size", size}, "--size");
-    expect_render_refused({"--size", "4x4", "--width", "5"}, "--size 4x4");
-    expect_render_refused({"--size", "99999x2"}, "allows 1x1 to");
-    expect_render_refused({"--bits", "12"}, "--bits 12");
-    expect_render_refused({"--frame", path("f.png")}, "--save-frame");
-    expect_render_refused({"--frame", path("none/f.exr")}, "none");
-    expect_refused({"render", path("yard.scene.toml"), "-o", path("x.xyz")}, 1, ".xyz");
-    expect_refused({"render", path("yard.scene.toml"), "-o", path("none/x.png")}, 1, "none");
-    expect_refused({"render", path("yard.scene.toml"), "-o", path("x.exr"), "--frame", path("x.exr")}, 1,
-                   "picture and frame");
-}
-
-TEST_F(CliRenderRefused, WhatTheSceneReadsIsNotOverwritten) {
-    Picture texture(2, 2);
-    ASSERT_TRUE(write_picture(path("leaf.png"), texture));
-    const std::string before = content(path("leaf.png"));
-    const std::string scene =
-        write("leaf.scene.toml", std::string(scene_text) + "[entities.leaf.sprite]\ntexture = \"leaf.png\"\n");
-    expect_refused({"render", scene, "--size", "8x8", "-o", path("leaf.png")}, 1, "leaf.png");
-    EXPECT_EQ(content(path("leaf.png")), before);
-}
-
-TEST_F(CliRenderRefused, DevicesAndEmptyValuesAreRefused) {
-    const std::string scene =
-        write("sky.scene.toml", std::string(scene_text) + "[environment]\nskybox = \"/dev/zero\"\n");
-    const Outcome outcome = run({"render", scene, "--size", "8x8", "-o", path("sky.png")});
-    EXPECT_EQ(outcome.code, 0);
-    EXPECT_NE(outcome.err.find("/dev/zero: is no regular file but a device (asked for by the environment)"), std::string::npos) << outcome.err;
-    expect_refused({"render", path("yard.scene.toml"), "--size=", "-o", path("x.png")}, 1,
-                   "--size: one value is needed");
-    expect_refused({"develop", "/dev/zero", "-o", path("x.png")}, 1, "/dev/zero: is no regular file but a device");
-}
-
-TEST_F(CliRenderRefused, WrongValuesAreRefused) {
-    for (const char* const target : {"1,2", "1,2,3,4", "a,b,c", "", "1,2,1e300"})
-        expect_render_refused({std::string("--target=") + target}, "--target");
-    expect_render_refused({"--debug-mode", "wirefrane"},
-                          "did you mean 'wireframe'? allowed is wireframe, normals, depth, uv, unlit or metalrough");
-    expect_render_refused({"--no-such-flag"}, "--no-such-flag");
-    expect_render_refused({"--device", "none such"}, "none such");
-    expect_render_refused({"--kernels", "magic"}, "auto, compute or raster");
-    expect_render_refused({"--order", "sideways"}, "documented or scene_linear");
-    expect_render_refused({"--look", path("none.toml")}, "none.toml");
-    expect_render_refused({"--no-postprocess", "--timings"}, "--timings");
-}
-
-TEST_F(CliRenderRefused, CountsOfSamplesThatTheDeviceLacksAreRefusedByName) {
-    expect_render_refused({"--msaa", "3"}, "1, ");
-    expect_render_refused({"--msaa", "64"}, "1, ");
-}
-
-TEST_F(CliRenderRefused, WrongMomentsAreRefused) {
-    for (const char* const frames : {"5-3", "1-", "1-2-3", "", "0-999999999999"})
-        expect_render_refused({std::string("--frames=") + frames}, "--frames");
-    expect_render_refused({"--frames", "1-3"}, "%04d");
-    expect_refused(
-        {"render", path("yard.scene.toml"), "-o", path("p.%04d.png"), "--frames", "1-3", "--frame", path("f.exr")}, 1,
-        "--save-frame");
-    expect_render_refused({"--time", "1", "--frames", "2"}, "--time");
-}
-
-TEST_F(CliRenderRefused, AnExistingPictureSurvivesAFailure) {
-    const std::string kept = write("kept.png", "kept");
-    EXPECT_EQ(run({"render", write("bad.scene.toml", "= 1"), "-o", kept}).code, 1);
-    EXPECT_EQ(content(kept), "kept");
 }
 
 }  // namespace
