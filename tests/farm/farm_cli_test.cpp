@@ -92,7 +92,8 @@ TEST_F(CliFarm, WhatATaskHasStartedEndsWithIt) {
     const Outcome outcome = run_lines(
         "set +e\ndarkroom farm task 'shot.####.exr' -o out/ --frames 0-59 -q &\ntask=$!\n"
         "for i in $(seq 200); do test -e out/shot.0001.png && break; sleep 0.1; done\n"
-        "child=$(cat /proc/$task/task/$task/children)\ntest -n \"$child\" || echo no child\n"
+        "child=$(grep -ls \"^PPid:[[:space:]]*$task$\" /proc/[0-9]*/status | cut -d/ -f3 | head -n 1)\ntest -n "
+        "\"$child\" || echo no child\n"
         "kill -TERM $task\nwait $task\n"
         "for i in $(seq 100); do kill -0 $child 2>/dev/null || break; sleep 0.05; done\n"
         "kill -0 $child 2>/dev/null && echo is running\nexit 0");
