@@ -61,6 +61,7 @@ struct Step {
 /// Everything that can be known before a frame is read.
 struct Job {
     std::vector<Step> steps;
+    std::size_t skipped = 0;  ///< pictures that are there already
     std::size_t jobs = 0;
     darkroom::Look look;
     Timeline timeline;
@@ -108,6 +109,7 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
         const bool is_asked_for = is_in_range((*inputs)[i].number);
         is_any_asked_for |= is_asked_for;
         const bool is_written = is_asked_for && !options.run.is_skipped((*outputs)[i]);
+        job.skipped += is_asked_for && !is_written ? 1 : 0;
         if (is_written) next_written = i;
         if (next_written < inputs->size() && next_written - i <= pre_roll)
             job.steps.push_back({i, (*inputs)[i].path, (*outputs)[i], (*inputs)[i].number, is_written});
@@ -181,6 +183,7 @@ class Develop {
 
     Result<> run() {
         const auto pictures = std::ranges::count(job_.steps, true, &Step::is_written);
+        RunFlags::tell_of_skipped(job_.skipped, job_.skipped + static_cast<std::size_t>(pictures));
         const Result<> done = run_sequence({.steps = job_.steps.size(),
                                             .pictures = static_cast<std::size_t>(pictures),
                                             .jobs = job_.jobs,

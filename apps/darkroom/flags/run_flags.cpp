@@ -9,6 +9,7 @@
 #include <array>
 
 #include "apps/darkroom/run/outputs.hpp"
+#include "apps/darkroom/run/report.hpp"
 #include "core/text/param_text.hpp"
 #include "device_flags.hpp"
 
@@ -121,6 +122,10 @@ Result<> RunFlags::check_stream() const {
          {std::pair(skips_existing_, "--skip-existing"), std::pair(keeps_going, "--keep-going")})
         if (is_given) return user_error(fmt::format("{}: a stream has no gaps, leave it out with -o -", flag));
     return {};
+}
+
+void RunFlags::tell_of_skipped(std::size_t skipped, std::size_t asked_for) {
+    if (skipped > 0) tell(fmt::format("{} of {} pictures are there already", skipped, asked_for));
 }
 
 bool RunFlags::is_skipped(const std::filesystem::path& output) const { return skips_existing_ && is_there(output); }

@@ -50,6 +50,8 @@ class RunFlags {
     [[nodiscard]] darkroom::Result<std::size_t> jobs() const;
     /// Is this file there and not empty, and should it stay?
     [[nodiscard]] bool is_skipped(const std::filesystem::path& output) const;
+    /// Says how many were, where there are some.
+    static void tell_of_skipped(std::size_t skipped, std::size_t asked_for);
     /// Standard output has no pictures that are there already, and no place for one that is missing.
     [[nodiscard]] darkroom::Result<> check_stream() const;
 

@@ -156,9 +156,11 @@ class Render {
             for (const std::filesystem::path& path : {shot.picture, shot.frame})
                 if (!path.empty() && path != stream_name)
                     if (Result<> done = check_output(path, files); !done) return done;
-        std::erase_if(job_.shots, [&](const Shot& shot) {
+        const std::size_t asked_for = job_.shots.size();
+        const std::size_t skipped = std::erase_if(job_.shots, [&](const Shot& shot) {
             return flags_.run.is_skipped(shot.picture) && (shot.frame.empty() || flags_.run.is_skipped(shot.frame));
         });
+        RunFlags::tell_of_skipped(skipped, asked_for);
         if (way_ == Way::Developed)
             if (Result<> done = add_pre_roll(); !done) return done;
         tell(fmt::format("Loaded scene {}\nEntities: {}", darkroom::printable(scene_.name), scene_.entities.size()));
