@@ -8,6 +8,7 @@ local hit = { duration = 0.4, warp = -0.15, chroma = 0.012 }
 local shot = { duration = 0.15, chroma = 0.003 }
 local quad = { chroma = 0.004, rate = 6, fade = 0.4 }
 local low = { health = 25, warp = -0.1 }
+engine.pre_roll(0.5)  -- longer than any of these lasts
 
 local function decay(start, duration, now)
     local t = start and (now - start) / duration or 1

@@ -16,6 +16,7 @@
 #include <darkroom/game_table.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,6 +64,10 @@ class Controllers {
     void frame(const ControllerFrame& frame);
 
     [[nodiscard]] std::vector<std::string> slots() const;
+    /// How far back what scripts do depends on frames before, in seconds, as they state it (engine.pre_roll): the
+    /// largest of all. Nothing: one does not say, and may depend on all. A run that begins in the middle calls frame()
+    /// for those frames first, without pictures.
+    [[nodiscard]] std::optional<double> pre_roll() const;
     /// How often a callback has set a variable. Without news of the game a good controller sets none.
     [[nodiscard]] std::uint64_t writes() const;
     /// Memory that scripts hold, at most 16 MiB.

@@ -7,6 +7,7 @@ namespace darkroom::script {
 
 namespace {
 
+constexpr double longest_pre_roll = 86400;
 constexpr std::size_t longest_name = 256, longest_commands = 1024, longest_print = 512;
 // In instructions, by what they take.
 constexpr std::uint64_t cost_of_reading = 50, cost_of_setting = 200, cost_of_printing = 200, cost_of_commands = 10000;
@@ -73,6 +74,14 @@ int on_frame(lua_State* lua) {
     return luaL_error(lua, "on_frame: there are as many slots as are allowed, or the script was unloaded");
 }
 
+int pre_roll(lua_State* lua) {
+    Sandbox::of(lua).spend(cost_of_reading);
+    const lua_Number seconds = luaL_checknumber(lua, 1);
+    luaL_argcheck(lua, seconds >= 0 && seconds <= longest_pre_roll, 1, "[0, 86400] seconds are allowed");
+    if (host_of(lua).state_pre_roll(seconds)) return 0;
+    return luaL_error(lua, "pre_roll: a script states it while it is loaded, not in a callback");
+}
+
 int time(lua_State* lua) {
     lua_pushnumber(lua, host_of(lua).time());
     return 1;
@@ -132,7 +141,7 @@ constexpr luaL_Reg engine_functions[] = {{"cvar_get", cvar_get}, {"cvar_get_numb
                                          {"cvar_set", cvar_set}, {"exec", exec},
                                          {"fire", fire},         {"on_frame", on_frame},
                                          {"time", time},         {"hud_visible", hud_visible},
-                                         {nullptr, nullptr}};
+                                         {"pre_roll", pre_roll}, {nullptr, nullptr}};
 constexpr luaL_Reg game_functions[] = {
     {"__index", game_index}, {"__newindex", game_newindex}, {"__pairs", game_pairs}, {nullptr, nullptr}};
 

@@ -375,7 +375,8 @@ TEST(ConsoleExec, ReadsFilesOfItsFolderAlone) {
          {std::string("../b.cfg"), (folder.path / "b.cfg").string(), std::string("x/../../b.cfg"), std::string("..")})
         EXPECT_NE(bed.run("exec \"" + name + "\"").find("of the console's folder"), std::string::npos) << name;
     ASSERT_EQ(::mkfifo((folder.path / "inner" / "pipe").c_str(), 0600), 0);
-    EXPECT_EQ(bed.run("exec pipe"), (folder.path / "inner" / "pipe: is no regular file but a pipe").string()) << "a pipe would be waited for";
+    EXPECT_EQ(bed.run("exec pipe"), (folder.path / "inner" / "pipe: is no regular file but a pipe").string())
+        << "a pipe would be waited for";
     EXPECT_EQ(bed.console->execute("exec \"\""), 1u);
     EXPECT_EQ(bed.console->execute("exec a.cfg", {.allows_files = false}), 1u);
     ConsoleBed without;

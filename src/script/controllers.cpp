@@ -100,6 +100,7 @@ Result<> Controllers::State::run_text(const std::string& name, std::string_view 
     lua_pushlightuserdata(lua, &chunk);
     is_running = true;
     loading = &name;
+    stated_pre_roll.reset();
     const std::optional<std::string> error = call(1, allowance);
     loading = nullptr;
     is_running = false;
@@ -122,6 +123,12 @@ Result<> Controllers::State::run_file(const std::string& name) {
     const auto content = read_file(name, {.max_size = longest_text});
     if (!content) return failure(content.error());
     return run_text(name, {reinterpret_cast<const char*>(content->data()), content->size()});
+}
+
+Result<> Controllers::State::run(Script& script) {
+    auto done = script.is_file ? run_file(script.name) : run_text(script.name, script.text);
+    if (done) script.pre_roll = stated_pre_roll;
+    return done;
 }
 
 void Controllers::State::keep(Script script) {
@@ -193,14 +200,15 @@ Result<Controllers> Controllers::create(Console& console, ControllersDesc desc) 
 Result<> Controllers::load(const fs::path& file) {
     State::Script script{.name = file.string(), .is_file = true};
     script.look();
-    auto done = state_->run_file(script.name);
+    auto done = state_->run(script);
     if (done) state_->keep(std::move(script));
     return done;
 }
 
 Result<> Controllers::load_text(std::string name, std::string_view text) {
-    auto done = state_->run_text(name, text);
-    if (done) state_->keep({.name = std::move(name), .text = std::string(text)});
+    State::Script script{.name = std::move(name), .text = std::string(text)};
+    auto done = state_->run(script);
+    if (done) state_->keep(std::move(script));
     return done;
 }
 
@@ -214,7 +222,7 @@ void Controllers::reload_changed() {
     if (state_->is_running) return;
     for (State::Script script : std::vector(state_->scripts)) {
         if (!script.is_file || !script.look()) continue;
-        const auto done = state_->run_file(script.name);
+        const auto done = state_->run(script);
         if (!done) state_->desc.print(Severity::Error, done.error().text);
         state_->keep(std::move(script));
     }
@@ -222,9 +230,10 @@ void Controllers::reload_changed() {
 
 void Controllers::restart() {
     if (state_->is_running) return;
-    for (const State::Script& script : std::vector(state_->scripts)) {
-        const auto done = script.is_file ? state_->run_file(script.name) : state_->run_text(script.name, script.text);
+    for (State::Script script : std::vector(state_->scripts)) {
+        const auto done = state_->run(script);
         if (!done) state_->desc.print(Severity::Error, done.error().text);
+        state_->keep(std::move(script));
     }
 }
 
@@ -249,6 +258,15 @@ std::vector<std::string> Controllers::slots() const {
     std::vector<std::string> out;
     for (const State::Slot& slot : state_->slots) out.push_back(slot.name);
     return out;
+}
+
+std::optional<double> Controllers::pre_roll() const {
+    double most = 0;
+    for (const State::Script& script : state_->scripts) {
+        if (!script.pre_roll) return std::nullopt;
+        most = std::max(most, *script.pre_roll);
+    }
+    return most;
 }
 
 std::size_t Controllers::bytes() const { return state_->sandbox->bytes(); }

@@ -63,6 +63,12 @@ void Controllers::State::exec(std::string_view commands) noexcept {
                                 .most_commands = most_commands});
 }
 
+bool Controllers::State::state_pre_roll(double seconds) noexcept {
+    if (loading == nullptr) return false;
+    stated_pre_roll = seconds;
+    return true;
+}
+
 void Controllers::State::print(std::string_view text) noexcept { remark(Severity::Info, printable(text)); }
 
 bool Controllers::State::on_frame(std::string_view slot_name, int function) noexcept {

@@ -33,6 +33,7 @@ struct Controllers::State final : script::Host {
         std::string name;  ///< a file's path as it was given
         bool is_file = false;
         std::string text{};  ///< of scripts without a file
+        std::optional<double> pre_roll{};
         FileStamp stamp;
         /// Has the file changed since the last look?
         bool look();
@@ -55,6 +56,7 @@ struct Controllers::State final : script::Host {
     // Scripts and callbacks.
     Result<> run_text(const std::string& name, std::string_view text);
     Result<> run_file(const std::string& name);
+    Result<> run(Script& script);
     void keep(Script script);
     /// The last registration wins, in the place of the first.
     void add_slot(Slot slot);
@@ -72,6 +74,7 @@ struct Controllers::State final : script::Host {
     void fire(std::string_view event) noexcept override { console->composer().fire(event, frame.time); }
     void print(std::string_view text) noexcept override;
     bool on_frame(std::string_view slot, int function) noexcept override;
+    bool state_pre_roll(double seconds) noexcept override;
     [[nodiscard]] double time() const noexcept override { return frame.time; }
     [[nodiscard]] bool is_hud_visible() const noexcept override { return frame.is_hud_visible; }
     void push_game(lua_State* lua, std::string_view name) override;
@@ -84,7 +87,8 @@ struct Controllers::State final : script::Host {
     std::vector<Slot> slots;
     std::vector<Slot> pending;  ///< of the script that is being run
     const std::string* loading = nullptr;
-    std::string owner;  ///< of the callback that runs; empty: none does
+    std::optional<double> stated_pre_roll;  ///< by the script that was run last
+    std::string owner;                      ///< of the callback that runs; empty: none does
     bool is_running = false;
     ControllerFrame frame;
     std::string reply;  ///< what the last answer to a script refers to

@@ -57,6 +57,26 @@ TEST(Controllers, ACallbackSetsItsSlotsOverrideAndTheBaseStays) {
     EXPECT_EQ(bed.controllers->writes(), 3u);
 }
 
+TEST(Controllers, StateTheirPreRoll) {
+    ControllersBed bed;
+    EXPECT_EQ(bed.controllers->pre_roll(), 0.0) << "without scripts nothing remembers";
+    const std::string callback = "engine.on_frame('a', function() end)";
+    EXPECT_EQ(bed.load(callback + " engine.pre_roll(0.5)", "half"), "");
+    EXPECT_EQ(bed.load(callback + " engine.pre_roll(2)", "two"), "");
+    EXPECT_EQ(bed.controllers->pre_roll(), 2.0) << "the largest";
+    EXPECT_NE(bed.load("engine.pre_roll(3) error('no')", "half"), "");
+    EXPECT_EQ(bed.controllers->pre_roll(), 2.0) << "the script before stays";
+    EXPECT_EQ(bed.load(callback, "silent"), "");
+    EXPECT_EQ(bed.controllers->pre_roll(), std::nullopt) << "one that does not say may remember all";
+    bed.controllers->unload("silent");
+    EXPECT_EQ(bed.controllers->pre_roll(), 2.0);
+    for (const char* const wrong : {"-1", "86401", "0/0", "'a'"})
+        EXPECT_NE(bed.load(std::string("engine.pre_roll(") + wrong + ")", "wrong"), "") << wrong;
+    EXPECT_EQ(bed.load("engine.on_frame('late', function() engine.pre_roll(1) end)", "late"), "");
+    bed.frame(0);
+    EXPECT_NE(bed.said.back().find("while it is loaded"), std::string::npos) << bed.said.back();
+}
+
 TEST(Controllers, TheLastRegistrationOfASlotWins) {
     ControllersBed bed;
     bed.load("engine.on_frame('a', function() print('old') engine.cvar_set('gamma', 2) end)", "one");

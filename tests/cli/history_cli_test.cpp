@@ -51,10 +51,10 @@ class CliHistory : public test::CliFixture {
             worst = std::max(worst, std::abs(static_cast<double>(one[i]) - static_cast<double>(other[i])));
         return worst;
     }
-    [[nodiscard]] Outcome run_into(const std::string& folder, std::vector<std::string> arguments) const {
+    [[nodiscard]] Outcome run_into(const std::string& folder, std::vector<std::string> arguments,
+                                   const std::string& look = "trails.toml") const {
         fs::create_directories(path(folder));
-        arguments.insert(arguments.end(),
-                         {"-o", path(folder) + "/%04d.exr", "--bits", "float", "--look", path("trails.toml")});
+        arguments.insert(arguments.end(), {"-o", path(folder) + "/%04d.exr", "--bits", "float", "--look", path(look)});
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         EXPECT_EQ(outcome.err, "");
@@ -148,16 +148,30 @@ position = [-2, 0, 0]
 time = 2
 position = [2, 0, 0]
 )");
-    const auto render = [&](const std::string& folder, const std::string& frames) {
-        const Outcome run =
-            run_into(folder, {"render", path("yard.scene.toml"), "--size", "32x18", "--fps", "24", "--frames", frames});
-        EXPECT_EQ(run.code, 0) << run.err;
-    };
-    render("whole", "0-30");
-    render("piece", "28-30");
-    EXPECT_GT(difference(file("whole", 28), file("whole", 29)), 20 * half_a_code) << "something moves";
-    for (int number = 28; number <= 30; ++number)
-        EXPECT_LE(difference(file("piece", number), file("whole", number)), half_a_code) << number;
+    // A script that remembers, and gives the histories a longer memory than the look does.
+    write("longer.lua",
+          "local n = 0\n"
+          "engine.on_frame('longer', function()\n"
+          "  n = n + 1\n"
+          "  engine.cvar_set('recursive_blend.weight', n < 20 and 0.9 or 0.5 + n / 100)\n"
+          "end)\n");
+    write("longer.toml",
+          "[[stack]]\neffect = \"tonemap\"\ncurve = \"linear\"\n"
+          "[[stack]]\neffect = \"recursive_blend\"\nweight = 0.1\n[ui]\ncontrollers = [\"longer.lua\"]\n");
+    for (const std::string look : {"trails.toml", "longer.toml"}) {
+        const auto render = [&](const std::string& folder, const std::string& frames) {
+            const Outcome run = run_into(
+                folder, {"render", path("yard.scene.toml"), "--size", "32x18", "--fps", "24", "--frames", frames},
+                look);
+            EXPECT_EQ(run.code, 0) << run.err;
+        };
+        const std::string whole = "whole_" + look, piece = "piece_" + look;
+        render(whole, "0-30");
+        render(piece, "28-30");
+        EXPECT_GT(difference(file(whole, 28), file(whole, 29)), 20 * half_a_code) << "something moves";
+        for (int number = 28; number <= 30; ++number)
+            EXPECT_LE(difference(file(piece, number), file(whole, number)), half_a_code) << look << " " << number;
+    }
 }
 
 }  // namespace

@@ -101,6 +101,49 @@ TEST_F(CliUi, EventsControllersAndPulsesMeet) {
     EXPECT_EQ(run({"develop", path("frame.exr"), "--look", path("game.toml"), "-o", path("never.png")}).code, 1);
 }
 
+// A script that counts frames: whatever is asked for, frame n is the n-th that it sees.
+TEST_F(CliUi, ControllersSeeTheFramesBeforeThatMakeNoPicture) {
+    write("count.lua",
+          "local n = 0\n"
+          "engine.on_frame('count', function() n = n + 1 engine.cvar_set('exposure.exposure', n / 4) end)\n");
+    write("count.toml",
+          "[[stack]]\neffect = \"exposure\"\n[[stack]]\neffect = \"encode\"\n[ui]\ncontrollers = [\"count.lua\"]\n");
+    for (int i = 0; i < 6; ++i) {
+        FrameFile frame;
+        frame.color = Picture(width, height);
+        frame.color.pixels.assign(frame.color.pixels.size(), 0.1f);
+        frame.time = i;
+        ASSERT_TRUE(write_frame(path("in." + std::to_string(i) + ".exr"), frame));
+    }
+    const auto codes = [&](const std::string& out, const std::vector<std::string>& flags) {
+        std::vector<std::string> words{"develop", path("in.%d.exr"),    "--look", path("count.toml"),
+                                       "-o",      path(out + ".%d.png")};
+        words.insert(words.end(), flags.begin(), flags.end());
+        const Outcome outcome = run(words);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        std::vector<int> all;
+        for (int i = 0; i < 6; ++i) {
+            const std::string name = out + "." + std::to_string(i) + ".png";
+            all.push_back(std::filesystem::exists(path(name)) ? code(picture(name).at(9, 9)[0]) : -1);
+        }
+        return all;
+    };
+    const std::vector<int> whole = codes("whole", {});
+    ASSERT_LT(whole[4], whole[5]);
+    EXPECT_EQ(codes("last", {"--frames", "5"}), (std::vector{-1, -1, -1, -1, -1, whole[5]}));
+    EXPECT_EQ(codes("last", {"--frames", "5", "--fps", "24"})[5], whole[5]) << "times of names";
+    EXPECT_EQ(codes("some", {"--frames", "1,4"}), (std::vector{-1, whole[1], -1, -1, whole[4], -1})) << "a gap";
+    EXPECT_EQ(codes("some", {"--skip-existing"}), whole);
+
+    const std::string counting = test::content(path("count.lua"));
+    write("count.lua", counting + "engine.pre_roll(2)\n");
+    EXPECT_EQ(codes("two", {"--frames", "5"})[5], whole[2]) << "the two seconds before it";
+    write("count.lua", counting + "engine.pre_roll(-1)\n");
+    const Outcome outcome = run({"develop", path("frame.exr"), "--look", path("count.toml"), "-o", path("never.png")});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("[0, 86400] seconds are allowed"), std::string::npos) << outcome.err;
+}
+
 TEST_F(CliUi, DocumentsShowWhatTheGameSays) {
     write("hud.svg",
           "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100%\" height=\"100%\" viewBox=\"0 0 48 32\">"

@@ -15,10 +15,10 @@
 #include "apps/darkroom/flags/run_flags.hpp"
 #include "apps/darkroom/run/dim_bloom.hpp"
 #include "apps/darkroom/run/frames.hpp"
+#include "apps/darkroom/run/motion.hpp"
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "apps/darkroom/run/sequence_run.hpp"
-#include "apps/darkroom/run/ui_source.hpp"
 #include "core/text/param_text.hpp"
 #include "develop/developer.hpp"
 #include "image/frame/sequence.hpp"
@@ -60,6 +60,8 @@ struct Step {
 
 /// Everything that can be known before a frame is read.
 struct Job {
+    std::vector<darkroom::NumberedFile> inputs;
+    std::optional<darkroom::FrameSet> frames;  ///< else all are asked for
     std::vector<Step> steps;
     std::size_t skipped = 0;  ///< pictures that are there already
     std::size_t jobs = 0;
@@ -71,6 +73,8 @@ struct Job {
     std::optional<darkroom::NewSize> size;
     std::optional<double> time, frames_per_second;
     std::optional<StreamDesc> stream;
+
+    [[nodiscard]] bool is_asked_for(long long number) const { return !frames || frames->contains(number); }
 };
 
 darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
@@ -80,18 +84,11 @@ darkroom::Failure no_place_for_layers(const std::filesystem::path& output) {
 
 /// The frames that are asked for and are not there yet, each with those before it that histories need.
 Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
-    const Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(options.inputs);
-    if (!inputs) return failure(inputs.error());
-    std::optional<darkroom::FrameSet> frames;
-    if (options.frames) {
-        Result<darkroom::FrameSet> parsed = parse_frames(*options.frames);
-        if (!parsed) return failure(std::move(parsed));
-        frames = std::move(*parsed);
-    }
-    const auto is_in_range = [&](long long number) { return !frames || frames->contains(number); };
+    const std::vector<darkroom::NumberedFile>& inputs = job.inputs;
+    const auto is_in_range = [&](long long number) { return job.is_asked_for(number); };
     using Paths = std::vector<std::filesystem::path>;
-    const Result<Paths> outputs = job.stream ? Result<Paths>(Paths(inputs->size(), stream_name))
-                                             : output_paths(*inputs, options.out, ui_files(job.look), is_in_range);
+    const Result<Paths> outputs = job.stream ? Result<Paths>(Paths(inputs.size(), stream_name))
+                                             : output_paths(inputs, options.out, ui_files(job.look), is_in_range);
     if (!outputs) return failure(outputs.error());
     if (job.stream) job.develop.target = target_for(job.stream->format);
     if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
@@ -103,22 +100,42 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
         job.develop.target = target_for(*samples, job.write);
     }
     suit(job.look, job.develop.target, job.write);
-    bool is_any_asked_for = false;
-    std::size_t next_written = inputs->size();
-    for (std::size_t i = inputs->size(); i-- > 0;) {
-        const bool is_asked_for = is_in_range((*inputs)[i].number);
-        is_any_asked_for |= is_asked_for;
+    std::size_t next_written = inputs.size();
+    for (std::size_t i = inputs.size(); i-- > 0;) {
+        const bool is_asked_for = is_in_range(inputs[i].number);
         const bool is_written = is_asked_for && !options.run.is_skipped((*outputs)[i]);
         job.skipped += is_asked_for && !is_written ? 1 : 0;
         if (is_written) next_written = i;
-        if (next_written < inputs->size() && next_written - i <= pre_roll)
-            job.steps.push_back({i, (*inputs)[i].path, (*outputs)[i], (*inputs)[i].number, is_written});
+        if (next_written < inputs.size() && next_written - i <= pre_roll)
+            job.steps.push_back({i, inputs[i].path, (*outputs)[i], inputs[i].number, is_written});
     }
     std::ranges::reverse(job.steps);
-    if (!is_any_asked_for)
-        return user_error(fmt::format("--frames {}: none of the {} inputs has such a number",
-                                      darkroom::printable(*options.frames), inputs->size()));
     return {};
+}
+
+/// What is read, and the place of the last one that is asked for.
+Result<std::size_t> add_inputs(const Options& options, Job& job) {
+    Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(options.inputs);
+    if (!inputs) return failure(std::move(inputs));
+    job.inputs = std::move(*inputs);
+    if (options.frames) {
+        Result<darkroom::FrameSet> parsed = parse_frames(*options.frames);
+        if (!parsed) return failure(std::move(parsed));
+        job.frames = std::move(*parsed);
+    }
+    for (std::size_t i = job.inputs.size(); i-- > 0;)
+        if (job.is_asked_for(job.inputs[i].number)) return i;
+    return user_error(fmt::format("--frames {}: none of the {} inputs has such a number",
+                                  darkroom::printable(options.frames.value_or("")), job.inputs.size()));
+}
+
+/// What the flags say goes before what the frame says. Frames that cannot be read have none.
+std::optional<double> time_of(const Job& job, std::size_t place) {
+    if (job.time) return job.time;
+    const darkroom::NumberedFile& input = job.inputs[place];
+    if (job.frames_per_second) return static_cast<double>(input.number) / *job.frames_per_second;
+    const Result<std::optional<double>> time = darkroom::read_frame_time(input.path, job.frame.names);
+    return time ? std::optional(time->value_or(0)) : std::nullopt;
 }
 
 Result<Job> job_of(const Options& options) {
@@ -169,7 +186,13 @@ Result<Job> job_of(const Options& options) {
     const Result<std::uint32_t> pre_roll = add_needs(job.look, delta_time, job.timeline, job.frame);
     if (!pre_roll) return failure(pre_roll.error());
     job.frame.keeps_halves = !options.is_reference;
-    if (Result<> done = add_steps(options, *pre_roll, job); !done) return failure(std::move(done));
+    const Result<std::size_t> last = add_inputs(options, job);
+    if (!last) return failure(last.error());
+    const Motion motion(job.look, job.timeline, [&job](std::size_t place) { return time_of(job, place); });
+    const Result<std::uint32_t> moved_pre_roll = motion.pre_roll(job.look, delta_time, *last);
+    if (!moved_pre_roll) return failure(moved_pre_roll.error());
+    if (Result<> done = add_steps(options, std::max(*pre_roll, *moved_pre_roll), job); !done)
+        return failure(std::move(done));
     // One file is decoded by all threads, several by one each.
     if (job.steps.size() > 1) job.frame.max_threads = job.write.max_threads = 1;
     return job;
@@ -271,9 +294,8 @@ class Develop {
         if (i == 0) tell_of_assumed_view(item.frame, shown(i));
         item.input.camera.is_cut = job_.steps[i].place != next_place_;
         next_place_ = job_.steps[i].place + 1;
-        if (Result<> done = job_.timeline.advance(*composer_, item.input.time); !done) return done;
-        if (Result<> done = ui_.advance(*composer_, item.input.time); !done) return done;
-        const auto ui = ui_.picture(item.input.extent);
+        if (Result<> done = motion_.advance(*composer_, job_.steps[i].place, item.input.time); !done) return done;
+        const auto ui = motion_.picture(item.input.extent);
         if (!ui) return failure(ui.error());
         item.ui = *ui;
         item.input.ui = *item.ui;
@@ -357,7 +379,8 @@ class Develop {
     std::mutex making_;
     std::unique_ptr<darkroom::Device> device_;
     std::unique_ptr<darkroom::Composer> composer_;
-    UiSource ui_{job_.look, job_.timeline};  ///< moves the composer, so it goes first
+    Motion motion_{job_.look, job_.timeline,  // moves the composer, so it goes first
+                   [this](std::size_t place) { return time_of(job_, place); }};
     std::unique_ptr<darkroom::Developer> developer_;
     std::optional<std::vector<std::string>> last_left_out_;
     std::size_t next_place_ = 0;

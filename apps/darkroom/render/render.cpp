@@ -11,10 +11,10 @@
 #include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/run/dim_bloom.hpp"
 #include "apps/darkroom/run/frames.hpp"
+#include "apps/darkroom/run/motion.hpp"
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "apps/darkroom/run/sequence_run.hpp"
-#include "apps/darkroom/run/ui_source.hpp"
 #include "core/text/param_text.hpp"
 #include "develop/developer.hpp"
 #include "render_flags.hpp"
@@ -119,7 +119,7 @@ class Render {
             if (!timeline) return failure(std::move(timeline));
             timeline_ = std::move(*timeline);
         }
-        ui_ = UiSource(look_, timeline_);
+        motion_ = Motion(look_, timeline_, [this](std::size_t frame) { return job_.time_of(frame); });
         choose_way();
         if (flags_.run.has_timings && way_ != Way::Developed)
             return darkroom::user_error("--timings: nothing is post-processed");
@@ -171,16 +171,20 @@ class Render {
     Result<> add_pre_roll() {
         darkroom::FrameOptions ignored;
         if (job_.shots.empty()) return {};
-        const Result<std::uint32_t> pre_roll = add_needs(look_, job_.shots.front().delta_time, timeline_, ignored);
-        if (!pre_roll) return failure(pre_roll.error());
+        const double delta_time = job_.shots.front().delta_time;
+        const Result<std::uint32_t> of_look = add_needs(look_, delta_time, timeline_, ignored);
+        if (!of_look) return failure(of_look.error());
+        const Result<std::uint32_t> of_motion = motion_.pre_roll(look_, delta_time, job_.shots.back().number);
+        if (!of_motion) return failure(of_motion.error());
+        const std::uint32_t pre_roll = std::max(*of_look, *of_motion);
         std::vector<Shot> all;
         for (const Shot& shot : job_.shots) {
-            std::uint64_t first = shot.number - std::min<std::uint64_t>(shot.number, *pre_roll);
+            std::uint64_t first = shot.number - std::min<std::uint64_t>(shot.number, pre_roll);
             if (!all.empty()) first = std::max(first, all.back().number + 1);
             for (std::uint64_t number = first; number < shot.number; ++number) {
                 Shot& before = all.emplace_back(shot);
                 before.number = number;
-                before.time = shot.time - static_cast<double>(shot.number - number) * shot.delta_time;
+                before.time = job_.time_of(number);
                 before.previous_time = std::max(0.0, before.time - shot.delta_time);
                 before.frame.clear();
                 before.is_written = false;
@@ -325,9 +329,8 @@ class Render {
         darkroom::FrameLayers layers;
         const bool has_frame = !shot.frame.empty();
         if (way_ == Way::Developed) {
-            if (Result<> done = timeline_.advance(*composer_, shot.time); !done) return done;
-            if (Result<> done = ui_.advance(*composer_, shot.time); !done) return done;
-            const auto ui = ui_.picture(job_.desc.extent);
+            if (Result<> done = motion_.advance(*composer_, shot.number, shot.time); !done) return done;
+            const auto ui = motion_.picture(job_.desc.extent);
             if (!ui) return failure(ui.error());
             input.ui = **ui;
             Result<DevelopedPicture> made = developer_->develop(*composer_, input, has_frame ? &layers : nullptr);
@@ -361,7 +364,7 @@ class Render {
     std::unique_ptr<darkroom::Device> device_;
     std::optional<render::Renderer> hdr_, display_;
     std::unique_ptr<darkroom::Composer> composer_;
-    UiSource ui_;  ///< moves the composer, so it goes first
+    Motion motion_;  ///< moves the composer, so it goes first
     std::unique_ptr<darkroom::Developer> developer_;
     std::vector<Item> items_;
     std::optional<PictureStream> stream_;

@@ -23,7 +23,6 @@ using darkroom::user_error;
 namespace {
 
 constexpr VkExtent2D default_extent{1920, 1080};
-constexpr double default_frames_per_second = 24;
 constexpr const char* moment_group = "The moment";
 constexpr std::uint32_t usual_samples = 2;
 
@@ -65,17 +64,16 @@ void RenderFlags::add_moments(CommandFlags command) {
         .group(group);
     frames_per_second_.add_to(command, "Frames a second, for --frames and for motion")
         .type_name("N")
-        .default_str(fmt::format("{}", default_frames_per_second))
+        .default_str(fmt::format("{}", RenderJob().frames_per_second))
         .group(group);
 }
 
-Result<std::vector<Shot>> RenderFlags::shots() const {
-    double frames_per_second = default_frames_per_second, time = 0;
-    if (Result<> done = frames_per_second_.read_to(frames_per_second); !done) return failure(std::move(done));
+Result<std::vector<Shot>> RenderFlags::shots(const RenderJob& job) const {
+    double time = 0;
     if (Result<> done = time_.read_to(time); !done) return failure(std::move(done));
     if (time_.is_given() && frames_)
         return user_error("--time: --frames says the time of every frame, leave out one of them");
-    const double step = 1 / frames_per_second;
+    const double step = 1 / job.frames_per_second;
     const auto shot = [&](std::uint64_t number, double at) {
         return Shot{.number = number,
                     .time = at,
@@ -90,7 +88,7 @@ Result<std::vector<Shot>> RenderFlags::shots() const {
     std::vector<Shot> out;
     for (const long long number : frames->numbers()) {
         if (number < 0) return user_error(fmt::format("--frames {}: a scene begins at frame 0", printable(*frames_)));
-        out.push_back(shot(static_cast<std::uint64_t>(number), static_cast<double>(number) / frames_per_second));
+        out.push_back(shot(static_cast<std::uint64_t>(number), job.time_of(static_cast<std::uint64_t>(number))));
     }
     return out;
 }
@@ -121,9 +119,7 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
 }
 
 Result<> RenderFlags::set_target(RenderJob& job) const {
-    double frames_per_second = default_frames_per_second;
-    if (Result<> done = frames_per_second_.read_to(frames_per_second); !done) return done;
-    Result<std::optional<StreamDesc>> stream = write.stream(out_, frames_per_second);
+    Result<std::optional<StreamDesc>> stream = write.stream(out_, job.frames_per_second);
     if (!stream) return failure(std::move(stream));
     job.stream = *stream;
     if (job.stream) {
@@ -160,8 +156,9 @@ Result<RenderJob> RenderFlags::job() const {
     const Result<std::size_t> jobs = run.jobs();
     if (!jobs) return failure(jobs.error());
     job.jobs = *jobs;
+    if (Result<> done = frames_per_second_.read_to(job.frames_per_second); !done) return failure(std::move(done));
     if (Result<> done = set_target(job); !done) return failure(std::move(done));
-    Result<std::vector<Shot>> shots = this->shots();
+    Result<std::vector<Shot>> shots = this->shots(job);
     if (!shots) return failure(std::move(shots));
     job.shots = std::move(*shots);
     if (job.shots.size() > 1) job.write.max_threads = 1;  // several files are encoded at once

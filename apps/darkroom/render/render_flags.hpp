@@ -40,6 +40,9 @@ struct RenderJob {
     darkroom::DevelopTarget target = darkroom::DevelopTarget::Encoded8;
     std::optional<StreamDesc> stream;
     std::uint64_t seed = 0;
+    double frames_per_second = 24;
+
+    [[nodiscard]] double time_of(std::uint64_t frame) const { return static_cast<double>(frame) / frames_per_second; }
 };
 
 class RenderFlags {
@@ -61,7 +64,7 @@ class RenderFlags {
 
   private:
     void add_moments(CommandFlags command);
-    [[nodiscard]] darkroom::Result<std::vector<Shot>> shots() const;
+    [[nodiscard]] darkroom::Result<std::vector<Shot>> shots(const RenderJob& job) const;
     /// What becomes of the pictures: files or a stream.
     [[nodiscard]] darkroom::Result<> set_target(RenderJob& job) const;
     [[nodiscard]] darkroom::Result<> check_files(const std::vector<Shot>& shots) const;

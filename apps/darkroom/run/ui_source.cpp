@@ -56,9 +56,12 @@ Result<> UiSource::start(Composer& composer) {
     composer_ = &composer;
     controllers_.reset();
     if (ui_.controllers.empty()) return {};
-    const darkroom::LogSink print = [](darkroom::Severity, std::string_view line) { warn(std::string(line)); };
+    const darkroom::LogSink print = [is_silent = is_silent_](darkroom::Severity, std::string_view line) {
+        if (!*is_silent) warn(std::string(line));
+    };
     console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print});
-    auto made = darkroom::Controllers::create(*console_, {.print = print});
+    // Time is no limit here: what is over one on a busy machine would be another picture. Instructions are counted.
+    auto made = darkroom::Controllers::create(*console_, {.print = print, .milliseconds_per_frame = 1000});
     if (!made) return failure(std::move(made));
     controllers_.emplace(std::move(*made));
     for (const std::string& file : ui_.controllers)

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "hud/hud_document.hpp"
@@ -33,6 +34,13 @@ class UiSource {
     /// Of a look as LookFlags gives it.
     UiSource(const darkroom::Look& look, const Timeline& timeline)
         : ui_(look.ui.value_or(darkroom::LookUi{})), events_(timeline.game()), game_(ui_.game) {}
+    [[nodiscard]] bool has_controllers() const { return !ui_.controllers.empty(); }
+    /// Loads the controllers for this Composer, which advance() does as well. Errors: of scripts.
+    [[nodiscard]] darkroom::Result<> start(darkroom::Composer& composer);
+    /// Of the controllers, once they are loaded: see Controllers::pre_roll.
+    [[nodiscard]] std::optional<double> pre_roll() const { return controllers_->pre_roll(); }
+    /// True: what scripts print, and their errors, are not told from now on. Gives what was the case.
+    bool silence(bool is_silent) { return std::exchange(*is_silent_, is_silent); }
     /// Before a frame: the game at this time, the offset of the interface, and one call of each controller. Values are
     /// overrides. Frames come in order; a frame at an earlier time starts anew.
     [[nodiscard]] darkroom::Result<> advance(darkroom::Composer& composer, double time);
@@ -40,7 +48,6 @@ class UiSource {
     [[nodiscard]] darkroom::Result<std::shared_ptr<const std::vector<std::uint8_t>>> picture(VkExtent2D extent);
 
   private:
-    [[nodiscard]] darkroom::Result<> start(darkroom::Composer& composer);
     [[nodiscard]] darkroom::Vec2 offset_at(double time) const;
 
     darkroom::LookUi ui_;
@@ -50,6 +57,7 @@ class UiSource {
     std::unique_ptr<darkroom::Console> console_;
     std::optional<darkroom::Controllers> controllers_;
     double last_time_ = 0;
+    std::shared_ptr<bool> is_silent_ = std::make_shared<bool>(false);  ///< what the controllers' sink looks at
 
     VkExtent2D extent_{};
     std::unique_ptr<darkroom::HudDocument> document_;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/files.hpp"
 #include "image/frame/camera_check.hpp"
@@ -81,6 +82,19 @@ Result<FrameCamera> read_camera(const std::filesystem::path& path) {
             return user_error(
                 fmt::format("{}:{}: {}", path.string(), node.source().begin.line, std::move(read).error().text));
     return camera;
+}
+
+Matrix perspective(double vertical_field_of_view, double aspect) {
+    constexpr double near_distance = 0.1;
+    constexpr double far_distance = 1000.0;
+    const double scale = 1 / std::tan(vertical_field_of_view * std::numbers::pi / 360);
+    Matrix matrix{};
+    matrix[0] = static_cast<float>(scale / aspect);
+    matrix[5] = static_cast<float>(-scale);
+    matrix[10] = static_cast<float>(far_distance / (near_distance - far_distance));
+    matrix[11] = -1;
+    matrix[14] = static_cast<float>(near_distance * far_distance / (near_distance - far_distance));
+    return matrix;
 }
 
 }  // namespace darkroom

@@ -129,6 +129,9 @@ void widen(FrameFile& frame);
 /// floats are linear Rec. 709; other primaries are converted. The error text begins with the path.
 [[nodiscard]] Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options = {});
 
+/// FrameFile::time of a file, whose pixels stay undecoded.
+[[nodiscard]] Result<std::optional<double>> read_frame_time(const std::filesystem::path& path, const LayerNames& names);
+
 /// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, worldToCamera,
 /// and as attributes of our own darkroom:projection, previousWorldToCamera, previousProjection, near, far, time,
 /// deltaTime and frameIndex, bit for bit. Colour is half, or float if `frame.samples` is; depth and motion are float,

@@ -19,6 +19,12 @@ namespace {
 
 constexpr float largest_half = 65504.0f;
 constexpr std::uint16_t half_one = 0x3c00;
+constexpr const char* time_attribute = "darkroom:time";
+
+std::optional<double> number_of(const Decoder& decoder, std::size_t part, const char* attribute) {
+    const std::optional<double> value = decoder.number(part, attribute);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
 
 bool is_inside(const FilePart& part, std::uint32_t x, std::uint32_t y) {
     const std::int64_t column = std::int64_t{x} - part.x;
@@ -399,11 +405,8 @@ Result<> FrameReader::read_camera_of_file() {
 }
 
 void FrameReader::read_time_of_file() {
-    const auto number = [&](const char* name) -> std::optional<double> {
-        const std::optional<double> value = decoder_.number(found_.color.part, name);
-        return value && std::isfinite(*value) ? value : std::nullopt;
-    };
-    frame_.time = number("darkroom:time");
+    const auto number = [&](const char* name) { return number_of(decoder_, found_.color.part, name); };
+    frame_.time = number(time_attribute);
     frame_.delta_time = number("darkroom:deltaTime");
     constexpr double most = 9007199254740992;  // 2^53: whole numbers beyond are not exact in a double
     const std::optional<double> index = number("darkroom:frameIndex");
@@ -481,17 +484,12 @@ Result<> add_mapping(LayerNames& names, std::string_view mapping) {
     return {};
 }
 
-Matrix perspective(double vertical_field_of_view, double aspect) {
-    constexpr double near_distance = 0.1;
-    constexpr double far_distance = 1000.0;
-    const double scale = 1 / std::tan(vertical_field_of_view * std::numbers::pi / 360);
-    Matrix matrix{};
-    matrix[0] = static_cast<float>(scale / aspect);
-    matrix[5] = static_cast<float>(-scale);
-    matrix[10] = static_cast<float>(far_distance / (near_distance - far_distance));
-    matrix[11] = -1;
-    matrix[14] = static_cast<float>(near_distance * far_distance / (near_distance - far_distance));
-    return matrix;
+Result<std::optional<double>> read_frame_time(const std::filesystem::path& path, const LayerNames& names) {
+    const auto decoder = Decoder::open(path);
+    if (!decoder) return failure(decoder.error());
+    const auto found = find_channels(decoder->parts(), names);
+    if (!found) return failure(found.error());
+    return number_of(*decoder, found->color.part, time_attribute);
 }
 
 }  // namespace darkroom
