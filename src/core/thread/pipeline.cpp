@@ -9,6 +9,7 @@
 #include <mutex>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace darkroom {
@@ -65,10 +66,10 @@ class Run {
             const std::size_t item = to_encode_.front();
             to_encode_.pop_front();
             Result<> done = timed(lock, stages_.encode, item, times_.encode);
-            end_item(item, std::move(done));
+            end_item(lock, item, std::move(done));
             return true;
         }
-        if (next_ >= end() || alive_ >= desc_.window()) return false;
+        if (next_ >= end() || next_ - reported_ >= desc_.window()) return false;
         const std::size_t item = next_++;
         ++alive_;
         states_[item] = State::Decoding;
@@ -76,7 +77,7 @@ class Run {
         if (done)
             states_[item] = State::Decoded;
         else
-            end_item(item, std::move(done));
+            end_item(lock, item, std::move(done));
         changed_.notify_all();
         return true;
     }
@@ -91,14 +92,28 @@ class Run {
         return done;
     }
 
-    void end_item(std::size_t item, Result<> result) {
+    void end_item(Lock& lock, std::size_t item, Result<> result) {
         if (!result && !desc_.keeps_going) stop_ = std::min(stop_, item);
         results_[item] = std::move(result);
         states_[item] = State::Done;
         --alive_;
-        for (; reported_ < desc_.count && states_[reported_] == State::Done; ++reported_)
-            if (reported_ <= stop_) stages_.is_done(reported_, results_[reported_]);
         changed_.notify_all();
+        report(lock);
+    }
+
+    /// Outside of the lock, since whoever is told may take long: a slow pipe holds up no other item within the window.
+    void report(Lock& lock) {
+        if (std::exchange(is_reporting_, true)) return;  // who is at it comes to this item, too
+        while (reported_ < desc_.count && states_[reported_] == State::Done) {
+            if (reported_ <= stop_) {
+                lock.unlock();
+                stages_.is_done(reported_, results_[reported_]);
+                lock.lock();
+            }
+            ++reported_;
+            changed_.notify_all();
+        }
+        is_reporting_ = false;
     }
 
     void work() {
@@ -122,7 +137,7 @@ class Run {
         const std::size_t item = begun_.front();
         begun_.pop_front();
         Result<> done = timed(lock, stages_.finish, item, times_.work);
-        if (!done) return end_item(item, std::move(done));
+        if (!done) return end_item(lock, item, std::move(done));
         states_[item] = State::Encoding;
         to_encode_.push_back(item);
         changed_.notify_all();
@@ -140,7 +155,7 @@ class Run {
                 if (done)
                     begun_.push_back(item);
                 else
-                    end_item(item, std::move(done));
+                    end_item(lock, item, std::move(done));
                 ++item;
             } else if (!begun_.empty()) {
                 finish_oldest(lock);
@@ -148,7 +163,7 @@ class Run {
                 wait(lock, times_.wait_for_decode);
             }
         }
-        while (alive_ > undone_decoded()) wait(lock, times_.wait_for_encode);
+        while (alive_ > undone_decoded() || is_reporting_) wait(lock, times_.wait_for_encode);
         is_over_ = true;
         changed_.notify_all();
     }
@@ -167,7 +182,7 @@ class Run {
     std::deque<std::size_t> begun_, to_encode_;
     std::size_t next_ = 0, alive_ = 0, reported_ = 0;
     std::size_t stop_ = static_cast<std::size_t>(-1);
-    bool is_over_ = false, has_workers_ = false;
+    bool is_over_ = false, has_workers_ = false, is_reporting_ = false;
     PipelineTimes times_;
 };
 

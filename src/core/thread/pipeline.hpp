@@ -2,7 +2,7 @@
 #pragma once
 // A list of items through three stages that overlap: decoded ahead by workers, worked on in order by the calling thread
 // (which may have several under way on a device), encoded behind by the workers. At most `window` items are between the
-// beginning of their decoding and the end of their encoding, which bounds the memory.
+// beginning of their decoding and the end of is_done, which bounds the memory.
 
 #include <cstddef>
 #include <darkroom/result.hpp>
@@ -15,10 +15,11 @@ namespace darkroom {
 /// Called with the number of an item. An item that failed in one stage enters no other. Exceptions count as failures of
 /// the machine.
 struct PipelineStages {
-    std::function<Result<>(std::size_t)> decode;                ///< any thread, several at a time
-    std::function<Result<>(std::size_t)> begin, finish;         ///< the calling thread, both in the order of the items
-    std::function<Result<>(std::size_t)> encode;                ///< any thread, several at a time
-    std::function<void(std::size_t, const Result<>&)> is_done;  ///< in order, one at a time; any thread
+    std::function<Result<>(std::size_t)> decode;         ///< any thread, several at a time
+    std::function<Result<>(std::size_t)> begin, finish;  ///< the calling thread, both in the order of the items
+    std::function<Result<>(std::size_t)> encode;         ///< any thread, several at a time
+    /// In order, one at a time; any thread. While it runs, other items go on.
+    std::function<void(std::size_t, const Result<>&)> is_done;
 };
 
 struct PipelineDesc {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <new>
 #include <numeric>
@@ -110,6 +111,42 @@ TEST(Pipeline, DecodesNoFurtherAheadThanItsWindow) {
                         .is_done = [&](std::size_t, const Result<>&) { ++done; }});
     EXPECT_LE(farthest, desc.window());
     EXPECT_GT(farthest, 1u) << "decodes ahead";
+}
+
+// Who is told of an item may take long, as a slow pipe does: those behind it are encoded meanwhile, within the window.
+TEST(Pipeline, OthersGoOnWhileOneIsTold) {
+    const PipelineDesc desc{.count = 40, .jobs = 2, .in_flight = 1};
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::size_t encoded = 0, decoded = 0, told = 0, most_ahead = 0;
+    const auto nothing = [](std::size_t) { return Result<>(); };
+    run_pipeline(desc, {.decode =
+                            [&](std::size_t) {
+                                const std::lock_guard lock(mutex);
+                                most_ahead = std::max(most_ahead, ++decoded - told);
+                                return Result<>();
+                            },
+                        .begin = nothing,
+                        .finish = nothing,
+                        .encode =
+                            [&](std::size_t) {
+                                const std::lock_guard lock(mutex);
+                                ++encoded;
+                                changed.notify_all();
+                                return Result<>();
+                            },
+                        .is_done =
+                            [&](std::size_t item, const Result<>&) {
+                                std::unique_lock lock(mutex);
+                                const auto is_full = [&] { return encoded == desc.window(); };
+                                if (item == 0) {
+                                    EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(20), is_full))
+                                        << encoded << " encoded while the first was told";
+                                }
+                                EXPECT_EQ(told++, item);
+                            }});
+    EXPECT_EQ(told, desc.count);
+    EXPECT_LE(most_ahead, desc.window());
 }
 
 TEST(Pipeline, EndsAtTheFirstFailureAndDoesWhatComesBefore) {
