@@ -22,7 +22,9 @@ namespace darkroom::test {
 
 struct Outcome {
     int code = -1;  ///< 128 and more: ended by a signal
-    std::string out, err;
+    std::string out;
+    std::string err;   ///< of standard error its errors and warnings
+    std::string told;  ///< and what was done by the way
 };
 
 inline std::string quoted(const std::string& text) {
@@ -110,7 +112,12 @@ class CliFixture : public testing::Test {
         const std::filesystem::path out = folder_.string() + ".out", err = folder_.string() + ".err";
         const int status =
             std::system((command + " >" + quoted(out.string()) + " 2>" + quoted(err.string()) + " </dev/null").c_str());
-        Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : 128, content(out), content(err)};
+        Outcome outcome{.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128, .out = content(out)};
+        std::ifstream lines(err);
+        for (std::string line; std::getline(lines, line);)
+            (line.starts_with("darkroom: ") ? outcome.err : outcome.told).append(line).append(1, '\n');
+        // Of other programs.
+        if (outcome.code != 0 && outcome.err.empty()) outcome.err = outcome.told;
         std::filesystem::remove(out);
         std::filesystem::remove(err);
         return outcome;

@@ -96,7 +96,7 @@ TEST_F(Cli, SeveralInputsGoToAFolderOrANumberedName) {
     const Outcome numbered = run({"develop", path("shot.%04d.exr"), "-o", path("out.%04d.png")});
     EXPECT_EQ(numbered.code, 0) << numbered.err;
     EXPECT_TRUE(fs::exists(path("out.0007.png")) && fs::exists(path("out.0009.png")));
-    EXPECT_EQ(std::count(numbered.out.begin(), numbered.out.end(), '\n'), 2)
+    EXPECT_EQ(std::count(numbered.told.begin(), numbered.told.end(), '\n'), 2)
         << "plain lines where there is no terminal";
     fs::create_directory(path("pictures"));
     EXPECT_EQ(run({"develop", path("shot.0007.exr"), path("frame.exr"), "-o", path("pictures")}).code, 0);

@@ -119,13 +119,13 @@ TEST_F(CliHabits, QuietIsSilentAndVerboseSaysMore) {
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         return outcome;
     };
-    EXPECT_NE(with({}).out, "");
+    EXPECT_NE(with({}).told, "");
     EXPECT_EQ(with({}).err, "");
     for (const char* const flag : {"-q", "--quiet"}) {
-        EXPECT_EQ(with({flag}).out, "");
+        EXPECT_EQ(with({flag}).told, "");
         EXPECT_NE(with({flag, "--timings"}).out.find("together"), std::string::npos) << "what was asked for is told";
     }
-    EXPECT_EQ(run({"render", path("empty.scene.toml"), "--size", "8x8", "-q", "-o", path("b.png")}).out, "");
+    EXPECT_EQ(run({"render", path("empty.scene.toml"), "--size", "8x8", "-q", "-o", path("b.png")}).told, "");
     EXPECT_EQ(run({"compare", "-q", path("a.png"), path("a.png")}).out, "");
     EXPECT_NE(run({"compare", "-q", "--json", path("a.png"), path("a.png")}).out, "");
     for (const char* const flag : {"-v", "--verbose"}) {

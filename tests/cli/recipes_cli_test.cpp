@@ -66,7 +66,8 @@ class CliRecipes : public test::CliFixture {
                 last = run_lines(text);
                 EXPECT_EQ(last.code, 0) << text << last.err;
             } else if (kind == "text") {
-                EXPECT_NE((last.out + last.err).find(text), std::string::npos) << text << " is not in " << last.err;
+                EXPECT_NE((last.out + last.told + last.err).find(text), std::string::npos)
+                    << text << " is not in " << last.err;
             }
         }
     }

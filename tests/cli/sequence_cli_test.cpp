@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "apps/darkroom/run/json.hpp"
 #include "cli_support.hpp"
 #include "image/frame/frame_file.hpp"
 
@@ -64,7 +67,8 @@ TEST_F(CliSequence, FilesAreTheSameWhateverTheJobs) {
         const Outcome outcome = develop(jobs, {"--jobs", jobs});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
         EXPECT_EQ(outcome.err, "");
-        EXPECT_EQ(std::ranges::count(outcome.out, '\n'), count);
+        EXPECT_EQ(std::ranges::count(outcome.told, '\n'), count);
+        EXPECT_EQ(outcome.out, "") << "what was done is no answer";
     }
     const std::vector<std::string> one = pictures("1");
     EXPECT_NE(one[0], one[1]);
@@ -96,19 +100,19 @@ TEST_F(CliSequence, WhatIsThereStaysWhereAsked) {
     put(path(out("b", 4)), "");
     const Outcome some = develop("b", {"--skip-existing"});
     ASSERT_EQ(some.code, 0);
-    EXPECT_TRUE(some.out.starts_with("1 of 7 pictures are there already\n")) << some.out;
+    EXPECT_TRUE(some.told.starts_with("1 of 7 pictures are there already\n")) << some.told;
     EXPECT_EQ(content(path(out("b", 3))), "there");
     EXPECT_GT(content(path(out("b", 4))).size(), 100u) << "an empty file is no picture";
     const Outcome again = develop("b", {"--skip-existing"});
     EXPECT_EQ(again.code, 0);
-    EXPECT_EQ(again.out, "7 of 7 pictures are there already\n");
+    EXPECT_EQ(again.told, "7 of 7 pictures are there already\n");
     ASSERT_EQ(develop("b").code, 0);
     EXPECT_NE(content(path(out("b", 3))), "there");
 }
 
 TEST_F(CliSequence, WhoReadsTheFirstLineAloneDoesNotEndTheWork) {
     fs::create_directories(path("h"));
-    const Outcome outcome = run_lines("darkroom develop f.%04d.exr -o h/ --jobs 1 | head -n 1");
+    const Outcome outcome = run_lines("darkroom develop f.%04d.exr -o h/ --jobs 1 2>&1 | head -n 1");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     for (int number = 1; number <= count; ++number) EXPECT_TRUE(fs::exists(path(out("h", number)))) << number;
@@ -117,7 +121,7 @@ TEST_F(CliSequence, WhoReadsTheFirstLineAloneDoesNotEndTheWork) {
 TEST_F(CliSequence, AFullDiskBehindStandardOutputIsTold) {
     if (!fs::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full here";
     for (const std::string command : {"info f.0001.exr", "effects", "plan", "devices", "effects bloom --json", "--help",
-                                      "info f.0001.exr --json", "develop f.0001.exr -o k.png"}) {
+                                      "info f.0001.exr --json", "compare f.0001.exr f.0001.exr"}) {
         const Outcome outcome = run_lines("darkroom " + command + " > /dev/full");
         EXPECT_EQ(outcome.code, 2) << command;
         EXPECT_NE(outcome.err.find("No space left on device"), std::string::npos) << command << ": " << outcome.err;
@@ -208,6 +212,45 @@ TEST_F(CliSequence, TellsWhereWhatIsLeftOutChanges) {
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 2) << outcome.err;
     EXPECT_NE(outcome.err.find("f.0003.exr: left out: fog: needs depth"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("f.0005.exr: nothing is left out any more"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CliSequence, ProgressIsReadByAnotherProgram) {
+    put(path(in(4)), "no picture");
+    const Outcome outcome = develop("json", {"--progress", "json", "--keep-going", "--jobs", "1"});
+    EXPECT_EQ(outcome.code, 1);
+    std::map<std::string, std::vector<app::Json>> events;
+    std::istringstream lines(outcome.told);
+    for (std::string line; std::getline(lines, line);) {
+        const std::optional<app::Json> event = app::Json::parse(line);
+        ASSERT_TRUE(event && event->find("event") != nullptr) << line;
+        events[event->find("event")->text()].push_back(*event);
+    }
+    ASSERT_EQ(events["start"].size(), 1u) << outcome.told;
+    EXPECT_EQ(events["start"][0].find("total")->whole(), count);
+    ASSERT_EQ(events["picture"].size(), static_cast<std::size_t>(count - 1));
+    const app::Json& first = events["picture"][0];
+    EXPECT_EQ(first.find("done")->whole(), 1);
+    EXPECT_EQ(first.find("output")->text(), path(out("json", 1)));
+    EXPECT_EQ(first.find("width")->whole(), 48);
+    EXPECT_EQ(first.find("height")->whole(), 32);
+    ASSERT_EQ(events["failed"].size(), 1u);
+    EXPECT_NE(events["failed"][0].find("text")->text().find("0004"), std::string::npos);
+    ASSERT_EQ(events["end"].size(), 1u);
+    EXPECT_EQ(events["end"][0].find("failed")->whole(), 1);
+    EXPECT_FALSE(events["error"].empty());
+    EXPECT_EQ(outcome.err, outcome.told) << "nothing but JSON";
+    expect_refused({"develop", path(in(1)), "-o", path("x.png"), "--progress", "xml"}, 1, "allowed is text, json");
+}
+
+TEST_F(CliSequence, MissingFoldersAreMadeWhereAsked) {
+    for (const std::string where : {"new/deep/", "also/{name}.png"}) {
+        expect_refused({"develop", path(in(1)), path(in(2)), "-o", path(where)}, 1, "--mkdir makes it");
+        const Outcome outcome = run({"develop", path(in(1)), path(in(2)), "--mkdir", "-o", path(where)});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+    }
+    EXPECT_TRUE(fs::exists(path("new/deep/f.0002.png")) && fs::exists(path("also/f.0002.png")));
+    put(path("file"), "no folder");
+    expect_refused({"develop", path(in(1)), "--mkdir", "-o", path("file/x/y.png")}, 1, "cannot be made");
 }
 
 TEST_F(CliSequence, TimingsSayWhatEachStageTook) {

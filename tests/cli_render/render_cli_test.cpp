@@ -24,7 +24,8 @@ TEST_F(CliRender, RendersAScene) {
     const Outcome outcome = render({});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
-    EXPECT_EQ(outcome.out, "Loaded scene Yard\nEntities: 5\nRendered 48x32 image to " + path("out.png") + "\n");
+    EXPECT_EQ(outcome.told,
+              "Loaded scene Yard\nEntities: 5\n" + path("yard.scene.toml") + " -> " + path("out.png") + " (48x32)\n");
     EXPECT_EQ(files(), (std::vector<std::string>{"out.png", "yard.scene.toml"})) << "nothing else is left behind";
     ASSERT_EQ(render({}, "again.png").code, 0);
     EXPECT_EQ(content(path("out.png")), content(path("again.png")));
@@ -216,7 +217,7 @@ TEST_F(CliRender, FramesAreNumbered) {
     EXPECT_EQ(files(), (std::vector<std::string>{"f.003.exr", "f.004.exr", "f.005.exr", "p.0003.png", "p.0004.png",
                                                  "p.0005.png", "yard.scene.toml"}));
     EXPECT_NE(content(path("p.0003.png")), content(path("p.0004.png")));
-    EXPECT_NE(outcome.out.find("2/3 Rendered 48x32 image to " + path("p.0004.png")), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.told.find("-> " + path("p.0004.png") + " (48x32)"), std::string::npos) << outcome.told;
     const FrameFile four = frame("f.004.exr");
     EXPECT_EQ(four.time, 2);
     EXPECT_EQ(four.frame_index, 4u);
@@ -335,7 +336,7 @@ TEST_F(CliRender, RendersAModelAlone) {
 "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
     const Outcome outcome = run({"render", path("one.gltf"), "-o", path("one.png"), "--size", "32x32"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_NE(outcome.out.find("Entities: 1\n"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.told.find("Entities: 1\n"), std::string::npos) << outcome.told;
     std::set<float> values;
     for (const float value : picture("one.png").pixels) values.insert(value);
     EXPECT_GT(values.size(), 3u) << "the view is fitted to the model";

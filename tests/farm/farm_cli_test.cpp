@@ -73,10 +73,10 @@ TEST_F(CliFarm, ATaskMakesWhatDevelopMakesAndWritesWhatItDid) {
     EXPECT_EQ(did["done"], json::parse("[[1,2]]"));
     EXPECT_EQ(did["tries"], 1);
     EXPECT_EQ(did["made"], 2);
-    EXPECT_NE(task.out.find("shot.0002.exr -> out/shot.0002.png"), std::string::npos) << task.out;
+    EXPECT_NE(task.told.find("shot.0002.exr -> out/shot.0002.png"), std::string::npos) << task.told;
     EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 1-2").code, 0);
     EXPECT_EQ(record("1-2")["tries"], 0) << "all was there";
-    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0 -q").out, "");
+    EXPECT_EQ(run_lines("darkroom farm task 'shot.####.exr' -o out/ --frames 0 -q").told, "");
     EXPECT_EQ(record("0-0")["made"], 1);
 }
 

@@ -85,7 +85,7 @@ Result<> add_to(darkroom::ContactSheet& sheet, const std::string& name, const st
     return sheet.add(name, color->reference.picture, color->test.picture, color->comparison, color->reference.encoding);
 }
 
-void tell_lines(std::string_view lines) { tell(lines.substr(0, lines.find_last_not_of('\n') + 1)); }
+void tell_lines(std::string_view lines) { answer_unless_quiet(lines.substr(0, lines.find_last_not_of('\n') + 1)); }
 
 void print(const Options& options, const Json& document, const std::string& text) {
     if (options.is_json)

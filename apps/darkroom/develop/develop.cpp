@@ -87,8 +87,9 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     const std::vector<darkroom::NumberedFile>& inputs = job.inputs;
     const auto is_in_range = [&](long long number) { return job.is_asked_for(number); };
     using Paths = std::vector<std::filesystem::path>;
-    const Result<Paths> outputs = job.stream ? Result<Paths>(Paths(inputs.size(), stream_name))
-                                             : output_paths(inputs, options.out, ui_files(job.look), is_in_range);
+    const Result<Paths> outputs =
+        job.stream ? Result<Paths>(Paths(inputs.size(), stream_name))
+                   : output_paths(inputs, options.out, ui_files(job.look), is_in_range, options.run.missing_folders());
     if (!outputs) return failure(outputs.error());
     if (job.stream) job.develop.target = target_for(job.stream->format);
     if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
@@ -140,6 +141,7 @@ std::optional<double> time_of(const Job& job, std::size_t place) {
 
 Result<Job> job_of(const Options& options) {
     Job job;
+    if (Result<> done = options.run.start_report(); !done) return failure(std::move(done));
     if (options.is_reference && options.run.has_timings)
         return user_error("--timings: the references do not run on the device");
     if (options.time.is_given() && options.frames_per_second.is_given())
@@ -218,7 +220,7 @@ class Develop {
                                             .finish = [this](std::size_t i) { return finish_step(i); },
                                             .encode = [this](std::size_t i) { return encode(i); },
                                             .deliver = [this](std::size_t i) { return deliver(i); },
-                                            .line = [this](std::size_t i) { return line(i); },
+                                            .made = [this](std::size_t i) { return made(i); },
                                             .release = [this](std::size_t i) { items_[i] = {}; }});
         if (options_.run.has_timings && done) pass_times_.print();
         return done;
@@ -365,11 +367,11 @@ class Develop {
         return stream_->write(items_[i].packed, items_[i].extent, shown(i));
     }
 
-    [[nodiscard]] std::string line(std::size_t i) const {
+    [[nodiscard]] std::optional<Made> made(std::size_t i) const {
         const Step& step = job_.steps[i];
-        if (!step.is_written) return {};
-        return fmt::format("{} -> {} ({}x{})", shown(i), darkroom::printable(step.output.string()),
-                           items_[i].extent.width, items_[i].extent.height);
+        if (!step.is_written) return std::nullopt;
+        const auto [width, height] = items_[i].extent;
+        return Made{.from = step.input.string(), .to = step.output.string(), .width = width, .height = height};
     }
 
     const Options& options_;
@@ -422,7 +424,7 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
                     ":stretch behind it, to all of it")
         .type_name("WxH[:fit|fill|stretch]");
     command.add_flag("--keep-layers", options->keeps_layers,
-                     "Puts the frame's other layers, as they are, beside the picture in an .exr file");
+                     "Puts the frame's other layers beside the picture in an .exr file");
     command.add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
     command
         .add_option("--frames", options->frames, "Of the inputs those with these numbers: 8, 1-100, 1-100x2, 1,5,9-12")

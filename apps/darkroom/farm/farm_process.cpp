@@ -58,20 +58,28 @@ class Pipe {
     std::array<int, 2> ends_{-1, -1};
 };
 
+struct Words {
+    std::vector<std::string> errors, last;
+};
+
+void keep(std::vector<std::string>& lines, const std::string& line) {
+    lines.push_back(darkroom::printable(line));
+    if (lines.size() > most_errors) lines.erase(lines.begin());
+}
+
 /// Takes whole lines out of `text`, and one that never ends in pieces.
-void take_lines(std::string& text, bool is_end, ProcessOutcome& outcome) {
+void take_lines(std::string& text, bool is_end, Words& words) {
     while (!text.empty()) {
         const std::size_t end = text.find('\n');
         if (end == std::string::npos && !is_end && text.size() < most_output) return;
         const std::string line = text.substr(0, end);
         text.erase(0, end == std::string::npos ? text.size() : end + 1);
         if (line.empty() || line.find("warning:") != std::string::npos) continue;
-        outcome.errors.push_back(darkroom::printable(line));
-        if (outcome.errors.size() > most_errors) outcome.errors.erase(outcome.errors.begin());
+        keep(line.starts_with("darkroom: ") ? words.errors : words.last, line);
     }
 }
 
-void read_all(Pipe& out, Pipe& errors, ProcessOutput output, ProcessOutcome& outcome) {
+void read_all(Pipe& out, Pipe& errors, ProcessOutput output, ProcessOutcome& outcome, Words& words) {
     std::string text;
     while (out.read_end() >= 0 || errors.read_end() >= 0) {
         std::array<pollfd, 2> waits{pollfd{out.read_end(), POLLIN, 0}, pollfd{errors.read_end(), POLLIN, 0}};
@@ -84,7 +92,7 @@ void read_all(Pipe& out, Pipe& errors, ProcessOutput output, ProcessOutcome& out
             const std::size_t known = text.size();
             const bool goes_on = errors.read_to(text);
             if (output == ProcessOutput::Told) std::fwrite(text.data() + known, 1, text.size() - known, stderr);
-            take_lines(text, !goes_on, outcome);
+            take_lines(text, !goes_on, words);
             if (!goes_on) errors.close_end(0);
         }
     }
@@ -110,12 +118,14 @@ Result<ProcessOutcome> run_process(const std::vector<std::string>& arguments, Pr
     out.close_end(1);
     errors.close_end(1);
     ProcessOutcome outcome;
-    read_all(out, errors, output, outcome);
+    Words words;
+    read_all(out, errors, output, outcome, words);
     int status = 0;
     while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
     }
     darkroom::process_that_ends_with_us = 0;
     outcome.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    if (outcome.code != 0) outcome.errors = words.errors.empty() ? std::move(words.last) : std::move(words.errors);
     return outcome;
 }
 

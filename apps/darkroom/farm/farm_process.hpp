@@ -10,9 +10,10 @@
 namespace app {
 
 struct ProcessOutcome {
-    int code = 0;                     ///< 128 and more: 128 + the signal that ended it
-    std::string out;                  ///< its standard output, where that was kept
-    std::vector<std::string> errors;  ///< the last lines that it complained in, warnings aside
+    int code = 0;     ///< 128 and more: 128 + the signal that ended it
+    std::string out;  ///< its standard output, where that was kept
+    /// The last errors that it told as this program does; where it told none, and failed, its last words.
+    std::vector<std::string> errors;
 };
 
 enum class ProcessOutput {

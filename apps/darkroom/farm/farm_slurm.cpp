@@ -193,7 +193,7 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
     }
     const std::vector<std::string> chunks = chunks_of(*work, job.done, chunk);
     if (chunks.empty()) {
-        tell(fmt::format("all {} pictures are there, nothing is submitted", job.frames.size()));
+        answer_unless_quiet(fmt::format("all {} pictures are there, nothing is submitted", job.frames.size()));
         return {};
     }
     // The records of a chunk are files of its name.
@@ -217,9 +217,9 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
     job.id = *id;
     if (Result<> done = write_job(work->folder, job); !done)
         return darkroom::machine_error(fmt::format("job {} was submitted, but {}", job.id, done.error().text));
-    tell(fmt::format("job {}: {} of {} pictures in {} chunks; darkroom farm status {}", job.id,
-                     job.frames.size() - job.done.size(), job.frames.size(), chunks.size(),
-                     printable(work->folder.string())));
+    answer_unless_quiet(fmt::format("job {}: {} of {} pictures in {} chunks; darkroom farm status {}", job.id,
+                                    job.frames.size() - job.done.size(), job.frames.size(), chunks.size(),
+                                    printable(work->folder.string())));
     return {};
 }
 

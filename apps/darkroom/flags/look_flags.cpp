@@ -111,9 +111,7 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
                         "the defaults, of which frames of files get no occlusion and no light in the air")
             .type_name("FILE")
             .group(group);
-    command
-        .add_option("--layer", layers_,
-                    "A look file whose [post_process] is laid over the look: what it writes, and no more")
+    command.add_option("--layer", layers_, "A look file whose [post_process] is laid over the look")
         .type_name("FILE")
         .repeated()
         .group(group);

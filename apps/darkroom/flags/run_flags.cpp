@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 
-#include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/text/param_text.hpp"
 #include "device_flags.hpp"
@@ -95,19 +94,19 @@ Result<darkroom::FrameSet> parse_frames(const std::string& text) {
 
 void RunFlags::add_to(CommandFlags command) {
     const std::string group = "The work";
-    jobs_.add_to(command, "Threads that decode and encode files; the pictures are the same whatever it is")
-        .type_name("N")
-        .default_str("processors")
-        .group(group);
+    jobs_.add_to(command, "Threads that decode and encode files").type_name("N").default_str("processors").group(group);
     command.add_flag("--skip-existing", skips_existing_, "Pictures that are there already stay as they are")
         .group(group);
     command
         .add_flag("--keep-going", keeps_going, "A frame that fails does not stop the others; all are listed at the end")
         .group(group);
+    command.add_flag("--mkdir", makes_folders_, "Makes the folders of output files that are not there").group(group);
+    command.add_option("--progress", progress_, "What standard error has: text, or a JSON object a line")
+        .type_name("text|json")
+        .group(group);
     command
-        .add_flag(
-            "--timings", has_timings,
-            "Prints the GPU milliseconds of every pass, and of several frames what each stage took and waited for")
+        .add_flag("--timings", has_timings,
+                  "Prints GPU milliseconds of every pass; of several frames each stage's, too")
         .group(group);
 }
 
@@ -115,6 +114,14 @@ Result<std::size_t> RunFlags::jobs() const {
     std::size_t out = 0;
     if (Result<> done = jobs_.read_to(out); !done) return failure(std::move(done));
     return out;
+}
+
+Result<> RunFlags::start_report() const {
+    if (!progress_ || *progress_ == "text") return {};
+    if (*progress_ != "json")
+        return user_error(fmt::format("--progress {}: allowed is text, json", printable(*progress_)));
+    report_as_json();
+    return {};
 }
 
 Result<> RunFlags::check_stream() const {

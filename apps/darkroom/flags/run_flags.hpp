@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/picture_stream.hpp"
 #include "flags.hpp"
 #include "image/frame/frame_set.hpp"
@@ -42,7 +43,7 @@ inline constexpr std::size_t most_frames = 100'000;  ///< that are asked for at 
 /// What --frames takes: see FrameSet. At most `most_frames`.
 [[nodiscard]] darkroom::Result<darkroom::FrameSet> parse_frames(const std::string& text);
 
-/// --jobs, --skip-existing, --keep-going, --timings.
+/// --jobs, --skip-existing, --keep-going, --mkdir, --progress, --timings.
 class RunFlags {
   public:
     void add_to(CommandFlags command);
@@ -54,12 +55,19 @@ class RunFlags {
     static void tell_of_skipped(std::size_t skipped, std::size_t asked_for);
     /// Standard output has no pictures that are there already, and no place for one that is missing.
     [[nodiscard]] darkroom::Result<> check_stream() const;
+    /// What --mkdir says.
+    [[nodiscard]] MissingFolders missing_folders() const {
+        return makes_folders_ ? MissingFolders::Made : MissingFolders::Refused;
+    }
+    /// From here on the work is reported as --progress says.
+    [[nodiscard]] darkroom::Result<> start_report() const;
 
     bool keeps_going = false, has_timings = false;
 
   private:
+    std::optional<std::string> progress_;
     NumberFlag jobs_{"--jobs", {.least = 1, .most = 256, .is_whole = true}};
-    bool skips_existing_ = false;
+    bool skips_existing_ = false, makes_folders_ = false;
 };
 
 }  // namespace app

@@ -74,7 +74,7 @@ class Render {
                                             .finish = [](std::size_t) { return Result<>(); },
                                             .encode = [this](std::size_t i) { return encode(i); },
                                             .deliver = [this](std::size_t i) { return deliver(i); },
-                                            .line = [this](std::size_t i) { return line(job_.shots[i]); },
+                                            .made = [this](std::size_t i) { return made(job_.shots[i]); },
                                             .release = [this](std::size_t i) { items_[i] = {}; }});
         if (composer_ && flags_.run.has_timings && done) pass_times_.print();
         return done;
@@ -306,10 +306,10 @@ class Render {
         return stream_->write(items_[i].packed, items_[i].extent, shown(flags_.scene));
     }
 
-    [[nodiscard]] std::string line(const Shot& shot) const {
-        if (!shot.is_written) return {};
-        return fmt::format("Rendered {}x{} image to {}", job_.desc.extent.width, job_.desc.extent.height,
-                           shown(shot.picture));
+    [[nodiscard]] std::optional<Made> made(const Shot& shot) const {
+        if (!shot.is_written) return std::nullopt;
+        const auto [width, height] = job_.desc.extent;
+        return Made{.from = flags_.scene, .to = shot.picture.string(), .width = width, .height = height};
     }
 
     /// The linear frame: through the look, or as it is, and into a file of its own.

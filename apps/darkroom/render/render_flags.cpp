@@ -113,7 +113,7 @@ Result<> RenderFlags::check_files(const std::vector<Shot>& shots) const {
             if (path.empty() || path == stream_name) continue;
             if (!outputs.insert(path.lexically_normal()).second)
                 return user_error(fmt::format("{}: would be picture and frame", printable(path.string())));
-            if (Result<> done = check_output(path, inputs); !done) return done;
+            if (Result<> done = check_output(path, inputs, run.missing_folders()); !done) return done;
         }
     return {};
 }
@@ -140,6 +140,7 @@ Result<std::uint32_t> RenderFlags::samples(std::uint32_t of_scene) const {
 
 Result<RenderJob> RenderFlags::job() const {
     RenderJob job;
+    if (Result<> done = run.start_report(); !done) return failure(std::move(done));
     const Result<std::uint64_t> seed = drawn.seed();
     if (!seed) return failure(seed.error());
     job.seed = *seed;

@@ -29,6 +29,17 @@ std::optional<std::pair<std::uintmax_t, std::uintmax_t>> identity_of(const fs::p
     return std::pair<std::uintmax_t, std::uintmax_t>{status.st_dev, status.st_ino};
 }
 
+Result<> check_folder(const fs::path& folder, MissingFolders missing) {
+    std::error_code error;
+    if (folder.empty() || fs::is_directory(folder, error)) return {};
+    if (missing == MissingFolders::Refused)
+        return user_error(fmt::format("{}: no such folder, the picture cannot be written; --mkdir makes it",
+                                      printable(folder.string())));
+    fs::create_directories(folder, error);
+    if (!error) return {};
+    return user_error(fmt::format("{}: cannot be made: {}", printable(folder.string()), error.message()));
+}
+
 }  // namespace
 
 bool FileSet::contains(const fs::path& file) const {
@@ -44,12 +55,11 @@ bool is_there(const fs::path& picture) {
     return fs::is_regular_file(picture, error) && fs::file_size(picture, error) > 0 && !error;
 }
 
-Result<> check_output(const fs::path& output, const FileSet& inputs) {
+Result<> check_output(const fs::path& output, const FileSet& inputs, MissingFolders folders) {
     std::error_code error;
     if (inputs.contains(output))
         return user_error(fmt::format("{}: is an input, and would be overwritten", printable(output.string())));
-    if (const fs::path folder = output.parent_path(); !folder.empty() && !fs::is_directory(folder, error))
-        return user_error(fmt::format("{}: no such folder, the picture cannot be written", printable(folder.string())));
+    if (Result<> done = check_folder(output.parent_path(), folders); !done) return done;
     // Reserving the file tells now, before any work, whether it can be written.
     const Result<darkroom::AtomicPath> reserved = darkroom::AtomicPath::beside(output);
     if (!reserved) return failure(reserved.error());
@@ -71,13 +81,12 @@ fs::path output_path(const fs::path& input, long long number, const std::string&
 
 Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFile> inputs, const std::string& out,
                                            std::span<const fs::path> also_read,
-                                           const std::function<bool(long long)>& is_asked_for) {
-    std::error_code error;
+                                           const std::function<bool(long long)>& is_asked_for, MissingFolders folders) {
     if (out.empty()) return user_error("-o: an output file is needed");
     const bool is_folder = is_output_folder(out);
     const bool has_name = darkroom::has_number_pattern(out) || out.find(name_pattern) != std::string::npos;
-    if (is_folder && !fs::is_directory(out, error))
-        return user_error(fmt::format("{}: no such folder", printable(out)));
+    if (is_folder)
+        if (Result<> done = check_folder(out, folders); !done) return failure(std::move(done));
     if (inputs.size() > 1 && !is_folder && !has_name)
         return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d, #### or {{name}}",
                                       printable(out), inputs.size()));
@@ -93,7 +102,7 @@ Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFil
             return user_error(fmt::format("{}: would be made of {} and of {}", printable(path.string()),
                                           printable(maker->second.string()), printable(input.string())));
         if (is_asked_for(number))
-            if (Result<> done = check_output(path, files); !done) return failure(std::move(done));
+            if (Result<> done = check_output(path, files, folders); !done) return failure(std::move(done));
         outputs.push_back(std::move(path));
     }
     return outputs;

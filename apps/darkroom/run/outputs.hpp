@@ -32,8 +32,11 @@ class FileSet {
 /// Is this picture made already? An empty file is none.
 [[nodiscard]] bool is_there(const std::filesystem::path& picture);
 
+enum class MissingFolders { Refused, Made };
+
 /// Can this file be written, and is it none of the inputs? Told before any work is done.
-[[nodiscard]] darkroom::Result<> check_output(const std::filesystem::path& output, const FileSet& inputs);
+[[nodiscard]] darkroom::Result<> check_output(const std::filesystem::path& output, const FileSet& inputs,
+                                              MissingFolders folders = MissingFolders::Refused);
 
 /// Does OUT name a folder?
 [[nodiscard]] bool is_output_folder(const std::string& out);
@@ -46,6 +49,7 @@ class FileSet {
 /// the inputs or of what is `also_read`, a folder that does not exist, a name that cannot be written.
 [[nodiscard]] darkroom::Result<std::vector<std::filesystem::path>> output_paths(
     std::span<const darkroom::NumberedFile> inputs, const std::string& out,
-    std::span<const std::filesystem::path> also_read, const std::function<bool(long long number)>& is_asked_for);
+    std::span<const std::filesystem::path> also_read, const std::function<bool(long long number)>& is_asked_for,
+    MissingFolders folders);
 
 }  // namespace app

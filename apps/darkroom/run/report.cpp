@@ -11,6 +11,9 @@
 #include <cstring>
 #include <mutex>
 
+#include "core/text/param_text.hpp"
+#include "json.hpp"
+
 namespace app {
 
 namespace {
@@ -18,24 +21,35 @@ namespace {
 Voice voice = Voice::Usual;
 std::FILE* told_to = stdout;
 bool is_bar_shown = false;
-bool is_anybody_listening = true;
+bool is_json = false;
 int output_error = 0;  ///< the first of standard output, as errno has it
 std::mutex terminal;   // whose lines come from several threads
 
-void say(std::string_view prefix, std::string_view text) {
-    std::string line(text);
-    for (char& c : line)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+/// A line of standard error, in place of a bar. Nobody reads it, or the disk is full: the work goes on.
+void print_line(std::string_view line) {
     const std::lock_guard lock(terminal);
     if (is_bar_shown) std::fputs("\r\x1b[K", stderr);
     is_bar_shown = false;
-    fmt::print(stderr, "darkroom: {}{}\n", prefix, line);
+    std::fwrite(line.data(), 1, line.size(), stderr);
+    std::fputc('\n', stderr);
+    std::fflush(stderr);
+}
+
+void print_event(const Json& event) { print_line(event.dump()); }
+
+void say(const char* event, std::string_view prefix, std::string_view text) {
+    if (is_json) return print_event({{"event", event}, {"text", text}});
+    std::string line(text);
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+    print_line(fmt::format("darkroom: {}{}", prefix, line));
 }
 
 }  // namespace
 
 void set_voice(Voice to) { voice = to; }
 Voice current_voice() { return voice; }
+void report_as_json() { is_json = true; }
 void leave_standard_output() { told_to = stderr; }
 
 void answer(std::string_view line) {
@@ -44,14 +58,13 @@ void answer(std::string_view line) {
     if (std::fflush(told_to) != 0 && output_error == 0) output_error = errno;
 }
 
+void answer_unless_quiet(std::string_view line) {
+    if (voice != Voice::Quiet) answer(line);
+}
+
 void tell(std::string_view line) {
-    if (voice == Voice::Quiet || !is_anybody_listening) return;
-    answer(line);
-    if (output_error != EPIPE) return;
-    // Whoever read what was done has read enough; the pictures are made all the same.
-    is_anybody_listening = false;
-    output_error = 0;
-    std::clearerr(told_to);
+    if (is_json) return print_event({{"event", "note"}, {"text", line}});
+    if (voice != Voice::Quiet) print_line(line);
 }
 
 void survive_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
@@ -66,10 +79,10 @@ int end_output(int code) {
 }
 
 void remark(std::string_view text) {
-    if (voice == Voice::Verbose) say("", text);
+    if (voice == Voice::Verbose) say("note", "", text);
 }
-void complain(std::string_view text) { say("", text); }
-void warn(std::string_view text) { say("warning: ", text); }
+void complain(std::string_view text) { say("error", "", text); }
+void warn(std::string_view text) { say("warning", "warning: ", text); }
 
 int fail(const darkroom::Error& error) {
     complain(error.text);
@@ -89,22 +102,46 @@ darkroom::LogSink log_sink() {
     };
 }
 
-Progress::Progress(std::size_t total) : total_(total), is_terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::size_t total) : total_(total), is_terminal_(isatty(STDERR_FILENO) != 0) {
+    if (is_json) print_event({{"event", "start"}, {"total", total_}});
+}
 
 Progress::~Progress() {
+    if (is_json)
+        print_event(
+            {{"event", "end"}, {"total", total_}, {"done", done_}, {"failed", failed_}, {"seconds", seconds()}});
     if (is_bar_shown) std::fputc('\n', stderr);
     is_bar_shown = false;
 }
 
-void Progress::step(std::string_view line) {
-    const std::lock_guard lock(terminal);
+double Progress::seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Progress::fail(const darkroom::Error& error) {
+    ++failed_;
+    if (is_json) print_event({{"event", "failed"}, {"text", error.text}});
+}
+
+void Progress::step(const Made& made) {
     ++done_;
+    if (is_json)
+        return print_event({{"event", "picture"},
+                            {"done", done_},
+                            {"total", total_},
+                            {"input", made.from},
+                            {"output", made.to},
+                            {"width", made.width},
+                            {"height", made.height},
+                            {"seconds", seconds()}});
+    const std::string line = fmt::format("{} -> {} ({}x{})", darkroom::printable(made.from),
+                                         darkroom::printable(made.to), made.width, made.height);
     if (total_ < 2) return tell(line);
     if (!is_terminal_ || voice == Voice::Quiet) return tell(fmt::format("{}/{} {}", done_, total_, line));
+    const std::lock_guard lock(terminal);
     constexpr std::size_t width = 30;
     const std::size_t filled = width * done_ / total_;
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
-    const double rate = static_cast<double>(done_) / std::max(passed.count(), 1e-6);
+    const double rate = static_cast<double>(done_) / std::max(seconds(), 1e-6);
     const auto left = static_cast<long long>(static_cast<double>(total_ - done_) / rate + 0.5);
     fmt::print(stderr, "\r\x1b[K[{:=<{}}{: <{}}] {}/{} {:.1f} fps, {}:{:02} left  {}", "", filled, "", width - filled,
                done_, total_, rate, left / 60, left % 60, line);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the program says: one line an error or warning on standard error, exit codes, and how far it has come.
+// What the program says. What was asked for goes to standard output. How far the work has come, and one line an error
+// or warning, go to standard error: as text, or each as an object of JSON for another program to read.
 
 #include <chrono>
 #include <darkroom/log.hpp>
@@ -16,12 +17,17 @@ inline constexpr int exit_ok = 0, exit_user = 1, exit_machine = 2;
 enum class Voice { Quiet, Usual, Verbose };
 void set_voice(Voice voice);
 [[nodiscard]] Voice current_voice();
+/// From now on each line of standard error is {"event": "start" | "picture" | "failed" | "end" | "note" | "warning" |
+/// "error", ...}: see docs/command_line.md.
+void report_as_json();
 /// Standard output belongs to a stream of pictures: all that is said goes to standard error.
 void leave_standard_output();
 
 /// What was asked for, a line.
 void answer(std::string_view line);
-/// What was done, a line; not where it is to be quiet, and not where nobody reads it any more.
+/// The same, of what was done more than asked for: not where it is to be quiet.
+void answer_unless_quiet(std::string_view line);
+/// What was done, a line of standard error; not where it is to be quiet.
 void tell(std::string_view line);
 /// For work whose lines are told by the way: that nobody reads them does not end it.
 void survive_closed_pipes();
@@ -40,21 +46,31 @@ void warn(std::string_view text);
 /// Prints the library's warnings and errors, and where it is to be verbose its remarks.
 [[nodiscard]] darkroom::LogSink log_sink();
 
-/// How far a list of files has come: on a terminal a bar with frames a second and the time that is left, else a line
-/// for each file. Of a single one its line alone. May be told by several threads, one at a time.
+/// A picture that was made.
+struct Made {
+    std::string from, to;  ///< files
+    std::uint32_t width = 0, height = 0;
+};
+
+/// How far a list of pictures has come: on a terminal a bar with frames a second and the time that is left, else a line
+/// for each picture, "a.exr -> b.png (640x360)". Of a single one its line alone. May be told by several threads, one at
+/// a time.
 class Progress {
   public:
     explicit Progress(std::size_t total);
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     ~Progress();
-    /// `line`: what was done, "a.exr -> b.png".
-    void step(std::string_view line);
+    void step(const Made& made);
+    /// For who reads JSON; as text, errors are told at the end.
+    void fail(const darkroom::Error& error);
 
   private:
     std::size_t total_ = 0;
-    std::size_t done_ = 0;
+    std::size_t done_ = 0, failed_ = 0;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    [[nodiscard]] double seconds() const;
+
     bool is_terminal_ = false;
 };
 

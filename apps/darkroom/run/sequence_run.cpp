@@ -5,8 +5,6 @@
 
 #include <atomic>
 
-#include "report.hpp"
-
 namespace app {
 
 using darkroom::PipelineTimes;
@@ -43,10 +41,12 @@ Result<> run_sequence(const SequenceDesc& desc, const SequenceStages& stages) {
         const auto is_done = [&](std::size_t step, const Result<>& encoded) {
             const Result<> result = encoded && stages.deliver && !is_undeliverable ? stages.deliver(step) : encoded;
             is_undeliverable = is_undeliverable || (encoded && !result);
-            if (!result)
+            if (!result) {
                 failures.push_back(result.error());
-            else if (const std::string line = stages.line(step); !line.empty())
-                progress.step(line);
+                progress.fail(result.error());
+            } else if (const std::optional<Made> made = stages.made(step)) {
+                progress.step(*made);
+            }
             stages.release(step);
         };
         times = darkroom::run_pipeline(

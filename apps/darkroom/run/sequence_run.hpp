@@ -7,11 +7,13 @@
 #include <darkroom/result.hpp>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/thread/pipeline.hpp"
+#include "report.hpp"
 
 namespace app {
 
@@ -19,8 +21,8 @@ struct SequenceStages {
     std::function<darkroom::Result<>(std::size_t)> decode, begin, finish, encode;  ///< as in PipelineStages
     /// What has been encoded goes out, in order; may be left out. A failure ends the work.
     std::function<darkroom::Result<>(std::size_t)> deliver{};
-    /// What was done for a step, "a.exr -> b.png"; empty: a step that makes no picture.
-    std::function<std::string(std::size_t)> line;
+    /// What a step has made; nothing: it makes no picture.
+    std::function<std::optional<Made>(std::size_t)> made;
     std::function<void(std::size_t)> release;  ///< the step is over, its memory can go
 };
 
