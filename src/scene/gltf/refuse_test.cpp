@@ -144,6 +144,23 @@ TEST_F(SceneGltfRefuse, RequiredExtensions) {
         expect(name, [&](TestModel& test) { test.json["extensionsRequired"] = {name}; });
 }
 
+TEST_F(SceneGltfRefuse, ExtensionsThatAreNotReadAreToldOnce) {
+    TestModel test;
+    test.add_triangle();
+    test.json["extensionsUsed"] = {"KHR_materials_transmission", "KHR_lights_punctual", "ACME_smell",
+                                   "KHR_materials_unlit"};
+    put(file("model.gltf"), test.text());
+    const auto model = read_model(file("model.gltf"));
+    ASSERT_TRUE(model) << model.error().text;
+    const std::vector<std::string> wanted{
+        "/extensionsUsed/0: \"KHR_materials_transmission\" is not read here: glass is opaque",
+        "/extensionsUsed/2: \"ACME_smell\" is not read here"};
+    std::vector<std::string> told;
+    for (const std::string& warning : model->warnings)
+        if (warning.starts_with("/extensionsUsed")) told.push_back(warning);
+    EXPECT_EQ(told, wanted);
+}
+
 TEST_F(SceneGltfRefuse, WaysOutOfTheFolder) {
     put(file("outside.bin"), std::string(64, '\0'));
     const fs::path inside = file("models");

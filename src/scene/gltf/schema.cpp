@@ -10,6 +10,7 @@
 #include <limits>
 #include <span>
 
+#include "scene/gltf/extensions.hpp"
 #include "scene/gltf/tables.hpp"
 
 namespace darkroom::scene::gltf {
@@ -19,10 +20,6 @@ using nlohmann::json;
 
 // Enough to see what is wrong with a file, however much of it is.
 constexpr std::size_t most_warnings = 20;
-
-constexpr std::array<std::string_view, 5> read_extensions{"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                          "KHR_materials_unlit", "KHR_mesh_quantization",
-                                                          "KHR_texture_transform"};
 
 std::string shown(const json& value) {
     std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
@@ -307,10 +304,13 @@ Result<> check_extensions(const json& root, Faults& faults) {
                 faults.warn(fmt::format("{}: {}, a string is needed", place, shown(extension)));
                 continue;
             }
-            const bool is_read = std::find(read_extensions.begin(), read_extensions.end(),
-                                           extension.get<std::string>()) != read_extensions.end();
-            if (is_required && !is_read)
+            const auto known = extension.get<std::string>();
+            if (is_read_extension(known)) continue;
+            if (is_required)
                 return user_error(fmt::format("{}: {} is required and not read here", place, shown(extension)));
+            const std::string_view consequence = consequence_without(known);
+            faults.warn(fmt::format("{}: {} is not read here{}{}", place, shown(extension),
+                                    consequence.empty() ? "" : ": ", consequence));
         }
     }
     return {};
