@@ -10,6 +10,7 @@
 #include "image/codec/decoder.hpp"
 #include "image/frame/frame_file.hpp"
 #include "scene/image_batch.hpp"
+#include "scene/pose/figures.hpp"
 
 namespace darkroom::scene {
 namespace {
@@ -185,6 +186,7 @@ Assets load_assets(const Scene& scene) {
              {&EntityAssets::material_texture, &EntityAssets::sprite_texture, &EntityAssets::particle_texture})
             forget(assets.entities, member, i);
     }
+    for (std::string& notice : figure_notices(scene, assets)) assets.warnings.push_back(std::move(notice));
     return assets;
 }
 

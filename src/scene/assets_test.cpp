@@ -8,6 +8,7 @@
 #include "image/frame/frame_file.hpp"
 #include "image/test_files.hpp"
 #include "scene/gltf/test_model.hpp"
+#include "scene/pose/snapshot.hpp"
 
 namespace darkroom::scene {
 namespace {
@@ -51,6 +52,38 @@ TEST_F(SceneAssets, ModelsAreFoundAndLoadedOnce) {
     EXPECT_EQ(assets.entities[5].model, no_index);
     EXPECT_EQ(assets.models[1].name, "far");
     EXPECT_TRUE(has_warning(assets, "entity 'e' asks for 'none': there is no such file"));
+}
+
+TEST_F(SceneAssets, AFigureStandsByItsJointsAloneWhereTheSceneSaysSo) {
+    TestModel test;
+    test.add_figure();
+    put(file("figure.gltf"), test.text());
+    const auto shown = [&](const char* keys, std::string& notice) {
+        const std::string text = std::string("[scene]\n") + keys +
+                                 "\n[entities.a.model]\nasset = \"figure.gltf\"\n[entities.a.transform]\n"
+                                 "position = [5, 1, 0]\nscale = [0.02, 0.02, 0.02]\n";
+        const auto scene = parse_scene(text, file("a.toml"));
+        EXPECT_TRUE(scene) << scene.error().text;
+        const Assets assets = load_assets(*scene);
+        notice.clear();
+        for (const std::string& warning : assets.warnings)
+            if (warning.find("skins") != std::string::npos) notice += warning;
+        return scene_bounds(snapshot(*scene, assets, {})).size();
+    };
+    std::string notice;
+    const vec3 by_all = shown("", notice);
+    EXPECT_NEAR(by_all.y, 0.004F, 1e-6F);  // it lies, as high as it is deep
+    EXPECT_NEAR(by_all.z, 0.036F, 1e-6F);
+    EXPECT_EQ(notice, "");
+    EXPECT_NEAR(shown("skins = \"joints_only\"", notice).y, 3.6F, 1e-4F);
+    EXPECT_EQ(notice, "");
+    EXPECT_NEAR(shown("version = \"1.0\"", notice).y, 3.6F, 1e-4F);
+    EXPECT_TRUE(
+        notice.ends_with("entities.a.model: the figure is 3.6 m high by its joints alone, for which scenes of "
+                         "this style are placed; skins = \"all_nodes\" in [scene] makes it 0.004 m"))
+        << notice;
+    EXPECT_NEAR(shown("version = \"1.0\"\nskins = \"all_nodes\"", notice).z, 0.036F, 1e-6F);
+    EXPECT_EQ(notice, "");
 }
 
 TEST_F(SceneAssets, ABrokenModelIsReportedAndTheRestLoads) {

@@ -151,6 +151,10 @@ struct Entity {
 
 inline constexpr std::uint32_t most_samples = 1024;  ///< of Scene::samples
 
+/// What moves the joints of a skin. JointsOnly: joints are the only parents, and what hangs above them in the model
+/// counts for nothing, as some engines import figures.
+enum class Skins : std::uint8_t { AllNodes, JointsOnly };
+
 struct Scene {
     std::string name, description;
     std::filesystem::path file;    ///< for messages
@@ -161,6 +165,8 @@ struct Scene {
     bool has_grid = true;          ///< [scene] grid
     NamedFiles named_files = NamedFiles::Any;
     bool has_alpha_layer = false;  ///< [scene] alpha_layer: alpha is cleared to 0 and only Writes::Alpha draws write it
+    Skins skins = Skins::AllNodes;   ///< [scene] skins
+    bool has_assumed_skins = false;  ///< the scene does not say them, and is of a style that is placed for JointsOnly
     Camera camera;
     Environment environment;
     std::vector<Entity> entities;

@@ -61,6 +61,18 @@ class TestModel {
         return json["meshes"].back()["primitives"][0];
     }
 
+    /// A figure of one joint, 180 high along y, under a node that makes centimetres along z metres along y of it.
+    void add_figure() {
+        auto& primitive = add_triangle({0, 0, 0, 60, 0, 0, 0, 180, 20});
+        primitive["attributes"]["JOINTS_0"] = accessor<std::uint8_t>(std::vector<std::uint8_t>(12), "VEC4");
+        primitive["attributes"]["WEIGHTS_0"] = accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+        json["nodes"][0]["skin"] = 0;
+        json["nodes"].push_back(
+            {{"scale", {0.01, 0.01, 0.01}}, {"rotation", {-0.70710678, 0, 0, 0.70710678}}, {"children", {2}}});
+        json["nodes"].push_back({{"name", "hips"}});
+        json["skins"] = {{{"joints", {2}}}};
+    }
+
     [[nodiscard]] std::string text() {
         if (!bytes.empty() && !json.contains("buffers"))
             json["buffers"] = {

@@ -124,9 +124,23 @@ void apply(const AnimationChannel& channel, double time, Transform& transform, s
     }
 }
 
+/// The parent that counts for each node.
+std::vector<std::uint32_t> parents_of(const Model& model, Skins skins) {
+    std::vector<bool> is_joint(model.nodes.size());
+    if (skins == Skins::JointsOnly)
+        for (const Skin& skin : model.skins)
+            for (const std::uint32_t joint : skin.joints) is_joint[joint] = true;
+    std::vector<std::uint32_t> parents;
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+        const std::uint32_t parent = model.nodes[i].parent;
+        parents.push_back(is_joint[i] && parent < i && !is_joint[parent] ? no_index : parent);
+    }
+    return parents;
+}
+
 }  // namespace
 
-Pose pose(const Model& model, std::uint32_t animation, double time) {
+Pose pose(const Model& model, std::uint32_t animation, double time, Skins skins) {
     std::vector<Transform> transforms(model.nodes.size());
     Pose out;
     out.weights.reserve(model.nodes.size());
@@ -141,11 +155,12 @@ Pose pose(const Model& model, std::uint32_t animation, double time) {
             if (channel.node < model.nodes.size())
                 apply(channel, clip_time, transforms[channel.node], out.weights[channel.node]);
     }
+    const std::vector<std::uint32_t> parents = parents_of(model, skins);
     out.nodes.reserve(model.nodes.size());
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
         const Node& node = model.nodes[i];
         const mat4 local = node.matrix ? *node.matrix : transforms[i].matrix();
-        out.nodes.push_back(node.parent < i ? out.nodes[node.parent] * local : local);
+        out.nodes.push_back(parents[i] < i ? out.nodes[parents[i]] * local : local);
     }
     for (const Skin& skin : model.skins) {
         std::vector<mat4>& joints = out.joints.emplace_back();

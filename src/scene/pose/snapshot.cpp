@@ -202,7 +202,7 @@ Box fitted_bounds(const Scene& scene, const Assets& assets, const Snapshot& now,
 
 Snapshot snapshot(const Scene& scene, const Assets& assets, const SnapshotOptions& options) {
     Snapshot out{.time = options.time};
-    PoseCache poses(assets);
+    PoseCache poses(scene, assets);
     Builder builder(scene, assets, options.time, options.previous_time, poses);
     builder.add_visible(out);
     add_lights(scene, assets, builder.worlds(), options.time, poses, out);

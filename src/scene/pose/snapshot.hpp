@@ -140,7 +140,7 @@ struct Pose {
     std::vector<std::vector<float>> weights;  ///< one list a node
 };
 /// `animation`: index, or no_index for the pose of the file. The clip loops.
-[[nodiscard]] Pose pose(const Model& model, std::uint32_t animation, double time);
+[[nodiscard]] Pose pose(const Model& model, std::uint32_t animation, double time, Skins skins = Skins::AllNodes);
 
 /// Vertices as the GPU should place them: the CPU's own skinning and morphing, for tests and for bounds.
 [[nodiscard]] std::vector<vec3> deform(const Primitive& primitive, const mat4& world, std::span<const mat4> joints,

@@ -24,11 +24,12 @@ namespace darkroom::scene {
 /// Poses made so far: many entities share a model that stands still.
 class PoseCache {
   public:
-    explicit PoseCache(const Assets& assets) : assets_(assets) {}
+    PoseCache(const Scene& scene, const Assets& assets) : assets_(assets), skins_(scene.skins) {}
     [[nodiscard]] const Pose& get(std::uint32_t model, std::uint32_t animation, double time);
 
   private:
     const Assets& assets_;
+    Skins skins_;
     std::map<std::tuple<std::uint32_t, std::uint32_t, double>, Pose> poses_;
 };
 

@@ -88,7 +88,7 @@ const Pose& PoseCache::get(std::uint32_t model, std::uint32_t animation, double 
     const std::tuple key(model, animation, animation == no_index || !std::isfinite(time) ? 0.0 : time);
     const auto found = poses_.find(key);
     if (found != poses_.end()) return found->second;
-    return poses_.emplace(key, pose(assets_.models[model], animation, std::get<2>(key))).first->second;
+    return poses_.emplace(key, pose(assets_.models[model], animation, std::get<2>(key), skins_)).first->second;
 }
 
 EntityAssets assets_of(const Assets& assets, std::uint32_t entity) {

@@ -89,6 +89,12 @@ void SceneReader::read_scene_table(const Value& value) {
     table.count("samples", scene_.samples, 1, most_samples);
     table.flag("grid", scene_.has_grid);
     table.flag("alpha_layer", scene_.has_alpha_layer);
+    constexpr std::array skins_names{std::pair{std::string_view("all_nodes"), Skins::AllNodes},
+                                     std::pair{std::string_view("joints_only"), Skins::JointsOnly}};
+    // Only the engine whose importer keeps joints alone as parents writes these two keys.
+    scene_.has_assumed_skins = !table.has("skins") && (table.has("version") || table.has("input_config"));
+    if (scene_.has_assumed_skins) scene_.skins = Skins::JointsOnly;
+    table.choice("skins", scene_.skins, skins_names);
     table.pass_over("version");
     table.pass_over("input_config");
     table.finish();

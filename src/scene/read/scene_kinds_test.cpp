@@ -43,6 +43,7 @@ constexpr Key keys[] = {
     {"scene", "time", number},
     {"scene", "grid", flag},
     {"scene", "alpha_layer", flag},
+    {"scene", "skins", none},
     {"camera", "projection", none},
     {"camera", "ortho_height", number},
     {"camera", "position", none},

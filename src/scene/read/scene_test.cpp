@@ -73,6 +73,20 @@ document = "hud.svg"
     EXPECT_EQ(scene.environment.background, vec3(1, 2, 3));
 }
 
+TEST(Scene, SkinsAreChosenOrAssumedFromKeysOfTheEngine) {
+    EXPECT_EQ(scene_of("[scene]\nname = \"A\"\n").skins, Skins::AllNodes);
+    EXPECT_FALSE(scene_of("[scene]\nname = \"A\"\n").has_assumed_skins);
+    EXPECT_EQ(scene_of("[scene]\nskins = \"joints_only\"\n").skins, Skins::JointsOnly);
+    EXPECT_FALSE(scene_of("[scene]\nskins = \"joints_only\"\n").has_assumed_skins);
+    for (const char* key : {"version = \"1.0\"", "input_config = \"keys.toml\""}) {
+        const std::string top = std::string("[scene]\n") + key + "\n";
+        EXPECT_EQ(scene_of(top).skins, Skins::JointsOnly) << key;
+        EXPECT_TRUE(scene_of(top).has_assumed_skins) << key;
+        EXPECT_EQ(scene_of(top + "skins = \"all_nodes\"\n").skins, Skins::AllNodes) << key;
+        EXPECT_FALSE(scene_of(top + "skins = \"all_nodes\"\n").has_assumed_skins) << key;
+    }
+}
+
 TEST(Scene, APerspectiveFileMayGiveAnOrthographicHeightOfZero) {
     EXPECT_EQ(scene_of("[camera]\northo_height = 0\n").camera.ortho_height, Camera{}.ortho_height);
 }
