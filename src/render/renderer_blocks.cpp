@@ -17,6 +17,12 @@ using scene::vec4;
 constexpr vec3 default_sky(0.12F, 0.13F, 0.18F), default_ground(0.06F, 0.05F, 0.04F);
 
 /// Bits of Material.flags.x, as shaders/frame.glsl numbers them.
+/// KHR_materials_ior: Fresnel's equation head-on, from air; an index of 0 stands for an endless one.
+float dielectric_f0(float index_of_refraction) {
+    const float root = (index_of_refraction - 1) / (index_of_refraction + 1);
+    return root * root;
+}
+
 constexpr std::uint32_t unlit_bit = 1, masked_bit = 2, double_sided_bit = 4, alpha_only_bit = 8;
 
 std::vector<const scene::LightState*> lights_of(const scene::Snapshot& snapshot, LightType type, std::size_t most) {
@@ -118,17 +124,18 @@ blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow
 
 blocks::Material material_block(const scene::SnapshotMaterial& material) {
     const scene::ModelMaterial& surface = material.surface;
-    const std::array textures{&surface.base_color_texture, &surface.metallic_roughness_texture, &surface.normal_texture,
-                              &surface.occlusion_texture, &surface.emissive_texture};
+    const auto textures = scene::textures_of(surface);
     blocks::Material block;
     block.base_color = surface.base_color * vec4(1, 1, 1, material.opacity);
     block.emissive = vec4(surface.emissive, surface.alpha_cutoff);
     block.factors = vec4(surface.metallic, surface.roughness, surface.normal_scale, surface.occlusion_strength);
+    block.specular =
+        vec4(surface.specular.color * dielectric_f0(surface.specular.index_of_refraction), surface.specular.weight);
     block.flags.x = (surface.is_unlit ? unlit_bit : 0) | (surface.blend == scene::SurfaceBlend::Mask ? masked_bit : 0) |
                     (surface.is_double_sided ? double_sided_bit : 0) |
                     (material.writes == scene::Writes::Alpha ? alpha_only_bit : 0);
     for (std::uint32_t i = 0; i < textures.size(); ++i) {
-        const scene::Texture& texture = *textures[i];
+        const scene::Texture& texture = *textures[i].texture;
         if (texture.is_given() || (i == 0 && material.entity_texture != scene::no_index)) block.flags.y |= 1U << i;
         if (texture.uv_set == 1) block.flags.z |= 1U << i;
         const scene::mat3 rows = glm::transpose(texture.uv_transform);

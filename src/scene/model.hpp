@@ -43,6 +43,19 @@ struct Texture {
     [[nodiscard]] bool is_given() const { return image != no_index; }
 };
 
+/// The dielectric's reflection: KHR_materials_ior and KHR_materials_specular.
+struct SpecularLayer {
+    float index_of_refraction = 1.5F;  ///< 0: reflects all of the colour, whatever the angle
+    float weight = 1;
+    Texture texture;  ///< alpha
+    vec3 color{1};    ///< of what is reflected head-on; may be above 1
+    Texture color_texture;
+    [[nodiscard]] bool is_given() const {
+        return index_of_refraction != 1.5F || weight != 1 || color != vec3(1) || texture.is_given() ||
+               color_texture.is_given();
+    }
+};
+
 /// Metallic-roughness. Textures multiply factors.
 struct ModelMaterial {
     std::string name;
@@ -56,11 +69,29 @@ struct ModelMaterial {
     float occlusion_strength = 1;
     vec3 emissive{0};  ///< times KHR_materials_emissive_strength
     Texture emissive_texture;
+    SpecularLayer specular;
     SurfaceBlend blend = SurfaceBlend::Opaque;  ///< Opaque, Mask or Alpha
     float alpha_cutoff = 0.5F;
     bool is_double_sided = false;
     bool is_unlit = false;
 };
+
+/// A texture of a material and what it is used for.
+struct TextureUse {
+    const Texture* texture = nullptr;
+    bool is_srgb = false, is_normal = false;
+};
+inline constexpr std::size_t material_textures = 7;
+/// In the order in which shaders number them: base colour first.
+[[nodiscard]] inline std::array<TextureUse, material_textures> textures_of(const ModelMaterial& material) {
+    return {TextureUse{&material.base_color_texture, true},
+            {&material.metallic_roughness_texture},
+            {&material.normal_texture, false, true},
+            {&material.occlusion_texture},
+            {&material.emissive_texture, true},
+            {&material.specular.texture},
+            {&material.specular.color_texture, true}};
+}
 
 /// One vertex as the GPU gets it.
 struct Vertex {

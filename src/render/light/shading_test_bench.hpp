@@ -13,6 +13,7 @@
 #include "gpu/kernel/pipeline.hpp"
 #include "render/frame_set.hpp"
 #include "render/light/shading_test_support.hpp"
+#include "scene/model.hpp"
 
 namespace darkroom::render::test {
 
@@ -85,7 +86,7 @@ class FragmentBench {
     blocks::Frame frame{};
     blocks::Lights lights{};
     blocks::Material material{};
-    std::array<gpu::test::Pixels, 5> textures;
+    std::array<gpu::test::Pixels, scene::material_textures> textures;
     gpu::test::Pixels environment = one(vec4(0));  ///< equirectangular, for every roughness
     vec4 scale_and_bias{0};                        ///< the split sum, for every angle and roughness
     VertexAttributes vertex;
@@ -98,7 +99,7 @@ class FragmentBench {
         frame.planes = vec4(1, 100, 0, 1);
         material.base_color = vec4(1);
         material.factors = vec4(0, 1, 1, 1);
-        for (std::size_t i = 0; i < 5; ++i) {
+        for (std::size_t i = 0; i < textures.size(); ++i) {
             material.uv_rows[2 * i] = vec4(1, 0, 0, 0);
             material.uv_rows[2 * i + 1] = vec4(0, 1, 0, 0);
             textures[i] = one(vec4(1));
@@ -133,8 +134,8 @@ class FragmentBench {
 struct FragmentBench::Sets {
     gpu::Context& context = gpu::test::context();
     gpu::SetLayout frame_layout = gpu::test::must(create_frame_layout(context));
-    gpu::SetLayout texture_layout =
-        gpu::test::must(gpu::SetLayout::create(context, std::array<gpu::SetLayout::Binding, 5>{}));
+    gpu::SetLayout texture_layout = gpu::test::must(
+        gpu::SetLayout::create(context, std::array<gpu::SetLayout::Binding, scene::material_textures>{}));
     std::array<VkDescriptorSetLayout, 2> layouts{frame_layout.handle, texture_layout.handle};
     gpu::DescriptorSets sets = gpu::test::must(gpu::DescriptorSets::create(context, layouts));
     std::vector<gpu::Buffer> buffers;
@@ -166,7 +167,7 @@ struct FragmentBench::Sets {
         set_picture(0, 9, bench.environment);
         set_picture(0, 10, bench.environment);
         set_picture(0, 11, one(bench.scale_and_bias));
-        for (std::uint32_t i = 0; i < 5; ++i) set_picture(1, i, bench.textures[i]);
+        for (std::uint32_t i = 0; i < bench.textures.size(); ++i) set_picture(1, i, bench.textures[i]);
     }
     Sets(const Sets&) = delete;
     Sets& operator=(const Sets&) = delete;

@@ -14,20 +14,19 @@ using scene::Snapshot;
 using scene::SurfaceBlend;
 
 /// What one call cannot change: pipeline state and textures.
-using SurfaceKey = std::array<std::uint32_t, 19>;
+using SurfaceKey = std::array<std::uint32_t, 6 + 2 * scene::material_textures>;
 
 SurfaceKey surface_key(const scene::SnapshotMaterial& material) {
     const scene::ModelMaterial& surface = material.surface;
-    const std::array textures{&surface.base_color_texture, &surface.metallic_roughness_texture, &surface.normal_texture,
-                              &surface.occlusion_texture, &surface.emissive_texture};
     SurfaceKey key{};
     std::size_t next = 0;
     key[next++] = static_cast<std::uint32_t>(surface.blend);
     key[next++] = static_cast<std::uint32_t>(material.writes);
     key[next++] = surface.is_double_sided ? 1 : 0;
+    key[next++] = shader_layers(surface);
     key[next++] = material.model;
     key[next++] = material.entity_texture;
-    for (const scene::Texture* texture : textures) {
+    for (const auto& [texture, is_srgb, is_normal] : scene::textures_of(surface)) {
         key[next++] = texture->image;
         key[next++] = static_cast<std::uint32_t>(texture->wrap_u) + 4 * static_cast<std::uint32_t>(texture->wrap_v) +
                       16 * (texture->is_nearest ? 1U : 0U);
@@ -113,6 +112,12 @@ void sort_near_to_far(std::vector<Entry>& entries) {
 }
 
 }  // namespace
+
+std::uint32_t shader_layers(const scene::ModelMaterial& surface) {
+    constexpr std::uint32_t specular_bit = 1;
+    if (surface.is_unlit) return 0;
+    return surface.specular.is_given() ? specular_bit : 0;
+}
 
 // Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes from the World-View-Projection Matrix", 2001.
 Frustum::Frustum(const scene::mat4& world_to_clip) {

@@ -124,6 +124,16 @@ TEST(RenderDrawList, BatchesPartWhereTexturesStateOrMeshDiffer) {
     }
 }
 
+TEST(RenderDrawList, BatchesPartWhereMaterialsHaveOtherLayers) {
+    scene::Snapshot snapshot = empty_snapshot();
+    for (const float index : {1.5F, 1.8F, 2.4F}) {
+        const std::uint32_t material = add_material(snapshot, SurfaceBlend::Opaque);
+        snapshot.materials[material].surface.specular.index_of_refraction = index;
+        add(snapshot, {0, 0, -5}, material);
+    }
+    EXPECT_EQ(draw_list(snapshot).opaque.size(), 2U);
+}
+
 TEST(RenderDrawList, TransparentOnesGoFromBackToFront) {
     scene::Snapshot snapshot = empty_snapshot();
     const std::uint32_t glass = add_material(snapshot, SurfaceBlend::Alpha),

@@ -23,9 +23,10 @@ MeshVariant variant_of(const MeshDraw& draw, const Batch& batch, const GpuScene&
     variant.is_mirrored = batch.is_mirrored;
     variant.is_double_sided = surface.is_double_sided;
     variant.writes_alpha_only = material.writes == scene::Writes::Alpha;
-    variant.has_textures = material.entity_texture != scene::no_index || surface.base_color_texture.is_given() ||
-                           surface.metallic_roughness_texture.is_given() || surface.normal_texture.is_given() ||
-                           surface.occlusion_texture.is_given() || surface.emissive_texture.is_given();
+    variant.has_textures =
+        material.entity_texture != scene::no_index ||
+        std::ranges::any_of(scene::textures_of(surface), [](const auto& use) { return use.texture->is_given(); });
+    variant.layers = variant.is_debug_view ? 0 : shader_layers(surface);
     variant.blend = surface.blend;
     // Views of one property show what is nearest; only the unlit one still is a picture.
     if (variant.is_debug_view && debug != DebugView::Unlit && is_blend(surface.blend))

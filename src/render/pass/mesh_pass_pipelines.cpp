@@ -13,7 +13,7 @@ using scene::SurfaceBlend;
 constexpr VkColorComponentFlags rgb = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT;
 
 /// Numbers of the constants in mesh_place.glsl; those of the fragment stage come before.
-constexpr std::size_t skinned_constant = 10, morphed_constant = 11, constants = 13;
+constexpr std::size_t skinned_constant = 10, morphed_constant = 11, constants = 14;
 
 std::uint32_t word(bool value) { return value ? 1 : 0; }
 
@@ -84,6 +84,7 @@ void MeshPipelines::describe_surface(gpu::PipelineDesc& desc, const MeshVariant&
     desc.specialization[8] = setup_.shadow_maps;
     desc.specialization[9] = word(setup_.has_soft_shadows);
     desc.specialization[12] = word(setup_.has_lamp_shadows);
+    desc.specialization[13] = variant.layers;
     desc.cull = variant.is_double_sided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT;
     desc.front = variant.is_mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
     gpu::ColorTarget color = blended_target(variant.blend, setup_.formats.has_alpha_layer);

@@ -24,6 +24,7 @@ struct MeshVariant {
     // Of surfaces:
     bool is_mirrored = false, is_double_sided = false, writes_alpha_only = false, has_textures = false;
     scene::SurfaceBlend blend = scene::SurfaceBlend::Opaque;
+    std::uint32_t layers = 0;  ///< shader_layers()
     friend auto operator<=>(const MeshVariant&, const MeshVariant&) = default;
 };
 

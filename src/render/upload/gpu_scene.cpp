@@ -19,8 +19,6 @@ using scene::vec2;
 using scene::vec3;
 using scene::vec4;
 
-constexpr std::size_t material_textures = 5;
-
 /// Everything that goes into the shared buffers, one mesh after the other.
 struct Geometry {
     std::vector<scene::Vertex> vertices;
@@ -107,9 +105,9 @@ struct GpuScene::State {
 
     gpu::Context& context;
     GpuTextures textures;
-    /// Of one set; a billboard's needs one of the five.
+    /// Of one set; a billboard's needs one of them.
     static constexpr std::array set_sizes{
-        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, material_textures}};
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, scene::material_textures}};
     SetAllocator sets;
     std::map<scene::MeshId, GpuMesh> meshes;
     GpuMesh box_edges;
@@ -160,8 +158,8 @@ Result<VkDescriptorSet> GpuScene::State::set(const std::vector<Slot>& slots, VkD
     if (const auto found = made_sets.find(slots); found != made_sets.end()) return found->second;
     Result<VkDescriptorSet> made = sets.allocate(layout);
     if (!made) return made;
-    std::array<VkDescriptorImageInfo, material_textures> images{};
-    std::array<VkWriteDescriptorSet, material_textures> writes{};
+    std::array<VkDescriptorImageInfo, scene::material_textures> images{};
+    std::array<VkWriteDescriptorSet, scene::material_textures> writes{};
     for (std::uint32_t i = 0; i < slots.size(); ++i) {
         images[i] = {.sampler = slots[i].sampler,
                      .imageView = textures.view(slots[i].texture),
@@ -182,7 +180,7 @@ Result<VkDescriptorSet> GpuScene::State::set(const std::vector<Slot>& slots, VkD
 Result<GpuScene> GpuScene::create(gpu::Context& context, const scene::Assets& assets) {
     GpuScene out;
     out.state_ = std::make_shared<State>(context);
-    std::array<gpu::SetLayout::Binding, material_textures> bindings{};
+    std::array<gpu::SetLayout::Binding, scene::material_textures> bindings{};
     for (gpu::SetLayout::Binding& binding : bindings) binding.stages = VK_SHADER_STAGE_FRAGMENT_BIT;
     Result<gpu::SetLayout> material_layout = gpu::SetLayout::create(context, bindings);
     if (!material_layout) return failure(std::move(material_layout));
@@ -251,22 +249,13 @@ void GpuScene::draw_box_edges(VkCommandBuffer commands, std::uint32_t first_inst
 }
 
 Result<VkDescriptorSet> GpuScene::textures(const scene::SnapshotMaterial& material) {
-    const scene::ModelMaterial& surface = material.surface;
-    struct Use {
-        const scene::Texture& texture;
-        Transfer transfer;
-        std::size_t otherwise = GpuTextures::white;
-    };
-    const std::array<Use, material_textures> uses{
-        Use{surface.base_color_texture, Transfer::Srgb}, Use{surface.metallic_roughness_texture, Transfer::Linear},
-        Use{surface.normal_texture, Transfer::Linear, GpuTextures::flat_normal},
-        Use{surface.occlusion_texture, Transfer::Linear}, Use{surface.emissive_texture, Transfer::Srgb}};
     std::vector<State::Slot> slots;
-    for (const Use& use : uses) {
-        TextureKey key{material.model, use.texture.image, use.transfer};
+    for (const auto& [texture, is_srgb, is_normal] : scene::textures_of(material.surface)) {
+        TextureKey key{material.model, texture->image, is_srgb ? Transfer::Srgb : Transfer::Linear};
         if (slots.empty() && material.entity_texture != no_index)
             key = {no_index, material.entity_texture, Transfer::Srgb};
-        Result<State::Slot> slot = state_->slot(use.texture, key, use.otherwise);
+        Result<State::Slot> slot =
+            state_->slot(*texture, key, is_normal ? GpuTextures::flat_normal : GpuTextures::white);
         if (!slot) return failure(std::move(slot));
         slots.push_back(*slot);
     }

@@ -45,13 +45,13 @@ class GpuScene {
               std::uint32_t instances) const;
     /// The twelve edges of the unit box, as a list of lines.
     void draw_box_edges(VkCommandBuffer commands, std::uint32_t first_instance, std::uint32_t instances) const;
-    /// Set 1 of mesh pipelines: five textures in the order of material_block.glsl; what is not given is white (normals:
+    /// Set 1 of mesh pipelines: textures in the order of scene::textures_of(); what is not given is white (normals:
     /// flat). The same set for materials that share textures.
     [[nodiscard]] Result<VkDescriptorSet> textures(const scene::SnapshotMaterial& material);
     /// Set 1 of billboards: one texture, by its number in Assets::images; no_index: white.
     [[nodiscard]] Result<VkDescriptorSet> texture(std::uint32_t image);
 
-    gpu::SetLayout material_layout;                      ///< five textures
+    gpu::SetLayout material_layout;                      ///< all textures of a material
     gpu::SetLayout billboard_layout;                     ///< one
     gpu::Buffer vertices, skins, indices, morph_deltas;  ///< skins and morph_deltas hold one element at least
 

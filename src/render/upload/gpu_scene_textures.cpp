@@ -19,11 +19,8 @@ std::set<TextureKey> used_textures(const scene::Assets& assets) {
     std::set<TextureKey> keys;
     for (std::uint32_t model = 0; model < assets.models.size(); ++model) {
         for (const scene::ModelMaterial& material : assets.models[model].materials) {
-            keys.insert({model, material.base_color_texture.image, Transfer::Srgb});
-            keys.insert({model, material.metallic_roughness_texture.image, Transfer::Linear});
-            keys.insert({model, material.normal_texture.image, Transfer::Linear});
-            keys.insert({model, material.occlusion_texture.image, Transfer::Linear});
-            keys.insert({model, material.emissive_texture.image, Transfer::Srgb});
+            for (const auto& [texture, is_srgb, is_normal] : scene::textures_of(material))
+                keys.insert({model, texture->image, is_srgb ? Transfer::Srgb : Transfer::Linear});
         }
     }
     for (std::uint32_t image = 0; image < assets.images.size(); ++image)

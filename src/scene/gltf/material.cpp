@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -78,11 +79,63 @@ class MaterialReader {
         return texture;
     }
 
+    // Of an extension, which the library keeps as it is written; `place` ends in the texture's name.
+    Result<> read_into(Texture& texture, const tinygltf::Value& extension, const std::string& place) const {
+        const std::string name = place.substr(place.rfind('/') + 1);
+        if (!extension.Has(name)) return {};
+        const tinygltf::Value& object = extension.Get(name);
+        tinygltf::TextureInfo info;
+        info.index = static_cast<int>(number_of(object, "index", -1));
+        info.texCoord = static_cast<int>(number_of(object, "texCoord", 0));
+        if (object.Has("extensions")) {
+            const tinygltf::Value& extensions = object.Get("extensions");
+            for (const std::string& key : extensions.Keys()) info.extensions[key] = extensions.Get(key);
+        }
+        Result<Texture> made = read(info, place.c_str());
+        if (!made) return failure(std::move(made));
+        texture = *made;
+        return {};
+    }
+
+    [[nodiscard]] const std::string& pointer() const { return pointer_; }
+    [[nodiscard]] Faults& faults() const { return document_.faults(); }
+
   private:
     Document& document_;
     const std::vector<bool>& is_broken_;
     std::string pointer_;
 };
+
+// A factor outside 0 to 1 has its warning from the tables.
+float factor_of(const tinygltf::Value& extension, const std::string& name, double otherwise) {
+    return as_float(std::clamp(number_of(extension, name, otherwise), 0.0, 1.0));
+}
+
+float index_of_refraction(const MaterialReader& reader, const tinygltf::Value& extension) {
+    constexpr double otherwise = 1.5;
+    const double given = number_of(extension, "ior", otherwise);
+    if (given == 0 || given >= 1) return as_float(given);
+    reader.faults().warn(fmt::format("{}/extensions/KHR_materials_ior/ior: {}, allowed is 0 and at least 1; {} is used",
+                                     reader.pointer(), given, otherwise));
+    return as_float(otherwise);
+}
+
+Result<> read_specular(const MaterialReader& reader, const tinygltf::Value& extension, SpecularLayer& layer) {
+    layer.weight = factor_of(extension, "specularFactor", 1);
+    for (int c = 0; c < 3; ++c)
+        layer.color[c] = as_float(std::max(element_of(extension, "specularColorFactor", c, 1), 0.0));
+    const std::string place = "extensions/KHR_materials_specular/";
+    if (Result<> done = reader.read_into(layer.texture, extension, place + "specularTexture"); !done) return done;
+    return reader.read_into(layer.color_texture, extension, place + "specularColorTexture");
+}
+
+Result<> read_layers(const MaterialReader& reader, const tinygltf::ExtensionMap& extensions, ModelMaterial& material) {
+    if (const auto found = extensions.find("KHR_materials_ior"); found != extensions.end())
+        material.specular.index_of_refraction = index_of_refraction(reader, found->second);
+    if (const auto found = extensions.find("KHR_materials_specular"); found != extensions.end())
+        if (Result<> done = read_specular(reader, found->second, material.specular); !done) return done;
+    return {};
+}
 
 }  // namespace
 
@@ -140,6 +193,7 @@ Result<ModelMaterial> convert_material(Document& document, std::size_t index, co
         return failure(std::move(done));
     if (auto done = read(source.emissiveTexture, "emissiveTexture", material.emissive_texture); !done)
         return failure(std::move(done));
+    if (Result<> done = read_layers(reader, source.extensions, material); !done) return failure(std::move(done));
     return material;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,6 +26,18 @@ class SceneGltfRead : public WithFolder {
         auto result = read(model);
         EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().text);
         return result ? std::move(*result) : Model{};
+    }
+    /// A triangle whose material has these extensions, with one texture to refer to.
+    Model read_layers(const nlohmann::json& extensions) {
+        TestModel test;
+        test.add_triangle()["material"] = 0;
+        test.json["images"] = {{{"uri", red_pixel}}};
+        test.json["textures"] = {{{"source", 0}}};
+        test.json["materials"] = {{{"extensions", extensions}}};
+        Model model = read_good(test);
+        EXPECT_EQ(model.materials.size(), 1u);
+        model.materials.resize(1);
+        return model;
     }
     const Primitive& only_primitive(const Model& model) {
         static const Primitive none;
@@ -257,6 +270,56 @@ TEST_F(SceneGltfRead, MaterialsTexturesAndTheirTransforms) {
     EXPECT_TRUE(model.images[1].is_empty());
     ASSERT_FALSE(model.warnings.empty());
     EXPECT_NE(model.warnings.back().find("missing.png"), std::string::npos) << model.warnings.back();
+}
+
+TEST_F(SceneGltfRead, IndexOfRefractionAndSpecular) {
+    const nlohmann::json moved{{"KHR_texture_transform", {{"offset", {0.5, 0.25}}, {"texCoord", 1}}}};
+    Model model = read_layers({{"KHR_materials_ior", {{"ior", 1.8}}},
+                               {"KHR_materials_specular",
+                                {{"specularFactor", 0.25},
+                                 {"specularTexture", {{"index", 0}, {"texCoord", 1}}},
+                                 {"specularColorFactor", {0.5, 1, 2}},
+                                 {"specularColorTexture", {{"index", 0}, {"extensions", moved}}}}}});
+    const SpecularLayer& layer = model.materials[0].specular;
+    EXPECT_TRUE(layer.is_given());
+    EXPECT_FLOAT_EQ(layer.index_of_refraction, 1.8F);
+    EXPECT_FLOAT_EQ(layer.weight, 0.25F);
+    EXPECT_EQ(layer.color, vec3(0.5F, 1, 2));
+    EXPECT_EQ(layer.texture.image, 0u);
+    EXPECT_EQ(layer.texture.uv_set, 1u);
+    EXPECT_EQ(layer.color_texture.image, 0u);
+    EXPECT_EQ(layer.color_texture.uv_set, 1u);
+    EXPECT_EQ(layer.color_texture.uv_transform[2], vec3(0.5F, 0.25F, 1));
+    EXPECT_EQ(read_layers({{"KHR_materials_ior", {{"ior", 0}}}}).materials[0].specular.index_of_refraction, 0);
+    // What the specification has by default is nothing to be drawn.
+    model = read_layers({{"KHR_materials_ior", {{"ior", 1.5}}}, {"KHR_materials_specular", nlohmann::json::object()}});
+    EXPECT_FALSE(model.materials[0].specular.is_given());
+}
+
+TEST_F(SceneGltfRead, LayersOutOfRangeAreOneLineEach) {
+    const auto only_warning = [](const Model& model) {
+        std::string of_materials;
+        for (const std::string& warning : model.warnings)
+            if (warning.starts_with("/materials")) of_materials += of_materials.empty() ? warning : "; " + warning;
+        return of_materials;
+    };
+    for (const double index : {0.5, -1.0, -1e30}) {
+        const Model model = read_layers({{"KHR_materials_ior", {{"ior", index}}}});
+        EXPECT_EQ(only_warning(model),
+                  fmt::format("/materials/0/extensions/KHR_materials_ior/ior: {}, allowed is 0 and at least 1; 1.5 is "
+                              "used",
+                              index));
+        EXPECT_FALSE(model.materials[0].specular.is_given());
+    }
+    const std::string specular = "/materials/0/extensions/KHR_materials_specular/";
+    Model model = read_layers({{"KHR_materials_specular", {{"specularFactor", 3}}}});
+    EXPECT_EQ(only_warning(model), specular + "specularFactor: 3, allowed is 0 to 1");
+    EXPECT_EQ(model.materials[0].specular.weight, 1);
+    model = read_layers({{"KHR_materials_specular", {{"specularFactor", "NaN"}}}});
+    EXPECT_EQ(only_warning(model), specular + "specularFactor: \"NaN\", a number is needed; it is passed over");
+    model = read_layers({{"KHR_materials_specular", {{"specularColorFactor", {1, -2, 1}}}}});
+    EXPECT_EQ(only_warning(model), specular + "specularColorFactor: -2, allowed is at least 0");
+    EXPECT_EQ(model.materials[0].specular.color, vec3(1, 0, 1));
 }
 
 TEST_F(SceneGltfRead, SixteenBitsStay) {

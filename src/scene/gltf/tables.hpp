@@ -138,8 +138,16 @@ inline constexpr Definition metallic_definition{metallic_table};
 inline constexpr Definition empty_definition{};
 inline constexpr std::array emissive_strength_table{number("emissiveStrength", 0)};
 inline constexpr Definition emissive_strength{emissive_strength_table};
-inline constexpr std::array material_extensions_table{object_of("KHR_materials_unlit", empty_definition),
-                                                      object_of("KHR_materials_emissive_strength", emissive_strength)};
+// An index is 0 or at least 1, which the conversion says.
+inline constexpr std::array ior_table{number("ior")};
+inline constexpr Definition ior_definition{ior_table};
+inline constexpr std::array specular_table{number("specularFactor", 0, 1), object_of("specularTexture", texture_info),
+                                           numbers("specularColorFactor", 3, 0),
+                                           object_of("specularColorTexture", texture_info)};
+inline constexpr Definition specular_definition{specular_table};
+inline constexpr std::array material_extensions_table{
+    object_of("KHR_materials_unlit", empty_definition), object_of("KHR_materials_emissive_strength", emissive_strength),
+    object_of("KHR_materials_ior", ior_definition), object_of("KHR_materials_specular", specular_definition)};
 inline constexpr Definition material_extensions{material_extensions_table};
 inline constexpr std::array material_table{text("name"),
                                            object_of("pbrMetallicRoughness", metallic_definition),

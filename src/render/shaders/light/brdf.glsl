@@ -5,15 +5,41 @@ const float pi = 3.14159265358979;
 const float dielectric_f0 = 0.04;    // of glass and most plastics: index of refraction 1.5
 const float least_roughness = 0.04;  // a smoother highlight of a light without size would fall between the pixels
 
+// What a pipeline's materials reflect beyond metallic-roughness, in bits. Those that have nothing of it have pipelines
+// that know nothing of it.
+layout(constant_id = 13) const uint layers = 0u;
+const uint Layer_specular = 1u;
+const bool has_specular_layer = (layers & Layer_specular) != 0u;
+
 struct Reflectance {
     vec3 diffuse;  // albedo of what light enters the surface
     vec3 f0;       // reflectance head-on
     float roughness;
+    // Of Layer_specular:
+    float f90;         // reflectance at grazing angles
+    vec3 whole_f0;     // f0 where the layer is whole
+    vec3 kept_f0;      // what a whole layer keeps from the matte base, head-on
+    float layer_part;  // of the matte base, that is under the layer
 };
 
 Reflectance reflectance(vec3 base_color, float metallic, float roughness) {
-    return Reflectance(base_color * (1.0 - metallic), mix(vec3(dielectric_f0), base_color, metallic),
-                       clamp(roughness, least_roughness, 1.0));
+    vec3 f0 = mix(vec3(dielectric_f0), base_color, metallic);
+    return Reflectance(base_color * (1.0 - metallic), f0, clamp(roughness, least_roughness, 1.0), 1.0, f0, f0,
+                       1.0);
+}
+
+// Khronos Group, KHR_materials_specular, 2021, with the F0 of KHR_materials_ior: `layer_f0` is that of the dielectric, times
+// the colour, and may be above 1. Its weight is the part of the base under the layer; the rest is bare. The base loses
+// the layer's largest channel, lest the complement of its colour shows. Metals are as they were.
+Reflectance reflectance_with_specular(vec3 base_color, float metallic, float roughness, vec3 layer_f0, float weight) {
+    Reflectance surface = reflectance(base_color, metallic, roughness);
+    vec3 f0 = min(layer_f0, vec3(1.0));
+    surface.f0 = mix(f0 * weight, base_color, metallic);
+    surface.f90 = mix(weight, 1.0, metallic);
+    surface.whole_f0 = mix(f0, base_color, metallic);
+    surface.kept_f0 = mix(vec3(max(f0.r, max(f0.g, f0.b))), base_color, metallic);
+    surface.layer_part = weight;
+    return surface;
 }
 
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007, equation 33. 1 - (n.h)^2 is taken as
@@ -42,12 +68,23 @@ vec3 fresnel_schlick(vec3 f0, float v_dot_h) {
     return f0 + (1.0 - f0) * (square * square * c);
 }
 
+// The same for layers that are not white at grazing angles.
+vec3 layer_fresnel(vec3 f0, float f90, float v_dot_h) {
+    float c = clamp(1.0 - v_dot_h, 0.0, 1.0);
+    float square = c * c;
+    return f0 + (f90 - f0) * (square * square * c);
+}
+
 // What a matte base gives back under a layer that reflects more the more grazing the light goes in or out, so that no more
 // light leaves than comes: Shirley, Smits, Hu and Lafortune, "A Practitioners' Assessment of Light Reflection Models",
 // 1997.
 vec3 coupled_diffuse(Reflectance surface, float n_dot_v, float n_dot_l) {
     vec2 rest = 1.0 - clamp(vec2(n_dot_v, n_dot_l), 0.0, 1.0), square = rest * rest;
     vec2 enters = 1.0 - square * square * rest;
+    if (has_specular_layer) {
+        vec3 under_layer = (1.0 - surface.kept_f0) * (1.05 / pi * enters.x * enters.y);
+        return surface.diffuse * mix(vec3(1.0 / pi), under_layer, surface.layer_part);
+    }
     return surface.diffuse * (1.0 - surface.f0) * (1.05 / pi * enters.x * enters.y);
 }
 
@@ -58,10 +95,27 @@ vec3 reflected(Reflectance surface, vec3 n, vec3 v, vec3 l) {
     float n_dot_v = max(dot(n, v), 0.0);
     vec3 half_vector = v + l;
     vec3 h = half_vector * inversesqrt(max(dot(half_vector, half_vector), 1e-12));
-    vec3 fresnel = fresnel_schlick(surface.f0, dot(v, h));
+    vec3 fresnel = has_specular_layer ? layer_fresnel(surface.f0, surface.f90, dot(v, h))
+                                      : fresnel_schlick(surface.f0, dot(v, h));
     float alpha = surface.roughness * surface.roughness;
     float specular = ggx_distribution(n, h, alpha) * smith_visibility(n_dot_v, n_dot_l, alpha);
     return (coupled_diffuse(surface, n_dot_v, n_dot_l) + fresnel * specular) * n_dot_l;
+}
+
+// What comes back of light that is lost between the microfacets of a whole layer, for each part that is not lost.
+vec3 multiple_scattering(vec3 f0, float lost) {
+    vec3 average_fresnel = f0 + (1.0 - f0) / 21.0;
+    return lost * average_fresnel / (1.0 - average_fresnel * lost);
+}
+
+// reflected_surroundings() of Layer_specular.
+vec3 layer_surroundings(Reflectance surface, vec3 irradiance, vec3 reflection, vec2 scale_and_bias) {
+    float lost = 1.0 - (scale_and_bias.x + scale_and_bias.y);
+    vec3 single = surface.f0 * scale_and_bias.x + surface.f90 * scale_and_bias.y;
+    vec3 multiple = single * multiple_scattering(surface.whole_f0, lost);
+    vec3 kept = surface.kept_f0 * scale_and_bias.x + scale_and_bias.y;
+    kept += kept * multiple_scattering(surface.kept_f0, lost);
+    return single * reflection + (multiple + surface.diffuse * (1.0 - surface.layer_part * kept)) * irradiance;
 }
 
 // What leaves of light from everywhere: `irradiance` over pi, `reflection` from the mirrored direction, as blurred as
@@ -69,6 +123,7 @@ vec3 reflected(Reflectance surface, vec3 n, vec3 v, vec3 l) {
 // as in Fdez-Aguero, "A Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting", 2019, so that a white
 // surface in white light is white.
 vec3 reflected_surroundings(Reflectance surface, vec3 irradiance, vec3 reflection, vec2 scale_and_bias) {
+    if (has_specular_layer) return layer_surroundings(surface, irradiance, reflection, scale_and_bias);
     vec3 single = surface.f0 * scale_and_bias.x + scale_and_bias.y;
     float lost = 1.0 - (scale_and_bias.x + scale_and_bias.y);
     vec3 average_fresnel = surface.f0 + (1.0 - surface.f0) / 21.0;

@@ -41,10 +41,20 @@ vec3 surroundings(Surface surface, Reflectance material, vec3 v) {
                                   environment_brdf(n_dot_v, material.roughness));
 }
 
+Reflectance material_at_fragment(Surface surface) {
+    if (!has_specular_layer) return reflectance(surface.base_color, surface.metallic, surface.roughness);
+    vec4 specular = materials[material_index].specular;
+    if (has_textures) {
+        specular.rgb *= texel_of(specular_color_texture, Texture_specular_color).rgb;
+        specular.a *= texel_of(specular_texture, Texture_specular).a;
+    }
+    return reflectance_with_specular(surface.base_color, surface.metallic, surface.roughness, specular.rgb, specular.a);
+}
+
 vec3 leaving_light(Surface surface) {
     if (has_flag(Material_unlit)) return surface.base_color;
     vec3 v = toward_camera();
-    Reflectance material = reflectance(surface.base_color, surface.metallic, surface.roughness);
+    Reflectance material = material_at_fragment(surface);
     return reflected_lights(material, world_position, surface.normal, surface.geometry_normal, v, view_distance(),
                             has_shadows) +
            surroundings(surface, material, v) * surface.occlusion + surface.emissive;

@@ -5,11 +5,15 @@ layout(set = 1, binding = 1) uniform sampler2D metallic_roughness_texture;  // g
 layout(set = 1, binding = 2) uniform sampler2D normal_texture;
 layout(set = 1, binding = 3) uniform sampler2D occlusion_texture;  // red
 layout(set = 1, binding = 4) uniform sampler2D emissive_texture;   // sRGB
+layout(set = 1, binding = 5) uniform sampler2D specular_texture;        // alpha
+layout(set = 1, binding = 6) uniform sampler2D specular_color_texture;  // sRGB
 const uint Texture_base_color = 0u;
 const uint Texture_metallic_roughness = 1u;
 const uint Texture_normal = 2u;
 const uint Texture_occlusion = 3u;
 const uint Texture_emissive = 4u;
+const uint Texture_specular = 5u;
+const uint Texture_specular_color = 6u;
 
 struct Surface {
     vec3 base_color;

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "render/light/layers_reference.hpp"
+
+#include "render/light/environment.hpp"
+#include "render/light/shading_scene_support.hpp"
+#include "render/light/shading_test_support.hpp"
+#include "shared/srgb_reference.hpp"
+
+namespace darkroom::render {
+namespace {
+
+using namespace test;
+using glm::dvec2;
+using reference::LayeredSurface;
+
+LayeredSurface reference_of(const scene::ModelMaterial& material) {
+    return {.base_color = dvec3(material.base_color),
+            .metallic = material.metallic,
+            .roughness = material.roughness,
+            .index_of_refraction = material.specular.index_of_refraction,
+            .specular_weight = material.specular.weight,
+            .specular_color = dvec3(material.specular.color)};
+}
+
+/// brdf.glsl as pipelines of materials with these layers have it.
+std::string brdf_with(const std::string& layers) {
+    std::string text = shader_part("light/brdf.glsl");
+    const std::string none = "const uint layers = 0u;";
+    const std::size_t place = text.find(none);
+    EXPECT_NE(place, std::string::npos);
+    return text.replace(place, none.size(), "const uint layers = " + layers + ";");
+}
+
+/// A sphere of the material over a floor of the same, under three lights.
+void expect_lit(const scene::SnapshotMaterial& material) {
+    Renderer renderer = renderer_for({.extent = frame_extent, .draw = {.has_shadows = false}}, sphere_assets());
+    scene::Snapshot snapshot = sphere_and_floor(material, material);
+    snapshot.lights = three_lights();
+    const Shot shot = shoot(renderer, snapshot);
+    const LayeredSurface surface = reference_of(material.surface);
+    for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit& hit) {
+        dvec3 truth = surface.base_color * reference::hemisphere(hit.normal, {0.12, 0.13, 0.18}, {0.06, 0.05, 0.04});
+        for (const scene::LightState& light : snapshot.lights) {
+            const Arriving arrives = arriving_light(light, hit.position);
+            truth += arrives.color * reference::reflected(surface, hit.normal, hit.to_camera, arrives.direction);
+        }
+        // As in RenderGpuShadingScene.SphereAndFloorInPerspectiveHaveTheirClosedForms.
+        expect_color(shot.color, x, y, truth, hit.is_sphere ? 0.01 : 0.002, 1e-3);
+    });
+}
+
+dvec2 scale_and_bias_at(const Picture& table, double n_dot_v, double roughness) {
+    const auto place = [&](double t) { return std::clamp(t * table.width - 0.5, 0.0, table.width - 1.001); };
+    const double x = place(n_dot_v), y = place(roughness);
+    const auto left = static_cast<std::uint32_t>(x), top = static_cast<std::uint32_t>(y);
+    const auto texel = [&](std::uint32_t i, std::uint32_t j) { return dvec2(table.at(i, j)[0], table.at(i, j)[1]); };
+    return glm::mix(glm::mix(texel(left, top), texel(left + 1, top), x - left),
+                    glm::mix(texel(left, top + 1), texel(left + 1, top + 1), x - left), y - top);
+}
+
+/// The same in a white sky, without lights.
+void expect_in_white_sky(const scene::SnapshotMaterial& material) {
+    scene::Assets assets = sphere_assets();
+    assets.skybox.emplace(32, 16);
+    std::ranges::fill(assets.skybox->pixels, 1.0F);
+    Renderer renderer = renderer_for({.extent = frame_extent, .draw = {.has_shadows = false}}, assets);
+    const Shot shot = shoot(renderer, sphere_and_floor(material, material));
+    const LayeredSurface surface = reference_of(material.surface);
+    const Picture table = split_sum_table(64);
+    for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit& hit) {
+        // The table has half floats and 64 steps, over which it bends most at grazing angles.
+        const dvec2 scale_and_bias = scale_and_bias_at(table, hit.facing, surface.roughness);
+        expect_color(shot.color, x, y, reference::reflected_white(surface, scale_and_bias), 0.005, 3e-3);
+    });
+}
+
+scene::SnapshotMaterial with_specular(scene::SnapshotMaterial material, const scene::SpecularLayer& layer) {
+    material.surface.specular = layer;
+    return material;
+}
+
+const scene::SnapshotMaterial& paint() {
+    static const scene::SnapshotMaterial material = material_of({0.5F, 0.4F, 0.3F}, 0, 0.45F);
+    return material;
+}
+
+TEST(RenderGpuLayers, IndexOfRefractionSaysWhatIsReflectedHeadOn) {
+    for (const float index : {0.0F, 1.0F, 1.33F, 2.4F}) {
+        expect_lit(with_specular(paint(), {.index_of_refraction = index}));
+        expect_in_white_sky(with_specular(paint(), {.index_of_refraction = index}));
+    }
+}
+
+TEST(RenderGpuLayers, SpecularHasWeightAndColor) {
+    for (const float weight : {0.0F, 0.5F, 1.0F}) {
+        const scene::SpecularLayer layer{.index_of_refraction = 1.8F, .weight = weight, .color = {1, 0.3F, 4}};
+        expect_lit(with_specular(paint(), layer));
+        expect_in_white_sky(with_specular(paint(), layer));
+    }
+}
+
+TEST(RenderGpuLayers, MetalsDoNotCareForSpecular) {
+    const scene::SnapshotMaterial gold = material_of({0.9F, 0.7F, 0.3F}, 1, 0.45F);
+    expect_lit(with_specular(gold, {.index_of_refraction = 2, .weight = 0.2F, .color = {1, 0, 0}}));
+    expect_in_white_sky(with_specular(gold, {.index_of_refraction = 2, .weight = 0.2F, .color = {1, 0, 0}}));
+}
+
+TEST(RenderGpuLayers, WhiteUnderAWeakLayerIsWhiteInAWhiteSky) {
+    for (const float weight : {0.0F, 0.3F, 1.0F})
+        for (const float index : {0.0F, 1.2F, 2.4F}) {
+            const scene::SnapshotMaterial white =
+                with_specular(material_of(vec3(1), 0, 0.5F), {.index_of_refraction = index, .weight = weight});
+            expect_in_white_sky(white);
+            EXPECT_NEAR(reference::reflected_white(reference_of(white.surface), {0.7, 0.1}).x, 1, 1e-12);
+        }
+}
+
+/// A model whose one material has these textures, all of them of one pixel.
+scene::Assets assets_with_pixel(const scene::ModelMaterial& material, std::array<std::uint8_t, 4> rgba) {
+    scene::Assets assets = sphere_assets();
+    assets.models[0].images.push_back(
+        {.name = "pixel", .width = 1, .height = 1, .rgba = std::vector<std::uint8_t>(rgba.begin(), rgba.end())});
+    assets.models[0].materials.push_back(material);
+    return assets;
+}
+
+/// With textures, a material is drawn as one whose factors are what both multiply to.
+void expect_same(const scene::ModelMaterial& textured, std::array<std::uint8_t, 4> rgba,
+                 const scene::SnapshotMaterial& factors) {
+    const auto picture = [&](const scene::SnapshotMaterial& material) {
+        Renderer renderer =
+            renderer_for({.extent = frame_extent, .draw = {.has_shadows = false}}, assets_with_pixel(textured, rgba));
+        scene::Snapshot snapshot = sphere_and_floor(material, material);
+        snapshot.lights = three_lights();
+        return shoot(renderer, snapshot).color;
+    };
+    scene::SnapshotMaterial given;
+    given.model = 0;
+    given.surface = textured;
+    const Pixels with_textures = picture(given), with_factors = picture(factors);
+    for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit&) {
+        const auto color = with_factors.at(x, y);
+        // Sampling rounds sRGB to a few parts of ten thousand, and the target has half floats.
+        expect_color(with_textures, x, y, dvec3(color[0], color[1], color[2]), 2e-3, 1e-3);
+    });
+}
+
+TEST(RenderGpuLayers, SpecularTexturesMultiply) {
+    const std::array<std::uint8_t, 4> rgba{255, 128, 0, 51};
+    scene::SnapshotMaterial textured = with_specular(paint(), {.index_of_refraction = 2.4F, .color = {1, 3, 1}});
+    textured.surface.specular.color_texture.image = 0;
+    const auto half = static_cast<float>(srgb_decoded(128 / 255.0));
+    expect_same(textured.surface, rgba,
+                with_specular(paint(), {.index_of_refraction = 2.4F, .color = {1, 3 * half, 0}}));
+    textured.surface.specular.texture.image = 0;
+    textured.surface.specular.color_texture.image = scene::no_index;
+    expect_same(textured.surface, rgba,
+                with_specular(paint(), {.index_of_refraction = 2.4F, .weight = 0.2F, .color = {1, 3, 1}}));
+}
+
+TEST(RenderGpuLayers, SpecularAgreesWithTheReference) {
+    Directions random(5);
+    std::vector<std::vector<vec4>> inputs(5);
+    std::vector<dvec3> truth;
+    for (int i = 0; i < 4096; ++i) {
+        const auto number = [&] { return static_cast<float>(random.number()); };
+        const dvec3 n = random.on_sphere(), v = random.around(n);
+        const dvec3 mirrored = n * (2 * glm::dot(n, v)) - v;
+        const dvec3 l = i % 2 == 0 ? random.around(n) : glm::normalize(mirrored + random.on_sphere() * 0.02);
+        inputs[0].emplace_back(n, 0.1F + 0.9F * number());
+        inputs[1].emplace_back(v, 1 + 2 * number());
+        inputs[2].emplace_back(l, number());
+        inputs[3].emplace_back(number(), number(), number(), i % 4 < 2 ? 0 : number());
+        inputs[4].emplace_back(2 * number(), 2 * number(), 2 * number(), 0);
+        const auto given = [&](std::size_t input) { return glm::normalize(dvec3(inputs[input].back())); };
+        truth.push_back(reference::reflected(LayeredSurface{.base_color = dvec3(inputs[3].back()),
+                                                            .metallic = inputs[3].back().w,
+                                                            .roughness = inputs[0].back().w,
+                                                            .index_of_refraction = inputs[1].back().w,
+                                                            .specular_weight = inputs[2].back().w,
+                                                            .specular_color = dvec3(inputs[4].back())},
+                                             given(0), given(1), given(2)));
+    }
+    const std::vector<vec4> device = evaluate("specular", brdf_with("1u") + R"(
+vec4 shade(Pixel pixel) {
+    vec4 n = load(input_0, pixel.texel), v = load(input_1, pixel.texel), l = load(input_2, pixel.texel);
+    vec4 material = load(input_3, pixel.texel);
+    float root = (v.w - 1.0) / (v.w + 1.0);
+    Reflectance surface = reflectance_with_specular(material.rgb, material.a, n.w,
+                                                    load(input_4, pixel.texel).rgb * root * root, l.w);
+    return vec4(reflected(surface, n.xyz, v.xyz, l.xyz), 1.0);
+}
+)",
+                                              inputs);
+    // As in RenderGpuBrdf.ShaderAgreesWithTheReference.
+    expect_close(device, truth, 5e-4, 1e-6);
+}
+
+}  // namespace
+}  // namespace darkroom::render
