@@ -193,6 +193,8 @@ Result<> write_all(int descriptor, const fs::path& path, std::span<const std::by
     return {};
 }
 
+thread_local std::set<fs::path>* record = nullptr;  // of this thread's ReadRecord
+
 Result<> write_and_close(Descriptor& file, const fs::path& path, std::span<const std::byte> content) {
     if (auto written = write_all(file.number, path, content); !written) return written;
     const int descriptor = std::exchange(file.number, -1);
@@ -202,7 +204,11 @@ Result<> write_and_close(Descriptor& file, const fs::path& path, std::span<const
 
 }  // namespace
 
+ReadRecord::ReadRecord() { record = &files_; }
+ReadRecord::~ReadRecord() { record = nullptr; }
+
 Result<std::vector<std::byte>> read_file(const fs::path& path, const ReadFileOptions& options) {
+    if (record != nullptr) record->insert(path);
     Result<std::vector<std::byte>> content = read_regular(path, options);
     return content || !options.is_path_in_errors ? std::move(content) : placed(path, content.error());
 }

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,19 @@ struct ReadFileOptions {
 /// sockets and devices are refused at once, since one may never answer and another never ends.
 [[nodiscard]] Result<std::vector<std::byte>> read_file(const std::filesystem::path& path,
                                                        const ReadFileOptions& options = {});
+
+/// Keeps the names of the files that its thread reads while it lives: what a piece of work depends on. They do not nest.
+class ReadRecord {
+  public:
+    ReadRecord();
+    ReadRecord(const ReadRecord&) = delete;
+    ReadRecord& operator=(const ReadRecord&) = delete;
+    ~ReadRecord();
+    [[nodiscard]] const std::set<std::filesystem::path>& files() const { return files_; }
+
+  private:
+    std::set<std::filesystem::path> files_;
+};
 
 /// What tells one state of a file from the next: editors replace files, so its number counts, too.
 struct FileStamp {

@@ -218,6 +218,46 @@ TEST_F(FarmFiles, ASecondSubmissionHasOnlyWhatIsMissing) {
     EXPECT_EQ(farm(shot).out, "all 12 pictures are there, nothing is submitted\n");
 }
 
+TEST_F(FarmFiles, AChangedInputIsNoticed) {
+    write_program("sbatch", "echo 17");
+    write_program("squeue", "exit 1");
+    fs::create_directory(path("looks"));
+    write("looks/film.cube", "LUT_1D_SIZE 2\n0 0 0\n1 0.9 0.8\n");
+    write("looks/shot.toml",
+          "[post_process]\nlut = \"film.cube\"\nlut_strength = 1.0\n[ui]\ndocument = "
+          "\"lens.svg\"\ncontrollers = [\"move.lua\"]\n");
+    write("over.toml", "[post_process]\nexposure = 1.0\n");
+    write("looks/move.lua", "");
+    write("looks/lens.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>");
+    write("beat.toml", "[[event]]\ntime = 0.5\nset = { exposure = 2.0 }\n");
+    const std::string work = " 'shot.####.exr' --look looks/shot.toml -o out/",
+                      more = " -- --layer over.toml --events beat.toml";
+    ASSERT_EQ(farm("slurm" + work + more).code, 0) << farm("slurm" + work + more).err;
+    for (int number = 1; number <= 12; ++number) put_picture(number);
+    EXPECT_EQ(farm("slurm" + work + more).out, "all 12 pictures are there, nothing is submitted\n");
+    for (const char* const name :
+         {"looks/shot.toml", "looks/film.cube", "looks/lens.svg", "looks/move.lua", "over.toml", "beat.toml"}) {
+        const std::string before = content(path(name));
+        write(name, before + "\n");
+        const std::string line = fmt::format(
+            "darkroom: out/shot.farm: {} has changed since job 17 was submitted; remove its pictures, or write "
+            "elsewhere "
+            "with -o\n",
+            name);
+        for (const std::string& command : {"slurm" + work, "task --frames 1-2" + work}) {
+            const Outcome outcome = farm(command + more);
+            EXPECT_EQ(outcome.code, 1) << command;
+            EXPECT_EQ(outcome.err, line) << command;
+        }
+        write(name, before);
+    }
+    EXPECT_EQ(farm("slurm" + work + more).code, 0) << "as it was";
+    write("over.toml", "[post_process]\nexposure = 2.0\n");
+    for (int number = 1; number <= 12; ++number) fs::remove(path(fmt::format("out/shot.{:04}.png", number)));
+    EXPECT_EQ(farm("slurm" + work + more).out,
+              "job 17: 12 of 12 pictures in 2 chunks; darkroom farm status out/shot.farm\n");
+}
+
 TEST_F(FarmFiles, StatusIsToldFromRecordsAlone) {
     const auto record = [&](const std::string& name, const std::string& state, const std::string& done,
                             const std::string& job) {

@@ -179,6 +179,7 @@ Result<Job> job_of(const Options& options) {
     Result<darkroom::Look> look = options.look.look_of_frames();
     if (!look) return failure(std::move(look));
     job.look = std::move(*look);
+    if (Result<> done = check_ui_files(job.look); !done) return failure(std::move(done));
     if (!options.look.events.empty()) {
         Result<Timeline> timeline = Timeline::read(options.look.events, job.look);
         if (!timeline) return failure(std::move(timeline));

@@ -11,7 +11,7 @@ std::vector<Command> add_farm(CommandFlags program, std::span<const darkroom::Lo
         "darkroom farm slurm 'shot.####.exr' --look my.toml -o . --chunk 1 --dry-run\n"
         "darkroom farm task 'shot.####.exr' --look my.toml -o . --frames 1-2\n"
         "darkroom farm status .");
-    return {add_farm_slurm(farm, named), add_farm_task(farm), add_farm_status(farm)};
+    return {add_farm_slurm(farm, named), add_farm_task(farm, named), add_farm_status(farm)};
 }
 
 }  // namespace app

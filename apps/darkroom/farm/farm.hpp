@@ -10,7 +10,7 @@
 namespace app {
 
 [[nodiscard]] Command add_farm_slurm(CommandFlags farm, std::span<const darkroom::LookEntry> named);
-[[nodiscard]] Command add_farm_task(CommandFlags farm);
+[[nodiscard]] Command add_farm_task(CommandFlags farm, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_farm_status(CommandFlags farm);
 
 }  // namespace app

@@ -94,8 +94,19 @@ ChunkRecord record_of(const Json& json) {
     return out;
 }
 
+FarmInputs inputs_of(const Json& json) {
+    FarmInputs out;
+    if (json.find("inputs") == nullptr) return out;
+    for (const auto& [file, hash] : member(json, "inputs", &Json::is_object).members()) {
+        if (!hash.is_text()) throw Wrong{"inputs are no texts"};
+        out.emplace(file, hash.text());
+    }
+    return out;
+}
+
 FarmJob job_of(const Json& json) {
     return {.arguments = texts_of(json, "arguments"),
+            .inputs = inputs_of(json),
             .id = text_of(json, "job"),
             .frames = numbers_of(json, "frames"),
             .done = numbers_of(json, "done")};
@@ -174,12 +185,30 @@ Json json_of(const ChunkRecord& record) {
             {"errors", record.errors}};
 }
 
+// Text that is no UTF-8 is alike in both.
+bool has_arguments(const FarmJob& job, const std::vector<std::string>& arguments) {
+    return Json(job.arguments).dump() == Json(arguments).dump();
+}
+
+Result<> check_inputs(const fs::path& folder, const FarmJob& job, const FarmInputs& now) {
+    if (job.inputs.empty()) return {};
+    FarmInputs changed;  // those of one of the two that the other has not
+    std::ranges::set_symmetric_difference(job.inputs, now, std::inserter(changed, changed.end()));
+    if (changed.empty()) return {};
+    return darkroom::user_error(
+        fmt::format("{}: {} has changed since job {} was submitted; remove its pictures, or write elsewhere with -o",
+                    printable(folder.string()), changed.begin()->first, job.id));
+}
+
 Result<> write_job(const fs::path& folder, const FarmJob& job) {
+    Json inputs = Json::object();
+    for (const auto& [file, hash] : job.inputs) inputs[file] = hash;
     return write(folder / job_file, {{"format", format},
                                      {"job", job.id},
                                      {"frames", json_of(job.frames)},
                                      {"done", json_of(job.done)},
-                                     {"arguments", job.arguments}});
+                                     {"arguments", job.arguments},
+                                     {"inputs", std::move(inputs)}});
 }
 
 Result<> write_record(const fs::path& folder, const ChunkRecord& record) {

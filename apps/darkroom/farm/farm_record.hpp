@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -26,8 +27,12 @@ inline constexpr const char* farm_suffix = ".farm";
 [[nodiscard]] Json json_of(const FrameNumbers& numbers);
 [[nodiscard]] FrameNumbers without(const FrameNumbers& numbers, const FrameNumbers& others);
 
+/// The files that pictures are made of beside the frames, and the hashes of their contents.
+using FarmInputs = std::map<std::string, std::string>;
+
 struct FarmJob {
     std::vector<std::string> arguments;  ///< of each task, but for its frames
+    FarmInputs inputs;                   ///< empty: nobody knows
     std::string id;                      ///< Slurm's
     FrameNumbers frames;                 ///< all that are asked for
     FrameNumbers done;                   ///< those whose pictures were there when it was submitted
@@ -49,6 +54,11 @@ struct ChunkRecord {
 [[nodiscard]] Json json_of(const ChunkRecord& record);
 [[nodiscard]] darkroom::Result<> write_job(const std::filesystem::path& folder, const FarmJob& job);
 [[nodiscard]] darkroom::Result<> write_record(const std::filesystem::path& folder, const ChunkRecord& record);
+/// Of another job: the arguments are the same, as far as a file of JSON has them.
+[[nodiscard]] bool has_arguments(const FarmJob& job, const std::vector<std::string>& arguments);
+/// The error names the folder, and the first file that is another one now.
+[[nodiscard]] darkroom::Result<> check_inputs(const std::filesystem::path& folder, const FarmJob& job,
+                                              const FarmInputs& now);
 /// Nothing where none was submitted.
 [[nodiscard]] darkroom::Result<std::optional<FarmJob>> read_job(const std::filesystem::path& folder);
 /// In the order of their names. A file that is no record is a warning, and counts for nothing.

@@ -125,26 +125,25 @@ Result<std::string> script_of(const SlurmOptions& options, const FarmWork& work,
         *head, shell_quoted(here), folder, fmt::join(chunks, " "), folder, program, shell_quoted(options.work.task()));
 }
 
-/// The text with which a file of other arguments is told from one of these: what is no UTF-8 is alike in both.
-std::string comparable(const std::vector<std::string>& arguments) { return Json(arguments).dump(); }
-
 bool is_number(const std::string& id) { return !id.empty() && id.find_first_not_of("0123456789") == std::string::npos; }
 
-/// What was submitted before may not be under way, and must have been the same.
-Result<> check_last_job(const FarmWork& work, const std::vector<std::string>& arguments) {
-    const Result<std::optional<FarmJob>> last = read_job(work.folder);
-    if (!last) return failure(last.error());
-    if (!*last) return {};
-    const std::string folder = printable(work.folder.string());
-    if (comparable((*last)->arguments) != comparable(arguments))
+/// Pictures that are there are of what was submitted before, which must have been the same.
+Result<> check_same(const FarmWork& work, const FarmJob& last, const FarmJob& job) {
+    if (!has_arguments(last, job.arguments))
         return user_error(
-            fmt::format("{}: its pictures are of other arguments ({}); remove it, or write elsewhere with -o", folder,
-                        printable(fmt::format("{}", fmt::join((*last)->arguments, " ")))));
-    const std::string& id = (*last)->id;
+            fmt::format("{}: its pictures are of other arguments ({}); remove it, or write elsewhere with -o",
+                        printable(work.folder.string()), printable(fmt::format("{}", fmt::join(last.arguments, " ")))));
+    return job.done.empty() ? Result<>() : check_inputs(work.folder, last, job.inputs);
+}
+
+/// What was submitted before may not be under way.
+Result<> check_is_over(const FarmWork& work, const FarmJob& last) {
+    const std::string& id = last.id;
     if (!is_number(id)) return {};
     const Result<ProcessOutcome> queue = run_process({"squeue", "-h", "-o", "%i", "-j", id}, ProcessOutput::Kept);
     if (!queue || queue->code != 0 || queue->out.empty()) return {};  // Slurm has forgotten it, or sbatch says why not
-    return user_error(fmt::format("{}: job {} is not over; wait for it, or end it with `scancel {}`", folder, id, id));
+    return user_error(fmt::format("{}: job {} is not over; wait for it, or end it with `scancel {}`",
+                                  printable(work.folder.string()), id, id));
 }
 
 /// Gives the number of the job.
@@ -183,14 +182,19 @@ Result<std::string> submit(const fs::path& folder, const std::string& script) {
 Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> named) {
     const Result<FarmWork> work = options.work.work();
     if (!work) return failure(work.error());
-    if (Result<> done = options.work.check(*work, named); !done) return done;
+    Result<FarmInputs> inputs = options.work.check(*work, named);
+    if (!inputs) return failure(std::move(inputs));
     std::size_t chunk = usual_chunk;
     if (Result<> done = options.chunk.read_to(chunk); !done) return done;
-    FarmJob job{.arguments = options.work.task()};
+    FarmJob job{.arguments = options.work.task(), .inputs = std::move(*inputs)};
     for (const FarmFrame& frame : work->frames) {
         job.frames.insert(frame.number);
         if (is_there(frame.picture)) job.done.insert(frame.number);
     }
+    const Result<std::optional<FarmJob>> last = read_job(work->folder);
+    if (!last) return failure(last.error());
+    if (*last)
+        if (Result<> done = check_same(*work, **last, job); !done) return done;
     const std::vector<std::string> chunks = chunks_of(*work, job.done, chunk);
     if (chunks.empty()) {
         answer_unless_quiet(fmt::format("all {} pictures are there, nothing is submitted", job.frames.size()));
@@ -211,7 +215,8 @@ Result<> run(const SlurmOptions& options, std::span<const darkroom::LookEntry> n
         answer(script->substr(0, script->size() - 1));
         return {};
     }
-    if (Result<> done = check_last_job(*work, job.arguments); !done) return done;
+    if (*last)
+        if (Result<> done = check_is_over(*work, **last); !done) return done;
     const Result<std::string> id = submit(work->folder, *script);
     if (!id) return failure(id.error());
     job.id = *id;

@@ -121,17 +121,27 @@ class Task {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-int run(const FarmFlags& flags) {
+/// What a job of these arguments was submitted with must be what its tasks read.
+Result<> check_submitted(const FarmFlags& flags, const FarmWork& work, std::span<const darkroom::LookEntry> named) {
+    const Result<std::optional<FarmJob>> job = read_job(work.folder);
+    if (!job) return failure(job.error());
+    if (!*job || !has_arguments(**job, flags.task())) return {};
+    const Result<FarmInputs> inputs = flags.check(work, named);
+    return inputs ? check_inputs(work.folder, **job, *inputs) : failure(inputs.error());
+}
+
+int run(const FarmFlags& flags, std::span<const darkroom::LookEntry> named) {
     if (flags.frames().empty()) return fail_user("farm task: --frames A-B is needed");
     Result<FarmWork> work = flags.work();
     if (!work) return fail(work.error());
+    if (const Result<> done = check_submitted(flags, *work, named); !done) return fail(done.error());
     const Result<int> code = Task(flags, std::move(*work)).run();
     return code ? *code : fail(code.error());
 }
 
 }  // namespace
 
-Command add_farm_task(CommandFlags farm) {
+Command add_farm_task(CommandFlags farm, std::span<const darkroom::LookEntry> named) {
     const CommandFlags command =
         farm.add_command("task", "Makes one chunk, tried again three times at most, and writes a record of it");
     command.examples(
@@ -140,7 +150,7 @@ Command add_farm_task(CommandFlags farm) {
         "darkroom farm task scene.toml -o 'scene.####.png' --frames 0-1 -- --size 64x36");
     const auto flags = std::make_shared<FarmFlags>();
     flags->add_to(command, "The chunk");
-    return {command, [flags] { return run(*flags); }};
+    return {command, [flags, named] { return run(*flags, named); }};
 }
 
 }  // namespace app

@@ -10,6 +10,8 @@
 #include "apps/darkroom/effects/named_effects.hpp"
 #include "apps/darkroom/flags/program.hpp"
 #include "apps/darkroom/run/outputs.hpp"
+#include "core/files.hpp"
+#include "core/hash.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/sequence.hpp"
 #include "scene/assets.hpp"
@@ -142,12 +144,12 @@ Result<FarmWork> FarmFlags::work() const {
 
 // The command itself reads the arguments: what it would refuse is refused here, once, instead of by every task.
 // For two frames, because what is right for one may be wrong for several; of more, all names would be tried.
-Result<> FarmFlags::check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const {
+Result<FarmInputs> FarmFlags::check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const {
     const Trial trial;
     const Command command = is_scene() ? add_render(trial.program(), named) : add_develop(trial.program(), named);
     const long long first = work.frames.front().number, last = std::min(first + 1, work.frames.back().number);
     if (Result<> parsed = trial.parse(this->command(fmt::format("{}-{}", first, last)), command.flags); !parsed)
-        return parsed;
+        return failure(std::move(parsed));
     if (const std::vector<std::string> inputs = command.flags.typed("INPUT"); inputs.size() > 1)
         return user_error(fmt::format("unexpected '{}': allowed behind -- are flags of {}", printable(inputs.back()),
                                       command.flags.name()));
@@ -156,7 +158,15 @@ Result<> FarmFlags::check(const FarmWork& work, std::span<const darkroom::LookEn
             if (argument == "--effect" || argument.starts_with("--effect="))
                 return user_error(
                     fmt::format("{}: such a file is code, --allow-custom-effects lets it run", printable(argument)));
-    return command.check();
+    const darkroom::ReadRecord read;
+    if (Result<> done = command.check(); !done) return failure(std::move(done));
+    FarmInputs out;
+    for (const fs::path& file : std::set(read.files())) {
+        const auto content = darkroom::read_file(file);
+        if (!content) return failure(content.error());
+        out.emplace(printable(file.string()), darkroom::content_hash(*content).hex());
+    }
+    return out;
 }
 
 }  // namespace app

@@ -32,8 +32,9 @@ class FarmFlags {
     void add_to(CommandFlags command, const std::string& frames_doc);
     /// Errors: no sequence and no scene, no frame, no such folder.
     [[nodiscard]] darkroom::Result<FarmWork> work() const;
-    /// All that `develop` or `render` would refuse before it reads a frame or a scene, of flags and look.
-    [[nodiscard]] darkroom::Result<> check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const;
+    /// All that `develop` or `render` would refuse before it reads a frame or a scene, of flags and look. Gives what
+    /// these were read from; models and their textures are not looked at.
+    [[nodiscard]] darkroom::Result<FarmInputs> check(const FarmWork& work, std::span<const darkroom::LookEntry> named) const;
     /// Of the command that makes these frames: "develop", and so on.
     [[nodiscard]] std::vector<std::string> command(const std::string& frames) const;
     /// Of `farm task`, without --frames and its value, which go before these.

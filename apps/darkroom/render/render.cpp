@@ -113,6 +113,7 @@ class Render {
         Result<darkroom::Look> look = flags_.look.look(scene::is_model_path(flags_.scene) ? "" : flags_.scene);
         if (!look) return failure(std::move(look));
         look_ = std::move(*look);
+        if (Result<> done = check_ui_files(look_); !done) return done;
         suit(look_, job_.target, job_.write);
         if (!flags_.look.events.empty()) {
             Result<Timeline> timeline = Timeline::read(flags_.look.events, look_);

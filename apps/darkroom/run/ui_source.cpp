@@ -52,6 +52,13 @@ std::vector<std::filesystem::path> ui_files(const darkroom::Look& look) {
     return out;
 }
 
+Result<> check_ui_files(const darkroom::Look& look) {
+    for (const std::filesystem::path& file : ui_files(look))
+        if (const auto start = darkroom::read_file(file, {.max_size = 1, .takes_start = true}); !start)
+            return failure(start.error());
+    return {};
+}
+
 Result<> UiSource::start(Composer& composer) {
     composer_ = &composer;
     controllers_.reset();

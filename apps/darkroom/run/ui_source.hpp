@@ -21,6 +21,8 @@ namespace app {
 
 /// What the interface of a look, as LookFlags gives it, is read from.
 [[nodiscard]] std::vector<std::filesystem::path> ui_files(const darkroom::Look& look);
+/// That they can be opened.
+[[nodiscard]] darkroom::Result<> check_ui_files(const darkroom::Look& look);
 
 /// As documents have it.
 [[nodiscard]] darkroom::HudValue hud_value(const darkroom::GameValue& value);
