@@ -136,7 +136,8 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
                         "shot.0001.exr: expected a sequence, shot.%04d.exr or shot.####.exr, or a scene (.toml) or a "
                         "model (.glb, .gltf)");
     expect_farm_refuses("slurm 'shot.####.exr[1-3]' -o out/", 1, "shot.####.exr[1-3]: --frames says which");
-    expect_farm_refuses("slurm 'shot.####.exr' -o none/", 1, "none: no such folder, the pictures cannot be written");
+    expect_farm_refuses("slurm 'shot.####.exr' -o none/", 1,
+                        "none: no such folder, pictures cannot be written; --mkdir makes it");
     expect_farm_refuses("slurm 'shot.####.exr' -o -", 1, "-o -: a farm writes files");
     expect_farm_refuses("slurm 'shot.####.exr' -o a.png", 1,
                         "-o a.png: expected a folder, or a name with %04d or ####");
@@ -216,6 +217,11 @@ TEST_F(FarmFiles, ASecondSubmissionHasOnlyWhatIsMissing) {
     EXPECT_NE(content(path("script.sh")).find("\nchunks=(6-9 12-12)\n"), std::string::npos);
     for (const int number : {6, 9, 12}) put_picture(number);
     EXPECT_EQ(farm(shot).out, "all 12 pictures are there, nothing is submitted\n");
+}
+
+TEST_F(FarmFiles, AFolderIsMadeWhereAsked) {
+    EXPECT_EQ(farm("slurm 'shot.####.exr' -o new/a/ --mkdir --dry-run").code, 0);
+    EXPECT_TRUE(fs::is_directory(path("new/a")));
 }
 
 TEST_F(FarmFiles, AChangedInputIsNoticed) {

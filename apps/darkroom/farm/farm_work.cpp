@@ -48,6 +48,7 @@ void FarmFlags::add_to(CommandFlags command, const std::string& frames_doc) {
         .required();
     command.add_option("--look", look_, "As for develop and render").type_name("FILE");
     command.add_option("--frames", frames_, frames_doc).type_name("A-B");
+    command.add_flag("--mkdir", makes_folder_, "Makes the folder of the pictures where it is not there");
     command.add_flag("--allow-custom-effects", allows_custom_effects_,
                      "Lets the look name files of effects, which are code, and --effect bring some");
 }
@@ -130,10 +131,8 @@ Result<FarmWork> FarmFlags::work() const {
         return user_error(fmt::format("{}: {} frames, a farm takes {} at once; --frames says which", printable(input_),
                                       frames->size(), most_frames));
     const fs::path picture = frames->front().picture, folder = picture.parent_path();
-    std::error_code error;
-    if (!folder.empty() && !fs::is_directory(folder, error))
-        return user_error(
-            fmt::format("{}: no such folder, the pictures cannot be written", printable(folder.string())));
+    const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Refused;
+    if (Result<> done = check_folder(folder, missing); !done) return failure(std::move(done));
     const auto made = [&](std::int64_t number) {
         return output_path(darkroom::numbered(input_, number), number, out_, is_output_folder(out_));
     };

@@ -49,7 +49,7 @@ class FarmFlags {
 
     std::string input_, out_, look_, frames_;
     std::vector<std::string> more_;
-    bool allows_custom_effects_ = false;
+    bool allows_custom_effects_ = false, makes_folder_ = false;
 };
 
 }  // namespace app

@@ -29,17 +29,6 @@ std::optional<std::pair<std::uintmax_t, std::uintmax_t>> identity_of(const fs::p
     return std::pair<std::uintmax_t, std::uintmax_t>{status.st_dev, status.st_ino};
 }
 
-Result<> check_folder(const fs::path& folder, MissingFolders missing) {
-    std::error_code error;
-    if (folder.empty() || fs::is_directory(folder, error)) return {};
-    if (missing == MissingFolders::Refused)
-        return user_error(fmt::format("{}: no such folder, the picture cannot be written; --mkdir makes it",
-                                      printable(folder.string())));
-    fs::create_directories(folder, error);
-    if (!error) return {};
-    return user_error(fmt::format("{}: cannot be made: {}", printable(folder.string()), error.message()));
-}
-
 }  // namespace
 
 bool FileSet::contains(const fs::path& file) const {
@@ -53,6 +42,17 @@ bool FileSet::contains(const fs::path& file) const {
 bool is_there(const fs::path& picture) {
     std::error_code error;
     return fs::is_regular_file(picture, error) && fs::file_size(picture, error) > 0 && !error;
+}
+
+Result<> check_folder(const fs::path& folder, MissingFolders missing) {
+    std::error_code error;
+    if (folder.empty() || fs::is_directory(folder, error)) return {};
+    if (missing == MissingFolders::Refused)
+        return user_error(fmt::format("{}: no such folder, pictures cannot be written; --mkdir makes it",
+                                      printable(folder.string())));
+    fs::create_directories(folder, error);
+    if (!error) return {};
+    return user_error(fmt::format("{}: cannot be made: {}", printable(folder.string()), error.message()));
 }
 
 Result<> check_output(const fs::path& output, const FileSet& inputs, MissingFolders folders) {

@@ -34,6 +34,9 @@ class FileSet {
 
 enum class MissingFolders { Refused, Made };
 
+/// Is there a folder for pictures, or can there be one? An empty path is the working folder.
+[[nodiscard]] darkroom::Result<> check_folder(const std::filesystem::path& folder, MissingFolders missing);
+
 /// Can this file be written, and is it none of the inputs? Told before any work is done.
 [[nodiscard]] darkroom::Result<> check_output(const std::filesystem::path& output, const FileSet& inputs,
                                               MissingFolders folders = MissingFolders::Refused);
