@@ -297,6 +297,9 @@ TEST_F(CliBombs, LayersOfManyParts) {
     EXPECT_EQ(many.code, 0) << many.err;
     // Four times as many in four times the time, and not in sixteen times; what is left is noise.
     EXPECT_LE(many.seconds, 8 * some.seconds + 2);
+    if (is_memory_known) {
+        EXPECT_LE(many.mebibytes, few.mebibytes + 256) << "of which 1024 are listed";
+    }
     expect_refused_cheaply("many.exr", "has no color", few);
 }
 

@@ -47,6 +47,9 @@ std::string samples_of(const darkroom::FilePart& part, const darkroom::FileLayer
     return out;
 }
 
+/// Of those that are listed. A file of a few bytes a layer would ask for thousands each.
+constexpr std::size_t most_layers = 1024;
+
 Result<Json> layers_of(LayerFile& file) {
     const auto parts = file.decoder().parts();
     std::vector<std::vector<darkroom::SampleRange>> ranges;
@@ -56,7 +59,8 @@ Result<Json> layers_of(LayerFile& file) {
         ranges.push_back(std::move(*found));
     }
     Json out = Json::array();
-    for (const darkroom::FileLayer& layer : file.layers()) {
+    for (const darkroom::FileLayer& layer :
+         file.layers().first(std::min<std::size_t>(file.layers().size(), most_layers))) {
         darkroom::SampleRange range;
         for (const std::uint32_t channel : layer.channels) range.add(ranges[layer.part][channel]);
         out.push_back({{"layer", layer.name},
@@ -68,6 +72,24 @@ Result<Json> layers_of(LayerFile& file) {
                        {"nan", range.nan},
                        {"infinite", range.infinite}});
     }
+    return out;
+}
+
+/// What the file says of itself, whatever it is for.
+Result<Json> file_of(const std::filesystem::path& path) {
+    Result<LayerFile> file = LayerFile::open(path);
+    if (!file) return failure(std::move(file));
+    const auto parts = file->decoder().parts();
+    std::error_code ignored;
+    Json out{{"kind", "picture"},
+             {"format", darkroom::name_of(file->decoder().kind())},
+             {"bytes", std::filesystem::file_size(path, ignored)},
+             {"size", {parts.front().display_width, parts.front().display_height}},
+             {"parts", parts_of(parts)}};
+    Result<Json> layers = layers_of(*file);
+    if (!layers) return failure(std::move(layers));
+    out["layers"] = std::move(*layers);
+    if (file->layers().size() > most_layers) out["more_layers"] = file->layers().size() - most_layers;
     return out;
 }
 
@@ -164,19 +186,9 @@ Result<> add_frame(const std::filesystem::path& path, Json& out) {
 }  // namespace
 
 Result<Json> picture(const std::filesystem::path& path) {
-    Result<LayerFile> file = LayerFile::open(path);
-    if (!file) return failure(std::move(file));
-    const auto parts = file->decoder().parts();
-    std::error_code ignored;
-    Json out{{"kind", "picture"},
-             {"format", darkroom::name_of(file->decoder().kind())},
-             {"bytes", std::filesystem::file_size(path, ignored)},
-             {"size", {parts.front().display_width, parts.front().display_height}},
-             {"parts", parts_of(parts)}};
-    const Result<Json> layers = layers_of(*file);
-    if (!layers) return failure(layers.error());
-    out["layers"] = *layers;
-    if (Result<> done = add_frame(path, out); !done) return failure(std::move(done));
+    Result<Json> out = file_of(path);
+    if (!out) return out;
+    if (Result<> done = add_frame(path, *out); !done) return failure(std::move(done));
     return out;
 }
 

@@ -179,6 +179,7 @@ struct ExrSource::State {
                                            static_cast<std::size_t>(place.row_bytes)));
         part.input.setFrameBuffer(buffer);
         part.input.readPixels(origin.y, origin.y + static_cast<int>(rows) - 1);
+        part.input.setFrameBuffer({});  // it keeps hundreds of bytes for a channel
     }
 
     /// Each stored sample stands for a rectangle of pixels.
