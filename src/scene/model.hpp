@@ -56,6 +56,17 @@ struct SpecularLayer {
     }
 };
 
+/// A clear varnish over all else: KHR_materials_clearcoat.
+struct ClearcoatLayer {
+    float weight = 0;
+    Texture texture;  ///< red
+    float roughness = 0;
+    Texture roughness_texture;  ///< green
+    Texture normal_texture;     ///< none: the coat is as smooth as the mesh, whatever bumps are under it
+    float normal_scale = 1;
+    [[nodiscard]] bool is_given() const { return weight > 0; }
+};
+
 /// Metallic-roughness. Textures multiply factors.
 struct ModelMaterial {
     std::string name;
@@ -70,6 +81,7 @@ struct ModelMaterial {
     vec3 emissive{0};  ///< times KHR_materials_emissive_strength
     Texture emissive_texture;
     SpecularLayer specular;
+    ClearcoatLayer clearcoat;
     SurfaceBlend blend = SurfaceBlend::Opaque;  ///< Opaque, Mask or Alpha
     float alpha_cutoff = 0.5F;
     bool is_double_sided = false;
@@ -81,7 +93,7 @@ struct TextureUse {
     const Texture* texture = nullptr;
     bool is_srgb = false, is_normal = false;
 };
-inline constexpr std::size_t material_textures = 7;
+inline constexpr std::size_t material_textures = 10;
 /// In the order in which shaders number them: base colour first.
 [[nodiscard]] inline std::array<TextureUse, material_textures> textures_of(const ModelMaterial& material) {
     return {TextureUse{&material.base_color_texture, true},
@@ -90,7 +102,10 @@ inline constexpr std::size_t material_textures = 7;
             {&material.occlusion_texture},
             {&material.emissive_texture, true},
             {&material.specular.texture},
-            {&material.specular.color_texture, true}};
+            {&material.specular.color_texture, true},
+            {&material.clearcoat.texture},
+            {&material.clearcoat.roughness_texture},
+            {&material.clearcoat.normal_texture, false, true}};
 }
 
 /// One vertex as the GPU gets it.

@@ -3,7 +3,7 @@
 
 #include "render/light/environment.hpp"
 #include "render/light/shading_scene_support.hpp"
-#include "render/light/shading_test_support.hpp"
+#include "render/light/shading_test_bench.hpp"
 #include "shared/srgb_reference.hpp"
 
 namespace darkroom::render {
@@ -19,7 +19,9 @@ LayeredSurface reference_of(const scene::ModelMaterial& material) {
             .roughness = material.roughness,
             .index_of_refraction = material.specular.index_of_refraction,
             .specular_weight = material.specular.weight,
-            .specular_color = dvec3(material.specular.color)};
+            .specular_color = dvec3(material.specular.color),
+            .coat_weight = material.clearcoat.weight,
+            .coat_roughness = material.clearcoat.roughness};
 }
 
 /// brdf.glsl as pipelines of materials with these layers have it.
@@ -39,10 +41,15 @@ void expect_lit(const scene::SnapshotMaterial& material) {
     const Shot shot = shoot(renderer, snapshot);
     const LayeredSurface surface = reference_of(material.surface);
     for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit& hit) {
-        dvec3 truth = surface.base_color * reference::hemisphere(hit.normal, {0.12, 0.13, 0.18}, {0.06, 0.05, 0.04});
+        // The hemisphere has no mirror images: base colour stands for all that leaves, and the coat is white.
+        const double part = reference::coat_part(surface, hit.normal, hit.to_camera);
+        dvec3 truth = glm::mix(surface.base_color, dvec3(1), part) *
+                          reference::hemisphere(hit.normal, {0.12, 0.13, 0.18}, {0.06, 0.05, 0.04}) +
+                      dvec3(material.surface.emissive) * (1 - part);
         for (const scene::LightState& light : snapshot.lights) {
             const Arriving arrives = arriving_light(light, hit.position);
-            truth += arrives.color * reference::reflected(surface, hit.normal, hit.to_camera, arrives.direction);
+            truth +=
+                arrives.color * reference::reflected(surface, hit.normal, hit.normal, hit.to_camera, arrives.direction);
         }
         // As in RenderGpuShadingScene.SphereAndFloorInPerspectiveHaveTheirClosedForms.
         expect_color(shot.color, x, y, truth, hit.is_sphere ? 0.01 : 0.002, 1e-3);
@@ -70,7 +77,8 @@ void expect_in_white_sky(const scene::SnapshotMaterial& material) {
     for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit& hit) {
         // The table has half floats and 64 steps, over which it bends most at grazing angles.
         const dvec2 scale_and_bias = scale_and_bias_at(table, hit.facing, surface.roughness);
-        expect_color(shot.color, x, y, reference::reflected_white(surface, scale_and_bias), 0.005, 3e-3);
+        expect_color(shot.color, x, y, reference::reflected_white(surface, hit.normal, hit.to_camera, scale_and_bias),
+                     0.005, 3e-3);
     });
 }
 
@@ -111,7 +119,7 @@ TEST(RenderGpuLayers, WhiteUnderAWeakLayerIsWhiteInAWhiteSky) {
             const scene::SnapshotMaterial white =
                 with_specular(material_of(vec3(1), 0, 0.5F), {.index_of_refraction = index, .weight = weight});
             expect_in_white_sky(white);
-            EXPECT_NEAR(reference::reflected_white(reference_of(white.surface), {0.7, 0.1}).x, 1, 1e-12);
+            EXPECT_NEAR(reference::reflected_white_base(reference_of(white.surface), {0.7, 0.1}).x, 1, 1e-12);
         }
 }
 
@@ -145,6 +153,67 @@ void expect_same(const scene::ModelMaterial& textured, std::array<std::uint8_t, 
     });
 }
 
+scene::SnapshotMaterial with_clearcoat(scene::SnapshotMaterial material, float weight, float roughness) {
+    material.surface.clearcoat.weight = weight;
+    material.surface.clearcoat.roughness = roughness;
+    return material;
+}
+
+TEST(RenderGpuLayers, ClearcoatTakesItsPartOfAllThatIsUnderIt) {
+    scene::SnapshotMaterial glowing = paint();
+    glowing.surface.emissive = {0.5F, 0.25F, 0};
+    const scene::SnapshotMaterial gold = material_of({0.9F, 0.7F, 0.3F}, 1, 0.6F);
+    for (const float weight : {0.3F, 1.0F}) {
+        expect_lit(with_clearcoat(glowing, weight, 0.35F));
+        expect_lit(with_clearcoat(gold, weight, 0.5F));
+        expect_in_white_sky(with_clearcoat(paint(), weight, 0.2F));
+        expect_in_white_sky(with_clearcoat(gold, weight, 0.7F));
+    }
+    // All layers at once.
+    expect_lit(with_clearcoat(with_specular(glowing, {.index_of_refraction = 1.8F, .weight = 0.5F}), 0.8F, 0.4F));
+}
+
+TEST(RenderGpuLayers, ClearcoatTexturesMultiply) {
+    const std::array<std::uint8_t, 4> rgba{51, 102, 0, 255};
+    scene::SnapshotMaterial textured = with_clearcoat(paint(), 1, 0.4F);
+    textured.surface.clearcoat.texture.image = 0;
+    expect_same(textured.surface, rgba, with_clearcoat(paint(), 0.2F, 0.4F));
+    textured.surface.clearcoat.texture.image = scene::no_index;
+    textured.surface.clearcoat.roughness_texture.image = 0;
+    textured.surface.clearcoat.roughness = 0.9F;
+    expect_same(textured.surface, rgba, with_clearcoat(paint(), 1, 0.36F));
+}
+
+TEST(RenderGpuLayers, ClearcoatHasItsOwnNormal) {
+    FragmentBench bench(Shape::Plane);
+    bench.material.base_color = vec4(0.5, 0.4, 0.3, 1);
+    bench.material.factors.y = 0.5F;
+    bench.material.clearcoat = vec4(0.9, 0.3, 0.5, 0);
+    const dvec3 light = glm::normalize(dvec3(1, 0.8, -0.3));
+    bench.frame.light_counts.x = 1;
+    bench.lights.directional_direction[0] = vec4(light, -1);
+    bench.lights.directional_color[0] = vec4(2, 3, 4, 0);
+    const LayeredSurface surface{.base_color = dvec3(bench.material.base_color),
+                                 .roughness = 0.5,
+                                 .coat_weight = bench.material.clearcoat.x,
+                                 .coat_roughness = bench.material.clearcoat.y};
+    const auto expect_normals = [&](const dvec3& n, const dvec3& coat_normal) {
+        const auto [r, g, b, a] = bench.draw({.has_textures = 1, .layers = 2}).color.at(20, 40);
+        const dvec3 truth = dvec3(2, 3, 4) * reference::reflected(surface, n, coat_normal, {0, 1, 0}, light);
+        expect_close({{r, g, b, a}}, {truth}, 2e-5, 0);
+    };
+    // u is along x and v along z, so the texel's y, which points up in the picture, is along -z.
+    const dvec3 base_normal = glm::normalize(dvec3(-0.3, 1, 0.2)), flat(0, 1, 0);
+    bench.textures[2] = FragmentBench::one(vec4(vec3(-0.3F, -0.2F, 1) * 0.5F + 0.5F, 1));
+    bench.textures[9] = FragmentBench::one(vec4(vec3(0.8F, 0.4F, 1) * 0.5F + 0.5F, 1));
+    bench.material.flags.y = 1U << 2;
+    expect_normals(base_normal, flat);
+    bench.material.flags.y = 1U << 2 | 1U << 9;
+    expect_normals(base_normal, glm::normalize(dvec3(0.4, 1, -0.2)));
+    bench.material.flags.y = 1U << 9;
+    expect_normals(flat, glm::normalize(dvec3(0.4, 1, -0.2)));
+}
+
 TEST(RenderGpuLayers, SpecularTexturesMultiply) {
     const std::array<std::uint8_t, 4> rgba{255, 128, 0, 51};
     scene::SnapshotMaterial textured = with_specular(paint(), {.index_of_refraction = 2.4F, .color = {1, 3, 1}});
@@ -173,13 +242,13 @@ TEST(RenderGpuLayers, SpecularAgreesWithTheReference) {
         inputs[3].emplace_back(number(), number(), number(), i % 4 < 2 ? 0 : number());
         inputs[4].emplace_back(2 * number(), 2 * number(), 2 * number(), 0);
         const auto given = [&](std::size_t input) { return glm::normalize(dvec3(inputs[input].back())); };
-        truth.push_back(reference::reflected(LayeredSurface{.base_color = dvec3(inputs[3].back()),
-                                                            .metallic = inputs[3].back().w,
-                                                            .roughness = inputs[0].back().w,
-                                                            .index_of_refraction = inputs[1].back().w,
-                                                            .specular_weight = inputs[2].back().w,
-                                                            .specular_color = dvec3(inputs[4].back())},
-                                             given(0), given(1), given(2)));
+        truth.push_back(reference::reflected_base(LayeredSurface{.base_color = dvec3(inputs[3].back()),
+                                                                 .metallic = inputs[3].back().w,
+                                                                 .roughness = inputs[0].back().w,
+                                                                 .index_of_refraction = inputs[1].back().w,
+                                                                 .specular_weight = inputs[2].back().w,
+                                                                 .specular_color = dvec3(inputs[4].back())},
+                                                  given(0), given(1), given(2)));
     }
     const std::vector<vec4> device = evaluate("specular", brdf_with("1u") + R"(
 vec4 shade(Pixel pixel) {

@@ -17,10 +17,11 @@
 
 namespace darkroom::render::test {
 
-/// constant_id 0 .. 7 of mesh_fragment.glsl.
+/// constant_id 0 .. 7 of mesh_fragment.glsl, and 13.
 struct Switches {
     std::uint32_t has_textures = 0, has_shadows = 0, has_environment = 0, is_masked = 0;
     std::uint32_t output = 0, debug = 0, is_tone_mapped = 0, is_transparent = 0;
+    std::uint32_t layers = 0;
     friend auto operator<=>(const Switches&, const Switches&) = default;
 };
 
@@ -220,16 +221,17 @@ inline FragmentBench::Targets FragmentBench::draw(const Switches& switches) {
     gpu::Pipeline& pipeline = pipelines_[switches];
     if (pipeline.handle == VK_NULL_HANDLE) {
         pipeline = gpu::test::must(gpu::Pipeline::create(
-            context, {.name = "fragment bench",
-                      .vertex = shader_text("mesh/mesh_varyings_out.glsl") + bench_vertex,
-                      .fragment = shader_text("mesh/mesh_fragment.glsl"),
-                      .sets = {sets.layouts.begin(), sets.layouts.end()},
-                      .push_constant_size = sizeof push,
-                      .specialization = {switches.has_textures, switches.has_shadows, switches.has_environment,
-                                         switches.is_masked, switches.output, switches.debug != 0 ? 1U : 0U,
-                                         switches.is_tone_mapped, switches.is_transparent},
-                      .colors = formats.colors({}, TargetFormats::Layers::Written),
-                      .depth = VK_FORMAT_D32_SFLOAT}));
+            context,
+            {.name = "fragment bench",
+             .vertex = shader_text("mesh/mesh_varyings_out.glsl") + bench_vertex,
+             .fragment = shader_text("mesh/mesh_fragment.glsl"),
+             .sets = {sets.layouts.begin(), sets.layouts.end()},
+             .push_constant_size = sizeof push,
+             .specialization = {switches.has_textures, switches.has_shadows, switches.has_environment,
+                                switches.is_masked, switches.output, switches.debug != 0 ? 1U : 0U,
+                                switches.is_tone_mapped, switches.is_transparent, 0, 0, 0, 0, 0, switches.layers},
+             .colors = formats.colors({}, TargetFormats::Layers::Written),
+             .depth = VK_FORMAT_D32_SFLOAT}));
     }
 
     constexpr VkExtent2D extent{size, size};

@@ -132,6 +132,9 @@ TEST(RenderDrawList, BatchesPartWhereMaterialsHaveOtherLayers) {
         add(snapshot, {0, 0, -5}, material);
     }
     EXPECT_EQ(draw_list(snapshot).opaque.size(), 2U);
+    snapshot.materials[1].surface.clearcoat.weight = 1;
+    snapshot.materials[2].surface.clearcoat.weight = 1;
+    EXPECT_EQ(draw_list(snapshot).opaque.size(), 3U);
 }
 
 TEST(RenderDrawList, TransparentOnesGoFromBackToFront) {

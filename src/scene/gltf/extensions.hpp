@@ -11,6 +11,7 @@ namespace darkroom::scene::gltf {
 
 inline constexpr auto read_extensions = std::to_array<std::string_view>({
     "KHR_lights_punctual",
+    "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_specular",
@@ -32,7 +33,6 @@ inline constexpr auto missing_extensions = std::to_array<MissingExtension>({
     {"KHR_animation_pointer", "only nodes and morph targets are animated"},
     {"KHR_draco_mesh_compression", "meshes are read from their fallbacks"},
     {"KHR_materials_anisotropy", "highlights are round"},
-    {"KHR_materials_clearcoat", "coats are left out"},
     {"KHR_materials_diffuse_transmission", "no light comes through its surfaces"},
     {"KHR_materials_dispersion", "colours are not split"},
     {"KHR_materials_iridescence", "thin films are left out"},

@@ -129,11 +129,26 @@ Result<> read_specular(const MaterialReader& reader, const tinygltf::Value& exte
     return reader.read_into(layer.color_texture, extension, place + "specularColorTexture");
 }
 
+Result<> read_clearcoat(const MaterialReader& reader, const tinygltf::Value& extension, ClearcoatLayer& layer) {
+    layer.weight = factor_of(extension, "clearcoatFactor", 0);
+    layer.roughness = factor_of(extension, "clearcoatRoughnessFactor", 0);
+    const std::string place = "extensions/KHR_materials_clearcoat/";
+    if (extension.Has("clearcoatNormalTexture"))
+        layer.normal_scale = as_float(number_of(extension.Get("clearcoatNormalTexture"), "scale", 1));
+    if (Result<> done = reader.read_into(layer.texture, extension, place + "clearcoatTexture"); !done) return done;
+    if (Result<> done = reader.read_into(layer.roughness_texture, extension, place + "clearcoatRoughnessTexture");
+        !done)
+        return done;
+    return reader.read_into(layer.normal_texture, extension, place + "clearcoatNormalTexture");
+}
+
 Result<> read_layers(const MaterialReader& reader, const tinygltf::ExtensionMap& extensions, ModelMaterial& material) {
     if (const auto found = extensions.find("KHR_materials_ior"); found != extensions.end())
         material.specular.index_of_refraction = index_of_refraction(reader, found->second);
     if (const auto found = extensions.find("KHR_materials_specular"); found != extensions.end())
         if (Result<> done = read_specular(reader, found->second, material.specular); !done) return done;
+    if (const auto found = extensions.find("KHR_materials_clearcoat"); found != extensions.end())
+        if (Result<> done = read_clearcoat(reader, found->second, material.clearcoat); !done) return done;
     return {};
 }
 

@@ -48,7 +48,9 @@ Result<> make_missing_tangents(Document& document, Model& model) {
     for (std::size_t i = 0; i < model.meshes.size(); ++i)
         for (Primitive& primitive : model.meshes[i].primitives) {
             if (primitive.material == no_index || has_tangents(primitive)) continue;
-            const Texture& texture = model.materials[primitive.material].normal_texture;
+            const ModelMaterial& material = model.materials[primitive.material];
+            const Texture& texture =
+                material.normal_texture.is_given() ? material.normal_texture : material.clearcoat.normal_texture;
             if (!texture.is_given()) continue;
             const std::string place = fmt::format("/meshes/{}", i);
             const std::uint64_t taken = document.budget().taken();

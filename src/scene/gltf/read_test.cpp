@@ -296,6 +296,25 @@ TEST_F(SceneGltfRead, IndexOfRefractionAndSpecular) {
     EXPECT_FALSE(model.materials[0].specular.is_given());
 }
 
+TEST_F(SceneGltfRead, Clearcoat) {
+    Model model = read_layers({{"KHR_materials_clearcoat",
+                                {{"clearcoatFactor", 0.75},
+                                 {"clearcoatTexture", {{"index", 0}}},
+                                 {"clearcoatRoughnessFactor", 0.25},
+                                 {"clearcoatRoughnessTexture", {{"index", 0}, {"texCoord", 1}}},
+                                 {"clearcoatNormalTexture", {{"index", 0}, {"scale", 0.5}}}}}});
+    const ClearcoatLayer& layer = model.materials[0].clearcoat;
+    EXPECT_TRUE(layer.is_given());
+    EXPECT_FLOAT_EQ(layer.weight, 0.75F);
+    EXPECT_FLOAT_EQ(layer.roughness, 0.25F);
+    EXPECT_FLOAT_EQ(layer.normal_scale, 0.5F);
+    EXPECT_TRUE(layer.texture.is_given());
+    EXPECT_EQ(layer.roughness_texture.uv_set, 1u);
+    EXPECT_TRUE(layer.normal_texture.is_given());
+    model = read_layers({{"KHR_materials_clearcoat", nlohmann::json::object()}});
+    EXPECT_FALSE(model.materials[0].clearcoat.is_given());
+}
+
 TEST_F(SceneGltfRead, LayersOutOfRangeAreOneLineEach) {
     const auto only_warning = [](const Model& model) {
         std::string of_materials;
@@ -320,6 +339,10 @@ TEST_F(SceneGltfRead, LayersOutOfRangeAreOneLineEach) {
     model = read_layers({{"KHR_materials_specular", {{"specularColorFactor", {1, -2, 1}}}}});
     EXPECT_EQ(only_warning(model), specular + "specularColorFactor: -2, allowed is at least 0");
     EXPECT_EQ(model.materials[0].specular.color, vec3(1, 0, 1));
+    model = read_layers({{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", -1}}}});
+    EXPECT_EQ(only_warning(model),
+              "/materials/0/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor: -1, allowed is 0 to 1");
+    EXPECT_EQ(model.materials[0].clearcoat.roughness, 0);
 }
 
 TEST_F(SceneGltfRead, SixteenBitsStay) {

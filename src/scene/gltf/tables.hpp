@@ -145,9 +145,15 @@ inline constexpr std::array specular_table{number("specularFactor", 0, 1), objec
                                            numbers("specularColorFactor", 3, 0),
                                            object_of("specularColorTexture", texture_info)};
 inline constexpr Definition specular_definition{specular_table};
+inline constexpr std::array clearcoat_table{
+    number("clearcoatFactor", 0, 1), object_of("clearcoatTexture", texture_info),
+    number("clearcoatRoughnessFactor", 0, 1), object_of("clearcoatRoughnessTexture", texture_info),
+    object_of("clearcoatNormalTexture", texture_info)};
+inline constexpr Definition clearcoat_definition{clearcoat_table};
 inline constexpr std::array material_extensions_table{
     object_of("KHR_materials_unlit", empty_definition), object_of("KHR_materials_emissive_strength", emissive_strength),
-    object_of("KHR_materials_ior", ior_definition), object_of("KHR_materials_specular", specular_definition)};
+    object_of("KHR_materials_clearcoat", clearcoat_definition), object_of("KHR_materials_ior", ior_definition),
+    object_of("KHR_materials_specular", specular_definition)};
 inline constexpr Definition material_extensions{material_extensions_table};
 inline constexpr std::array material_table{text("name"),
                                            object_of("pbrMetallicRoughness", metallic_definition),

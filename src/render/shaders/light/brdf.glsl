@@ -9,7 +9,16 @@ const float least_roughness = 0.04;  // a smoother highlight of a light without 
 // that know nothing of it.
 layout(constant_id = 13) const uint layers = 0u;
 const uint Layer_specular = 1u;
+const uint Layer_clearcoat = 2u;
 const bool has_specular_layer = (layers & Layer_specular) != 0u;
+const bool has_clearcoat = (layers & Layer_clearcoat) != 0u;
+
+// What Layer_clearcoat lays over all else.
+struct Clearcoat {
+    float part;  // of the light toward the eye, that the coat reflects
+    float roughness;
+    vec3 normal;
+};
 
 struct Reflectance {
     vec3 diffuse;  // albedo of what light enters the surface
@@ -20,12 +29,13 @@ struct Reflectance {
     vec3 whole_f0;     // f0 where the layer is whole
     vec3 kept_f0;      // what a whole layer keeps from the matte base, head-on
     float layer_part;  // of the matte base, that is under the layer
+    Clearcoat coat;
 };
 
 Reflectance reflectance(vec3 base_color, float metallic, float roughness) {
     vec3 f0 = mix(vec3(dielectric_f0), base_color, metallic);
-    return Reflectance(base_color * (1.0 - metallic), f0, clamp(roughness, least_roughness, 1.0), 1.0, f0, f0,
-                       1.0);
+    return Reflectance(base_color * (1.0 - metallic), f0, clamp(roughness, least_roughness, 1.0), 1.0, f0, f0, 1.0,
+                       Clearcoat(0.0, 1.0, vec3(0.0)));
 }
 
 // Khronos Group, KHR_materials_specular, 2021, with the F0 of KHR_materials_ior: `layer_f0` is that of the dielectric, times
@@ -75,6 +85,19 @@ vec3 layer_fresnel(vec3 f0, float f90, float v_dot_h) {
     return f0 + (f90 - f0) * (square * square * c);
 }
 
+// Khronos Group, KHR_materials_clearcoat, 2021: Fresnel of the coat's own normal and the direction to the eye, of index
+// 1.5, divides the light between the coat and what is under it.
+Clearcoat clearcoat(float weight, float roughness, vec3 normal, vec3 v) {
+    float part = weight * fresnel_schlick(vec3(dielectric_f0), max(dot(normal, v), 0.0)).r;
+    return Clearcoat(part, clamp(roughness, least_roughness, 1.0), normal);
+}
+
+// Whether light from there meets the surface or its coat.
+bool is_toward(Reflectance surface, vec3 n, vec3 l) {
+    if (has_clearcoat) return max(dot(n, l), dot(surface.coat.normal, l)) > 0.0;
+    return dot(n, l) > 0.0;
+}
+
 // What a matte base gives back under a layer that reflects more the more grazing the light goes in or out, so that no more
 // light leaves than comes: Shirley, Smits, Hu and Lafortune, "A Practitioners' Assessment of Light Reflection Models",
 // 1997.
@@ -88,6 +111,14 @@ vec3 coupled_diffuse(Reflectance surface, float n_dot_v, float n_dot_l) {
     return surface.diffuse * (1.0 - surface.f0) * (1.05 / pi * enters.x * enters.y);
 }
 
+// A coat's highlight, before its part.
+float coat_highlight(Clearcoat coat, vec3 v, vec3 l, vec3 h) {
+    float n_dot_l = max(dot(coat.normal, l), 0.0);
+    float alpha = coat.roughness * coat.roughness;
+    return ggx_distribution(coat.normal, h, alpha) *
+           smith_visibility(max(dot(coat.normal, v), 0.0), n_dot_l, alpha) * n_dot_l;
+}
+
 // What leaves toward v of light of unit radiance from l: the BRDF times n.l. All directions are normalised and point
 // away from the surface.
 vec3 reflected(Reflectance surface, vec3 n, vec3 v, vec3 l) {
@@ -99,7 +130,9 @@ vec3 reflected(Reflectance surface, vec3 n, vec3 v, vec3 l) {
                                       : fresnel_schlick(surface.f0, dot(v, h));
     float alpha = surface.roughness * surface.roughness;
     float specular = ggx_distribution(n, h, alpha) * smith_visibility(n_dot_v, n_dot_l, alpha);
-    return (coupled_diffuse(surface, n_dot_v, n_dot_l) + fresnel * specular) * n_dot_l;
+    vec3 leaves = (coupled_diffuse(surface, n_dot_v, n_dot_l) + fresnel * specular) * n_dot_l;
+    if (has_clearcoat) leaves = mix(leaves, vec3(coat_highlight(surface.coat, v, l, h)), surface.coat.part);
+    return leaves;
 }
 
 // What comes back of light that is lost between the microfacets of a whole layer, for each part that is not lost.

@@ -37,7 +37,7 @@ vec3 reflected_lights(Reflectance surface, vec3 position, vec3 n, vec3 surface_n
     for (uint i = 0u; i < frame.light_counts.x; ++i) {
         vec4 direction = lights.directional_direction[i];
         float visibility = 1.0;
-        if (shadows_are_on && direction.w >= 0.0 && dot(n, direction.xyz) > 0.0) {
+        if (shadows_are_on && direction.w >= 0.0 && is_toward(surface, n, direction.xyz)) {
             visibility = shadow_visibility(uint(direction.w), position, surface_normal, view_distance);
         }
         sum += reflected(surface, n, v, direction.xyz) * lights.directional_color[i].rgb * visibility;
@@ -49,7 +49,7 @@ vec3 reflected_lights(Reflectance surface, vec3 position, vec3 n, vec3 surface_n
         if (attenuation > 0.0) {
             vec3 l = to_light * inversesqrt(max(squared_distance, 1e-12));
             if (lamps_cast_shadows) {
-                attenuation *= lamp_shadow(lights.point_color[i].w, 6.0, dot(n, l) > 0.0, position, surface_normal, l);
+                attenuation *= lamp_shadow(lights.point_color[i].w, 6.0, is_toward(surface, n, l), position, surface_normal, l);
             }
             sum += reflected(surface, n, v, l) * lights.point_color[i].rgb * attenuation;
         }
@@ -64,7 +64,7 @@ vec3 reflected_lights(Reflectance surface, vec3 position, vec3 n, vec3 surface_n
                             cone_attenuation(dot(axis.xyz, -l), axis.w, color.w);
         if (lamps_cast_shadows) {
             vec2 tiles = lights.spot_tiles[i].xy;
-            bool is_seen = attenuation > 0.0 && dot(n, l) > 0.0;
+            bool is_seen = attenuation > 0.0 && is_toward(surface, n, l);
             attenuation *= lamp_shadow(tiles.x, tiles.y, is_seen, position, surface_normal, l);
         }
         if (attenuation > 0.0) sum += reflected(surface, n, v, l) * color.rgb * attenuation;

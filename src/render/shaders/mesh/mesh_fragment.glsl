@@ -16,6 +16,7 @@ layout(constant_id = 7) const bool is_transparent = false;  // alpha is the mate
 #include "light/shadow.glsl"
 #include "light/lights.glsl"
 #include "mesh/surface.glsl"
+#include "mesh/layers.glsl"
 #include "output.glsl"
 
 layout(location = 0) out vec4 out_color;
@@ -30,34 +31,38 @@ vec3 toward_camera() {
     return normalize(frame.camera_position.xyz - world_position);
 }
 
-// Light from everywhere. The hemisphere has no mirror images, so base colour stands for all that leaves, of metals too.
-vec3 surroundings(Surface surface, Reflectance material, vec3 v) {
-    if (!has_environment) {
-        return hemisphere(surface.normal, frame.ambient_sky.rgb, frame.ambient_ground.rgb) * surface.base_color;
-    }
-    float n_dot_v = clamp(dot(surface.normal, v), 0.0, 1.0);
-    return reflected_surroundings(material, environment_irradiance(surface.normal),
-                                  environment_reflection(reflect(-v, surface.normal), material.roughness),
-                                  environment_brdf(n_dot_v, material.roughness));
+// All of the light from everywhere that meets a coat, what bounces between its microfacets too.
+vec3 mirrored_by_coat(Clearcoat coat, vec3 v) {
+    if (!has_environment) return hemisphere(coat.normal, frame.ambient_sky.rgb, frame.ambient_ground.rgb);
+    vec2 scale_and_bias = environment_brdf(clamp(dot(coat.normal, v), 0.0, 1.0), coat.roughness);
+    return mix(environment_irradiance(coat.normal),
+               environment_reflection(reflect(-v, coat.normal), coat.roughness), scale_and_bias.x + scale_and_bias.y);
 }
 
-Reflectance material_at_fragment(Surface surface) {
-    if (!has_specular_layer) return reflectance(surface.base_color, surface.metallic, surface.roughness);
-    vec4 specular = materials[material_index].specular;
-    if (has_textures) {
-        specular.rgb *= texel_of(specular_color_texture, Texture_specular_color).rgb;
-        specular.a *= texel_of(specular_texture, Texture_specular).a;
+// Light from everywhere. The hemisphere has no mirror images, so base colour stands for all that leaves, of metals too.
+vec3 surroundings(Surface surface, Reflectance material, vec3 v) {
+    vec3 leaves = vec3(0.0);
+    if (has_environment) {
+        float n_dot_v = clamp(dot(surface.normal, v), 0.0, 1.0);
+        leaves = reflected_surroundings(material, environment_irradiance(surface.normal),
+                                        environment_reflection(reflect(-v, surface.normal), material.roughness),
+                                        environment_brdf(n_dot_v, material.roughness));
+    } else {
+        leaves = hemisphere(surface.normal, frame.ambient_sky.rgb, frame.ambient_ground.rgb) * surface.base_color;
     }
-    return reflectance_with_specular(surface.base_color, surface.metallic, surface.roughness, specular.rgb, specular.a);
+    if (has_clearcoat) leaves = mix(leaves, mirrored_by_coat(material.coat, v), material.coat.part);
+    return leaves;
 }
 
 vec3 leaving_light(Surface surface) {
     if (has_flag(Material_unlit)) return surface.base_color;
     vec3 v = toward_camera();
-    Reflectance material = material_at_fragment(surface);
+    Reflectance material = material_at_fragment(surface, v);
+    vec3 emissive = surface.emissive;
+    if (has_clearcoat) emissive *= 1.0 - material.coat.part;
     return reflected_lights(material, world_position, surface.normal, surface.geometry_normal, v, view_distance(),
                             has_shadows) +
-           surroundings(surface, material, v) * surface.occlusion + surface.emissive;
+           surroundings(surface, material, v) * surface.occlusion + emissive;
 }
 
 // Display values. Depth is logarithmic, so that it shows something at every scale: white at the near distance, black at

@@ -7,6 +7,9 @@ layout(set = 1, binding = 3) uniform sampler2D occlusion_texture;  // red
 layout(set = 1, binding = 4) uniform sampler2D emissive_texture;   // sRGB
 layout(set = 1, binding = 5) uniform sampler2D specular_texture;        // alpha
 layout(set = 1, binding = 6) uniform sampler2D specular_color_texture;  // sRGB
+layout(set = 1, binding = 7) uniform sampler2D clearcoat_texture;            // red
+layout(set = 1, binding = 8) uniform sampler2D clearcoat_roughness_texture;  // green
+layout(set = 1, binding = 9) uniform sampler2D clearcoat_normal_texture;
 const uint Texture_base_color = 0u;
 const uint Texture_metallic_roughness = 1u;
 const uint Texture_normal = 2u;
@@ -14,6 +17,9 @@ const uint Texture_occlusion = 3u;
 const uint Texture_emissive = 4u;
 const uint Texture_specular = 5u;
 const uint Texture_specular_color = 6u;
+const uint Texture_clearcoat = 7u;
+const uint Texture_clearcoat_roughness = 8u;
+const uint Texture_clearcoat_normal = 9u;
 
 struct Surface {
     vec3 base_color;
@@ -24,6 +30,7 @@ struct Surface {
     vec3 emissive;
     vec3 normal;           // shaded, toward the camera's side
     vec3 geometry_normal;  // interpolated, toward the camera's side
+    float facing;          // -1: the back is seen of what has two sides
 };
 
 // Coordinates of one of the material's textures, and how they change over the screen. Gradients are those of what is
@@ -63,11 +70,11 @@ vec4 surface_base_color() {
 // From the texture's tangent space, whose y points against the second texture coordinate (glTF 2.0, 3.7.2.1), to the
 // world. Where vertices have no tangents, the gradients of the coordinates over the screen give them: Schueler, "Normal
 // Mapping without Precomputed Tangents", 2013. Derivatives are taken before any branch, as GLSL demands.
-vec3 mapped_normal(vec3 n) {
-    Coordinates coordinates = texture_coordinates(Texture_normal);
-    vec3 texel = textureGrad(normal_texture, coordinates.place, coordinates.x_gradient, coordinates.y_gradient).xyz;
+vec3 mapped_normal(vec3 n, sampler2D normals, uint texture_number, float strength) {
+    Coordinates coordinates = texture_coordinates(texture_number);
+    vec3 texel = textureGrad(normals, coordinates.place, coordinates.x_gradient, coordinates.y_gradient).xyz;
     texel = texel * 2.0 - 1.0;
-    texel.xy *= materials[material_index].factors.z;
+    texel.xy *= strength;
     vec3 position_x = dFdx(world_position);
     vec3 position_y = dFdy(world_position);
     vec2 uv_x = coordinates.x_gradient;
@@ -90,7 +97,7 @@ vec3 mapped_normal(vec3 n) {
         bitangent = -v_gradient * scale;
     }
     vec3 mapped = tangent * texel.x + bitangent * texel.y + n * texel.z;
-    bool is_given = (materials[material_index].flags.y & (1u << Texture_normal)) != 0u && dot(mapped, mapped) > 1e-12;
+    bool is_given = (materials[material_index].flags.y & (1u << texture_number)) != 0u && dot(mapped, mapped) > 1e-12;
     return is_given ? normalize(mapped) : n;
 }
 
@@ -115,11 +122,12 @@ Surface surface_at_fragment() {
         float occlusion = texel_of(occlusion_texture, Texture_occlusion).r;
         surface.occlusion = 1.0 + factors.w * (occlusion - 1.0);
         surface.emissive *= texel_of(emissive_texture, Texture_emissive).rgb;
-        surface.normal = mapped_normal(n);
+        surface.normal = mapped_normal(n, normal_texture, Texture_normal, factors.z);
     }
     // The back of a thin sheet is the same sheet seen from behind, bumps and all.
     float facing = has_flag(Material_double_sided) && !gl_FrontFacing ? -1.0 : 1.0;
     surface.normal *= facing;
     surface.geometry_normal = n * facing;
+    surface.facing = facing;
     return surface;
 }
