@@ -132,6 +132,7 @@ blocks::Material material_block(const scene::SnapshotMaterial& material) {
     block.specular =
         vec4(surface.specular.color * dielectric_f0(surface.specular.index_of_refraction), surface.specular.weight);
     block.clearcoat = vec4(surface.clearcoat.weight, surface.clearcoat.roughness, surface.clearcoat.normal_scale, 0);
+    block.sheen = vec4(surface.sheen.color, surface.sheen.roughness);
     block.flags.x = (surface.is_unlit ? unlit_bit : 0) | (surface.blend == scene::SurfaceBlend::Mask ? masked_bit : 0) |
                     (surface.is_double_sided ? double_sided_bit : 0) |
                     (material.writes == scene::Writes::Alpha ? alpha_only_bit : 0);

@@ -67,6 +67,15 @@ struct ClearcoatLayer {
     [[nodiscard]] bool is_given() const { return weight > 0; }
 };
 
+/// Fibres that stand off the surface, as of velvet: KHR_materials_sheen.
+struct SheenLayer {
+    vec3 color{0};
+    Texture color_texture;
+    float roughness = 0;
+    Texture roughness_texture;  ///< alpha
+    [[nodiscard]] bool is_given() const { return color != vec3(0); }
+};
+
 /// Metallic-roughness. Textures multiply factors.
 struct ModelMaterial {
     std::string name;
@@ -82,6 +91,7 @@ struct ModelMaterial {
     Texture emissive_texture;
     SpecularLayer specular;
     ClearcoatLayer clearcoat;
+    SheenLayer sheen;
     SurfaceBlend blend = SurfaceBlend::Opaque;  ///< Opaque, Mask or Alpha
     float alpha_cutoff = 0.5F;
     bool is_double_sided = false;
@@ -93,7 +103,7 @@ struct TextureUse {
     const Texture* texture = nullptr;
     bool is_srgb = false, is_normal = false;
 };
-inline constexpr std::size_t material_textures = 10;
+inline constexpr std::size_t material_textures = 12;
 /// In the order in which shaders number them: base colour first.
 [[nodiscard]] inline std::array<TextureUse, material_textures> textures_of(const ModelMaterial& material) {
     return {TextureUse{&material.base_color_texture, true},
@@ -105,7 +115,9 @@ inline constexpr std::size_t material_textures = 10;
             {&material.specular.color_texture, true},
             {&material.clearcoat.texture},
             {&material.clearcoat.roughness_texture},
-            {&material.clearcoat.normal_texture, false, true}};
+            {&material.clearcoat.normal_texture, false, true},
+            {&material.sheen.color_texture, true},
+            {&material.sheen.roughness_texture}};
 }
 
 /// One vertex as the GPU gets it.

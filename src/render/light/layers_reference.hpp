@@ -15,6 +15,8 @@ struct LayeredSurface {
     double index_of_refraction = 1.5, specular_weight = 1;
     dvec3 specular_color{1};
     double coat_weight = 0, coat_roughness = 0;
+    dvec3 sheen_color{0};
+    double sheen_roughness = 0;
 };
 
 /// KHR_materials_ior, "Implementation", and KHR_materials_specular, fresnel_mix(): what a whole layer reflects head-on.
@@ -46,6 +48,46 @@ inline double coat_part(const LayeredSurface& surface, const dvec3& coat_normal,
     return surface.coat_weight * fresnel_schlick(dvec3(0.04), std::abs(glm::dot(coat_normal, v))).x;
 }
 
+/// KHR_materials_sheen, "Sheen visibility": l() and lambda_sheen().
+inline double sheen_lambda(double cosine, double alpha) {
+    const auto l = [&](double x) {
+        const double t = (1 - alpha) * (1 - alpha);
+        const double a = std::lerp(21.5473, 25.3245, t), b = std::lerp(3.82987, 3.32435, t);
+        const double c = std::lerp(0.19823, 0.16801, t), d = std::lerp(-1.97760, -1.27393, t);
+        const double e = std::lerp(-4.32054, -4.85967, t);
+        return a / (1 + b * std::pow(x, c)) + d * x + e;
+    };
+    return std::abs(cosine) < 0.5 ? std::exp(l(cosine)) : std::exp(2 * l(0.5) - l(1 - cosine));
+}
+
+/// KHR_materials_sheen: the distribution of Charlie, times visibility, times n.l.
+inline double sheen_highlight(double roughness, const dvec3& n, const dvec3& v, const dvec3& l) {
+    const double alpha = roughness * roughness, n_dot_h = glm::dot(n, glm::normalize(v + l));
+    const double n_dot_v = glm::dot(n, v), n_dot_l = glm::dot(n, l);
+    if (n_dot_v <= 0 || n_dot_l <= 0) return 0;
+    const double distribution = (2 + 1 / alpha) * std::pow(1 - n_dot_h * n_dot_h, 0.5 / alpha) / (2 * std::numbers::pi);
+    const double visibility =
+        1 / ((1 + sheen_lambda(n_dot_v, alpha) + sheen_lambda(n_dot_l, alpha)) * 4 * n_dot_v * n_dot_l);
+    return distribution * std::clamp(visibility, 0.0, 1.0) * n_dot_l;
+}
+
+/// E() of KHR_materials_sheen as brdf.glsl approximates it.
+inline double sheen_albedo(double cosine, double roughness) {
+    const auto row = [&](double a, double b, double c, double d) {
+        return a / (roughness * roughness) + b / roughness + c + d * roughness;
+    };
+    const double exponent = row(-0.0085, 0.2377, -1.0925, 0.6619) + cosine * row(0.0237, -1.4463, 0.781, -0.9339) +
+                            cosine * cosine * row(0.0458, -0.9256, 1.5842, -0.7346);
+    return std::min(std::exp(exponent), 1.0);
+}
+
+inline double roughness_of_sheen(const LayeredSurface& surface) { return std::max(surface.sheen_roughness, 0.1); }
+
+/// KHR_materials_sheen, "Albedo scaling", toward v and, where light comes from l alone, the same for it.
+inline dvec3 under_sheen(const LayeredSurface& surface, const dvec3& base, double albedo) {
+    return base * (1 - largest(surface.sheen_color) * albedo);
+}
+
 /// KHR_materials_clearcoat, "Layering": mix(base, layer, weight * fr), the layer specular_brdf() of the coat's normal.
 inline dvec3 reflected(const LayeredSurface& surface, const dvec3& n, const dvec3& coat_normal, const dvec3& v,
                        const dvec3& l) {
@@ -53,7 +95,12 @@ inline dvec3 reflected(const LayeredSurface& surface, const dvec3& n, const dvec
     const double alpha = std::pow(std::clamp(surface.coat_roughness, 0.04, 1.0), 2);
     const double layer = ggx_distribution(glm::dot(coat_normal, glm::normalize(v + l)), alpha) *
                          smith_visibility(glm::dot(coat_normal, v), n_dot_l, alpha) * std::max(n_dot_l, 0.0);
-    return glm::mix(reflected_base(surface, n, v, l), dvec3(layer), coat_part(surface, coat_normal, v));
+    const double roughness = roughness_of_sheen(surface), n_dot_v = std::max(glm::dot(n, v), 0.0);
+    const double albedo =
+        std::max(sheen_albedo(n_dot_v, roughness), sheen_albedo(std::max(glm::dot(n, l), 0.0), roughness));
+    const dvec3 base = under_sheen(surface, reflected_base(surface, n, v, l), albedo) +
+                       surface.sheen_color * sheen_highlight(roughness, n, v, l);
+    return glm::mix(base, dvec3(layer), coat_part(surface, coat_normal, v));
 }
 
 /// Of a dielectric or a metal in surroundings of one radiance: the same mixture.
@@ -67,10 +114,18 @@ inline dvec3 reflected_white_base(const LayeredSurface& surface, const dvec2& sc
     return surface.base_color * (1 - surface.specular_weight) + whole * surface.specular_weight;
 }
 
-/// The same toward v under the coat, which gives back all that it takes.
+/// What leaves toward v of light of unit radiance from everywhere under the fibres, with what they send.
+inline dvec3 with_white_sheen(const LayeredSurface& surface, const dvec3& base, double n_dot_v) {
+    const double albedo = sheen_albedo(n_dot_v, roughness_of_sheen(surface));
+    return under_sheen(surface, base, albedo) + surface.sheen_color * albedo;
+}
+
+/// The same toward v under the fibres and the coat, which gives back all that it takes.
 inline dvec3 reflected_white(const LayeredSurface& surface, const dvec3& n, const dvec3& v,
                              const dvec2& scale_and_bias) {
-    return glm::mix(reflected_white_base(surface, scale_and_bias), dvec3(1), coat_part(surface, n, v));
+    const dvec3 base =
+        with_white_sheen(surface, reflected_white_base(surface, scale_and_bias), std::max(glm::dot(n, v), 0.0));
+    return glm::mix(base, dvec3(1), coat_part(surface, n, v));
 }
 
 }  // namespace darkroom::render::reference

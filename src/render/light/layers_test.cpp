@@ -21,7 +21,9 @@ LayeredSurface reference_of(const scene::ModelMaterial& material) {
             .specular_weight = material.specular.weight,
             .specular_color = dvec3(material.specular.color),
             .coat_weight = material.clearcoat.weight,
-            .coat_roughness = material.clearcoat.roughness};
+            .coat_roughness = material.clearcoat.roughness,
+            .sheen_color = dvec3(material.sheen.color),
+            .sheen_roughness = material.sheen.roughness};
 }
 
 /// brdf.glsl as pipelines of materials with these layers have it.
@@ -43,9 +45,10 @@ void expect_lit(const scene::SnapshotMaterial& material) {
     for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit& hit) {
         // The hemisphere has no mirror images: base colour stands for all that leaves, and the coat is white.
         const double part = reference::coat_part(surface, hit.normal, hit.to_camera);
-        dvec3 truth = glm::mix(surface.base_color, dvec3(1), part) *
-                          reference::hemisphere(hit.normal, {0.12, 0.13, 0.18}, {0.06, 0.05, 0.04}) +
-                      dvec3(material.surface.emissive) * (1 - part);
+        const dvec3 base = reference::with_white_sheen(surface, surface.base_color, hit.facing);
+        dvec3 truth =
+            glm::mix(base, dvec3(1), part) * reference::hemisphere(hit.normal, {0.12, 0.13, 0.18}, {0.06, 0.05, 0.04}) +
+            dvec3(material.surface.emissive) * (1 - part);
         for (const scene::LightState& light : snapshot.lights) {
             const Arriving arrives = arriving_light(light, hit.position);
             truth +=
@@ -171,6 +174,59 @@ TEST(RenderGpuLayers, ClearcoatTakesItsPartOfAllThatIsUnderIt) {
     }
     // All layers at once.
     expect_lit(with_clearcoat(with_specular(glowing, {.index_of_refraction = 1.8F, .weight = 0.5F}), 0.8F, 0.4F));
+}
+
+scene::SnapshotMaterial with_sheen(scene::SnapshotMaterial material, vec3 color, float roughness) {
+    material.surface.sheen.color = color;
+    material.surface.sheen.roughness = roughness;
+    return material;
+}
+
+TEST(RenderGpuLayers, SheenIsWhatTheReferenceHas) {
+    for (const float roughness : {0.0F, 0.3F, 1.0F}) {
+        const scene::SnapshotMaterial cloth = with_sheen(paint(), {0.8F, 0.3F, 0}, roughness);
+        expect_lit(cloth);
+        expect_lit(with_clearcoat(cloth, 0.7F, 0.4F));
+        expect_in_white_sky(cloth);
+    }
+    // White fibres on a white surface, in a white sky: no light is lost, and none made.
+    const LayeredSurface white{.base_color = dvec3(1), .sheen_color = dvec3(1), .sheen_roughness = 0.4};
+    EXPECT_NEAR(reference::with_white_sheen(white, dvec3(1), 0.3).x, 1, 1e-12);
+}
+
+// By the midpoint rule over directions of light.
+TEST(RenderLayers, SheenAlbedoIsTheIntegralOfTheSheen) {
+    constexpr int steps = 200;
+    double squares = 0, count = 0;
+    for (const double roughness : {0.1, 0.2, 0.35, 0.5, 0.75, 1.0})
+        for (const double cosine : {0.05, 0.2, 0.4, 0.6, 0.8, 1.0}) {
+            const dvec3 v(std::sqrt(1 - cosine * cosine), 0, cosine);
+            double sum = 0;
+            for (int i = 0; i < steps; ++i)
+                for (int j = 0; j < steps; ++j) {
+                    const double height = (i + 0.5) / steps, angle = (j + 0.5) / steps * std::numbers::pi;
+                    const double across = std::sqrt(1 - height * height);
+                    sum += reference::sheen_highlight(roughness, {0, 0, 1}, v,
+                                                      {across * std::cos(angle), across * std::sin(angle), height});
+                }
+            const double truth = std::min(sum * 2 * std::numbers::pi / (steps * steps), 1.0);
+            const double error = reference::sheen_albedo(cosine, roughness) - truth;
+            EXPECT_NEAR(error, 0, 0.042) << roughness << ", " << cosine;
+            squares += error * error, ++count;
+        }
+    EXPECT_LT(std::sqrt(squares / count), 0.0125);
+}
+
+TEST(RenderGpuLayers, SheenTexturesMultiply) {
+    const std::array<std::uint8_t, 4> rgba{255, 128, 0, 51};
+    scene::SnapshotMaterial textured = with_sheen(paint(), {1, 0.5F, 1}, 0.5F);
+    textured.surface.sheen.color_texture.image = 0;
+    const auto green = static_cast<float>(srgb_decoded(128 / 255.0));
+    expect_same(textured.surface, rgba, with_sheen(paint(), {1, 0.5F * green, 0}, 0.5F));
+    textured.surface.sheen.color_texture.image = scene::no_index;
+    textured.surface.sheen.roughness_texture.image = 0;
+    textured.surface.sheen.roughness = 1;
+    expect_same(textured.surface, rgba, with_sheen(paint(), {1, 0.5F, 1}, 0.2F));
 }
 
 TEST(RenderGpuLayers, ClearcoatTexturesMultiply) {

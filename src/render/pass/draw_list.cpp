@@ -114,9 +114,10 @@ void sort_near_to_far(std::vector<Entry>& entries) {
 }  // namespace
 
 std::uint32_t shader_layers(const scene::ModelMaterial& surface) {
-    constexpr std::uint32_t specular_bit = 1, clearcoat_bit = 2;
+    constexpr std::uint32_t specular_bit = 1, clearcoat_bit = 2, sheen_bit = 4;
     if (surface.is_unlit) return 0;
-    return (surface.specular.is_given() ? specular_bit : 0) | (surface.clearcoat.is_given() ? clearcoat_bit : 0);
+    return (surface.specular.is_given() ? specular_bit : 0) | (surface.clearcoat.is_given() ? clearcoat_bit : 0) |
+           (surface.sheen.is_given() ? sheen_bit : 0);
 }
 
 // Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes from the World-View-Projection Matrix", 2001.

@@ -135,6 +135,10 @@ TEST(RenderDrawList, BatchesPartWhereMaterialsHaveOtherLayers) {
     snapshot.materials[1].surface.clearcoat.weight = 1;
     snapshot.materials[2].surface.clearcoat.weight = 1;
     EXPECT_EQ(draw_list(snapshot).opaque.size(), 3U);
+    snapshot.materials[3].surface.clearcoat.weight = 1;
+    EXPECT_EQ(draw_list(snapshot).opaque.size(), 2U);
+    snapshot.materials[3].surface.sheen.color.y = 0.1F;
+    EXPECT_EQ(draw_list(snapshot).opaque.size(), 3U);
 }
 
 TEST(RenderDrawList, TransparentOnesGoFromBackToFront) {

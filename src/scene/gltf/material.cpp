@@ -142,6 +142,16 @@ Result<> read_clearcoat(const MaterialReader& reader, const tinygltf::Value& ext
     return reader.read_into(layer.normal_texture, extension, place + "clearcoatNormalTexture");
 }
 
+Result<> read_sheen(const MaterialReader& reader, const tinygltf::Value& extension, SheenLayer& layer) {
+    for (int c = 0; c < 3; ++c)
+        layer.color[c] = as_float(std::clamp(element_of(extension, "sheenColorFactor", c, 0), 0.0, 1.0));
+    layer.roughness = factor_of(extension, "sheenRoughnessFactor", 0);
+    const std::string place = "extensions/KHR_materials_sheen/";
+    if (Result<> done = reader.read_into(layer.color_texture, extension, place + "sheenColorTexture"); !done)
+        return done;
+    return reader.read_into(layer.roughness_texture, extension, place + "sheenRoughnessTexture");
+}
+
 Result<> read_layers(const MaterialReader& reader, const tinygltf::ExtensionMap& extensions, ModelMaterial& material) {
     if (const auto found = extensions.find("KHR_materials_ior"); found != extensions.end())
         material.specular.index_of_refraction = index_of_refraction(reader, found->second);
@@ -149,6 +159,8 @@ Result<> read_layers(const MaterialReader& reader, const tinygltf::ExtensionMap&
         if (Result<> done = read_specular(reader, found->second, material.specular); !done) return done;
     if (const auto found = extensions.find("KHR_materials_clearcoat"); found != extensions.end())
         if (Result<> done = read_clearcoat(reader, found->second, material.clearcoat); !done) return done;
+    if (const auto found = extensions.find("KHR_materials_sheen"); found != extensions.end())
+        if (Result<> done = read_sheen(reader, found->second, material.sheen); !done) return done;
     return {};
 }
 

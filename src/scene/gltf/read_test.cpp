@@ -315,6 +315,22 @@ TEST_F(SceneGltfRead, Clearcoat) {
     EXPECT_FALSE(model.materials[0].clearcoat.is_given());
 }
 
+TEST_F(SceneGltfRead, Sheen) {
+    Model model = read_layers({{"KHR_materials_sheen",
+                                {{"sheenColorFactor", {0.25, 0.5, 1}},
+                                 {"sheenColorTexture", {{"index", 0}}},
+                                 {"sheenRoughnessFactor", 0.75},
+                                 {"sheenRoughnessTexture", {{"index", 0}, {"texCoord", 1}}}}}});
+    const SheenLayer& layer = model.materials[0].sheen;
+    EXPECT_TRUE(layer.is_given());
+    EXPECT_EQ(layer.color, vec3(0.25F, 0.5F, 1));
+    EXPECT_FLOAT_EQ(layer.roughness, 0.75F);
+    EXPECT_TRUE(layer.color_texture.is_given());
+    EXPECT_EQ(layer.roughness_texture.uv_set, 1u);
+    model = read_layers({{"KHR_materials_sheen", {{"sheenRoughnessFactor", 1}}}});
+    EXPECT_FALSE(model.materials[0].sheen.is_given());
+}
+
 TEST_F(SceneGltfRead, LayersOutOfRangeAreOneLineEach) {
     const auto only_warning = [](const Model& model) {
         std::string of_materials;

@@ -150,10 +150,16 @@ inline constexpr std::array clearcoat_table{
     number("clearcoatRoughnessFactor", 0, 1), object_of("clearcoatRoughnessTexture", texture_info),
     object_of("clearcoatNormalTexture", texture_info)};
 inline constexpr Definition clearcoat_definition{clearcoat_table};
-inline constexpr std::array material_extensions_table{
-    object_of("KHR_materials_unlit", empty_definition), object_of("KHR_materials_emissive_strength", emissive_strength),
-    object_of("KHR_materials_clearcoat", clearcoat_definition), object_of("KHR_materials_ior", ior_definition),
-    object_of("KHR_materials_specular", specular_definition)};
+inline constexpr std::array sheen_table{
+    numbers("sheenColorFactor", 3, 0, 1), object_of("sheenColorTexture", texture_info),
+    number("sheenRoughnessFactor", 0, 1), object_of("sheenRoughnessTexture", texture_info)};
+inline constexpr Definition sheen_definition{sheen_table};
+inline constexpr std::array material_extensions_table{object_of("KHR_materials_unlit", empty_definition),
+                                                      object_of("KHR_materials_emissive_strength", emissive_strength),
+                                                      object_of("KHR_materials_clearcoat", clearcoat_definition),
+                                                      object_of("KHR_materials_ior", ior_definition),
+                                                      object_of("KHR_materials_sheen", sheen_definition),
+                                                      object_of("KHR_materials_specular", specular_definition)};
 inline constexpr Definition material_extensions{material_extensions_table};
 inline constexpr std::array material_table{text("name"),
                                            object_of("pbrMetallicRoughness", metallic_definition),

@@ -9,6 +9,15 @@ Reflectance specular_at_fragment(Surface surface) {
     return reflectance_with_specular(surface.base_color, surface.metallic, surface.roughness, specular.rgb, specular.a);
 }
 
+Sheen sheen_at_fragment(Surface surface, vec3 v) {
+    vec4 given = materials[material_index].sheen;
+    if (has_textures) {
+        given.rgb *= texel_of(sheen_color_texture, Texture_sheen_color).rgb;
+        given.a *= texel_of(sheen_roughness_texture, Texture_sheen_roughness).a;
+    }
+    return sheen(given.rgb, given.a, max(dot(surface.normal, v), 0.0));
+}
+
 // A coat has bumps of its own, or none.
 Clearcoat clearcoat_at_fragment(Surface surface, vec3 v) {
     vec4 given = materials[material_index].clearcoat;
@@ -26,6 +35,7 @@ Reflectance material_at_fragment(Surface surface, vec3 v) {
     Reflectance material = has_specular_layer
                                ? specular_at_fragment(surface)
                                : reflectance(surface.base_color, surface.metallic, surface.roughness);
+    if (has_sheen) material.sheen = sheen_at_fragment(surface, v);
     if (has_clearcoat) material.coat = clearcoat_at_fragment(surface, v);
     return material;
 }

@@ -50,6 +50,12 @@ vec3 surroundings(Surface surface, Reflectance material, vec3 v) {
     } else {
         leaves = hemisphere(surface.normal, frame.ambient_sky.rgb, frame.ambient_ground.rgb) * surface.base_color;
     }
+    if (has_sheen) {
+        vec3 arrives = has_environment ? environment_irradiance(surface.normal)
+                                       : hemisphere(surface.normal, frame.ambient_sky.rgb, frame.ambient_ground.rgb);
+        leaves = leaves * kept_by_sheen(material.sheen, material.sheen.albedo) +
+                 material.sheen.color * material.sheen.albedo * arrives;
+    }
     if (has_clearcoat) leaves = mix(leaves, mirrored_by_coat(material.coat, v), material.coat.part);
     return leaves;
 }

@@ -10,6 +10,8 @@ layout(set = 1, binding = 6) uniform sampler2D specular_color_texture;  // sRGB
 layout(set = 1, binding = 7) uniform sampler2D clearcoat_texture;            // red
 layout(set = 1, binding = 8) uniform sampler2D clearcoat_roughness_texture;  // green
 layout(set = 1, binding = 9) uniform sampler2D clearcoat_normal_texture;
+layout(set = 1, binding = 10) uniform sampler2D sheen_color_texture;      // sRGB
+layout(set = 1, binding = 11) uniform sampler2D sheen_roughness_texture;  // alpha
 const uint Texture_base_color = 0u;
 const uint Texture_metallic_roughness = 1u;
 const uint Texture_normal = 2u;
@@ -20,6 +22,8 @@ const uint Texture_specular_color = 6u;
 const uint Texture_clearcoat = 7u;
 const uint Texture_clearcoat_roughness = 8u;
 const uint Texture_clearcoat_normal = 9u;
+const uint Texture_sheen_color = 10u;
+const uint Texture_sheen_roughness = 11u;
 
 struct Surface {
     vec3 base_color;
