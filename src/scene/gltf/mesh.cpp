@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "scene/gltf/convert.hpp"
-#include "scene/gltf/geometry.hpp"
+#include "scene/mesh/geometry.hpp"
 
 namespace darkroom::scene::gltf {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "image/codec/decoder.hpp"
 #include "scene/gltf/convert.hpp"
-#include "scene/gltf/geometry.hpp"
-#include "scene/gltf/tangents.hpp"
+#include "scene/mesh/geometry.hpp"
+#include "scene/mesh/tangents.hpp"
 #include "scene/model.hpp"
 
 namespace darkroom::scene {
@@ -54,19 +54,18 @@ Result<> make_missing_tangents(Document& document, Model& model) {
             if (!texture.is_given()) continue;
             const std::string place = fmt::format("/meshes/{}", i);
             const std::uint64_t taken = document.budget().taken();
-            const std::size_t before = gltf::size_in_memory(primitive);
+            const std::size_t before = size_in_memory(primitive);
             if (auto charged = document.budget().take(place, "vertices with tangents", primitive.vertices.size(),
-                                                      gltf::tangent_bytes_per_vertex(primitive));
+                                                      tangent_bytes_per_vertex(primitive));
                 !charged)
                 return charged;
             if (auto charged = document.budget().take(place, "corners with tangents", primitive.indices.size(),
-                                                      gltf::tangent_bytes_per_corner);
+                                                      tangent_bytes_per_corner);
                 !charged)
                 return charged;
-            gltf::make_tangents(primitive, texture);
+            make_tangents(primitive, texture);
             document.budget().give_back_to(taken);
-            if (auto charged = document.budget().take(place, "bytes", gltf::size_in_memory(primitive) - before, 1);
-                !charged)
+            if (auto charged = document.budget().take(place, "bytes", size_in_memory(primitive) - before, 1); !charged)
                 return charged;
         }
     return {};

@@ -6,7 +6,7 @@
 
 #include "scene/model.hpp"
 
-namespace darkroom::scene::gltf {
+namespace darkroom::scene {
 
 /// Fills Vertex::tangent from the coordinates of `texture`. Where a mirrored part of the texture begins, vertices are
 /// split, so there may be twice as many afterwards. O(n log n) time.
@@ -16,4 +16,4 @@ void make_tangents(Primitive& primitive, const Texture& texture);
 [[nodiscard]] std::size_t tangent_bytes_per_vertex(const Primitive& primitive);
 inline constexpr std::size_t tangent_bytes_per_corner = 32;
 
-}  // namespace darkroom::scene::gltf
+}  // namespace darkroom::scene

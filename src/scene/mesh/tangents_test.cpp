@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "scene/gltf/tangents.hpp"
+#include "scene/mesh/tangents.hpp"
 
-namespace darkroom::scene::gltf {
+namespace darkroom::scene {
 namespace {
 
 double degrees_between(const vec4& a, const vec4& b) {
@@ -248,4 +248,4 @@ TEST(SceneTangents, AgreeWithAModelThatCarriesThem) {
 }
 
 }  // namespace
-}  // namespace darkroom::scene::gltf
+}  // namespace darkroom::scene

@@ -2,16 +2,16 @@
 // Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008, section 2: each triangle's tangent is projected onto
 // the plane of the vertex normal, made a unit vector there and weighed by the corner's angle. What lies on two sides of
 // a mirrored seam is never averaged.
-#include "scene/gltf/tangents.hpp"
+#include "scene/mesh/tangents.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <queue>
 #include <tuple>
 
-#include "scene/gltf/geometry.hpp"
+#include "scene/mesh/geometry.hpp"
 
-namespace darkroom::scene::gltf {
+namespace darkroom::scene {
 namespace {
 
 using glm::dvec2;
@@ -204,4 +204,4 @@ std::size_t tangent_bytes_per_vertex(const Primitive& primitive) {
     return split + sizeof(vec2) + 2 * sizeof(Group) + 4 * sizeof(std::uint32_t) + 2 * sizeof(std::size_t);
 }
 
-}  // namespace darkroom::scene::gltf
+}  // namespace darkroom::scene

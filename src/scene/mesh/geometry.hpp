@@ -9,7 +9,7 @@
 
 #include "scene/model.hpp"
 
-namespace darkroom::scene::gltf {
+namespace darkroom::scene {
 
 /// `mode`: of glTF: 4 triangles, 5 strip, 6 fan. Corners that make no whole triangle are passed over.
 [[nodiscard]] std::vector<std::uint32_t> triangles_of(std::span<const std::uint32_t> corners, int mode);
@@ -25,4 +25,4 @@ void drop_unused_vertices(Primitive& primitive);
 
 [[nodiscard]] std::size_t size_in_memory(const Primitive& primitive);
 
-}  // namespace darkroom::scene::gltf
+}  // namespace darkroom::scene

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "scene/gltf/geometry.hpp"
+#include "scene/mesh/geometry.hpp"
 
 #include <cmath>
 
-namespace darkroom::scene::gltf {
+namespace darkroom::scene {
 namespace {
 
 template <class T>
@@ -83,4 +83,4 @@ std::size_t size_in_memory(const Primitive& primitive) {
     return size;
 }
 
-}  // namespace darkroom::scene::gltf
+}  // namespace darkroom::scene
