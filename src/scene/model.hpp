@@ -3,11 +3,13 @@
 // A glTF 2.0 model on the CPU, checked: every index is in range, nodes form trees (parents before children), arrays of
 // a primitive have one length. Nothing of the parsing library passes this header.
 
+#include <algorithm>
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/budget.hpp"
@@ -140,13 +142,19 @@ struct MorphTarget {
     std::vector<vec3> positions, normals;
 };
 
+/// KHR_materials_variants: what a primitive is made of in one of Model::variants.
+struct VariantMaterial {
+    std::uint32_t variant = 0, material = 0;
+};
+
 struct Primitive {
     std::vector<Vertex> vertices;
     std::vector<VertexSkin> skin;        ///< empty, or one a vertex
     std::vector<std::uint32_t> indices;  ///< triangles
     std::vector<MorphTarget> targets;
-    std::uint32_t material = no_index;  ///< no_index: the default material
-    Box bounds;                         ///< of the vertices as they are in the file
+    std::uint32_t material = no_index;      ///< no_index: the default material
+    std::vector<VariantMaterial> variants;  ///< in their order, one each; the others have `material`
+    Box bounds;                             ///< of the vertices as they are in the file
 };
 
 struct Mesh {
@@ -202,7 +210,8 @@ struct Model {
     std::vector<Image> images;
     std::vector<ModelMaterial> materials;
     std::vector<Mesh> meshes;
-    std::vector<Node> nodes;  ///< of the default scene
+    std::vector<Node> nodes;            ///< of the default scene
+    std::vector<std::string> variants;  ///< their names
     std::vector<Skin> skins;
     std::vector<Animation> animations;
     std::vector<ModelCamera> cameras;
@@ -217,5 +226,18 @@ struct Model {
 /// More elements, or more data that share bytes, than the budget has room for are refused before they are made.
 [[nodiscard]] Result<Model> read_model(const std::filesystem::path& path, Budget budget = Budget(),
                                        NamedFiles named_files = NamedFiles::Own);
+
+/// `variant`: in Model::variants, or no_index.
+[[nodiscard]] inline std::uint32_t material_of(const Primitive& primitive, std::uint32_t variant) {
+    const auto found = std::ranges::lower_bound(primitive.variants, variant, {}, &VariantMaterial::variant);
+    return found == primitive.variants.end() || found->variant != variant ? primitive.material : found->material;
+}
+
+/// The variant of this name, no_index where there is none.
+[[nodiscard]] inline std::uint32_t variant_of(const Model& model, std::string_view name) {
+    const auto found = std::ranges::find(model.variants, name);
+    return name.empty() || found == model.variants.end() ? no_index
+                                                         : static_cast<std::uint32_t>(found - model.variants.begin());
+}
 
 }  // namespace darkroom::scene

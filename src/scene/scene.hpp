@@ -72,6 +72,7 @@ struct ModelReference {
     std::string animation;    ///< name or number of a clip; empty: the first
     bool is_animated = true;  ///< false: the pose of the file
     float animation_speed = 1;
+    std::string variant;  ///< of KHR_materials_variants, by its name; empty: the materials without one
     /// Of the model's lights, which glTF has in candela and lux: the default undoes the 683 lm/W of exporters.
     float light_scale = 1.0F / 683;
 };

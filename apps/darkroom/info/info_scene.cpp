@@ -199,6 +199,7 @@ Result<Json> model(const std::filesystem::path& path, scenes::NamedFiles named_f
              {"skins", model->skins.size()},
              {"joints", joints},
              {"materials", materials_of(*model)},
+             {"variants", model->variants},
              {"textures", textures_of(model->images)},
              {"animations", animations_of(*model)},
              {"cameras", cameras_of(*model)},

@@ -33,6 +33,10 @@ struct NodeOrder {
 /// Transform, names and weights; indices as they are in the file, except the parent.
 [[nodiscard]] Node convert_node(Document& document, std::uint32_t file_index, std::uint32_t parent);
 
+/// EXT_mesh_gpu_instancing: behind the nodes of the model a node for each instance, below the one that had the mesh.
+/// To be called last, since nothing else knows of these nodes.
+[[nodiscard]] Result<> add_instances(Document& document, const NodeOrder& order, Model& model);
+
 /// Joints as nodes of the model.
 [[nodiscard]] Result<Skin> convert_skin(Document& document, std::size_t index, const NodeOrder& order);
 [[nodiscard]] ModelCamera convert_camera(Document& document, std::size_t index);

@@ -10,6 +10,7 @@
 namespace darkroom::scene::gltf {
 
 inline constexpr auto read_extensions = std::to_array<std::string_view>({
+    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
@@ -17,6 +18,7 @@ inline constexpr auto read_extensions = std::to_array<std::string_view>({
     "KHR_materials_sheen",
     "KHR_materials_specular",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 });
@@ -28,7 +30,6 @@ struct MissingExtension {
 
 inline constexpr auto missing_extensions = std::to_array<MissingExtension>({
     {"EXT_lights_image_based", "light of the model's own surroundings is left out"},
-    {"EXT_mesh_gpu_instancing", "each of its nodes is drawn once"},
     {"EXT_meshopt_compression", "meshes are read from their fallbacks"},
     {"EXT_texture_webp", "textures are read from their other images, or left out"},
     {"KHR_animation_pointer", "only nodes and morph targets are animated"},
@@ -39,7 +40,6 @@ inline constexpr auto missing_extensions = std::to_array<MissingExtension>({
     {"KHR_materials_iridescence", "thin films are left out"},
     {"KHR_materials_pbrSpecularGlossiness", "surfaces are drawn by their metallic-roughness values, or white"},
     {"KHR_materials_transmission", "glass is opaque"},
-    {"KHR_materials_variants", "surfaces have their first materials"},
     {"KHR_materials_volume", "nothing absorbs light inside"},
     {"KHR_node_visibility", "hidden nodes are drawn"},
     {"KHR_texture_basisu", "textures are read from their other images, or left out"},

@@ -275,6 +275,25 @@ void check_names(Document& document, const tinygltf::Primitive& source, const st
     }
 }
 
+// Of variants that are named twice the first counts.
+std::vector<VariantMaterial> read_variants(const tinygltf::Primitive& source) {
+    std::vector<VariantMaterial> out;
+    const auto found = source.extensions.find("KHR_materials_variants");
+    if (found == source.extensions.end()) return out;
+    const tinygltf::Value& mappings = found->second.Get("mappings");
+    for (int i = 0; i < static_cast<int>(mappings.ArrayLen()); ++i) {
+        const tinygltf::Value& mapping = mappings.Get(i);
+        const auto material = static_cast<std::uint32_t>(number_of(mapping, "material", 0));
+        const tinygltf::Value& variants = mapping.Get("variants");
+        for (int k = 0; k < static_cast<int>(variants.ArrayLen()); ++k)
+            out.push_back({static_cast<std::uint32_t>(variants.Get(k).GetNumberAsInt()), material});
+    }
+    std::ranges::stable_sort(out, {}, &VariantMaterial::variant);
+    const auto rest = std::ranges::unique(out, {}, &VariantMaterial::variant);
+    out.erase(rest.begin(), rest.end());
+    return out;
+}
+
 // Nothing: there is nothing to draw.
 Result<std::optional<Primitive>> convert_primitive(Document& document, const tinygltf::Primitive& source,
                                                    const std::string& pointer) {
@@ -303,6 +322,7 @@ Result<std::optional<Primitive>> convert_primitive(Document& document, const tin
         return std::nullopt;
     }
     if (source.material >= 0) primitive.material = static_cast<std::uint32_t>(source.material);
+    primitive.variants = read_variants(source);
     if (source.mode == TINYGLTF_MODE_TRIANGLES && corners->size() % 3 != 0)
         document.faults().warn(fmt::format("{}: {} corners do not make whole triangles; the last are passed over",
                                            pointer, corners->size()));

@@ -43,14 +43,34 @@ bool has_tangents(const Primitive& primitive) {
     return std::ranges::any_of(primitive.vertices, [](const Vertex& vertex) { return vertex.tangent != vec4(0); });
 }
 
+// Of the surface or its coat.
+const Texture& normal_texture_of(const ModelMaterial& material) {
+    return material.normal_texture.is_given() ? material.normal_texture : material.clearcoat.normal_texture;
+}
+
+// Of the material, or of the first variant that has one.
+Texture normal_texture_of(const Model& model, const Primitive& primitive) {
+    Texture texture;
+    if (primitive.material != no_index) texture = normal_texture_of(model.materials[primitive.material]);
+    for (const VariantMaterial& variant : primitive.variants)
+        if (!texture.is_given()) texture = normal_texture_of(model.materials[variant.material]);
+    return texture;
+}
+
+void read_variant_names(const tinygltf::Model& source, std::vector<std::string>& names) {
+    const auto found = source.extensions.find("KHR_materials_variants");
+    if (found == source.extensions.end()) return;
+    const tinygltf::Value& variants = found->second.Get("variants");
+    for (int i = 0; i < static_cast<int>(variants.ArrayLen()); ++i)
+        names.push_back(one_printable_line(variants.Get(i).Get("name").Get<std::string>()));
+}
+
 // glTF 2.0, 3.7.2.1: for the coordinates of the normal map. Without one nothing reads them.
 Result<> make_missing_tangents(Document& document, Model& model) {
     for (std::size_t i = 0; i < model.meshes.size(); ++i)
         for (Primitive& primitive : model.meshes[i].primitives) {
-            if (primitive.material == no_index || has_tangents(primitive)) continue;
-            const ModelMaterial& material = model.materials[primitive.material];
-            const Texture& texture =
-                material.normal_texture.is_given() ? material.normal_texture : material.clearcoat.normal_texture;
+            if (has_tangents(primitive)) continue;
+            const Texture texture = normal_texture_of(model, primitive);
             if (!texture.is_given()) continue;
             const std::string place = fmt::format("/meshes/{}", i);
             const std::uint64_t taken = document.budget().taken();
@@ -81,8 +101,11 @@ Result<> convert_drawn(Document& document, const NodeOrder& order, Model& model)
     std::vector<bool> is_material_needed(source.materials.size());
     const std::vector<bool> is_mesh_needed = needed(source.meshes.size(), model.nodes, &Node::mesh);
     for (std::size_t mesh = 0; mesh < model.meshes.size(); ++mesh)
-        for (const Primitive& primitive : model.meshes[mesh].primitives)
-            if (is_mesh_needed[mesh] && primitive.material != no_index) is_material_needed[primitive.material] = true;
+        for (const Primitive& primitive : model.meshes[mesh].primitives) {
+            if (!is_mesh_needed[mesh]) continue;
+            if (primitive.material != no_index) is_material_needed[primitive.material] = true;
+            for (const VariantMaterial& variant : primitive.variants) is_material_needed[variant.material] = true;
+        }
     model.images = convert_images(document);
     std::vector<bool> is_broken;
     for (const Image& image : model.images) is_broken.push_back(image.is_empty());
@@ -173,6 +196,8 @@ Result<Model> read(const std::filesystem::path& path, Budget budget, NamedFiles 
     if (auto done = convert_drawn(*document, *order, model); !done) return failure(std::move(done));
     if (auto done = check_nodes(*document, *order, model); !done) return failure(std::move(done));
     if (auto done = convert_rest(*document, *order, model); !done) return failure(std::move(done));
+    read_variant_names(document->model(), model.variants);
+    if (auto done = gltf::add_instances(*document, *order, model); !done) return failure(std::move(done));
     if (auto done = document->budget().check(); !done) return failure(std::move(done));
     model.file_bytes = document->budget().file_bytes();
     for (std::string& warning : document->faults().take_warnings())

@@ -52,16 +52,19 @@ class Checker {
         for (const Array& array : arrays)
             if (const auto found = root.find(array.name); found != root.end() && found->is_array())
                 sizes_[std::string(array.name)] = found->size();
-        if (const auto* lights = find_lights(root)) sizes_["lights"] = lights->size();
+        for (const auto& [extension, array] :
+             {std::pair{"KHR_lights_punctual", "lights"}, std::pair{"KHR_materials_variants", "variants"}})
+            if (const auto* found = find_array(root, extension, array)) sizes_[array] = found->size();
     }
 
-    static const json* find_lights(const json& root) {
+    /// Of an extension of the root.
+    static const json* find_array(const json& root, const char* extension, const char* array) {
         const auto extensions = root.find("extensions");
         if (extensions == root.end() || !extensions->is_object()) return nullptr;
-        const auto punctual = extensions->find("KHR_lights_punctual");
-        if (punctual == extensions->end() || !punctual->is_object()) return nullptr;
-        const auto lights = punctual->find("lights");
-        return lights == punctual->end() || !lights->is_array() ? nullptr : &*lights;
+        const auto object = extensions->find(extension);
+        if (object == extensions->end() || !object->is_object()) return nullptr;
+        const auto found = object->find(array);
+        return found == object->end() || !found->is_array() ? nullptr : &*found;
     }
 
     // Elements that cannot be used are replaced by the placeholder.
@@ -365,7 +368,14 @@ Result<> check_structure(json& root, Faults& faults, Budget& budget) {
         checker.check_array(*found, *array.definition, array.placeholder, pointer);
         kept[std::string(array.name)] = std::move(*found);
     }
-    if (const json* lights = Checker::find_lights(root)) {
+    if (const json* variants = Checker::find_array(root, "KHR_materials_variants", "variants")) {
+        const std::string_view pointer = "/extensions/KHR_materials_variants/variants";
+        if (auto taken = budget.take(pointer, "elements", variants->size(), element_size); !taken) return taken;
+        json copy = *variants;
+        checker.check_array(copy, variant_definition, R"({"name":""})", std::string(pointer));
+        kept["extensions"]["KHR_materials_variants"]["variants"] = std::move(copy);
+    }
+    if (const json* lights = Checker::find_array(root, "KHR_lights_punctual", "lights")) {
         if (auto taken =
                 budget.take("/extensions/KHR_lights_punctual/lights", "elements", lights->size(), element_size);
             !taken)

@@ -172,10 +172,26 @@ inline constexpr std::array material_table{text("name"),
                                            Property{.name = "doubleSided", .kind = Kind::Boolean},
                                            object_of("extensions", material_extensions)};
 
+// KHR_materials_variants
+inline constexpr std::array mapping_table{
+    index_of("material", "materials", true),
+    Property{.name = "variants", .kind = Kind::Indices, .is_required = true, .target = "variants"}};
+inline constexpr Definition mapping_definition{mapping_table};
+inline constexpr std::array mappings_table{
+    Property{.name = "mappings", .kind = Kind::Objects, .is_required = true, .object = &mapping_definition}};
+inline constexpr Definition mappings_definition{mappings_table};
+inline constexpr std::array variant_table{text("name", true)};
+inline constexpr Definition variant_definition{variant_table};
+inline constexpr std::array primitive_extensions_table{object_of("KHR_materials_variants", mappings_definition)};
+inline constexpr Definition primitive_extensions{primitive_extensions_table};
+
 inline constexpr std::array primitive_table{
     Property{.name = "attributes", .kind = Kind::IndexMap, .is_required = true, .target = "accessors"},
-    index_of("indices", "accessors"), index_of("material", "materials"), integer("mode"),
-    Property{.name = "targets", .kind = Kind::IndexMaps, .target = "accessors"}};
+    index_of("indices", "accessors"),
+    index_of("material", "materials"),
+    integer("mode"),
+    Property{.name = "targets", .kind = Kind::IndexMaps, .target = "accessors"},
+    object_of("extensions", primitive_extensions)};
 inline constexpr Definition primitive_definition{primitive_table};
 inline constexpr std::array mesh_table{
     text("name"), numbers("weights", 0),
@@ -198,7 +214,11 @@ inline constexpr std::array skin_table{
 
 inline constexpr std::array node_light_table{index_of("light", "lights", true)};
 inline constexpr Definition node_light{node_light_table};
-inline constexpr std::array node_extensions_table{object_of("KHR_lights_punctual", node_light)};
+inline constexpr std::array instancing_table{
+    Property{.name = "attributes", .kind = Kind::IndexMap, .is_required = true, .target = "accessors"}};
+inline constexpr Definition instancing_definition{instancing_table};
+inline constexpr std::array node_extensions_table{object_of("KHR_lights_punctual", node_light),
+                                                  object_of("EXT_mesh_gpu_instancing", instancing_definition)};
 inline constexpr Definition node_extensions{node_extensions_table};
 inline constexpr std::array node_table{text("name"),
                                        index_of("camera", "cameras"),

@@ -69,6 +69,7 @@ class Builder {
     struct Poses {
         const Pose* now;
         const Pose* previous;
+        std::uint32_t variant;
     };
 
     void add_box(std::uint32_t entity, Snapshot& out) const {
@@ -94,7 +95,8 @@ class Builder {
         const std::uint32_t clip = clip_of(scene_, entity, model, &out.warnings);
         const std::optional<ModelReference>& reference = scene_.entities[entity].model;
         const double speed = reference ? static_cast<double>(reference->animation_speed) : 1;
-        const Poses poses{&poses_.get(number, clip, time_ * speed), &poses_.get(number, clip, previous_time_ * speed)};
+        const Poses poses{&poses_.get(number, clip, time_ * speed), &poses_.get(number, clip, previous_time_ * speed),
+                          reference ? variant_of(model, reference->variant) : no_index};
         std::vector<std::uint32_t> materials(model.materials.size() + 1, no_index);
         for (std::uint32_t node = 0; node < model.nodes.size(); ++node)
             if (model.nodes[node].mesh < model.meshes.size()) add_node(entity, number, node, poses, materials, out);
@@ -127,7 +129,7 @@ class Builder {
             instance.first_weight = instance.weight_count > 0 ? first_weight : no_index;
             instance.is_mirrored = is_mirroring(is_skinned ? out.joints[first_joint] : instance.world);
             instance.bounds = moved_bounds(primitive, instance, out);
-            instance.material = material_of(entity, primitive.material, materials, out);
+            instance.material = surface_of(entity, material_of(primitive, poses.variant), materials, out);
             instance.casts_shadow = casts_shadow(out.materials[instance.material]);
             out.instances.push_back(instance);
         }
@@ -159,8 +161,8 @@ class Builder {
         return box;
     }
 
-    [[nodiscard]] std::uint32_t material_of(std::uint32_t entity, std::uint32_t material,
-                                            std::vector<std::uint32_t>& materials, Snapshot& out) const {
+    [[nodiscard]] std::uint32_t surface_of(std::uint32_t entity, std::uint32_t material,
+                                           std::vector<std::uint32_t>& materials, Snapshot& out) const {
         std::uint32_t& number = materials[std::min<std::size_t>(material, materials.size() - 1)];
         if (number == no_index) {
             number = static_cast<std::uint32_t>(out.materials.size());

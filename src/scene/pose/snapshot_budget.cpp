@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "image/codec/decoder.hpp"
 #include "scene/pose/particles.hpp"
 #include "scene/pose/snapshot_parts.hpp"
 
@@ -91,6 +92,15 @@ std::vector<std::uint64_t> depths(const Scene& scene) {
     return out;
 }
 
+std::string shown_variants(const Model& model) {
+    constexpr std::size_t most_names = 20;
+    if (model.variants.empty()) return "the model has no variants";
+    std::string names;
+    for (std::size_t i = 0; i < std::min(model.variants.size(), most_names); ++i)
+        names += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", model.variants[i]);
+    return fmt::format("allowed is {}{}", names, model.variants.size() > most_names ? ", ..." : "");
+}
+
 class Check {
   public:
     Check(const Scene& scene, const Assets& assets) : scene_(scene), assets_(assets), budget_(scene.file_bytes) {
@@ -116,6 +126,7 @@ class Check {
             }
             if (const std::uint32_t model = assets_of(assets_, i).model; model != no_index)
                 take_model(entity, model, parents[i]);
+            if (unknown_variant_) return user_error(*unknown_variant_);
             if (Result<> done = budget_.check(); !done) return done;
         }
         return {};
@@ -134,6 +145,10 @@ class Check {
         const Model& model = assets_.models[number];
         const Counts& counts = models_[number];
         const ModelReference reference = entity.model.value_or(ModelReference{});
+        if (!reference.variant.empty()) work("variants", model.variants.size(), sizeof(std::string));
+        if (!reference.variant.empty() && variant_of(model, reference.variant) == no_index && !unknown_variant_)
+            unknown_variant_ = fmt::format("{}.model.variant = \"{}\": {}", place_,
+                                           one_printable_line(reference.variant), shown_variants(model));
         if (poses_.emplace(number, reference.animation, reference.is_animated, reference.animation_speed).second) {
             take("nodes", model.nodes.size(), node_size);
             take("joints", joints_of_skins(model), 2 * sizeof(mat4));
@@ -157,6 +172,7 @@ class Check {
     std::vector<Counts> models_;
     std::set<std::tuple<std::uint32_t, std::string, bool, float>> poses_;
     std::string place_;
+    std::optional<std::string> unknown_variant_;
 };
 
 }  // namespace

@@ -139,6 +139,7 @@ void read_model(TableReader& table, EntityDraft& draft) {
     }
     table.flag("animated", model.is_animated);
     table.number("animation_speed", model.animation_speed, {.low = -1e3, .high = 1e3});
+    table.text("variant", model.variant);
     table.number("light_scale", model.light_scale, {.low = 0, .high = 1e6});
     draft.entity.model = std::move(model);
 }

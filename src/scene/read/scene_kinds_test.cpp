@@ -97,6 +97,7 @@ constexpr Key keys[] = {
     {"entities.a.model", "animation", text_or_whole, "asset = \"a\""},
     {"entities.a.model", "animated", flag, "asset = \"a\""},
     {"entities.a.model", "animation_speed", number, "asset = \"a\""},
+    {"entities.a.model", "variant", text, "asset = \"a\""},
     {"entities.a.model", "light_scale", number, "asset = \"a\""},
     {"entities.a.light", "type", none},
     {"entities.a.light", "color", none},
