@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace darkroom::scene {
 
 Budget::Budget(std::uint64_t file_bytes, std::uint64_t sharers)
@@ -14,6 +16,15 @@ void Budget::add_file(std::uint64_t bytes) {
     file_bytes_ += bytes;
     memory_.limit += bytes * bytes_per_file_byte;
     work_.limit += bytes * work_per_file_byte;
+}
+
+void Budget::add_unpacked(std::uint64_t packed_bytes, std::uint64_t unpacked_bytes) {
+    const std::uint64_t packed = std::min(packed_bytes, file_bytes_ - worth_ - packed_);
+    packed_ += packed;
+    if (unpacked_bytes <= packed) return;
+    const std::uint64_t worth = std::min(unpacked_bytes, packed * most_unpacked_per_byte) - packed;
+    worth_ += worth;
+    add_file(worth);
 }
 
 Result<> Budget::take_from(Account& account, std::string_view place, std::string_view things, std::uint64_t count,

@@ -18,10 +18,16 @@ class Budget {
     static constexpr std::uint64_t free_bytes = std::uint64_t{1} << 27, bytes_per_file_byte = 32;
     static constexpr std::uint64_t free_work = std::uint64_t{1} << 29, work_per_file_byte = 64;
 
+    /// Draco and meshoptimizer make 5 to 10 of a byte of a real mesh.
+    static constexpr std::uint64_t most_unpacked_per_byte = 12;
+
     /// `sharers`: so many inputs divide what is free among them.
     explicit Budget(std::uint64_t file_bytes = 0, std::uint64_t sharers = 1);
     /// A further file of the input.
     void add_file(std::uint64_t bytes);
+    /// A part of the files that has been unpacked counts as if it had come so, though no more than 12 times, and no
+    /// more often than there are bytes.
+    void add_unpacked(std::uint64_t packed_bytes, std::uint64_t unpacked_bytes);
     [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
 
     /// Room for `count` things of `size` bytes each. The error names the place, the count and the limit.
@@ -45,6 +51,7 @@ class Budget {
                                      std::uint64_t count, std::uint64_t size);
 
     std::uint64_t file_bytes_ = 0;
+    std::uint64_t packed_ = 0, worth_ = 0;  ///< bytes that have been unpacked, and what they counted more for it
     Account memory_, work_;
     std::optional<Error> refusal_;
 };

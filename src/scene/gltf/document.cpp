@@ -45,6 +45,7 @@ Result<Document> Document::open(const std::filesystem::path& path, Budget budget
         const json images = root.contains("images") ? std::move(root["images"]) : json::array();
         root.erase("images");
         if (auto parsed = document.parse(root); !parsed) return failure(std::move(parsed));
+        document.unpack_meshes();
         document.load_images(images, folder);
     } catch (const std::exception& exception) {
         return user_error(fmt::format("cannot be read: {}", exception.what()));

@@ -81,6 +81,8 @@ class Document {
     [[nodiscard]] Result<std::span<const std::byte>> file_of_buffer(const std::filesystem::path& path,
                                                                     std::size_t most);
     [[nodiscard]] Result<> parse(nlohmann::json& root);
+    void unpack_meshes();
+    [[nodiscard]] Result<> unpack_primitive(const tinygltf::Primitive& primitive, const std::string& pointer);
     [[nodiscard]] Result<std::span<const std::byte>> view(int index);
     [[nodiscard]] Result<Layout> make_layout(int accessor);
     void check_extent(int accessor);
@@ -94,7 +96,9 @@ class Document {
     std::deque<std::vector<std::byte>> data_uris_;
     std::vector<std::byte> zeros_;  ///< what buffers that are nowhere share
     std::vector<std::span<const std::byte>> buffers_;
+    std::deque<std::vector<std::byte>> unpacked_;
     std::vector<std::optional<Layout>> layouts_;
+    std::map<int, int> packed_in_;  ///< accessors that have been unpacked, and the bufferView they were in
     std::vector<ImageSource> images_;
     std::vector<std::size_t> image_of_;
     Budget budget_;

@@ -11,6 +11,7 @@ namespace darkroom::scene::gltf {
 
 inline constexpr auto read_extensions = std::to_array<std::string_view>({
     "EXT_mesh_gpu_instancing",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
@@ -33,7 +34,6 @@ inline constexpr auto missing_extensions = std::to_array<MissingExtension>({
     {"EXT_meshopt_compression", "meshes are read from their fallbacks"},
     {"EXT_texture_webp", "textures are read from their other images, or left out"},
     {"KHR_animation_pointer", "only nodes and morph targets are animated"},
-    {"KHR_draco_mesh_compression", "meshes are read from their fallbacks"},
     {"KHR_materials_anisotropy", "highlights are round"},
     {"KHR_materials_diffuse_transmission", "no light comes through its surfaces"},
     {"KHR_materials_dispersion", "colours are not split"},

@@ -94,7 +94,7 @@ class Checker {
 
     static bool is_vital(Kind kind) {
         return kind == Kind::Integer || kind == Kind::Index || kind == Kind::Indices || kind == Kind::IndexMap ||
-               kind == Kind::IndexMaps || kind == Kind::Object || kind == Kind::Objects;
+               kind == Kind::IndexMaps || kind == Kind::IntegerMap || kind == Kind::Object || kind == Kind::Objects;
     }
 
     bool check_object(json& object, const Definition& definition, const std::string& pointer) {
@@ -206,11 +206,15 @@ class Checker {
         return true;
     }
 
-    bool check_index_map(json& value, const Property& property, const std::string& pointer, bool& is_kept) {
+    bool check_map(json& value, const Property& property, const std::string& pointer, bool& is_kept) {
         if (!value.is_object()) return refuse(property, pointer, fmt::format("{}, an object is needed", shown(value)));
         if (value.empty()) faults_.warn(fmt::format("{}: is empty", pointer));
-        for (auto& [name, index] : value.items())
-            if (!check_index(index, property, fmt::format("{}/{}", pointer, name), is_kept)) return false;
+        for (auto& [name, number] : value.items()) {
+            const std::string place = fmt::format("{}/{}", pointer, name);
+            const bool is_good = property.kind == Kind::IntegerMap ? check_integer(number, property, place, is_kept)
+                                                                   : check_index(number, property, place, is_kept);
+            if (!is_good) return false;
+        }
         return true;
     }
 
@@ -250,7 +254,8 @@ class Checker {
             case Kind::Indices:
                 return check_indices(value, property, pointer, is_kept);
             case Kind::IndexMap:
-                return check_index_map(value, property, pointer, is_kept);
+            case Kind::IntegerMap:
+                return check_map(value, property, pointer, is_kept);
             case Kind::IndexMaps:
             case Kind::Objects:
                 break;
@@ -262,7 +267,7 @@ class Checker {
         for (std::size_t i = 0; i < value.size(); ++i) {
             const std::string place = fmt::format("{}/{}", pointer, i);
             const bool is_good = property.kind == Kind::Objects ? check_object(value[i], *property.object, place)
-                                                                : check_index_map(value[i], property, place, is_kept);
+                                                                : check_map(value[i], property, place, is_kept);
             if (!is_good) return false;
         }
         return true;

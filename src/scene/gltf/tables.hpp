@@ -25,6 +25,7 @@ enum class Kind {
     Indices,
     IndexMap,
     IndexMaps,
+    IntegerMap,
     Object,
     Objects
 };
@@ -182,7 +183,12 @@ inline constexpr std::array mappings_table{
 inline constexpr Definition mappings_definition{mappings_table};
 inline constexpr std::array variant_table{text("name", true)};
 inline constexpr Definition variant_definition{variant_table};
-inline constexpr std::array primitive_extensions_table{object_of("KHR_materials_variants", mappings_definition)};
+inline constexpr std::array draco_table{
+    index_of("bufferView", "bufferViews", true),
+    Property{.name = "attributes", .kind = Kind::IntegerMap, .is_required = true, .low = 0, .high = most_int}};
+inline constexpr Definition draco_definition{draco_table};
+inline constexpr std::array primitive_extensions_table{object_of("KHR_materials_variants", mappings_definition),
+                                                       object_of("KHR_draco_mesh_compression", draco_definition)};
 inline constexpr Definition primitive_extensions{primitive_extensions_table};
 
 inline constexpr std::array primitive_table{
