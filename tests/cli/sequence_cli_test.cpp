@@ -110,6 +110,23 @@ TEST_F(CliSequence, WhatIsThereStaysWhereAsked) {
     EXPECT_NE(content(path(out("b", 3))), "there");
 }
 
+TEST_F(CliSequence, EachEyeHasItsPicture) {
+    for (const std::string eye : {"left", "right"})
+        for (const int number : {1, 2})
+            fs::copy_file(path(in(number)), path(fmt::format("eye_{}.{:04}.exr", eye, number)));
+    const Outcome both = run_lines("darkroom develop 'eye_%V.####.exr' --eye both -o 'eye_%v.####.png'");
+    EXPECT_EQ(both.code, 0) << both.err;
+    for (const char* const made : {"eye_l.0001.png", "eye_l.0002.png", "eye_r.0001.png", "eye_r.0002.png"})
+        EXPECT_TRUE(fs::exists(path(made))) << made;
+    EXPECT_EQ(run_lines("darkroom develop f.0001.exr --eye both -o a.png").err,
+              "darkroom: -o a.png: two eyes need a name with %V or %v\n");
+    const Outcome none = run_lines("darkroom develop f.0001.exr --eye left -o a.png");
+    EXPECT_EQ(none.code, 1);
+    EXPECT_EQ(none.err, "darkroom: f.0001.exr: has no view \"left\"; it has one picture alone\n");
+    const Outcome scaled = run_lines("darkroom develop f.0001.exr --depth-scale 0.01 --depth-inverse -o a.png");
+    EXPECT_EQ(scaled.code, 0) << scaled.err;
+}
+
 TEST_F(CliSequence, WhoReadsTheFirstLineAloneDoesNotEndTheWork) {
     fs::create_directories(path("h"));
     const Outcome outcome = run_lines("darkroom develop f.%04d.exr -o h/ --jobs 1 2>&1 | head -n 1");

@@ -50,6 +50,15 @@ struct Options {
     bool is_reference = false, keeps_layers = false;
 };
 
+/// A name of files with %V, which stands for the eye, and %v, for the first letter of it.
+std::string with_eye(std::string name, const std::string& eye) {
+    if (eye.empty()) return name;
+    for (const auto& [sign, text] : {std::pair<std::string, std::string>{"%V", eye}, {"%v", eye.substr(0, 1)}})
+        for (std::size_t at = 0; (at = name.find(sign, at)) != std::string::npos; at += text.size())
+            name.replace(at, sign.size(), text);
+    return name;
+}
+
 /// One frame to go through the stack. What is read for the sake of effects with history alone makes no picture.
 struct Step {
     std::size_t place = 0;  ///< among all inputs
@@ -60,6 +69,7 @@ struct Step {
 
 /// Everything that can be known before a frame is read.
 struct Job {
+    std::string eye, out;
     std::vector<darkroom::NumberedFile> inputs;
     std::optional<darkroom::FrameSet> frames;  ///< else all are asked for
     std::vector<Step> steps;
@@ -89,7 +99,7 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     using Paths = std::vector<std::filesystem::path>;
     const Result<Paths> outputs =
         job.stream ? Result<Paths>(Paths(inputs.size(), stream_name))
-                   : output_paths(inputs, options.out, ui_files(job.look), is_in_range, options.run.missing_folders());
+                   : output_paths(inputs, job.out, ui_files(job.look), is_in_range, options.run.missing_folders());
     if (!outputs) return failure(outputs.error());
     if (job.stream) job.develop.target = target_for(job.stream->format);
     if (job.stream && options.keeps_layers) return no_place_for_layers("a stream");
@@ -116,7 +126,11 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
 
 /// What is read, and the place of the last one that is asked for.
 Result<std::size_t> add_inputs(const Options& options, Job& job) {
-    Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(options.inputs);
+    std::vector<std::string> names = options.inputs;
+    for (std::string& name : names) name = with_eye(name, job.eye);
+    // Files of one eye each have no other.
+    if (names != options.inputs) job.frame.view.clear();
+    Result<std::vector<darkroom::NumberedFile>> inputs = darkroom::expand_inputs(names);
     if (!inputs) return failure(std::move(inputs));
     job.inputs = std::move(*inputs);
     if (options.frames) {
@@ -139,8 +153,11 @@ std::optional<double> time_of(const Job& job, std::size_t place) {
     return time ? std::optional(time->value_or(0)) : std::nullopt;
 }
 
-Result<Job> job_of(const Options& options) {
-    Job job;
+/// `eye`: one of those that are asked for.
+Result<Job> job_of(const Options& options, const std::string& eye) {
+    Job job{.eye = eye, .out = with_eye(options.out, eye)};
+    if (options.frame.eyes().size() > 1 && job.out == options.out)
+        return user_error(fmt::format("-o {}: two eyes need a name with %V or %v", darkroom::printable(options.out)));
     if (Result<> done = options.run.start_report(); !done) return failure(std::move(done));
     if (options.is_reference && options.run.has_timings)
         return user_error("--timings: the references do not run on the device");
@@ -151,14 +168,14 @@ Result<Job> job_of(const Options& options) {
         return failure(std::move(done));
     if (Result<> done = options.write.ocio.check(options.frame.has_input_space()); !done)
         return failure(std::move(done));
-    Result<darkroom::FrameOptions> frame = options.frame.options(options.write.ocio.configuration);
+    Result<darkroom::FrameOptions> frame = options.frame.options(options.write.ocio.configuration, eye);
     if (!frame) return failure(std::move(frame));
     job.frame = std::move(*frame);
     Result<darkroom::WriteOptions> write = options.write.options();
     if (!write) return failure(std::move(write));
     job.write = std::move(*write);
     Result<std::optional<StreamDesc>> stream =
-        options.write.stream(options.out, job.frames_per_second.value_or(stream_frames_per_second));
+        options.write.stream(job.out, job.frames_per_second.value_or(stream_frames_per_second));
     if (!stream) return failure(std::move(stream));
     job.stream = *stream;
     if (job.stream)
@@ -391,12 +408,19 @@ class Develop {
     PassTimes pass_times_;
 };
 
-int run(const Options& options) {
-    Result<Job> job = job_of(options);
+int run(const Options& options, const std::string& eye) {
+    Result<Job> job = job_of(options, eye);
     if (!job) return fail(job.error());
     Develop develop(options, std::move(*job));
     const Result<> done = develop.run();
     return develop.exit_code(done ? exit_ok : fail(done.error()));
+}
+
+/// One eye after the other.
+int run(const Options& options) {
+    for (const std::string& eye : options.frame.eyes())
+        if (const int code = run(options, eye); code != exit_ok) return code;
+    return exit_ok;
 }
 
 }  // namespace
@@ -441,7 +465,7 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
     options->look.add_to(command, true, named);
     return {command, [options] { return run(*options); },
             [options]() -> Result<> {
-                const Result<Job> job = job_of(*options);
+                const Result<Job> job = job_of(*options, options->frame.eyes().front());
                 if (!job) return failure(job.error());
                 return {};
             }};

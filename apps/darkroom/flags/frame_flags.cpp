@@ -15,6 +15,12 @@ void FrameFlags::add_to(CommandFlags command) {
         .type_name("LAYER=NAME")
         .repeated()
         .group(group);
+    command
+        .add_option("--eye", eye_, "Of a stereo picture left, right, or another view; both with %V in OUT")
+        .type_name("NAME")
+        .group(group);
+    depth_scale_.add_to(command, "Metres for each unit of the depth").type_name("N").group(group);
+    command.add_flag("--depth-inverse", is_depth_inverse_, "The depth is 1 / distance, as Nuke's is").group(group);
     fov_.add_to(command, "Vertical field of view, where the file has no projection").type_name("DEGREES").group(group);
     command.add_option("--camera", camera_, "A camera file (TOML)").type_name("FILE").group(group);
     command
@@ -25,8 +31,13 @@ void FrameFlags::add_to(CommandFlags command) {
         .group(group);
 }
 
-Result<darkroom::FrameOptions> FrameFlags::options(const std::string& configuration) const {
-    darkroom::FrameOptions out;
+std::vector<std::string> FrameFlags::eyes() const {
+    return eye_ == "both" ? std::vector<std::string>{"left", "right"} : std::vector{eye_};
+}
+
+Result<darkroom::FrameOptions> FrameFlags::options(const std::string& configuration, const std::string& eye) const {
+    darkroom::FrameOptions out{.view = eye, .is_depth_inverse = is_depth_inverse_};
+    if (Result<> done = depth_scale_.read_to(out.depth_scale); !done) return failure(std::move(done));
     if (Result<> done = fov_.read_to(out.vertical_field_of_view); !done) return failure(std::move(done));
     for (const std::string& map : maps_)
         if (Result<> added = darkroom::add_mapping(out.names, map); !added) return failure(std::move(added));

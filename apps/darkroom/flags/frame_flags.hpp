@@ -13,18 +13,23 @@
 
 namespace app {
 
-/// --map, --fov, --camera, --input-space.
+/// --map, --eye, --depth-scale, --depth-inverse, --fov, --camera, --input-space.
 class FrameFlags {
   public:
     void add_to(CommandFlags command);
-    /// `configuration`: that --input-space names a space of; empty: none.
-    [[nodiscard]] darkroom::Result<darkroom::FrameOptions> options(const std::string& configuration) const;
+    /// `configuration`: that --input-space names a space of; empty: none. `eye`: one of eyes().
+    [[nodiscard]] darkroom::Result<darkroom::FrameOptions> options(const std::string& configuration,
+                                                                   const std::string& eye) const;
+    /// The views that are asked for, of which "both" are "left" and "right"; an empty one: that of the file.
+    [[nodiscard]] std::vector<std::string> eyes() const;
 
     [[nodiscard]] bool has_input_space() const { return !input_space_.empty(); }
 
   private:
     std::vector<std::string> maps_;
-    std::string camera_, input_space_;
+    std::string camera_, input_space_, eye_;
+    bool is_depth_inverse_ = false;
+    NumberFlag depth_scale_{"--depth-scale", {.least = 0, .most = 1e9, .is_open = true}};
     NumberFlag fov_{"--fov", {.least = 0, .most = 180, .is_open = true, .unit = "deg"}};
 };
 

@@ -140,7 +140,9 @@ class Probe {
             timeline_ = std::move(*timeline);
         }
         if (Result<> done = options_.ocio.check(options_.frame.has_input_space()); !done) return done;
-        Result<darkroom::FrameOptions> frame = options_.frame.options(options_.ocio.configuration);
+        const std::vector<std::string> eyes = options_.frame.eyes();
+        if (eyes.size() > 1) return user_error("--eye both: one is probed at a time");
+        Result<darkroom::FrameOptions> frame = options_.frame.options(options_.ocio.configuration, eyes.front());
         if (!frame) return failure(std::move(frame));
         if (const auto needs = add_needs(look_, input_.delta_time, timeline_, *frame); !needs)
             return failure(needs.error());

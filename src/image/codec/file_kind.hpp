@@ -21,6 +21,7 @@ enum class SampleKind { Integer8, Integer16, Integer32, Half, Float };
 struct FilePart {
     std::string name;
     std::string view;                   ///< of a stereo pair: "left", "right"; else empty
+    std::vector<std::string> views;     ///< that share the part; channels of the first have no name of a view
     std::string compression;            ///< "zip", as OpenEXR calls it; else empty
     std::vector<std::string> channels;  ///< by layer; red, green, blue, alpha first, the others by name
     std::vector<SampleKind> kinds;      ///< one per channel

@@ -147,6 +147,7 @@ FilePart describe(const OpenPart& part) {
                  .height = static_cast<std::uint32_t>(data.max.y - data.min.y + 1),
                  .display_width = static_cast<std::uint32_t>(display.max.x - display.min.x + 1),
                  .display_height = static_cast<std::uint32_t>(display.max.y - display.min.y + 1)};
+    if (Imf::hasMultiView(header)) out.views = Imf::multiView(header);
     for (const Channel& channel : part.channels) {
         out.channels.push_back(channel.name);
         out.kinds.push_back(kind_of(channel.stored.type));

@@ -8,18 +8,20 @@
 #include <OpenEXR/ImfOutputFile.h>
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace darkroom::test {
 
-/// All channels of a pixel, then the next, rows from the top.
+/// All channels of a pixel, then the next, rows from the top. `change`: what else the file says.
 inline void store_floats(const std::filesystem::path& path, const std::vector<std::string>& channels, std::size_t width,
-                         std::span<const float> values) {
+                         std::span<const float> values, const std::function<void(Imf::Header&)>& change = {}) {
     const std::size_t pixel = channels.size() * sizeof(float);
     const auto height = static_cast<int>(values.size() / channels.size() / width);
     Imf::Header header(static_cast<int>(width), height);
+    if (change) change(header);
     Imf::FrameBuffer buffer;
     for (std::size_t i = 0; i < channels.size(); ++i) {
         header.channels().insert(channels[i], Imf::Channel(Imf::FLOAT));

@@ -26,6 +26,7 @@ struct Layer {
     std::size_t part = 0;
     std::string prefix;
     std::string name;  // the prefix or, in files of several parts, the name of the part where the prefix is empty
+    std::string view;  // of a stereo picture, as far as it is known
     std::map<std::string, int> components;  // in lower case
 
     [[nodiscard]] int channel(std::string_view component) const {
@@ -43,6 +44,19 @@ struct Layer {
     }
     [[nodiscard]] bool is_plain() const { return prefix.empty(); }
 };
+
+struct ViewedPrefix {
+    std::string_view view, prefix;
+};
+
+// Of a part that views share: the view is the last component before the channel, or the first view where there is none
+// ("Technical Introduction to OpenEXR", section "Multi-View OpenEXR").
+ViewedPrefix split_view(const FilePart& part, std::string_view prefix) {
+    if (part.views.empty()) return {part.view, prefix};
+    const std::string_view last = prefix.substr(prefix.rfind('.') + 1);
+    if (std::find(part.views.begin(), part.views.end(), last) != part.views.end()) return {last, parent(prefix)};
+    return {prefix.empty() ? std::string_view(part.views.front()) : std::string_view(), prefix};
+}
 
 // Is what follows the word a number, and nothing but that?
 bool is_numbered(std::string_view name, std::string_view word) {
@@ -63,11 +77,12 @@ std::vector<Layer> layers_of(std::span<const FilePart> parts) {
         std::unordered_map<std::string_view, std::size_t> places;  // of this part's layers
         for (std::size_t i = 0; i < parts[part].channels.size(); ++i) {
             const std::string& channel = parts[part].channels[i];
-            const std::string_view prefix = parent(channel);
-            const auto [place, is_new] = places.try_emplace(prefix, layers.size());
+            const std::string_view whole = parent(channel);
+            const auto [place, is_new] = places.try_emplace(whole, layers.size());
             if (is_new) {
+                const auto [view, prefix] = split_view(parts[part], whole);
                 const std::string name(prefix.empty() && has_several ? parts[part].name : prefix);
-                layers.push_back(Layer{part, std::string(prefix), name, {}});
+                layers.push_back(Layer{part, std::string(prefix), name, std::string(view), {}});
             }
             layers[place->second].components.emplace(last_component(channel), static_cast<int>(i));
         }
@@ -102,8 +117,12 @@ std::string listed(const std::vector<std::string>& names) {
 
 class Finder {
   public:
-    Finder(std::span<const FilePart> parts, const LayerNames& names)
-        : parts_(parts), names_(names), part_count_(count_frame_parts(parts)), layers_(layers_of(parts)) {}
+    Finder(std::span<const FilePart> parts, const LayerNames& names, std::string view)
+        : parts_(parts),
+          names_(names),
+          view_(std::move(view)),
+          part_count_(count_frame_parts(parts)),
+          layers_(layers_of(parts)) {}
 
     Result<FrameChannels> find();
 
@@ -120,6 +139,7 @@ class Finder {
     template <class Accept>
     [[nodiscard]] const Layer* best(const Accept& accept) const;
 
+    [[nodiscard]] Result<> choose_view(FrameChannels& found);
     Result<> find_color(FrameChannels& found) const;
     Result<> find_depth(FrameChannels& found) const;
     Result<> find_normals(FrameChannels& found) const;
@@ -127,6 +147,7 @@ class Finder {
 
     std::span<const FilePart> parts_;
     const LayerNames& names_;
+    std::string view_;            // of the colour, once that is found
     std::size_t part_count_ = 0;  // without shadows
     std::vector<Layer> layers_;
     ChannelSet color_;
@@ -168,9 +189,7 @@ Result<ChannelSet> Finder::mapped_set(std::string_view what, const std::string& 
 }
 
 bool Finder::is_same_view(const Layer& layer) const {
-    const std::string& ours = parts_[color_.part].view;
-    const std::string& theirs = parts_[layer.part].view;
-    return ours.empty() || theirs.empty() || ours == theirs;
+    return view_.empty() || layer.view.empty() || view_ == layer.view;
 }
 
 // The first layer that is accepted, but one of the colour's own view layer before others.
@@ -183,6 +202,21 @@ const Layer* Finder::best(const Accept& accept) const {
         if (result == nullptr) result = &layer;
     }
     return result;
+}
+
+Result<> Finder::choose_view(FrameChannels& found) {
+    for (const Layer& layer : layers_)
+        if (!layer.view.empty() && std::find(found.views.begin(), found.views.end(), layer.view) == found.views.end())
+            found.views.push_back(layer.view);
+    std::string kept = view_;
+    if (kept.empty() && !parts_.empty() && !parts_.front().views.empty()) kept = parts_.front().views.front();
+    if (!view_.empty() && std::find(found.views.begin(), found.views.end(), view_) == found.views.end())
+        return user_error(fmt::format("has no view \"{}\"; it has {}", one_printable_line(view_),
+                                      found.views.empty() ? "one picture alone" : listed(found.views)));
+    if (kept.empty()) return {};
+    std::erase_if(layers_, [&](const Layer& layer) { return !layer.view.empty() && layer.view != kept; });
+    std::stable_partition(layers_.begin(), layers_.end(), [](const Layer& layer) { return !layer.view.empty(); });
+    return {};
 }
 
 Result<> Finder::find_color(FrameChannels& found) const {
@@ -231,6 +265,10 @@ Result<> Finder::find_color(FrameChannels& found) const {
     return {};
 }
 
+// Unreal Engine's Movie Render Queue names its pass FinalImageMovieRenderQueue_WorldDepth, in centimetres.
+bool is_of_unreal(std::string_view name) { return lower(name).ends_with("worlddepth"); }
+float scale_of_depth(std::string_view name) { return is_of_unreal(name) ? 0.01F : 1.0F; }
+
 Result<> Finder::find_depth(FrameChannels& found) const {
     if (const std::string* name = mapped("depth")) {
         constexpr std::array<std::string_view, 2> components{"z", "v"};
@@ -250,7 +288,25 @@ Result<> Finder::find_depth(FrameChannels& found) const {
         layer = best([&](const Layer& l) { return lower(l.name).find("depth") != std::string::npos && is_lone_z(l); });
     if (layer == nullptr)
         layer = best([&](const Layer& l) { return l.is_plain() && l.part == color_.part && is_lone_z(l); });
-    if (layer != nullptr) found.depth = layer->set("z");
+    if (layer != nullptr) {
+        found.depth = layer->set("z");
+        found.depth_scale = scale_of_depth(layer->name);
+        return {};
+    }
+    for (const std::string_view name : {"depth", "hitpz", "pz"}) {
+        const auto names_channel = [&](const Layer& l) { return l.is_plain() && l.channel(name) >= 0; };
+        const auto is_named = [&](const Layer& l) {
+            return last_component(l.name) == name && l.components.size() == 1;
+        };
+        if ((layer = best(names_channel)) == nullptr && (layer = best(is_named)) == nullptr) continue;
+        const int channel = names_channel(*layer) ? layer->channel(name) : layer->components.begin()->second;
+        found.depth = ChannelSet{layer->part, {channel, -1, -1, -1}, layer->name};
+        return {};
+    }
+    layer = best([](const Layer& l) { return is_of_unreal(l.name) && l.has("r"); });
+    if (layer == nullptr) return {};
+    found.depth = layer->set("r");
+    found.depth_scale = scale_of_depth(layer->name);
     return {};
 }
 
@@ -298,8 +354,12 @@ Result<FrameChannels> Finder::find() {
             return user_error(fmt::format("a mapping of \"{}\"; color, depth, normals and velocity can be mapped",
                                           one_printable_line(what)));
     FrameChannels found;
+    if (auto done = choose_view(found); !done) return failure(std::move(done));
     if (auto done = find_color(found); !done) return failure(std::move(done));
     color_ = found.color;
+    for (const Layer& layer : layers_)
+        if (view_.empty() && layer.part == color_.part && layer.name == color_.prefix) view_ = layer.view;
+    found.view = view_;
     if (auto done = find_depth(found); !done) return failure(std::move(done));
     if (auto done = find_normals(found); !done) return failure(std::move(done));
     if (auto done = find_velocity(found); !done) return failure(std::move(done));
@@ -322,8 +382,8 @@ std::vector<std::string> channel_names(std::span<const FilePart> parts) {
     return names;
 }
 
-Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names) {
-    return Finder(parts, names).find();
+Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names, const std::string& view) {
+    return Finder(parts, names, view).find();
 }
 
 }  // namespace darkroom

@@ -32,7 +32,10 @@ struct FrameChannels {
     std::optional<ChannelSet> depth;
     std::optional<ChannelSet> normals;
     std::optional<ChannelSet> velocity;
-    bool is_velocity_y_up = false;  ///< Blender's Vector pass
+    bool is_velocity_y_up = false;   ///< Blender's Vector pass
+    float depth_scale = 1;           ///< metres for each unit, as far as the layer's name tells
+    std::vector<std::string> views;  ///< of a stereo picture, if there are several
+    std::string view;                ///< that the colour is of; may be empty
 };
 
 /// What the caller calls the layers: "color", "depth", "normals" or "velocity" to a channel or to what is before the
@@ -46,8 +49,10 @@ using LayerNames = std::map<std::string, std::string, std::less<>>;
 /// Every channel of the file by its full name, part name first where the file has several parts.
 [[nodiscard]] std::vector<std::string> channel_names(std::span<const FilePart> parts);
 
-/// Parts with shadows are passed over, unless a mapping names one of their channels. An error names the channels that
-/// were found and what was looked for, without the file name.
-[[nodiscard]] Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names);
+/// Parts with shadows are passed over, unless a mapping names one of their channels. `view`: of a stereo picture;
+/// empty: the first that has a colour. An error names the channels that were found and what was looked for, without the
+/// file name.
+[[nodiscard]] Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names,
+                                                  const std::string& view = {});
 
 }  // namespace darkroom

@@ -67,7 +67,10 @@ inline constexpr std::uint64_t max_cascade_texels = std::uint64_t{1} << 30;
 
 struct FrameOptions {
     LayerNames names;                              ///< go before the known names; see add_mapping
+    std::string view;                              ///< of a stereo picture; empty: the first
     std::optional<double> vertical_field_of_view;  ///< degrees; goes before the file's projection
+    std::optional<double> depth_scale;             ///< metres for each unit of the file; goes before the known names
+    bool is_depth_inverse = false;                 ///< the file has 1 / distance, and 0 where nothing is
     /// See read_camera; goes before what the frame's own file says. Of a camera that is not the file's, the previous
     /// place and the distances are not known either.
     std::filesystem::path camera_file;

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "image/frame/frame_file.hpp"
 
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/primaries.hpp"
+#include "image/exr/test_exr.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {
@@ -120,6 +124,70 @@ TEST_F(ImageFrame, UnknownNameGivesTheNearest) {
     EXPECT_FALSE(add_mapping(options.names, "depht=Z"));
     EXPECT_FALSE(add_mapping(options.names, "depth"));
     EXPECT_FALSE(add_mapping(options.names, "depth="));
+}
+
+/// Two pixels of colour, and of a layer.
+FrameFile stored(const std::filesystem::path& path, const std::string& layer, std::array<float, 2> values,
+                 const FrameOptions& options = {}, const std::function<void(Imf::Header&)>& change = {}) {
+    const std::vector<float> all{0.1F, 0.2F, 0.3F, values[0], 0.4F, 0.5F, 0.6F, values[1]};
+    test::store_floats(path, {"R", "G", "B", layer}, 2, all, change);
+    Result<FrameFile> frame = read_frame(path, options);
+    EXPECT_TRUE(frame) << frame.error().text;
+    return frame ? std::move(*frame) : FrameFile{};
+}
+
+TEST_F(ImageFrame, DepthIsFoundByTheNamesOfRenderers) {
+    for (const char* const name : {"Z", "depth", "depth.Z", "Depth.V", "hitPz", "Pz", "pass.Pz.z"}) {
+        const FrameFile frame = stored(file("a.exr"), name, {3, 5});
+        ASSERT_TRUE(frame.depth) << name;
+        EXPECT_EQ(frame.depth->values, (std::vector<float>{3, 5})) << name;
+        EXPECT_TRUE(frame.warnings.empty()) << name;
+    }
+    for (const char* const name : {"N", "P", "mask.R", "hitPzx", "depth_id.R"})
+        EXPECT_FALSE(stored(file("a.exr"), name, {3, 5}).depth) << name;
+    const FrameFile unreal = stored(file("a.exr"), "FinalImageMovieRenderQueue_WorldDepth.R", {300, 500});
+    ASSERT_TRUE(unreal.depth);
+    EXPECT_FLOAT_EQ(unreal.depth->values[0], 3);
+    EXPECT_FLOAT_EQ(unreal.depth->values[1], 5);
+}
+
+TEST_F(ImageFrame, DepthHasAUnitADirectionAndAnInverse) {
+    const auto depth = [&](std::array<float, 2> values, const FrameOptions& options) {
+        return stored(file("a.exr"), "Z", values, options).depth->values;
+    };
+    EXPECT_EQ(depth({300, 1e12F}, {.depth_scale = 0.01}), (std::vector<float>{300 * 0.01F, sky_depth}));
+    EXPECT_EQ(depth({0.25F, 0}, {.is_depth_inverse = true}), (std::vector<float>{4, sky_depth}));
+    EXPECT_EQ(depth({0.25F, 0}, {.depth_scale = 2, .is_depth_inverse = true}), (std::vector<float>{8, sky_depth}));
+    EXPECT_EQ(depth({-3, -5}, {}), (std::vector<float>{3, 5})) << "along an axis toward the viewer";
+    EXPECT_EQ(depth({-3, 5}, {}), (std::vector<float>{-3, 5}));
+    // What is asked for goes before what the name tells.
+    EXPECT_EQ(stored(file("a.exr"), "WorldDepth.R", {300, 5}, {.depth_scale = 1}).depth->values[0], 300);
+    const auto by_nuke = [](Imf::Header& header) { header.insert("nuke/version", Imf::StringAttribute("13")); };
+    EXPECT_EQ(stored(file("a.exr"), "depth.Z", {0.25F, 0}, {}, by_nuke).warnings.size(), 1U);
+    EXPECT_TRUE(stored(file("a.exr"), "depth.Z", {0.25F, 0}, {.is_depth_inverse = true}, by_nuke).warnings.empty());
+    EXPECT_TRUE(stored(file("a.exr"), "depth.Z", {0.25F, 2}, {}, by_nuke).warnings.empty());
+}
+
+TEST_F(ImageFrame, ViewsThatShareAPartAreTold) {
+    const std::vector<float> values{1, 2, 3, 4, 5, 6, 7, 8};
+    test::store_floats(file("a.exr"), {"R", "G", "B", "depth.Z", "left.R", "left.G", "left.B", "depth.left.Z"}, 1,
+                       values, [](Imf::Header& header) {
+                           Imf::addMultiView(header, {"right", "left"});
+                       });
+    const auto expect = [&](const std::string& view, float red, float depth) {
+        const Result<FrameFile> frame = read_frame(file("a.exr"), {.view = view});
+        ASSERT_TRUE(frame) << frame.error().text;
+        EXPECT_EQ(frame->color.pixels[0], red) << view;
+        ASSERT_TRUE(frame->depth) << view;
+        EXPECT_EQ(frame->depth->values[0], depth) << view;
+        EXPECT_EQ(frame->warnings.size(), view.empty() ? 1U : 0U);
+    };
+    expect("", 1, 4);
+    expect("right", 1, 4);
+    expect("left", 5, 8);
+    const Result<FrameFile> other = read_frame(file("a.exr"), {.view = "up"});
+    ASSERT_FALSE(other);
+    EXPECT_TRUE(other.error().text.ends_with("has no view \"up\"; it has right, left")) << other.error().text;
 }
 
 TEST_F(ImageFrame, CameraComesFromAFileOrAFieldOfView) {
@@ -237,6 +305,18 @@ TEST_F(ImageFrameData, DataWindowIsPlacedInTheDisplayWindow) {
             }
     EXPECT_EQ(bordered->color.at(29, 40)[3], 0);
     EXPECT_EQ(bordered->color.at(30, 40)[3], 1);
+}
+
+TEST_F(ImageFrameData, EachViewOfManyPartsIsRead) {
+    const std::filesystem::path file = data_ / "exr/beachball/multipart.0001.exr";
+    const auto center = [&](const std::string& view) {
+        const Result<FrameFile> frame = read_frame(file, {.view = view});
+        EXPECT_TRUE(frame) << frame.error().text;
+        return *std::max_element(frame->depth->values.begin(), frame->depth->values.end(),
+                                 [](float a, float b) { return (a < sky_depth ? a : 0) < (b < sky_depth ? b : 0); });
+    };
+    EXPECT_NEAR(center("right"), 10.9219, 1e-4);
+    EXPECT_NEAR(center("left"), 10.2578, 1e-4);
 }
 
 TEST_F(ImageFrameData, PartsOfOneViewBelongTogether) {

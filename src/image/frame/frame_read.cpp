@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <Imath/half.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -255,9 +256,29 @@ Result<> FrameReader::make_depth() {
     return {};
 }
 
+// Turns what the file has into metres along the view axis. Where the numbers are places on an axis that points at the
+// viewer, all are negative.
 void FrameReader::finish_depth() {
     if (!frame_.depth) return;
-    for (float& distance : frame_.depth->values) {
+    std::vector<float>& values = frame_.depth->values;
+    const auto scale = static_cast<float>(options_.depth_scale.value_or(found_.depth_scale));
+    bool has_zero = false, has_negative = false, has_positive = false;
+    for (float& value : values) {
+        if (!std::isfinite(value) || value >= 1e9f) continue;
+        has_zero |= value == 0;
+        has_negative |= value < 0;
+        has_positive |= value > 0;
+        if (options_.is_depth_inverse) value = value == 0 ? sky_depth : 1 / value;
+        if (value < 1e9f) value *= scale;
+    }
+    if (has_negative && !has_positive)
+        for (float& value : values)
+            if (value < 0 && std::isfinite(value)) value = -value;
+    if (has_zero && !options_.is_depth_inverse && decoder_.has_attribute_starting(found_.color.part, "nuke/"))
+        frame_.warnings.emplace_back(
+            "depth that Nuke wrote has zeros and is taken as a distance; where it is 1 / distance, --depth-inverse "
+            "says so");
+    for (float& distance : values) {
         if (distance < 1e9f && std::isfinite(distance)) continue;
         frame_.counts.not_finite_other += std::isnan(distance) || distance == -std::numeric_limits<float>::infinity();
         distance = sky_depth;
@@ -417,9 +438,12 @@ void FrameReader::read_time_of_file() {
 Result<FrameFile> FrameReader::read() {
     frame_.kind = decoder_.kind();
     frame_.channels = channel_names(decoder_.parts());
-    auto found = find_channels(decoder_.parts(), options_.names);
+    auto found = find_channels(decoder_.parts(), options_.names, options_.view);
     if (!found) return failure(std::move(found));
     found_ = std::move(*found);
+    if (options_.view.empty() && found_.views.size() > 1)
+        frame_.warnings.push_back(fmt::format("has the views {}: {} is developed, --eye says which",
+                                              fmt::join(found_.views, ", "), found_.view));
     is_vray_ = decoder_.has_attribute_starting(found_.color.part, "vrayInfo/");
     frame_.attributes = decoder_.attributes(found_.color.part);
     if (auto done = make_color(); !done) return failure(std::move(done));
