@@ -20,6 +20,12 @@ using nlohmann::json;
 constexpr std::size_t most_missing_bytes = std::size_t{1} << 20;
 constexpr std::size_t most_file_bytes = std::size_t{1} << 32;
 
+// EXT_meshopt_compression: what has no bytes, since all of them are unpacked from others.
+bool is_fallback(const json& buffer) {
+    const auto extension = json::json_pointer("/extensions/EXT_meshopt_compression/fallback");
+    return buffer.contains(extension) && buffer.at(extension).get<bool>();
+}
+
 }  // namespace
 
 Result<Document> Document::open(const std::filesystem::path& path, Budget budget, NamedFiles named_files) {
@@ -44,6 +50,7 @@ Result<Document> Document::open(const std::filesystem::path& path, Budget budget
         if (!loaded) return failure(std::move(loaded));
         const json images = root.contains("images") ? std::move(root["images"]) : json::array();
         root.erase("images");
+        if (root.contains("bufferViews")) document.unpack_views(root["bufferViews"]);
         if (auto parsed = document.parse(root); !parsed) return failure(std::move(parsed));
         document.unpack_meshes();
         document.load_images(images, folder);
@@ -110,6 +117,7 @@ Result<> Document::load_buffers(json& root, std::span<const std::byte> binary, b
             continue;
         }
         const auto size = buffers[i]["byteLength"].get<std::size_t>();
+        if (is_fallback(buffers[i]) && (i != 0 || !has_binary)) continue;
         is_binary_used = is_binary_used || i == 0;
         if (i != 0 || !has_binary) {
             // Its data were to come from elsewhere, which is allowed; without them they are zeros.
@@ -161,6 +169,7 @@ Result<> Document::parse(json& root) {
         const tinygltf::BufferView& view = model_.bufferViews[i];
         const std::string pointer = fmt::format("/bufferViews/{}", i);
         if (static_cast<std::size_t>(view.buffer) >= buffers_.size() || !faults_.check(pointer)) continue;
+        if (unpacked_views_.contains(i)) continue;
         if (const auto checked = faults_.check(fmt::format("/buffers/{}", view.buffer)); !checked) {
             faults_.add(pointer, checked.error().text);
             continue;
@@ -239,6 +248,8 @@ bool Document::uses_extension(std::string_view name) const {
 Result<std::span<const std::byte>> Document::view(int index) {
     if (auto checked = faults_.check(fmt::format("/bufferViews/{}", index)); !checked)
         return failure(std::move(checked));
+    if (const auto found = unpacked_views_.find(static_cast<std::size_t>(index)); found != unpacked_views_.end())
+        return found->second;
     const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
     return buffers_[static_cast<std::size_t>(view.buffer)].subspan(view.byteOffset, view.byteLength);
 }

@@ -81,6 +81,8 @@ class Document {
     [[nodiscard]] Result<std::span<const std::byte>> file_of_buffer(const std::filesystem::path& path,
                                                                     std::size_t most);
     [[nodiscard]] Result<> parse(nlohmann::json& root);
+    void unpack_views(nlohmann::json& views);
+    [[nodiscard]] Result<> unpack_view(const nlohmann::json& view, std::size_t index);
     void unpack_meshes();
     [[nodiscard]] Result<> unpack_primitive(const tinygltf::Primitive& primitive, const std::string& pointer);
     [[nodiscard]] Result<std::span<const std::byte>> view(int index);
@@ -97,6 +99,7 @@ class Document {
     std::vector<std::byte> zeros_;  ///< what buffers that are nowhere share
     std::vector<std::span<const std::byte>> buffers_;
     std::deque<std::vector<std::byte>> unpacked_;
+    std::map<std::size_t, std::span<const std::byte>> unpacked_views_;
     std::vector<std::optional<Layout>> layouts_;
     std::map<int, int> packed_in_;  ///< accessors that have been unpacked, and the bufferView they were in
     std::vector<ImageSource> images_;

@@ -92,10 +92,26 @@ inline constexpr Property text(std::string_view name, bool is_required = false) 
 }
 inline constexpr double endless = std::numeric_limits<double>::infinity();
 
-inline constexpr std::array buffer_table{text("uri"), integer("byteLength", 1, endless, true), text("name")};
-inline constexpr std::array view_table{index_of("buffer", "buffers", true), integer("byteOffset", 0, endless),
-                                       integer("byteLength", 1, endless, true), integer("byteStride", 4, 252),
-                                       loose_integer("target", 34962, 34963)};
+inline constexpr std::array fallback_table{Property{.name = "fallback", .kind = Kind::Boolean}};
+inline constexpr Definition fallback_definition{fallback_table};
+inline constexpr std::array buffer_extensions_table{object_of("EXT_meshopt_compression", fallback_definition)};
+inline constexpr Definition buffer_extensions{buffer_extensions_table};
+inline constexpr std::array buffer_table{text("uri"), integer("byteLength", 1, endless, true), text("name"),
+                                         object_of("extensions", buffer_extensions)};
+inline constexpr std::array meshopt_table{index_of("buffer", "buffers", true),
+                                          integer("byteOffset", 0, endless),
+                                          integer("byteLength", 1, endless, true),
+                                          integer("byteStride", 1, 256, true),
+                                          integer("count", 1, endless, true),
+                                          text("mode", true),
+                                          text("filter")};
+inline constexpr Definition meshopt_definition{meshopt_table};
+inline constexpr std::array view_extensions_table{object_of("EXT_meshopt_compression", meshopt_definition)};
+inline constexpr Definition view_extensions{view_extensions_table};
+inline constexpr std::array view_table{
+    index_of("buffer", "buffers", true),     integer("byteOffset", 0, endless),
+    integer("byteLength", 1, endless, true), integer("byteStride", 4, 252),
+    loose_integer("target", 34962, 34963),   object_of("extensions", view_extensions)};
 
 inline constexpr std::array sparse_indices_table{index_of("bufferView", "bufferViews", true), integer("byteOffset"),
                                                  integer("componentType", 5121, 5125, true)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// KHR_draco_mesh_compression (Khronos Group, 2018).
+// KHR_draco_mesh_compression (Khronos Group, 2018) and EXT_meshopt_compression (2021).
 #include <fmt/format.h>
 
 #include <array>
@@ -7,11 +7,26 @@
 
 #include "scene/gltf/document.hpp"
 #include "scene/packed/draco.hpp"
+#include "scene/packed/meshopt.hpp"
 
 namespace darkroom::scene::gltf {
 namespace {
 
 constexpr const char* draco_extension = "KHR_draco_mesh_compression";
+constexpr const char* meshopt_extension = "EXT_meshopt_compression";
+
+Result<MeshoptDesc> meshopt_desc(const nlohmann::json& extension) {
+    const auto mode = meshopt_mode(extension["mode"].get<std::string>());
+    if (!mode) return failure(mode.error());
+    const auto filter = meshopt_filter(extension.value("filter", "NONE"));
+    if (!filter) return failure(filter.error());
+    const MeshoptDesc desc{.mode = *mode,
+                           .filter = *filter,
+                           .count = extension["count"].get<std::uint64_t>(),
+                           .stride = extension["byteStride"].get<std::uint64_t>()};
+    if (auto checked = check_meshopt(desc); !checked) return failure(std::move(checked));
+    return desc;
+}
 
 DracoNumber draco_number(int component_type) {
     switch (component_type) {
@@ -31,6 +46,47 @@ DracoNumber draco_number(int component_type) {
 }
 
 }  // namespace
+
+void Document::unpack_views(nlohmann::json& views) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const std::string pointer = fmt::format("/bufferViews/{}", i);
+        if (faults_.check(pointer))
+            if (auto done = unpack_view(views[i], i); !done) faults_.add(pointer, done.error().text);
+        views[i].erase("extensions");
+    }
+}
+
+Result<> Document::unpack_view(const nlohmann::json& view, std::size_t index) {
+    if (!view.contains("extensions") || !view["extensions"].contains(meshopt_extension)) return {};
+    const std::string pointer = fmt::format("/bufferViews/{}", index);
+    const std::string place = fmt::format("{}/extensions/{}", pointer, meshopt_extension);
+    const nlohmann::json& extension = view["extensions"][meshopt_extension];
+    const auto desc = meshopt_desc(extension);
+    if (!desc) return user_error(fmt::format("{}/{}", place, desc.error().text));
+
+    const auto buffer = extension["buffer"].get<std::size_t>();
+    if (auto checked = faults_.check(fmt::format("/buffers/{}", buffer)); !checked) return checked;
+    const std::size_t offset = extension.value("byteOffset", std::size_t{0});
+    const auto packed_size = extension["byteLength"].get<std::size_t>();
+    const std::size_t size = buffers_[buffer].size();
+    if (offset > size || packed_size > size - offset)
+        return user_error(
+            fmt::format("{}: bytes {} to {}, buffer {} has {}", place, offset, offset + packed_size, buffer, size));
+
+    if (const auto taken = budget_.take(place, "elements", desc->count, desc->stride); !taken) return taken;
+    const std::uint64_t bytes = desc->count * desc->stride;
+    if (const auto said = view["byteLength"].get<std::uint64_t>(); said != bytes)
+        return user_error(fmt::format("{}/byteLength: {}, {} elements of {} bytes are packed", pointer, said,
+                                      desc->count, desc->stride));
+    if (const std::uint64_t stride = view.value("byteStride", desc->stride); stride != desc->stride)
+        return user_error(
+            fmt::format("{}/byteStride: {}, that of what is packed is {}", pointer, stride, desc->stride));
+    auto unpacked = unpack_meshopt(buffers_[buffer].subspan(offset, packed_size), *desc);
+    if (!unpacked) return user_error(fmt::format("{}: {}", place, unpacked.error().text));
+    budget_.add_unpacked(packed_size, bytes);
+    unpacked_views_[index] = unpacked_.emplace_back(std::move(*unpacked));
+    return {};
+}
 
 // A fault is one of the mesh.
 void Document::unpack_meshes() {
