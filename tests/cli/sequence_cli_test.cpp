@@ -123,7 +123,8 @@ TEST_F(CliSequence, EachEyeHasItsPicture) {
     const Outcome none = run_lines("darkroom develop f.0001.exr --eye left -o a.png");
     EXPECT_EQ(none.code, 1);
     EXPECT_EQ(none.err, "darkroom: f.0001.exr: has no view \"left\"; it has one picture alone\n");
-    const Outcome scaled = run_lines("darkroom develop f.0001.exr --depth-scale 0.01 --depth-inverse -o a.png");
+    const Outcome scaled =
+        run_lines("darkroom develop f.0001.exr --depth-scale 0.01 --depth-inverse --overscan -o a.png");
     EXPECT_EQ(scaled.code, 0) << scaled.err;
 }
 

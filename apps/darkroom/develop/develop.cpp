@@ -159,6 +159,8 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     if (options.frame.eyes().size() > 1 && job.out == options.out)
         return user_error(fmt::format("-o {}: two eyes need a name with %V or %v", darkroom::printable(options.out)));
     if (Result<> done = options.run.start_report(); !done) return failure(std::move(done));
+    if (options.keeps_layers && options.frame.keeps_overscan)
+        return user_error("--overscan: --keep-layers keeps those of the display window alone");
     if (options.is_reference && options.run.has_timings)
         return user_error("--timings: the references do not run on the device");
     if (options.time.is_given() && options.frames_per_second.is_given())
@@ -353,7 +355,7 @@ class Develop {
         }
         item.extent = item.picture.extent;
         item.lights = {};
-        item.frame = {.attributes = std::move(item.frame.attributes)};
+        item.frame = {.display = item.frame.display, .attributes = std::move(item.frame.attributes)};
         return {};
     }
 
@@ -365,6 +367,7 @@ class Develop {
         }
         darkroom::WriteOptions options = job_.write;
         options.attributes = items_[i].frame.attributes;
+        if (!job_.size) options.display = items_[i].frame.display;
         if (options_.keeps_layers)
             if (Result<> done = keep_layers(i, options); !done) return done;
         return write(job_.steps[i].output, std::move(items_[i].picture), options);
@@ -455,9 +458,7 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
         .add_option("--frames", options->frames, "Of the inputs those with these numbers: 8, 1-100, 1-100x2, 1,5,9-12")
         .type_name("A-B");
     options->time.add_to(command, "For effects that move; default: what the frame says, or 0").type_name("S");
-    options->frames_per_second
-        .add_to(command, "The time of a frame is its number / N, whatever the frame says; motion is that of 1 / N s")
-        .type_name("N");
+    options->frames_per_second.add_to(command, "A frame is at its number / N, motion that of 1 / N s").type_name("N");
     options->frame.add_to(command);
     options->write.add_to(command);
     options->run.add_to(command);

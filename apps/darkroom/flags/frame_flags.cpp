@@ -15,9 +15,10 @@ void FrameFlags::add_to(CommandFlags command) {
         .type_name("LAYER=NAME")
         .repeated()
         .group(group);
-    command
-        .add_option("--eye", eye_, "Of a stereo picture left, right, or another view; both with %V in OUT")
+    command.add_option("--eye", eye_, "Of a stereo picture left, right, or another view; both with %V in OUT")
         .type_name("NAME")
+        .group(group);
+    command.add_flag("--overscan", keeps_overscan, "Develops all pixels, those outside of the display window, too")
         .group(group);
     depth_scale_.add_to(command, "Metres for each unit of the depth").type_name("N").group(group);
     command.add_flag("--depth-inverse", is_depth_inverse_, "The depth is 1 / distance, as Nuke's is").group(group);
@@ -36,7 +37,7 @@ std::vector<std::string> FrameFlags::eyes() const {
 }
 
 Result<darkroom::FrameOptions> FrameFlags::options(const std::string& configuration, const std::string& eye) const {
-    darkroom::FrameOptions out{.view = eye, .is_depth_inverse = is_depth_inverse_};
+    darkroom::FrameOptions out{.view = eye, .is_depth_inverse = is_depth_inverse_, .keeps_overscan = keeps_overscan};
     if (Result<> done = depth_scale_.read_to(out.depth_scale); !done) return failure(std::move(done));
     if (Result<> done = fov_.read_to(out.vertical_field_of_view); !done) return failure(std::move(done));
     for (const std::string& map : maps_)

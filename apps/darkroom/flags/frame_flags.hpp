@@ -13,7 +13,7 @@
 
 namespace app {
 
-/// --map, --eye, --depth-scale, --depth-inverse, --fov, --camera, --input-space.
+/// --map, --eye, --overscan, --depth-scale, --depth-inverse, --fov, --camera, --input-space.
 class FrameFlags {
   public:
     void add_to(CommandFlags command);
@@ -22,6 +22,8 @@ class FrameFlags {
                                                                    const std::string& eye) const;
     /// The views that are asked for, of which "both" are "left" and "right"; an empty one: that of the file.
     [[nodiscard]] std::vector<std::string> eyes() const;
+
+    bool keeps_overscan = false;
 
     [[nodiscard]] bool has_input_space() const { return !input_space_.empty(); }
 

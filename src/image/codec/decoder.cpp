@@ -70,6 +70,8 @@ std::uint32_t Decoder::band_rows(std::size_t part, std::size_t row_bytes) const 
     return std::max(unit, fitting / unit * unit);
 }
 
+void Decoder::set_display_window(const PixelWindow& window) { state_->opened.source->set_display_window(window); }
+
 Result<> Decoder::read(std::size_t part, std::uint32_t first, std::uint32_t count, const Sink& sink) {
     const FilePart& of = parts()[part];
     const std::size_t row_values = std::size_t{count} * of.width;

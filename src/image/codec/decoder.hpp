@@ -52,6 +52,8 @@ class Decoder {
     /// Puts samples of the data window straight into their places: see PictureSource::read_rows.
     [[nodiscard]] Result<> read_rows(std::size_t part, std::uint32_t row, std::uint32_t rows,
                                      std::span<const SamplePlace> places);
+    /// See PictureSource::set_display_window.
+    void set_display_window(const PixelWindow& window);
     /// How many rows of a part are best read together, if `row_bytes` are kept of each.
     [[nodiscard]] std::uint32_t band_rows(std::size_t part, std::size_t row_bytes) const;
 

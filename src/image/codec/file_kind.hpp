@@ -18,6 +18,12 @@ enum class SampleKind { Integer8, Integer16, Integer32, Half, Float };
 [[nodiscard]] std::size_t size_of(SampleKind kind);
 
 /// One picture in a file. Only OpenEXR has several, and only there the data window differs from the display window.
+/// A rectangle of pixels.
+struct PixelWindow {
+    int x = 0, y = 0;
+    std::uint32_t width = 0, height = 0;
+};
+
 struct FilePart {
     std::string name;
     std::string view;                   ///< of a stereo pair: "left", "right"; else empty

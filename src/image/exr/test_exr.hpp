@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -25,8 +26,11 @@ inline void store_floats(const std::filesystem::path& path, const std::vector<st
     Imf::FrameBuffer buffer;
     for (std::size_t i = 0; i < channels.size(); ++i) {
         header.channels().insert(channels[i], Imf::Channel(Imf::FLOAT));
-        buffer.insert(channels[i], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(&values[i])),
-                                              pixel, width * pixel));
+        // Slices begin at the origin of the file's coordinates, which need not lie in the window.
+        const auto first = reinterpret_cast<std::uintptr_t>(&values[i]) -
+                           static_cast<std::size_t>(header.dataWindow().min.x) * pixel -
+                           static_cast<std::size_t>(header.dataWindow().min.y) * width * pixel;
+        buffer.insert(channels[i], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(first), pixel, width * pixel));
     }
     Imf::OutputFile output(path.c_str(), header);
     output.setFrameBuffer(buffer);

@@ -80,6 +80,9 @@ struct FrameOptions {
     std::shared_ptr<const ColorChain> input_chain;  ///< goes before that: from the file's numbers to linear Rec. 709
     /// False: so do the depths of cascades, which are most of a file.
     bool has_shadow_depths = true;
+    /// The picture is as large as the data window where that is larger than the display window, and the camera sees as
+    /// much more; see FrameFile::display.
+    bool keeps_overscan = false;
     /// Layers that are halves in the file, and are what they should be, come in FrameFile::halves.
     bool keeps_halves = false;
     std::size_t max_threads = 0;  ///< that decode, 0: as many as there are processors
@@ -108,6 +111,8 @@ struct FrameFile {
     /// Scene-linear Rec. 709. As large as the display window; pixels outside the data window are 0, alpha included.
     /// Alpha is carried as the file has it: colour is neither multiplied nor divided by it.
     Picture color;
+    /// Where overscan was kept: the display window, in pixels of this picture.
+    std::optional<PixelWindow> display;
     bool has_alpha = false;            ///< false: alpha is 1 wherever there are data
     std::optional<Plane<1>> depth;     ///< distance along the view axis; sky_depth where there is no surface
     std::optional<Plane<3>> normals;   ///< world space; 0 where there is no surface

@@ -10,6 +10,7 @@
 
 #include "core/primaries.hpp"
 #include "image/exr/test_exr.hpp"
+#include "image/picture/write.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {
@@ -166,6 +167,51 @@ TEST_F(ImageFrame, DepthHasAUnitADirectionAndAnInverse) {
     EXPECT_EQ(stored(file("a.exr"), "depth.Z", {0.25F, 0}, {}, by_nuke).warnings.size(), 1U);
     EXPECT_TRUE(stored(file("a.exr"), "depth.Z", {0.25F, 0}, {.is_depth_inverse = true}, by_nuke).warnings.empty());
     EXPECT_TRUE(stored(file("a.exr"), "depth.Z", {0.25F, 2}, {}, by_nuke).warnings.empty());
+}
+
+// What is seen at a pixel of the display window is seen there in the whole picture.
+TEST_F(ImageFrame, OverscanIsKeptWhereAsked) {
+    std::vector<float> values;
+    for (int i = 0; i < 12 * 10; ++i) {
+        for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(i));
+        values.push_back(2);
+    }
+    test::store_floats(file("a.exr"), {"R", "G", "B", "Z"}, 12, values, [](Imf::Header& header) {
+        header.dataWindow() = {{-3, -2}, {8, 7}};
+        header.displayWindow() = {{0, 0}, {7, 5}};
+    });
+    const Result<FrameFile> usual = read_frame(file("a.exr"), {.vertical_field_of_view = 50});
+    const Result<FrameFile> whole = read_frame(file("a.exr"), {.vertical_field_of_view = 50, .keeps_overscan = true});
+    ASSERT_TRUE(usual && whole);
+    EXPECT_FALSE(usual->display);
+    EXPECT_EQ(usual->color.width, 8U);
+    ASSERT_TRUE(whole->display);
+    EXPECT_EQ(whole->color.width, 12U);
+    EXPECT_EQ(whole->color.height, 10U);
+    for (std::uint32_t y = 0; y < 6; ++y)
+        for (std::uint32_t x = 0; x < 8; ++x)
+            EXPECT_EQ(usual->color.at(x, y)[0], whole->color.at(x + 3, y + 2)[0]) << x << ", " << y;
+    EXPECT_EQ(whole->color.at(11, 9)[0], 119);
+    const auto pixel = [](const FrameFile& frame, const std::array<float, 3>& place) {
+        std::array<double, 4> clip{};
+        for (std::size_t row = 0; row < 4; ++row)
+            clip[row] = (*frame.camera.projection)[row] * place[0] + (*frame.camera.projection)[4 + row] * place[1] +
+                        (*frame.camera.projection)[8 + row] * place[2] + (*frame.camera.projection)[12 + row];
+        return std::pair((clip[0] / clip[3] + 1) / 2 * frame.color.width,
+                         (clip[1] / clip[3] + 1) / 2 * frame.color.height);
+    };
+    const auto [x, y] = pixel(*usual, {0.3F, -0.2F, -1.5F});
+    const auto [whole_x, whole_y] = pixel(*whole, {0.3F, -0.2F, -1.5F});
+    EXPECT_NEAR(whole_x, x + 3, 1e-5);
+    EXPECT_NEAR(whole_y, y + 2, 1e-5);
+
+    ASSERT_TRUE(write_picture(file("b.exr"), whole->color, {.display = whole->display}));
+    const Result<FrameFile> again = read_frame(file("b.exr"), {.keeps_overscan = true});
+    ASSERT_TRUE(again && again->display);
+    EXPECT_EQ(again->color.pixels, whole->color.pixels);
+    EXPECT_EQ(again->display->x, 3);
+    EXPECT_EQ(again->display->height, 6U);
+    EXPECT_EQ(read_frame(file("b.exr"))->color.pixels, usual->color.pixels);
 }
 
 TEST_F(ImageFrame, ViewsThatShareAPartAreTold) {

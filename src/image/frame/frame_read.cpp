@@ -10,6 +10,7 @@
 
 #include "image/color/configuration.hpp"
 #include "image/color/convert_picture.hpp"
+#include "image/exr/check.hpp"
 #include "image/frame/camera_check.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
@@ -81,6 +82,8 @@ class FrameReader {
     Result<FrameFile> read();
 
   private:
+    Result<> keep_overscan();
+    void widen_camera();
     Result<> make_color();
     Result<> make_depth();
     Result<> make_normals();
@@ -201,6 +204,46 @@ void FrameReader::find_conversion() {
     if (!to_rec709_) frame_.warnings.emplace_back("the chromaticities span no color space: taken as linear Rec. 709");
     // Not even the sign of a zero may change in a picture that is in our primaries.
     if (to_rec709_ == ColorMatrix{1, 0, 0, 0, 1, 0, 0, 0, 1}) to_rec709_.reset();
+}
+
+// The display window and the data window of the colour, whichever reaches further on each side.
+Result<> FrameReader::keep_overscan() {
+    const FilePart& of = part(found_.color);
+    const int left = std::min(0, of.x), top = std::min(0, of.y);
+    const auto reach = [](std::uint32_t display, int first, std::uint32_t size) {
+        return std::max<std::int64_t>(display, std::int64_t{first} + size);
+    };
+    const std::int64_t width = reach(of.display_width, of.x, of.width) - left;
+    const std::int64_t height = reach(of.display_height, of.y, of.height) - top;
+    if (width == of.display_width && height == of.display_height) return {};
+    const std::int64_t most =
+        4 * (std::int64_t{of.display_width} * of.display_height + std::int64_t{of.width} * of.height);
+    if (width > max_picture_side || height > max_picture_side || width * height > most)
+        return user_error(
+            fmt::format("the display window and the data window span {}x{} pixels; {} a side, and four times "
+                        "the pixels of both, are allowed",
+                        width, height, max_picture_side));
+    frame_.display = PixelWindow{-left, -top, of.display_width, of.display_height};
+    decoder_.set_display_window({left, top, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)});
+    return {};
+}
+
+// From the clip space of the display window to that of the whole picture.
+void FrameReader::widen_camera() {
+    if (!frame_.display) return;
+    const auto [x, y, width, height] = *frame_.display;
+    const double whole_x = frame_.color.width, whole_y = frame_.color.height;
+    const double scale_x = width / whole_x, scale_y = height / whole_y;
+    const double shift_x = (2.0 * x + width - whole_x) / whole_x, shift_y = (2.0 * y + height - whole_y) / whole_y;
+    for (std::optional<Matrix>* const projection : {&frame_.camera.projection, &frame_.camera.previous_projection}) {
+        if (!*projection) continue;
+        for (std::size_t column = 0; column < 16; column += 4) {
+            float* const of = &(**projection)[column];
+            of[0] = static_cast<float>(of[0] * scale_x + of[3] * shift_x);
+            of[1] = static_cast<float>(of[1] * scale_y + of[3] * shift_y);
+        }
+    }
+    frame_.camera.vertical_field_of_view.reset();
 }
 
 Result<> FrameReader::make_color() {
@@ -372,7 +415,8 @@ void FrameReader::finish_velocity() {
 
 Result<> FrameReader::read_camera_of_file() {
     FrameCamera& camera = frame_.camera;
-    const double aspect = static_cast<double>(frame_.color.width) / frame_.color.height;
+    const PixelWindow seen = frame_.display.value_or(PixelWindow{0, 0, frame_.color.width, frame_.color.height});
+    const double aspect = static_cast<double>(seen.width) / seen.height;
     camera.world_to_camera = world_to_camera();
     camera.projection = matrix("darkroom:projection");
     camera.previous_world_to_camera = matrix("darkroom:previousWorldToCamera");
@@ -421,6 +465,7 @@ Result<> FrameReader::read_camera_of_file() {
     }
     if (!camera.projection && camera.vertical_field_of_view)
         camera.projection = perspective(*camera.vertical_field_of_view, aspect);
+    widen_camera();
     // What a flag has replaced may have been anything.
     return check_camera(camera);
 }
@@ -446,6 +491,8 @@ Result<FrameFile> FrameReader::read() {
                                               fmt::join(found_.views, ", "), found_.view));
     is_vray_ = decoder_.has_attribute_starting(found_.color.part, "vrayInfo/");
     frame_.attributes = decoder_.attributes(found_.color.part);
+    if (options_.keeps_overscan)
+        if (auto done = keep_overscan(); !done) return failure(std::move(done));
     if (auto done = make_color(); !done) return failure(std::move(done));
     if (auto done = make_depth(); !done) return failure(std::move(done));
     if (auto done = make_normals(); !done) return failure(std::move(done));

@@ -83,6 +83,13 @@ Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::
 
 }  // namespace
 
+void PictureSource::set_display_window(const PixelWindow& window) {
+    for (FilePart& part : parts_) {
+        part.x -= window.x, part.y -= window.y;
+        part.display_width = window.width, part.display_height = window.height;
+    }
+}
+
 Result<> PictureSource::read_rows(std::size_t part, std::uint32_t row, std::uint32_t rows,
                                   std::span<const SamplePlace> places) {
     if (places.empty() || rows == 0) return {};

@@ -45,6 +45,8 @@ class PictureSource {
                                      std::span<const SamplePlace> places);
     /// Rows that are read together without decoding anything twice: a multiple of this many.
     [[nodiscard]] virtual std::uint32_t row_unit(std::size_t part) const = 0;
+    /// Makes this the display window of all parts, in pixels of the one that they had.
+    void set_display_window(const PixelWindow& window);
     /// Holds the bytes that it reads for as long as it lives, where they are not its caller's.
     void keep(std::vector<std::byte> bytes) { bytes_ = std::move(bytes); }
 

@@ -177,6 +177,12 @@ Result<> add_layers(const std::filesystem::path& path, const Picture& picture, c
 Result<> write_floats(const std::filesystem::path& path, const Picture& picture, SampleKind samples,
                       const WriteOptions& options) {
     ExrPart part{.header = exr_header(picture.width, picture.height, options.compression)};
+    if (options.display) {
+        const auto [x, y, width, height] = *options.display;
+        const Imath::V2i first(-x, -y), size(static_cast<int>(width), static_cast<int>(height));
+        part.header.dataWindow() = {first, first + part.header.dataWindow().max};
+        part.header.displayWindow() = {{0, 0}, size - Imath::V2i(1)};
+    }
     add_rec709(part.header);
     if (options.attributes) options.attributes->add_to(part.header);
     constexpr std::array names{"R", "G", "B", "A"};

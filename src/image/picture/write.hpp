@@ -28,7 +28,10 @@ struct WriteOptions {
     /// dwaa, dwab. Empty: PNG fast, the others zip.
     std::string compression;
     std::shared_ptr<const ExrAttributes> attributes;  ///< of the frame that the picture was made of: into OpenEXR files
-    std::shared_ptr<const KeptLayers> layers;         ///< of that frame, into OpenEXR files of its size; null: none
+    /// The display window, in pixels of the picture, which becomes the data window of OpenEXR files; nothing: both are
+    /// it.
+    std::optional<PixelWindow> display;
+    std::shared_ptr<const KeptLayers> layers;  ///< of that frame, into OpenEXR files of its size; null: none
     /// For pictures of linear Rec. 709: integer files get what this makes of it, and do not say that they are sRGB.
     std::shared_ptr<const ColorChain> view;
     std::size_t max_threads = 0;  ///< that compress, 0: as many as there are processors
