@@ -256,37 +256,6 @@ TEST_F(CliBombs, Pictures) {
     expect_refused_cheaply("png.png", "its pixels need 2147483648 bytes", usual);
 }
 
-/// A file of OpenEXR of a pixel a part, whose layers have a channel each.
-std::string exr_of_layers(std::size_t parts, int layers) {
-    const auto attribute = [](const std::string& name, const std::string& type, const std::string& value) {
-        return name + '\0' + type + '\0' + little_endian(static_cast<std::int32_t>(value.size())) + value;
-    };
-    std::string channels;
-    for (int i = 0; i < layers; ++i)
-        channels += fmt::format("L{:04}.X", i) + '\0' + little_endian(1U) + little_endian(0U) + little_endian(1U) +
-                    little_endian(1U);
-    std::string header = little_endian(0x01312f76U) + little_endian(0x1002U);
-    for (std::size_t part = 0; part < parts; ++part)
-        header += attribute("channels", "chlist", channels + '\0') + attribute("chunkCount", "int", little_endian(1)) +
-                  attribute("compression", "compression", std::string(1, '\0')) +
-                  attribute("dataWindow", "box2i", std::string(16, '\0')) +
-                  attribute("displayWindow", "box2i", std::string(16, '\0')) +
-                  attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
-                  attribute("name", "string", fmt::format("p{}", part)) +
-                  attribute("pixelAspectRatio", "float", little_endian(1.0F)) +
-                  attribute("screenWindowCenter", "v2f", std::string(8, '\0')) +
-                  attribute("screenWindowWidth", "float", little_endian(1.0F)) +
-                  attribute("type", "string", "scanlineimage") + '\0';
-    header += '\0';
-    std::string places, chunks;
-    for (std::size_t part = 0; part < parts; ++part) {
-        places += little_endian(static_cast<std::uint64_t>(header.size() + 8 * parts + chunks.size()));
-        chunks += little_endian(static_cast<std::int32_t>(part)) + little_endian(0) + little_endian(2 * layers) +
-                  std::string(static_cast<std::size_t>(2 * layers), '\0');
-    }
-    return header + places + chunks;
-}
-
 // What a file lists is gone over as often as it is long, not as often as it is long times its length.
 TEST_F(CliBombs, LayersOfManyParts) {
     write("few.exr", exr_of_layers(1, 1));

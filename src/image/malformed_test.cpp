@@ -124,10 +124,6 @@ TEST_F(ImageTruncated, WhatIsNoImageIsRefused) {
     EXPECT_FALSE(read_frame(file("missing.exr")));
 }
 
-std::string attribute(const std::string& name, const std::string& type, const std::string& value) {
-    return name + '\0' + type + '\0' + little_endian(static_cast<std::int32_t>(value.size())) + value;
-}
-
 /// An OpenEXR file whose header asks for a picture, and zeros where its chunks should be.
 struct EmptyExr {
     std::int32_t width = 1, height = 1;
@@ -135,21 +131,26 @@ struct EmptyExr {
     char compression = 3;  // ZIP
     std::uint32_t tile = 0;
     std::size_t size = std::size_t{2} << 20;
-    std::string attributes = "";  // besides
+    std::string attributes = "";                         // besides
+    std::int32_t display_width = 0, display_height = 0;  // 0: those of the data
 
     [[nodiscard]] std::string text() const {
         std::string channels;
         for (int i = 0; i < float_channels; ++i)
-            channels += std::string(1, static_cast<char>('A' + i)) + '\0' + little_endian(2U) + little_endian(0U) +
-                        little_endian(1U) + little_endian(1U);
-        const std::string window =
-            little_endian(0) + little_endian(0) + little_endian(width - 1) + little_endian(height - 1);
+            channels += (i < 26 ? std::string(1, static_cast<char>('A' + i)) : fmt::format("c{}", i)) + '\0' +
+                        little_endian(2U) + little_endian(0U) + little_endian(1U) + little_endian(1U);
+        const auto window = [](std::int32_t wide, std::int32_t high) {
+            return little_endian(0) + little_endian(0) + little_endian(wide - 1) + little_endian(high - 1);
+        };
         std::string out = little_endian(0x01312f76U) + little_endian(tile > 0 ? 0x202U : 2U) +
-                          attribute("channels", "chlist", channels + '\0') +
-                          attribute("compression", "compression", std::string(1, compression)) +
-                          attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window);
+                          exr_attribute("channels", "chlist", channels + '\0') +
+                          exr_attribute("compression", "compression", std::string(1, compression)) +
+                          exr_attribute("dataWindow", "box2i", window(width, height)) +
+                          exr_attribute("displayWindow", "box2i",
+                                        window(display_width > 0 ? display_width : width,
+                                               display_height > 0 ? display_height : height));
         if (tile > 0)
-            out += attribute("tiles", "tiledesc", little_endian(tile) + little_endian(tile) + std::string(1, '\0'));
+            out += exr_attribute("tiles", "tiledesc", little_endian(tile) + little_endian(tile) + std::string(1, '\0'));
         out += attributes + '\0';
         out.resize(std::max(out.size(), size));
         return out;
@@ -182,26 +183,46 @@ TEST(ImageProportions, AChunkOfAnExrIsBounded) {
               "chunks of 65536x128 pixel");
 }
 
+TEST(ImageProportions, SidesPartsAndChannelsOfAnExrAreBounded) {
+    const auto told = [](const EmptyExr& file) { return refusal(check_exr, file.text()); };
+    EXPECT_TRUE(told({.width = 65536, .float_channels = 1}).starts_with("unfinished"));
+    EXPECT_NE(told({.width = 65537, .float_channels = 1}).find("65536"), std::string::npos);
+    EXPECT_TRUE(told({.float_channels = 1, .tile = 8192}).starts_with("unfinished"));
+    EXPECT_EQ(told({.float_channels = 1, .tile = 8193}),
+              "malformed header: tiles of 8193x8193, [1, 8192] a side is allowed");
+    EXPECT_TRUE(told({.float_channels = 1024}).starts_with("unfinished"));
+    EXPECT_EQ(told({.float_channels = 1025}), "malformed header: more than 1024 channels");
+    EXPECT_EQ(refusal(check_exr, exr_of_layers(256, 1)), "none");
+    EXPECT_EQ(refusal(check_exr, exr_of_layers(257, 1)), "malformed header: more than 256 parts");
+    // 2^25 pixels are 8192x4096.
+    const auto shown = [&](std::int32_t height, std::int32_t side) {
+        return told({.width = side, .height = side, .display_width = 8192, .display_height = height});
+    };
+    EXPECT_TRUE(shown(4096, 1).starts_with("unfinished"));
+    EXPECT_TRUE(shown(4608, 768).starts_with("unfinished")) << "64 times";
+    EXPECT_NE(shown(4617, 768).find("is out of proportion to the data window"), std::string::npos);
+}
+
 TEST(ImageProportions, AttributesOfAnExrAreCounted) {
     const auto told = [](const std::string& attributes) {
         return refusal(check_exr, EmptyExr{.size = std::size_t{40} << 20, .attributes = attributes}.text());
     };
     const auto many = [](std::size_t count) {
         std::string out;
-        for (std::size_t i = 0; i < count; ++i) out += attribute("a" + std::to_string(i), "x", "");
+        for (std::size_t i = 0; i < count; ++i) out += exr_attribute("a" + std::to_string(i), "x", "");
         return out;
     };
     constexpr std::size_t own = 4;  // of EmptyExr
     EXPECT_TRUE(told(many(65536 - own)).starts_with("unfinished"));
     EXPECT_EQ(told(many(65536 - own + 1)), "malformed header: more than 65536 attributes");
-    EXPECT_EQ(told(attribute("list", "stringvector", std::string(std::size_t{65536} * 4, '\0'))),
+    EXPECT_EQ(told(exr_attribute("list", "stringvector", std::string(std::size_t{65536} * 4, '\0'))),
               "malformed header: more than 65536 attributes")
         << "strings count";
     const std::size_t left = (std::size_t{32} << 20) - (4 * 18 + 1 + 1 + 16 + 16);
-    EXPECT_TRUE(told(attribute("a", "x", std::string(left, 'x'))).starts_with("unfinished"));
-    EXPECT_EQ(
-        told(attribute("a", "x", std::string(left / 2, 'x')) + attribute("b", "x", std::string(left / 2 + 2, 'x'))),
-        "malformed header: attributes of more than 33554432 bytes");
+    EXPECT_TRUE(told(exr_attribute("a", "x", std::string(left, 'x'))).starts_with("unfinished"));
+    EXPECT_EQ(told(exr_attribute("a", "x", std::string(left / 2, 'x')) +
+                   exr_attribute("b", "x", std::string(left / 2 + 2, 'x'))),
+              "malformed header: attributes of more than 33554432 bytes");
 }
 
 TEST(ImageProportions, PngAndJpegAreRefusedForWhatTheyAskFor) {
