@@ -119,7 +119,7 @@ TEST_F(ImageTruncated, WhatIsNoImageIsRefused) {
     const auto text = read_frame(file("a.exr"));
     ASSERT_FALSE(text);
     EXPECT_EQ(text.error().text, file("a.exr").string() +
-                                     ": is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)");
+                                     ": is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, WebP, Radiance HDR)");
     EXPECT_FALSE(read_frame(folder_));
     EXPECT_FALSE(read_frame(file("missing.exr")));
 }

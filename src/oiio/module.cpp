@@ -49,6 +49,8 @@ const char* format_of(FileKind kind) {
             return "tiff";
         case FileKind::Radiance:
             return "hdr";
+        case FileKind::WebP:
+            return "webp";
     }
     return "";
 }

@@ -235,6 +235,8 @@ const std::vector<HeldRow>& held_rows() {
          {"HostilePictures, TiffAsksForNoMoreThanIsAllowed"}},
         {"scans of JPEG, alone or in TIFF | 100; scans times pixels 2^31", {"HostilePictures, ScansOfJpegAreCounted"}},
         {"profile of colours in PNG | 4 MiB", {"HostilePictures, AProfileOfPngIsInflatedHere"}},
+        {"side of a picture in WebP, all in one chunk | 16384",
+         {"ImageWebp, PixelsAreThoseThatWerePacked", "ImageWebp, WhatItsChunksDoNotHoldIsRefused"}},
         {"display window of OpenEXR | 64 times the largest data window; up to 2^25 pixels always",
          {"ImageProportions, SidesPartsAndChannelsOfAnExrAreBounded"}},
         {"parts, channels of a part, side of a tile | 256, 1024, 8192",

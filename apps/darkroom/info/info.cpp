@@ -87,7 +87,7 @@ std::array<Kind, 4> kinds_of(const Options& options) {
         return info::toml(path, allows, named);
     };
     const auto model = [named](const fs::path& path) { return info::model(path, named); };
-    return {Kind{"a picture (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)", is_picture, info::picture},
+    return {Kind{"a picture (OpenEXR, PNG, JPEG, TIFF, WebP, Radiance HDR)", is_picture, info::picture},
             Kind{"a model (glTF)", is_model, model},
             Kind{"a colour table (.cube, .3dl, .spi1d, .spi3d, .csp, .clf)", is_table, info::table},
             Kind{"a scene or a look (TOML)", is_toml, toml}};

@@ -17,6 +17,8 @@ std::string_view name_of(FileKind kind) {
             return "TIFF";
         case FileKind::Radiance:
             return "Radiance HDR";
+        case FileKind::WebP:
+            return "WebP";
     }
     return "";
 }

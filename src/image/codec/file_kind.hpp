@@ -9,7 +9,7 @@
 
 namespace darkroom {
 
-enum class FileKind { OpenExr, Png, Jpeg, Tiff, Radiance };
+enum class FileKind { OpenExr, Png, Jpeg, Tiff, Radiance, WebP };
 enum class SampleKind { Integer8, Integer16, Integer32, Half, Float };
 
 [[nodiscard]] std::string_view name_of(FileKind kind);

@@ -15,6 +15,7 @@
 
 #include "image/codec/png_check.hpp"
 #include "image/color/icc_profile.hpp"
+#include "image/webp/check.hpp"
 
 namespace darkroom {
 namespace {
@@ -189,6 +190,8 @@ Bytes profile_of_jpeg(Bytes file) {
 FileColor file_color(FileKind kind, Bytes file) {
     if (kind == FileKind::Png) return png_color(file);
     if (kind == FileKind::Jpeg) return color_of_profile(profile_of_jpeg(file));
+    if (kind == FileKind::WebP)
+        if (const auto picture = check_webp(file)) return color_of_profile(picture->profile);
     return {};
 }
 

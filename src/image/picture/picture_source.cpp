@@ -14,6 +14,8 @@
 #include "image/codec/tiff_check.hpp"
 #include "image/exr/check.hpp"
 #include "image/exr/source.hpp"
+#include "image/webp/check.hpp"
+#include "image/webp/source.hpp"
 
 namespace darkroom {
 namespace {
@@ -25,6 +27,8 @@ Result<std::vector<std::byte>> check_structure(FileKind kind, std::span<const st
     Result<> checked;
     if (kind == FileKind::OpenExr) checked = check_exr(bytes);
     if (kind == FileKind::Jpeg) checked = check_jpeg(bytes);
+    if (kind == FileKind::WebP)
+        if (auto picture = check_webp(bytes); !picture) checked = failure(picture.error());
     if (!checked) return failure(std::move(checked));
     return std::vector<std::byte>();
 }
@@ -39,7 +43,8 @@ double smallest_size(FileKind kind, const FilePart& part) {
     switch (kind) {
         case FileKind::OpenExr:
         case FileKind::Png:
-            return 0;  // check_exr and check_png have seen to it
+        case FileKind::WebP:
+            return 0;  // check_exr, check_png and check_webp have seen to it
         case FileKind::Jpeg:
             return width * height / 64 / 8;
         case FileKind::Tiff:
@@ -69,6 +74,7 @@ Result<> check_size(FileKind kind, const FilePart& part, std::size_t file_size) 
 }
 
 Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads) {
+    if (kind == FileKind::WebP) return open_webp(bytes);
     if (kind != FileKind::OpenExr) {
         const Result<const Codecs*> others = codecs();
         if (!others) return failure(others.error());
@@ -107,11 +113,13 @@ Result<FileKind> kind_of_file(std::span<const std::byte> start) {
     if (text.starts_with("\x89PNG\r\n\x1a\n")) return FileKind::Png;
     if (text.starts_with("\xff\xd8\xff")) return FileKind::Jpeg;
     if (text.starts_with("#?")) return FileKind::Radiance;
+    if (text.starts_with("RIFF") && text.substr(std::min<std::size_t>(text.size(), 8)).starts_with("WEBP"))
+        return FileKind::WebP;
     const std::string_view tiff = text.substr(0, 4);
     if (tiff == std::string_view("II*\0", 4) || tiff == std::string_view("MM\0*", 4) ||
         tiff == std::string_view("II+\0", 4) || tiff == std::string_view("MM\0+", 4))
         return FileKind::Tiff;
-    return user_error("is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, Radiance HDR)");
+    return user_error("is no image file that is known here (OpenEXR, PNG, JPEG, TIFF, WebP, Radiance HDR)");
 }
 
 Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path, ReadFileOptions options) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // An image file in memory whose structure has been read and whose samples have not. OpenEXR files come through OpenEXR,
-// the others through OpenImageIO, which is loaded when the first of them is opened (image/codec/codecs.hpp).
+// WebP through libwebp, the others through OpenImageIO, which is loaded when the first of them is opened
+// (image/codec/codecs.hpp).
 
 #include <cstddef>
 #include <darkroom/result.hpp>

@@ -57,6 +57,8 @@ Format format_of(FileKind kind) {
             return {exr, true, exr_compressions};
         case FileKind::Radiance:
             return {radiance, false, {}};
+        case FileKind::WebP:
+            break;  // is not written
     }
     DARKROOM_ASSERT(false);
     return {};

@@ -20,6 +20,13 @@ using nlohmann::json;
 constexpr std::size_t most_missing_bytes = std::size_t{1} << 20;
 constexpr std::size_t most_file_bytes = std::size_t{1} << 32;
 
+// EXT_texture_webp: a texture may have another image for those who cannot read it.
+void choose_webp(json& textures) {
+    const auto source = json::json_pointer("/extensions/EXT_texture_webp/source");
+    for (json& texture : textures)
+        if (texture.contains(source)) texture["source"] = texture.at(source);
+}
+
 // EXT_meshopt_compression: what has no bytes, since all of them are unpacked from others.
 bool is_fallback(const json& buffer) {
     const auto extension = json::json_pointer("/extensions/EXT_meshopt_compression/fallback");
@@ -50,6 +57,7 @@ Result<Document> Document::open(const std::filesystem::path& path, Budget budget
         if (!loaded) return failure(std::move(loaded));
         const json images = root.contains("images") ? std::move(root["images"]) : json::array();
         root.erase("images");
+        if (root.contains("textures")) choose_webp(root["textures"]);
         if (root.contains("bufferViews")) document.unpack_views(root["bufferViews"]);
         if (auto parsed = document.parse(root); !parsed) return failure(std::move(parsed));
         document.unpack_meshes();
@@ -215,7 +223,8 @@ void Document::load_images(const json& images, const std::filesystem::path& fold
                 source.fault = fmt::format("{}: {}", pointer, bytes.error().text);
             if (!image.contains("mimeType")) faults_.warn(fmt::format("{}/mimeType: is missing", pointer));
         } else if (const auto uri = image["uri"].get<std::string>(); is_data_uri(uri)) {
-            if (!uri.starts_with("data:image/png;") && !uri.starts_with("data:image/jpeg;"))
+            const bool is_webp = uri.starts_with("data:image/webp;") && uses_extension("EXT_texture_webp");
+            if (!uri.starts_with("data:image/png;") && !uri.starts_with("data:image/jpeg;") && !is_webp)
                 faults_.warn(fmt::format("{}/uri: image/png and image/jpeg are allowed", pointer));
             auto bytes = decode_data_uri(uri);
             if (bytes)

@@ -12,6 +12,7 @@ namespace darkroom::scene::gltf {
 inline constexpr auto read_extensions = std::to_array<std::string_view>({
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
+    "EXT_texture_webp",
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_clearcoat",
@@ -32,7 +33,6 @@ struct MissingExtension {
 
 inline constexpr auto missing_extensions = std::to_array<MissingExtension>({
     {"EXT_lights_image_based", "light of the model's own surroundings is left out"},
-    {"EXT_texture_webp", "textures are read from their other images, or left out"},
     {"KHR_animation_pointer", "only nodes and morph targets are animated"},
     {"KHR_materials_anisotropy", "highlights are round"},
     {"KHR_materials_diffuse_transmission", "no light comes through its surfaces"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Extensions that say where a mesh is drawn, and of what.
 #include <gtest/gtest.h>
+#include <webp/encode.h>
 
 #include <array>
 #include <functional>
@@ -52,6 +53,21 @@ class SceneGltfExtensions : public WithFolder {
         primitive["material"] = 0;
         primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 2}, {"variants", {1}}},
                                                                          {{"material", 1}, {"variants", {0}}}};
+        return test;
+    }
+    /// A triangle of two colours side by side, as WebP; those who cannot read it have an image that is missing.
+    static TestModel with_webp() {
+        TestModel test;
+        test.add_triangle()["material"] = 0;
+        test.json["extensionsUsed"] = {"EXT_texture_webp"};
+        const std::vector<std::uint8_t> pixels{250, 100, 50, 255, 20, 40, 60, 128};
+        std::uint8_t* bytes = nullptr;
+        const std::size_t size = WebPEncodeLosslessRGBA(pixels.data(), 2, 1, 8, &bytes);
+        const std::size_t view = test.view(std::vector<std::uint8_t>(bytes, bytes + size));
+        WebPFree(bytes);
+        test.json["images"] = {{{"uri", "missing.png"}}, {{"bufferView", view}, {"mimeType", "image/webp"}}};
+        test.json["textures"] = {{{"source", 0}, {"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}}};
+        test.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
         return test;
     }
     Result<Scene> with_variant(const char* name) {
@@ -144,6 +160,38 @@ TEST_F(SceneGltfExtensions, AVariantThatIsNoneIsRefusedWithThoseThatAre) {
     ASSERT_FALSE(model);
     EXPECT_NE(model.error().text.find("mappings/0/variants/0: 3, there are 3 variants"), std::string::npos)
         << model.error().text;
+}
+
+TEST_F(SceneGltfExtensions, ATextureOfWebpComesBeforeItsOtherImage) {
+    TestModel test = with_webp();
+    const auto model = read(test);
+    ASSERT_TRUE(model) << model.error().text;
+    const Texture& texture = model->materials[0].base_color_texture;
+    ASSERT_EQ(texture.image, 1U);
+    EXPECT_EQ(model->images[1].rgba, (std::vector<std::uint8_t>{250, 100, 50, 255, 20, 40, 60, 128}));
+}
+
+TEST_F(SceneGltfExtensions, AWebpThatIsNoneIsToldAndDrawnWhite) {
+    const auto warnings_of = [&](TestModel test) {
+        const auto model = read(test);
+        std::string out;
+        if (model)
+            for (const std::string& warning : model->warnings) out += warning + "\n";
+        return model ? out : model.error().text;
+    };
+    TestModel cut = with_webp();
+    cut.json["bufferViews"][1]["byteLength"] = 25;
+    EXPECT_NE(warnings_of(cut).find("/images/1: truncated: 25 bytes of "), std::string::npos) << warnings_of(cut);
+    // 16384x16384 pixels in 26 bytes.
+    TestModel bomb = with_webp();
+    const std::string head("RIFF\x12\0\0\0WEBPVP8L\x05\0\0\0\x2f\xff\xff\xff\x0f\0", 26);
+    bomb.json["images"][1]["bufferView"] = bomb.view(std::vector<char>(head.begin(), head.end()));
+    EXPECT_NE(warnings_of(bomb).find("/images/1: 268435456 pixels in 26 bytes: larger than its file can be worth"),
+              std::string::npos)
+        << warnings_of(bomb);
+    TestModel none = with_webp();
+    none.json["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 2;
+    EXPECT_NE(warnings_of(none).find("source: 2, there are 2 images"), std::string::npos) << warnings_of(none);
 }
 
 }  // namespace

@@ -137,7 +137,12 @@ inline constexpr std::array image_table{text("uri"), text("mimeType"), index_of(
 inline constexpr std::array sampler_table{loose_integer("magFilter", 9728, 9729),
                                           loose_integer("minFilter", 9728, 9987), loose_integer("wrapS", 10497, 33648),
                                           loose_integer("wrapT", 10497, 33648)};
-inline constexpr std::array texture_table{index_of("sampler", "samplers"), index_of("source", "images")};
+inline constexpr std::array texture_webp_table{index_of("source", "images", true)};
+inline constexpr Definition texture_webp{texture_webp_table};
+inline constexpr std::array texture_sources_table{object_of("EXT_texture_webp", texture_webp)};
+inline constexpr Definition texture_sources{texture_sources_table};
+inline constexpr std::array texture_table{index_of("sampler", "samplers"), index_of("source", "images"),
+                                          object_of("extensions", texture_sources)};
 
 inline constexpr std::array transform_table{numbers("offset", 2), number("rotation"), numbers("scale", 2),
                                             integer("texCoord")};
