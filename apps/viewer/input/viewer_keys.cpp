@@ -154,7 +154,7 @@ void Viewer::toggle_effects(std::uint32_t number) {
 }
 
 void Viewer::tell(std::string line) {
-    app::tell(line);
+    app::answer_unless_quiet(line);  // for who drives it by its standard input, too
     screen_.tell(std::move(line));
 }
 
