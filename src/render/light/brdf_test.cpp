@@ -191,7 +191,7 @@ TEST(RenderGpuBrdf, ShaderAgreesWithTheReference) {
                                              given(inputs[0].back()), given(inputs[1].back()),
                                              given(inputs[2].back())));
     }
-    const std::vector<vec4> device = test::evaluate("brdf", test::shader_part("light/brdf.glsl") + R"(
+    const std::vector<vec4> device = test::evaluate("brdf", test::brdf_shader() + R"(
 vec4 shade(Pixel pixel) {
     vec4 n = load(input_0, pixel.texel);
     vec4 material = load(input_3, pixel.texel);
@@ -216,7 +216,7 @@ TEST(RenderGpuBrdf, NothingDegenerateBecomesNotANumber) {
             }
         }
     }
-    const std::vector<vec4> device = test::evaluate("degenerate", test::shader_part("light/brdf.glsl") + R"(
+    const std::vector<vec4> device = test::evaluate("degenerate", test::brdf_shader() + R"(
 vec4 shade(Pixel pixel) {
     vec4 n = load(input_0, pixel.texel);
     Reflectance surface = reflectance(vec3(1.0), 0.5, n.w);
@@ -246,7 +246,7 @@ TEST(RenderGpuBrdf, SurroundingsAgreeWithTheReference) {
             reference::reflectance(dvec3(inputs[0].back()), inputs[0].back().w, inputs[3].back().x),
             dvec3(inputs[1].back()), dvec3(inputs[2].back()), dvec2(inputs[1].back().w, inputs[2].back().w)));
     }
-    const std::vector<vec4> device = test::evaluate("surroundings", test::shader_part("light/brdf.glsl") + R"(
+    const std::vector<vec4> device = test::evaluate("surroundings", test::brdf_shader() + R"(
 vec4 shade(Pixel pixel) {
     vec4 color = load(input_0, pixel.texel);
     vec4 irradiance = load(input_1, pixel.texel);

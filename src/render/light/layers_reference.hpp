@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What the layers of shaders/light/brdf.glsl reflect, in double precision, from the formulas of the Khronos Group's
+// What the layers of shaders/light/layers.glsl reflect, in double precision, from the formulas of the Khronos Group's
 // extensions of glTF 2.0. The matte base is coupled to its layer as in brdf_reference.hpp. Not for drawing.
 
 #include "render/light/brdf_reference.hpp"
@@ -71,7 +71,7 @@ inline double sheen_highlight(double roughness, const dvec3& n, const dvec3& v, 
     return distribution * std::clamp(visibility, 0.0, 1.0) * n_dot_l;
 }
 
-/// E() of KHR_materials_sheen as brdf.glsl approximates it.
+/// E() of KHR_materials_sheen as layers.glsl approximates it.
 inline double sheen_albedo(double cosine, double roughness) {
     const auto row = [&](double a, double b, double c, double d) {
         return a / (roughness * roughness) + b / roughness + c + d * roughness;

@@ -26,9 +26,9 @@ LayeredSurface reference_of(const scene::ModelMaterial& material) {
             .sheen_roughness = material.sheen.roughness};
 }
 
-/// brdf.glsl as pipelines of materials with these layers have it.
+/// brdf_shader() as pipelines of materials with these layers have it.
 std::string brdf_with(const std::string& layers) {
-    std::string text = shader_part("light/brdf.glsl");
+    std::string text = brdf_shader();
     const std::string none = "const uint layers = 0u;";
     const std::size_t place = text.find(none);
     EXPECT_NE(place, std::string::npos);

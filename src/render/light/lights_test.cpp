@@ -24,8 +24,7 @@ std::string lights_body(const std::string& shade) {
            "const bool lamps_cast_shadows = true;\n"
            "float lamp_visibility(uint tile, uint tiles, vec3 position, vec3 normal, vec3 l) {\n"
            "    return 0.25 + float(tile) * 0.01 + float(tiles) * 0.03;\n}\n" +
-           test::shader_part("light/brdf.glsl") + test::shader_part("light/lights.glsl") +
-           "vec4 shade(Pixel pixel) {\n" + shade + "}\n";
+           test::brdf_shader() + test::shader_part("light/lights.glsl") + "vec4 shade(Pixel pixel) {\n" + shade + "}\n";
 }
 
 TEST(RenderLights, AttenuationIsTheWindowedInverseSquare) {

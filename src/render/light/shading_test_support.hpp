@@ -30,6 +30,11 @@ inline std::string shader_part(std::string_view name) {
     return text.substr(start);
 }
 
+/// What reflected() and reflected_surroundings() are made of.
+inline std::string brdf_shader() {
+    return shader_part("light/microfacets.glsl") + shader_part("light/layers.glsl") + shader_part("light/brdf.glsl");
+}
+
 /// What shaders take from frame.glsl, as variables that a test sets.
 inline std::string frame_stand_in() {
     return "const uint Output_hdr = 0u;\nconst uint Output_display = 1u;\nstruct FrameBlock {\n" +

@@ -20,7 +20,7 @@ struct Frustum {
     [[nodiscard]] bool touches(const scene::Box& box) const;
 };
 
-/// What the shaders call layers (shaders/light/brdf.glsl): what a material reflects beyond metallic-roughness, 0 for
+/// What the shaders call layers (shaders/light/layers.glsl): what a material reflects beyond metallic-roughness, 0 for
 /// most.
 [[nodiscard]] std::uint32_t shader_layers(const scene::ModelMaterial& surface);
 

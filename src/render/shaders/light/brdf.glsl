@@ -1,35 +1,6 @@
 // How a surface reflects light: Lambert under a microfacet layer (Cook and Torrance, "A Reflectance Model for Computer
-// Graphics", 1982) with the choices of Karis, "Real Shading in Unreal Engine 4", 2013. Needs nothing else; in double
-// precision it is render/light/brdf_reference.hpp.
-const float pi = 3.14159265358979;
-const float dielectric_f0 = 0.04;    // of glass and most plastics: index of refraction 1.5
-const float least_roughness = 0.04;  // a smoother highlight of a light without size would fall between the pixels
-
-// What a pipeline's materials reflect beyond metallic-roughness, in bits. Those that have nothing of it have pipelines
-// that know nothing of it.
-layout(constant_id = 13) const uint layers = 0u;
-const uint Layer_specular = 1u;
-const uint Layer_clearcoat = 2u;
-const uint Layer_sheen = 4u;
-const bool has_specular_layer = (layers & Layer_specular) != 0u;
-const bool has_clearcoat = (layers & Layer_clearcoat) != 0u;
-const bool has_sheen = (layers & Layer_sheen) != 0u;
-const float least_sheen_roughness = 0.1;
-
-// What Layer_clearcoat lays over all else.
-struct Clearcoat {
-    float part;  // of the light toward the eye, that the coat reflects
-    float roughness;
-    vec3 normal;
-};
-
-// What Layer_sheen lays over the surface, under the coat: fibres that stand off it.
-struct Sheen {
-    vec3 color;
-    float roughness;
-    float albedo;  // of white fibres toward the eye
-};
-
+// Graphics", 1982), and the layers over it. Needs microfacets.glsl and layers.glsl; in double precision it is
+// render/light/brdf_reference.hpp.
 struct Reflectance {
     vec3 diffuse;  // albedo of what light enters the surface
     vec3 f0;       // reflectance head-on
@@ -63,46 +34,6 @@ Reflectance reflectance_with_specular(vec3 base_color, float metallic, float rou
     return surface;
 }
 
-// Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007, equation 33. 1 - (n.h)^2 is taken as
-// |n x h|^2, which keeps the peak of smooth surfaces exact in single precision.
-float ggx_distribution(vec3 n, vec3 h, float alpha) {
-    float n_dot_h = max(dot(n, h), 0.0);
-    vec3 sine = cross(n, h);
-    float square = alpha * alpha;
-    float denominator = max(n_dot_h * n_dot_h * square + dot(sine, sine), 1e-9);
-    return square / (pi * denominator * denominator);
-}
-
-// Masking and shadowing over 4 n.v n.l, height-correlated (Heitz, "Understanding the Masking-Shadowing Function in
-// Microfacet-Based BRDFs", 2014, eq. 99): the light of the surroundings has the same (render/light/environment.cpp).
-float smith_visibility(float n_dot_v, float n_dot_l, float alpha) {
-    float square = alpha * alpha;
-    float masked = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - square) + square);
-    float shadowed = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - square) + square);
-    return n_dot_v > 0.0 ? 0.5 / max(masked + shadowed, 1e-6) : 0.0;
-}
-
-// Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, equation 15.
-vec3 fresnel_schlick(vec3 f0, float v_dot_h) {
-    float c = clamp(1.0 - v_dot_h, 0.0, 1.0);
-    float square = c * c;
-    return f0 + (1.0 - f0) * (square * square * c);
-}
-
-// The same for layers that are not white at grazing angles.
-vec3 layer_fresnel(vec3 f0, float f90, float v_dot_h) {
-    float c = clamp(1.0 - v_dot_h, 0.0, 1.0);
-    float square = c * c;
-    return f0 + (f90 - f0) * (square * square * c);
-}
-
-// Khronos Group, KHR_materials_clearcoat, 2021: Fresnel of the coat's own normal and the direction to the eye, of index
-// 1.5, divides the light between the coat and what is under it.
-Clearcoat clearcoat(float weight, float roughness, vec3 normal, vec3 v) {
-    float part = weight * fresnel_schlick(vec3(dielectric_f0), max(dot(normal, v), 0.0)).r;
-    return Clearcoat(part, clamp(roughness, least_roughness, 1.0), normal);
-}
-
 // Whether light from there meets the surface or its coat.
 bool is_toward(Reflectance surface, vec3 n, vec3 l) {
     if (has_clearcoat) return max(dot(n, l), dot(surface.coat.normal, l)) > 0.0;
@@ -120,56 +51,6 @@ vec3 coupled_diffuse(Reflectance surface, float n_dot_v, float n_dot_l) {
         return surface.diffuse * mix(vec3(1.0 / pi), under_layer, surface.layer_part);
     }
     return surface.diffuse * (1.0 - surface.f0) * (1.05 / pi * enters.x * enters.y);
-}
-
-// Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017, section 3, as the Khronos Group's
-// KHR_materials_sheen, 2020, has it.
-float sheen_shape(float x, float alpha) {
-    float t = (1.0 - alpha) * (1.0 - alpha);
-    return mix(21.5473, 25.3245, t) / (1.0 + mix(3.82987, 3.32435, t) * pow(x, mix(0.19823, 0.16801, t))) +
-           mix(-1.97760, -1.27393, t) * x + mix(-4.32054, -4.85967, t);
-}
-
-float sheen_lambda(float cosine, float alpha) {
-    return exp(cosine < 0.5 ? sheen_shape(cosine, alpha)
-                            : 2.0 * sheen_shape(0.5, alpha) - sheen_shape(1.0 - cosine, alpha));
-}
-
-// What white fibres send to the eye of light of unit radiance: their BRDF times n.l.
-float sheen_highlight(float roughness, float n_dot_h, float n_dot_v, float n_dot_l) {
-    float alpha = roughness * roughness;
-    float sine = sqrt(max(1.0 - n_dot_h * n_dot_h, 0.0));
-    float distribution = (2.0 + 1.0 / alpha) * pow(sine, 1.0 / alpha) / (2.0 * pi);
-    float hidden = (1.0 + sheen_lambda(n_dot_v, alpha) + sheen_lambda(n_dot_l, alpha)) * 4.0 * n_dot_v * n_dot_l;
-    return distribution * n_dot_l / max(hidden, 1.0);
-}
-
-// How much of the light from everywhere white fibres send in a direction of this cosine. Fitted to the integral of
-// sheen_highlight(), of which it is off by 0.04 at most and by 0.01 in the mean square.
-float sheen_albedo(float cosine, float roughness) {
-    vec4 powers = vec4(1.0 / (roughness * roughness), 1.0 / roughness, 1.0, roughness);
-    float head_on = dot(vec4(-0.0085, 0.2377, -1.0925, 0.6619), powers);
-    float slope = dot(vec4(0.0237, -1.4463, 0.7810, -0.9339), powers);
-    float bend = dot(vec4(0.0458, -0.9256, 1.5842, -0.7346), powers);
-    return min(exp(head_on + (slope + bend * cosine) * cosine), 1.0);
-}
-
-Sheen sheen(vec3 color, float roughness, float n_dot_v) {
-    roughness = clamp(roughness, least_sheen_roughness, 1.0);
-    return Sheen(color, roughness, sheen_albedo(n_dot_v, roughness));
-}
-
-// Of the light of what is under the fibres.
-float kept_by_sheen(Sheen sheen, float albedo) {
-    return 1.0 - max(max(sheen.color.r, sheen.color.g), sheen.color.b) * albedo;
-}
-
-// A coat's highlight, before its part.
-float coat_highlight(Clearcoat coat, vec3 v, vec3 l, vec3 h) {
-    float n_dot_l = max(dot(coat.normal, l), 0.0);
-    float alpha = coat.roughness * coat.roughness;
-    return ggx_distribution(coat.normal, h, alpha) *
-           smith_visibility(max(dot(coat.normal, v), 0.0), n_dot_l, alpha) * n_dot_l;
 }
 
 // What leaves toward v of light of unit radiance from l: the BRDF times n.l. All directions are normalised and point

@@ -11,6 +11,8 @@ layout(constant_id = 7) const bool is_transparent = false;  // alpha is the mate
 
 #include "frame.glsl"
 #include "mesh/mesh_varyings_in.glsl"
+#include "light/microfacets.glsl"
+#include "light/layers.glsl"
 #include "light/brdf.glsl"
 #include "light/environment.glsl"
 #include "light/shadow.glsl"
