@@ -54,8 +54,7 @@ std::vector<std::string> figure_notices(const Scene& scene, const Assets& assets
         if (by_joints.is_empty() || by_all.is_empty() || !differ(by_joints, by_all)) continue;
         notices.push_back(
             fmt::format("{}: entities.{}.model: the figure is {:.3g} m high by its joints alone, for which scenes of "
-                        "this style are "
-                        "placed; skins = \"all_nodes\" in [scene] makes it {:.3g} m",
+                        "this style are placed; skins = \"all_nodes\" in [scene] makes it {:.3g} m",
                         place_of(scene, scene.entities[i]), one_printable_line(scene.entities[i].name),
                         by_joints.size().y, by_all.size().y));
     }
