@@ -84,6 +84,18 @@ Result<FrameCamera> read_camera(const std::filesystem::path& path) {
     return camera;
 }
 
+Matrix widened(const Matrix& projection, const PixelWindow& window, std::uint32_t width, std::uint32_t height) {
+    const double scale_x = static_cast<double>(window.width) / width;
+    const double scale_y = static_cast<double>(window.height) / height;
+    const double shift_x = 2.0 * window.x / width + scale_x - 1, shift_y = 2.0 * window.y / height + scale_y - 1;
+    Matrix out = projection;
+    for (std::size_t column = 0; column < 16; column += 4) {
+        out[column] = static_cast<float>(out[column] * scale_x + out[column + 3] * shift_x);
+        out[column + 1] = static_cast<float>(out[column + 1] * scale_y + out[column + 3] * shift_y);
+    }
+    return out;
+}
+
 Matrix perspective(double vertical_field_of_view, double aspect) {
     constexpr double near_distance = 0.1;
     constexpr double far_distance = 1000.0;

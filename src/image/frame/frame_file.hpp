@@ -18,6 +18,7 @@
 #include "image/codec/decoder.hpp"
 #include "image/color/color_coding.hpp"
 #include "image/frame/channels.hpp"
+#include "image/picture/finite.hpp"
 #include "image/picture/picture.hpp"
 #include "image/table/color_chain.hpp"
 
@@ -88,17 +89,6 @@ struct FrameOptions {
     std::size_t max_threads = 0;  ///< that decode, 0: as many as there are processors
 };
 
-/// Pixels that were not finite, and are now: NaN became 0, an infinity +-65504 (the largest half); alpha 1.
-struct PixelCounts {
-    std::size_t nan_color = 0;
-    std::size_t infinite_color = 0;
-    std::size_t nan_alpha = 0;
-    std::size_t infinite_alpha = 0;
-    /// Normals and motion (became 0), depth that is NaN (became sky), depth of shadows (became 1, which is lit).
-    std::size_t not_finite_other = 0;
-    [[nodiscard]] bool operator==(const PixelCounts&) const = default;
-};
-
 /// Layers as halves, row-major, top row first. Those that are not empty stand for the numbers of the frame's layer of
 /// that name, which has its size and no numbers then.
 struct HalfLayers {
@@ -155,6 +145,10 @@ void widen(FrameFile& frame);
 
 /// Adds "depth=NAME", "normals=PREFIX", "velocity=PREFIX" or "color=PREFIX".
 [[nodiscard]] Result<> add_mapping(LayerNames& names, std::string_view mapping);
+
+/// The same projection for a picture of this size, in which what it saw is the window.
+[[nodiscard]] Matrix widened(const Matrix& projection, const PixelWindow& window, std::uint32_t width,
+                             std::uint32_t height);
 
 /// The projection of FrameCamera's field of view; `aspect` is width over height.
 [[nodiscard]] Matrix perspective(double vertical_field_of_view, double aspect);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <Imath/half.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,11 +14,11 @@
 #include "image/frame/frame_file.hpp"
 #include "image/frame/frame_lights.hpp"
 #include "image/frame/layer_read.hpp"
+#include "image/picture/finite.hpp"
 
 namespace darkroom {
 namespace {
 
-constexpr float largest_half = 65504.0f;
 constexpr std::uint16_t half_one = 0x3c00;
 constexpr const char* time_attribute = "darkroom:time";
 
@@ -32,48 +31,6 @@ bool is_inside(const FilePart& part, std::uint32_t x, std::uint32_t y) {
     const std::int64_t column = std::int64_t{x} - part.x;
     const std::int64_t row = std::int64_t{y} - part.y;
     return column >= 0 && row >= 0 && column < part.width && row < part.height;
-}
-
-bool is_finite(std::uint16_t half) { return (half & 0x7c00u) != 0x7c00u; }
-bool is_nan(std::uint16_t half) { return !is_finite(half) && (half & 0x3ffu) != 0; }
-
-void make_finite(std::span<std::uint16_t> color, PixelCounts& counts) {
-    constexpr std::uint16_t largest = 0x7bff;
-    for (std::size_t i = 0; i < color.size(); i += 4) {
-        std::uint16_t* const pixel = &color[i];
-        if (is_finite(pixel[0]) && is_finite(pixel[1]) && is_finite(pixel[2]) && is_finite(pixel[3])) continue;
-        bool has_nan = false;
-        bool has_infinity = false;
-        for (int c = 0; c < 3; ++c) {
-            if (is_finite(pixel[c])) continue;
-            (is_nan(pixel[c]) ? has_nan : has_infinity) = true;
-            pixel[c] = is_nan(pixel[c]) ? std::uint16_t{0} : static_cast<std::uint16_t>((pixel[c] & 0x8000u) | largest);
-        }
-        counts.nan_color += has_nan;
-        counts.infinite_color += has_infinity;
-        if (is_finite(pixel[3])) continue;
-        ++(is_nan(pixel[3]) ? counts.nan_alpha : counts.infinite_alpha);
-        pixel[3] = half_one;
-    }
-}
-
-void make_finite(Picture& color, PixelCounts& counts) {
-    for (std::size_t i = 0; i < color.pixels.size(); i += 4) {
-        float* pixel = &color.pixels[i];
-        bool has_nan = false;
-        bool has_infinity = false;
-        for (int c = 0; c < 3; ++c) {
-            if (std::isfinite(pixel[c])) continue;
-            has_nan |= std::isnan(pixel[c]);
-            has_infinity |= std::isinf(pixel[c]);
-            pixel[c] = std::isnan(pixel[c]) ? 0.0f : std::copysign(largest_half, pixel[c]);
-        }
-        counts.nan_color += has_nan;
-        counts.infinite_color += has_infinity;
-        if (std::isfinite(pixel[3])) continue;
-        ++(std::isnan(pixel[3]) ? counts.nan_alpha : counts.infinite_alpha);
-        pixel[3] = 1.0f;
-    }
 }
 
 class FrameReader {
@@ -228,21 +185,10 @@ Result<> FrameReader::keep_overscan() {
     return {};
 }
 
-// From the clip space of the display window to that of the whole picture.
 void FrameReader::widen_camera() {
     if (!frame_.display) return;
-    const auto [x, y, width, height] = *frame_.display;
-    const double whole_x = frame_.color.width, whole_y = frame_.color.height;
-    const double scale_x = width / whole_x, scale_y = height / whole_y;
-    const double shift_x = (2.0 * x + width - whole_x) / whole_x, shift_y = (2.0 * y + height - whole_y) / whole_y;
-    for (std::optional<Matrix>* const projection : {&frame_.camera.projection, &frame_.camera.previous_projection}) {
-        if (!*projection) continue;
-        for (std::size_t column = 0; column < 16; column += 4) {
-            float* const of = &(**projection)[column];
-            of[0] = static_cast<float>(of[0] * scale_x + of[3] * shift_x);
-            of[1] = static_cast<float>(of[1] * scale_y + of[3] * shift_y);
-        }
-    }
+    for (std::optional<Matrix>* const projection : {&frame_.camera.projection, &frame_.camera.previous_projection})
+        if (*projection) *projection = widened(**projection, *frame_.display, frame_.color.width, frame_.color.height);
     frame_.camera.vertical_field_of_view.reset();
 }
 
@@ -359,7 +305,7 @@ Result<> FrameReader::make_normals() {
 void FrameReader::finish_normals() {
     std::vector<std::uint16_t>& halves = frame_.halves.normals;
     for (std::size_t i = 0; i < halves.size(); i += 4) {
-        if (is_finite(halves[i]) && is_finite(halves[i + 1]) && is_finite(halves[i + 2])) continue;
+        if (is_finite_half(halves[i]) && is_finite_half(halves[i + 1]) && is_finite_half(halves[i + 2])) continue;
         ++frame_.counts.not_finite_other;
         std::fill_n(&halves[i], 3, std::uint16_t{0});
     }
@@ -398,7 +344,7 @@ Result<> FrameReader::make_velocity() {
 void FrameReader::finish_velocity() {
     std::vector<std::uint16_t>& halves = frame_.halves.velocity;
     for (std::size_t i = 0; i < halves.size(); i += 2) {
-        if (is_finite(halves[i]) && is_finite(halves[i + 1])) continue;
+        if (is_finite_half(halves[i]) && is_finite_half(halves[i + 1])) continue;
         ++frame_.counts.not_finite_other;
         halves[i] = halves[i + 1] = 0;
     }
@@ -519,18 +465,6 @@ Result<FrameFile> FrameReader::read() {
 }
 
 }  // namespace
-
-void widen(FrameFile& frame) {
-    const auto take = [](std::vector<std::uint16_t>& from, std::size_t kept, std::size_t of, std::vector<float>& to) {
-        if (from.empty()) return;
-        to.resize(from.size() / of * kept);
-        for (std::size_t i = 0; i < to.size(); ++i) to[i] = imath_half_to_float(from[i / kept * of + i % kept]);
-        from = {};
-    };
-    take(frame.halves.color, 4, 4, frame.color.pixels);
-    if (frame.normals) take(frame.halves.normals, 3, 4, frame.normals->values);
-    if (frame.velocity) take(frame.halves.velocity, 2, 2, frame.velocity->values);
-}
 
 Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options) {
     auto decoder = Decoder::open(path, options.max_threads);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "image/frame/layer_read.hpp"
 
+#include <Imath/half.h>
+
 #include <algorithm>
 #include <cstring>
 #include <map>
 #include <vector>
+
+#include "image/frame/frame_file.hpp"
 
 namespace darkroom {
 namespace {
@@ -116,6 +120,18 @@ Result<> read_layers(Decoder& decoder, std::span<const LayerPlace> layers) {
         repeat(what, std::size_t{part.display_width} * part.display_height);
     }
     return {};
+}
+
+void widen(FrameFile& frame) {
+    const auto take = [](std::vector<std::uint16_t>& from, std::size_t kept, std::size_t of, std::vector<float>& to) {
+        if (from.empty()) return;
+        to.resize(from.size() / of * kept);
+        for (std::size_t i = 0; i < to.size(); ++i) to[i] = imath_half_to_float(from[i / kept * of + i % kept]);
+        from = {};
+    };
+    take(frame.halves.color, 4, 4, frame.color.pixels);
+    if (frame.normals) take(frame.halves.normals, 3, 4, frame.normals->values);
+    if (frame.velocity) take(frame.halves.velocity, 2, 2, frame.velocity->values);
 }
 
 }  // namespace darkroom
