@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <type_traits>
 
@@ -101,6 +102,9 @@ class OiioSource final : public PictureSource {
     static Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes) {
         auto out = std::make_unique<OiioSource>();
         out->memory_ = std::make_unique<MemoryReader>(bytes);
+        // What OpenImageIO 2.4 lists once, its formats and the words of ICC profiles, it lists without a lock.
+        static std::mutex opening;
+        const std::lock_guard lock(opening);
         out->input_ = OIIO::ImageInput::create(format_of(kind));
         if (!out->input_) return machine_error(fmt::format("OpenImageIO was built without {}", name_of(kind)));
         out->input_->set_ioproxy(out->memory_.get());
