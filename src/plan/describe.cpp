@@ -161,8 +161,8 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
             if (image_of[slot] != PlanImage::never) out.reads.push_back(use_of(slot, input.mip_level));
         }
         if (pass.spec.is_additive) out.bytes_read += out.bytes_written;
-        if (pass.is_fused)
-            for (const FusedStep& step : pass.steps) out.entries.push_back(step.name);
+        if (pass.as<FusedPass>() != nullptr)
+            for (const FusedStep& step : pass.steps()) out.entries.push_back(step.name);
         plan.passes.push_back(std::move(out));
     }
     add_lifetimes(plan);

@@ -7,6 +7,7 @@
 #include <darkroom/composer.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "gpu/kernel/kernel.hpp"
@@ -89,8 +90,27 @@ struct PassInput {
     bool is_loaded = false;  ///< a side image that is read by load() alone
 };
 
+/// A kernel that the planner makes of entries that follow each other; it may have no step.
+struct FusedPass {
+    std::vector<FusedStep> steps;
+    Finish finish = Finish::None;
+    Resampling resampling = Resampling::None;
+    bool is_alpha = false;  ///< makes a grey picture of the alpha before its steps
+};
+/// A kernel of an effect's build.
+struct KernelPass {
+    FusedStep step;
+    ConstantsFunction constants = nullptr;
+};
+/// An image as it is, or brought to another size.
+struct CopyPass {
+    Resampling resampling = Resampling::None;
+    std::optional<std::uint32_t> watch;  ///< of CompileDesc::watches: copies part of its input for it
+};
+
 struct ProgramPass {
     std::string name;
+    std::variant<FusedPass, KernelPass, CopyPass> kind;
     gpu::KernelSpec spec;  ///< without its body: see plan/frame/shape.hpp
     gpu::Stage stage = gpu::Stage::Compute;
     std::vector<PassInput> inputs;  ///< one per spec.images
@@ -98,21 +118,25 @@ struct ProgramPass {
     std::uint32_t output_mip_level = 0;
     std::int32_t toggle = -1;
     std::string boundary;
-    std::vector<FusedStep> steps;  ///< of an effect's pass: one
     std::vector<Literal> literals;
-    bool is_alpha = false;  ///< makes a grey picture of the alpha before its steps
-    bool is_fused = true;   ///< made by the planner from entries; else by an effect's build
     bool asks_sizes = false;
     bool asks_rays_meet = false;
-    std::optional<std::uint32_t> watch;  ///< of CompileDesc::watches: copies part of its input for it
-    // Of an effect's pass:
-    ConstantsFunction constants = nullptr;
-    // Of a fused kernel:
-    Finish finish = Finish::None;
-    Resampling resampling = Resampling::None;
 
-    /// Of an effect's pass.
-    [[nodiscard]] std::uint32_t entry() const { return steps.front().entry; }
+    template <class Kind>
+    [[nodiscard]] const Kind* as() const {
+        return std::get_if<Kind>(&kind);
+    }
+    /// What of the entries is in it: of an effect's pass one step, of a copy none.
+    [[nodiscard]] std::span<const FusedStep> steps() const;
+    [[nodiscard]] std::optional<std::uint32_t> watch() const {
+        const CopyPass* const copy = as<CopyPass>();
+        return copy == nullptr ? std::nullopt : copy->watch;
+    }
+    /// Finish::OfFrame: the frame's values say what the target needs.
+    [[nodiscard]] bool finishes_by_frame() const {
+        const FusedPass* const fused = as<FusedPass>();
+        return fused != nullptr && fused->finish == Finish::OfFrame;
+    }
 };
 
 /// A table, or a neutral image that stands in for a version: uploaded once, constant after. A neutral image may be

@@ -223,11 +223,11 @@ gpu::Binding Chain::bind(const PassInput& input, const Frame& frame, VkExtent2D 
 /// The values of the members of the pass's own block.
 std::span<const std::uint32_t> Chain::write_words(const ProgramPass& pass) {
     std::size_t count = 0;
-    if (pass.is_fused && pass.finish == plan::Finish::OfFrame)
-        words_[count++] = static_cast<std::uint32_t>(values_.finish());
-    for (const plan::FusedStep& step : pass.steps) {
+    const bool is_fused = pass.as<plan::FusedPass>() != nullptr;
+    if (pass.finishes_by_frame()) words_[count++] = static_cast<std::uint32_t>(values_.finish());
+    for (const plan::FusedStep& step : pass.steps()) {
         const plan::Entry& entry = *entries_[step.entry];
-        if (pass.is_fused) {
+        if (is_fused) {
             words_[count++] = values_.is_on(step.entry) ? 1 : 0;
             words_[count++] = std::bit_cast<std::uint32_t>(values_.opacity(step.entry));
             words_[count++] = static_cast<std::uint32_t>(entry.desc.blend);
@@ -286,7 +286,8 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
         images[i] = bind(pass.inputs[i], frame, context.frame_extent);
         if (!pass.spec.images[i].loads_by.empty()) images[i].layout = VK_IMAGE_LAYOUT_GENERAL;
     }
-    if (pass.watch) images[0].region = watched_region(images[0].region, *watched_[*pass.watch], context.frame_extent);
+    if (const auto watch = pass.watch())
+        images[0].region = watched_region(images[0].region, *watched_[*watch], context.frame_extent);
     const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
     const gpu::Binding output =
         bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
@@ -300,8 +301,8 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
         own.has_history = has_history_[entry] != 0;
         constants(values_.words(entry), own, out);
     };
-    if (!pass.is_fused) fill(pass.constants, pass.entry(), custom);
-    for (const plan::FusedStep& step : pass.steps)
+    if (const auto* const kernel = pass.as<plan::KernelPass>()) fill(kernel->constants, kernel->step.entry, custom);
+    for (const plan::FusedStep& step : pass.steps())
         fill(step.constants, step.entry, custom.subspan(step.first_vector, step.custom_vectors));
     gpu::write_own_block(
         pass.spec, output.region, inputs, custom, write_words(pass),

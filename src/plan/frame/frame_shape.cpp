@@ -29,20 +29,21 @@ Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, c
         if (is_twice(output.extent, inputs[0].region.extent)) shape.steps |= Shape::output_is_twice;
     }
     if (pass.asks_rays_meet && values.rays_meet()) shape.steps |= Shape::rays_meet;
-    if (pass.is_fused) {
-        if (pass.finish == Finish::OfFrame)
-            shape.steps |= static_cast<std::uint64_t>(values.finish()) << Shape::finish_bit;
-        for (std::size_t i = 0; i < pass.steps.size(); ++i) {
-            const std::uint32_t entry = pass.steps[i].entry;
+    const bool is_fused = pass.as<FusedPass>() != nullptr;
+    const std::span<const FusedStep> steps = pass.steps();
+    if (is_fused) {
+        if (pass.finishes_by_frame()) shape.steps |= static_cast<std::uint64_t>(values.finish()) << Shape::finish_bit;
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            const std::uint32_t entry = steps[i].entry;
             if (!values.is_on(entry)) continue;
             shape.steps |= (entries[entry]->is_plain(values.opacity(entry)) ? std::uint64_t{1} : std::uint64_t{3})
                            << (2 * i);
         }
     }
     for (const Literal& literal : pass.literals) {
-        const std::uint32_t entry = pass.steps[literal.step].entry;
+        const std::uint32_t entry = steps[literal.step].entry;
         // An entry that is off is not in the kernel; a pass of an effect that is off does not run, or for another one.
-        if (pass.is_fused && !values.is_on(entry)) continue;
+        if (is_fused && !values.is_on(entry)) continue;
         shape.choices |= (values.words(entry)[literal.row->word] & literal.mask()) << literal.bit;
     }
     return shape;

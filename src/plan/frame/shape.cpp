@@ -14,25 +14,41 @@ std::uint32_t bits_of(const ParamInfo& row) {
     return row.kind == Kind::Choice ? 5 : 1;
 }
 
-Result<gpu::KernelSpec> spec_of(const ProgramPass& pass, std::span<const FusedStep> steps, Finish finish) {
-    gpu::KernelSpec spec = pass.spec;
-    if (!pass.is_fused) {
-        spec.body = pass_body(steps.front());
-        return spec;
-    }
-    auto body = fused_body(steps, finish, pass.resampling, pass.is_alpha);
+Result<std::string> body_of(const FusedPass& pass, std::span<const FusedStep> steps, Finish finish) {
+    return fused_body(steps, finish, pass.resampling, pass.is_alpha);
+}
+Result<std::string> body_of(const KernelPass&, std::span<const FusedStep> steps, Finish) {
+    return pass_body(steps.front());
+}
+Result<std::string> body_of(const CopyPass& pass, std::span<const FusedStep>, Finish finish) {
+    return fused_body({}, finish, pass.resampling);
+}
+
+/// `of_frame`: in place of Finish::OfFrame.
+Result<gpu::KernelSpec> spec_of(const ProgramPass& pass, std::span<const FusedStep> steps, Finish of_frame) {
+    const FusedPass* const fused = pass.as<FusedPass>();
+    const Finish finish = fused == nullptr ? Finish::None : pass.finishes_by_frame() ? of_frame : fused->finish;
+    auto body = std::visit([&](const auto& kind) { return body_of(kind, steps, finish); }, pass.kind);
     if (!body) return failure(std::move(body));
+    gpu::KernelSpec spec = pass.spec;
     spec.body = std::move(*body);
     return spec;
 }
 
 }  // namespace
 
+std::span<const FusedStep> ProgramPass::steps() const {
+    if (const FusedPass* const fused = as<FusedPass>()) return fused->steps;
+    if (const KernelPass* const kernel = as<KernelPass>()) return {&kernel->step, 1};
+    return {};
+}
+
 void lay_out_literals(ProgramPass& pass) {
     std::uint32_t bit = 0;
-    for (std::uint32_t step = 0; step < pass.steps.size(); ++step) {
-        if (pass.steps[step].is_merge) continue;
-        for (const ParamInfo* const row : pass.steps[step].text->literal_rows) {
+    const std::span<const FusedStep> steps = pass.steps();
+    for (std::uint32_t step = 0; step < steps.size(); ++step) {
+        if (steps[step].is_merge) continue;
+        for (const ParamInfo* const row : steps[step].text->literal_rows) {
             const std::uint32_t bits = bits_of(*row);
             if (bit + bits > 64) continue;
             pass.literals.push_back({step, row, bit, bits});
@@ -41,25 +57,24 @@ void lay_out_literals(ProgramPass& pass) {
     }
 }
 
-bool has_lean(const ProgramPass& pass) { return pass.steps.size() <= max_lean_steps; }
+bool has_lean(const ProgramPass& pass) { return pass.steps().size() <= max_lean_steps; }
 
-Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass) { return spec_of(pass, pass.steps, pass.finish); }
+Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass) { return spec_of(pass, pass.steps(), Finish::OfFrame); }
 
 Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
-    std::vector<FusedStep> steps = pass.steps;
+    const std::span<const FusedStep> all = pass.steps();
+    std::vector<FusedStep> steps(all.begin(), all.end());
     for (const Literal& literal : pass.literals)
         steps[literal.step].baked.push_back(
             {literal.row, static_cast<std::uint32_t>(shape.choices >> literal.bit & literal.mask())});
-    if (pass.is_fused) {
+    if (pass.as<FusedPass>() != nullptr) {
         for (std::size_t i = 0; i < steps.size(); ++i) {
             steps[i].is_certain = (shape.steps >> (2 * i) & 1) != 0;
             steps[i].is_plain = (shape.steps >> (2 * i) & 2) == 0;
         }
         std::erase_if(steps, [](const FusedStep& step) { return !step.is_certain; });
     }
-    const bool is_of_frame = pass.finish == Finish::OfFrame;
-    auto spec =
-        spec_of(pass, steps, is_of_frame ? static_cast<Finish>(shape.steps >> Shape::finish_bit & 3) : pass.finish);
+    auto spec = spec_of(pass, steps, static_cast<Finish>(shape.steps >> Shape::finish_bit & 3));
     if (!spec) return spec;
     spec->is_whole = (shape.steps & Shape::is_whole) != 0;
     spec->input_is_twice = (shape.steps & Shape::input_is_twice) != 0;

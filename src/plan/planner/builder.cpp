@@ -188,9 +188,7 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     const Entry& entry = planner_.stack_[entry_];
     if (!error.empty() || desc.output.index >= images_.size()) return {};
     ProgramPass pass{.name = fmt::format("{}.{}", entry.desc.name, desc.name),
-                     .boundary = fmt::format("{} has passes of its own", entry.desc.name),
-                     .is_fused = false,
-                     .constants = desc.constants};
+                     .boundary = fmt::format("{} has passes of its own", entry.desc.name)};
     FusedStep step{.info = entry.info, .entry = entry_, .name = entry.desc.name};
     for (const KernelPassDesc::Input& input : desc.inputs) {
         if (input.image.index >= images_.size()) return {};
@@ -214,7 +212,7 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     }
     step.text = std::move(*text);
     if (step.text->asks_parameters) append_parameter_members(*entry.info, 0, pass.spec.members);
-    pass.steps.push_back(std::move(step));
+    pass.kind = KernelPass{.step = std::move(step), .constants = desc.constants};
     pass.spec.name = pass.name;
     pass.spec.outputs = {written.format};
     pass.spec.is_additive = desc.is_additive;

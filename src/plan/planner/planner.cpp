@@ -299,7 +299,7 @@ Result<> Planner::finish() {
 Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version target, VkFormat format, Finish finish,
                                              bool is_always_on) {
     const OpenKernel kernel = kernels_[index];
-    ProgramPass pass{.boundary = kernel.boundary, .steps = kernel.steps, .is_alpha = kernel.is_alpha, .finish = finish};
+    ProgramPass pass{.boundary = kernel.boundary};
     const bool is_moved_here = is_moved(kernel.steps);
 
     Gate toggle;
@@ -321,10 +321,13 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         return image.second.table == no_table && may_share(kernel.picture, image.second.version);
     });
     const bool is_warp = is_moved_here && kernel.steps.front().info->touch == Touch::Warp;
-    if (!is_warp && !has_size(kernel.picture, kernel.size)) pass.resampling = kernel.resampling;
+    const bool is_resampled = !is_warp && !has_size(kernel.picture, kernel.size);
+    const Resampling resampling = is_resampled ? kernel.resampling : Resampling::None;
+    pass.kind = FusedPass{kernel.steps, finish, resampling, kernel.is_alpha};
+    if (kernel.steps.empty() && finish == Finish::None && !kernel.is_alpha) pass.kind = CopyPass{resampling};
     const bool loads_alone = is_warp && traits_.is_software && kernel.steps.front().text->loads_picture_alone;
     const bool is_filtered = is_moved_here && !loads_alone;
-    const bool is_sampled = is_filtered || is_shared || pass.resampling != Resampling::None;
+    const bool is_sampled = is_filtered || is_shared || is_resampled;
     pass.spec.images.push_back(
         {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});
@@ -341,7 +344,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     }
     // Unfused, a kernel whose entry is off copies: else every picture would live as long as those it may stand in for.
     // So does one that gives the picture another size.
-    const bool has_toggle = !is_always_on && desc_.fuse && !pass.is_alpha && pass.resampling == Resampling::None;
+    const bool has_toggle = !is_always_on && desc_.fuse && !kernel.is_alpha && !is_resampled;
     if (has_toggle) pass.toggle = toggle_index(std::move(toggle));
     auto version = add_pass(std::move(pass), target, 0);
     if (!version) return version;
@@ -402,7 +405,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     pass.spec.has_robust_images = traits_.has_robust_images;
     pass.spec.workgroup = traits_.workgroup;
     lay_out_literals(pass);
-    for (const FusedStep& step : pass.steps) {
+    for (const FusedStep& step : pass.steps()) {
         pass.asks_sizes |= step.text && step.text->asks_sizes;
         pass.asks_rays_meet |= step.text && step.text->asks_rays_meet;
     }
@@ -414,7 +417,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     if ((usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0) pass.stage = gpu::Stage::Raster;
     if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) == 0) pass.stage = gpu::Stage::Compute;
     const bool is_raster = pass.stage == gpu::Stage::Raster;
-    graph::PassDesc desc{.name = pass.name, .has_side_effect = pass.watch.has_value(), .gate = pass.toggle};
+    graph::PassDesc desc{.name = pass.name, .has_side_effect = pass.watch().has_value(), .gate = pass.toggle};
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         if (pass.inputs[i].table != no_table) continue;
         const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;

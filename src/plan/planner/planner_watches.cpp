@@ -70,10 +70,9 @@ Result<> Planner::add_watch(std::uint32_t number, const WatchedImage& image) {
     const graph::Version target =
         import_host(which, fmt::format("watch {}", watch.id), watch.target, {.width = 1, .height = 1});
     ProgramPass pass{.name = fmt::format("watch {}", shown),
+                     .kind = CopyPass{.resampling = Resampling::Nearest, .watch = number},
                      .toggle = gate,
-                     .boundary = "the host looks at it",
-                     .watch = number,
-                     .resampling = Resampling::Nearest};
+                     .boundary = "the host looks at it"};
     pass.spec.name = pass.name;
     pass.spec.frame = frame_members();
     pass.spec.outputs = {watch.target.format};
