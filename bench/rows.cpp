@@ -151,11 +151,12 @@ std::vector<Recipe> recipes() {
                    }});
     out.push_back({.name = std::string(floor_name), .make = floor_row});
     for (const EffectInfo* const effect : all_effects())
-        out.push_back(
-            chain_recipe(fmt::format("effect/{}", effect->name), single_stack(*effect),
-                         {.world = effect->needs.ui                                  ? WorldUse::Interface
-                                   : effect->needs.normals || effect->needs.velocity ? WorldUse::Full
-                                                                                     : WorldUse::WithoutNormals}));
+        out.push_back(chain_recipe(
+            fmt::format("effect/{}", effect->name), single_stack(*effect),
+            {.world = effect->needs.contains(FrameImage::Ui) ? WorldUse::Interface
+                      : effect->needs.contains(FrameImage::Normals) || effect->needs.contains(FrameImage::Velocity)
+                          ? WorldUse::Full
+                          : WorldUse::WithoutNormals}));
     if (const Stack tail = tail_stack({}); !tail.empty()) {
         add_chains(out, "tail", tail);
         for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster}) {

@@ -182,7 +182,8 @@ void fill(Composer& composer, const Stack& stack) {
     for (const Step& step : stack) {
         EntryDesc desc{.source = scene_color, .is_ui = step.effect->is_ui, .enabled = step.is_on};
         if (step.joins_scene) desc.input = scene_color;
-        if (step.effect->has_second && !step.effect->needs.ui) desc.second = step.joins_scene ? before : scene_color;
+        if (step.effect->has_second && !step.effect->needs.contains(FrameImage::Ui))
+            desc.second = step.joins_scene ? before : scene_color;
         std::vector<std::uint32_t> words = step.words;
         for (const ParamInfo& row : step.effect->parameters.rows)
             if (row.kind == Kind::Resource && words[row.word] == some_table)

@@ -61,7 +61,7 @@ const EffectInfo& effect_info(const Fog&) {
         .files = embedded_files("fog"),
         .touch = Touch::Pointwise,
         .accepts = Domains::all(),
-        .needs = {.depth = true},
+        .needs = {FrameImage::Depth},
         .flat = {.documented = 80, .scene_linear = 30, .starts_on = false},
         .toggle_key = 8,
         .is_in_traced_light = true,

@@ -155,7 +155,7 @@ const EffectInfo& effect_info(const MotionBlur&) {
         .files = embedded_files("motion_blur"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .needs = {.depth = true},
+        .needs = {FrameImage::Depth},
         .flat = {.documented = 45, .scene_linear = 50, .starts_on = false},
         .is_in_traced_light = true,
         .build = build,

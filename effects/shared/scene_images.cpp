@@ -150,4 +150,19 @@ PassImage half_view_normals(PassBuilder& builder, NormalSource source, Condition
     return builder.shared("half view normals from depth", make_half_normals, condition);
 }
 
+PassImage plain_image(PassBuilder& builder, FrameImage which) {
+    switch (which) {
+        case FrameImage::Depth:
+            return linear_depth(builder);
+        case FrameImage::Normals:
+            return view_normals(builder, NormalSource::Image);
+        case FrameImage::Velocity:
+            return velocity(builder);
+        case FrameImage::Shadows:
+            return builder.shadow_map(0);
+        default:
+            return builder.frame_image(which);
+    }
+}
+
 }  // namespace darkroom

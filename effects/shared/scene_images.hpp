@@ -40,4 +40,8 @@ enum class NormalSource : std::uint8_t { Depth, Image };
 [[nodiscard]] PassImage half_view_normals(PassBuilder& builder, NormalSource source,
                                           ConditionFunction condition = nullptr);
 
+/// An image of the frame in the library's own convention: of Depth planar distance, of Normals view space, of Velocity
+/// as above, of Shadows the first light's cascades, and the others as they are.
+[[nodiscard]] PassImage plain_image(PassBuilder& builder, FrameImage which);
+
 }  // namespace darkroom

@@ -243,7 +243,7 @@ const EffectInfo& effect_info(const Ssao&) {
         .files = embedded_files("ssao"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
-        .needs = {.depth = true},
+        .needs = {FrameImage::Depth},
         .flat = {.documented = 30, .scene_linear = 10, .starts_on = true},
         .toggle_key = 7,
         .is_in_traced_light = true,

@@ -25,7 +25,7 @@ const EffectInfo& effect_info(const UiComposite&) {
         .files = embedded_files("ui_composite"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::Encoded),
-        .needs = {.ui = true},
+        .needs = {FrameImage::Ui},
         .flat = {.documented = 120, .scene_linear = 120, .is_of_ui = true},
         .has_second = true,
         .has_second_in_place = true,

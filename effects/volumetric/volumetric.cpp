@@ -170,7 +170,7 @@ const EffectInfo& effect_info(const Volumetric&) {
         .files = embedded_files("volumetric"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .needs = {.depth = true, .shadows = true},
+        .needs = {FrameImage::Depth, FrameImage::Shadows},
         .flat = {.documented = 40, .scene_linear = 20, .starts_on = false},
         .toggle_key = 10,
         .is_in_traced_light = true,

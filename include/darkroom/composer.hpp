@@ -89,6 +89,8 @@ struct CompileDesc {
     /// Every frame's camera says the default VelocityKind: velocity is then read as it is, without a pass.
     bool is_velocity_plain = false;
     ImageUse ui;
+    ImageUse reactive;
+    ImageUse exposure;
     bool has_shadows = false;  ///< frames have lights with cascades in D32_SFLOAT
     ImageUse target{VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
     /// (0, 0): the target is as large as the picture at the end of the stack. Else the largest extent of a target with

@@ -23,6 +23,7 @@
 #include <darkroom/reference.hpp>
 #include <darkroom/resource.hpp>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,13 +45,18 @@ enum class Touch : std::uint8_t {
     History,        ///< reads an earlier frame: passes of its own
 };
 
-/// Inputs beyond the colour without which an effect is left out of the plan.
+/// Images of the frame that an effect reads, as a set. Without one that nothing can stand in for, such as the depth, it
+/// is left out of the plan.
 struct Needs {
-    bool depth = false;
-    bool normals = false;
-    bool velocity = false;
-    bool shadows = false;
-    bool ui = false;
+    std::uint32_t bits = 0;
+    constexpr Needs() = default;
+    constexpr Needs(std::initializer_list<FrameImage> images) {
+        for (const FrameImage image : images) add(image);
+    }
+    constexpr void add(FrameImage image) { bits |= 1u << static_cast<unsigned>(image); }
+    [[nodiscard]] constexpr bool contains(FrameImage image) const {
+        return (bits >> static_cast<unsigned>(image) & 1) != 0;
+    }
 };
 
 /// An effect's place in the flat [post_process] table: ranks in the two shipped orders, lowest first; negative: not in
@@ -125,9 +131,6 @@ struct TableDesc {
     std::vector<std::byte> data;
 };
 
-/// Images of the host, beside the colour.
-enum class FrameImage : std::uint8_t { Depth, Normals, Velocity, Ui };
-
 /// What `build` of an effect declares its passes with. Runs at compile, never while recording.
 class PassBuilder {
   public:
@@ -156,9 +159,10 @@ class PassBuilder {
         PassImage current, previous;
     };
     [[nodiscard]] virtual History history(const PassImageDesc& desc) = 0;
-    /// An image of the host that the effect's needs name.
+    /// An image of the host that the effect's needs name, at the size of picture(); of Shadows there is shadow_map().
+    /// Where frames lack one that something can stand in for, one texel of that: load() gives it everywhere.
     [[nodiscard]] virtual PassImage frame_image(FrameImage which) = 0;
-    /// Does a frame have this image? For needs that are no more than wishes.
+    /// Do frames have this image? For needs that are no more than wishes.
     [[nodiscard]] virtual bool has_frame_image(FrameImage which) const = 0;
     /// Are the numbers of the depth image planar distances already?
     [[nodiscard]] virtual bool is_depth_planar() const = 0;
@@ -209,7 +213,7 @@ struct EffectInfo {
     Domains accepts = Domains::all();
     /// The domain after the effect, given that before it and the parameters; null: unchanged.
     Domain (*makes)(Domain before, const void* parameters) = nullptr;
-    Needs needs;
+    Needs needs{};
     FlatPlace flat;
     std::uint32_t toggle_key = 0;  ///< of a viewer: F1 .. F12 that switches it; 0: none
     OutputScale output_scale;      ///< of effects with a result of their own

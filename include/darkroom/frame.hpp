@@ -5,6 +5,7 @@
 
 #include <vulkan/vulkan.h>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -137,6 +138,11 @@ struct Watched {
     ImageRef target;  ///< gets the nearest texels, their numbers as they are
 };
 
+/// What a frame may bring beside its colour: what effects name in their needs. What each is like, what stands in for
+/// one that is not given, and how it is brought to another size is in src/plan/frame_inputs.hpp.
+enum class FrameImage : std::uint8_t { Depth, Normals, Velocity, Shadows, Ui, Reactive, Exposure };
+inline constexpr std::size_t frame_image_count = 7;
+
 /// One frame of one view.
 struct Frame {
     ImageRef color;  ///< scene-linear Rec. 709
@@ -144,6 +150,10 @@ struct Frame {
     ImageRef normals;   ///< world space, -1..1; of no length: nothing that occludes or is occluded, as a sprite
     ImageRef velocity;  ///< as Camera::velocity says
     ImageRef ui;        ///< sRGB-encoded, premultiplied after encoding
+    /// Red, 0 .. 1: how little earlier frames tell of a pixel (glass, particles, screens in the scene). Without it: 0.
+    ImageRef reactive;
+    /// One texel, red: what the host multiplies light by before it shows it. Without it: 1.
+    ImageRef exposure;
     Camera camera;
     std::span<const Light> lights;
     double time = 0;               ///< seconds

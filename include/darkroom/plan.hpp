@@ -53,7 +53,7 @@ struct Plan {
     std::vector<PlanImage> images;      ///< those of passes that do not run with the present values, too
     std::vector<std::string> left_out;  ///< "ssao: needs depth, which is not given"
     std::vector<std::string> remarks;   ///< colour domains and other oddities, one sentence each
-    /// Of the frame, what any pass may read: color, depth, normals, velocity, ui, shadows.
+    /// Of the frame, what any pass may read: "color", "depth" and so on, as needs name them.
     std::vector<std::string> frame_images;
     std::uint64_t transient_bytes = 0;  ///< after aliasing
     std::uint64_t transient_bytes_unaliased = 0;

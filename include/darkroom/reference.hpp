@@ -58,6 +58,8 @@ struct ReferenceInput {
     const ReferenceImage* depth = nullptr;  ///< red: planar distance
     const ReferenceImage* normals = nullptr;
     const ReferenceImage* velocity = nullptr;
+    const ReferenceImage* reactive = nullptr;
+    const ReferenceImage* exposure = nullptr;
     std::span<const ReferenceLight> lights;
     const Resources* resources = nullptr;
     Camera camera;

@@ -5,8 +5,9 @@
 #include <map>
 
 #include "custom/description.hpp"
-#include "custom/frame_images.hpp"
 #include "custom/light.hpp"
+#include "plan/frame_inputs.hpp"
+#include "shared/scene_images.hpp"
 
 namespace darkroom::custom {
 
@@ -34,8 +35,8 @@ class Build {
         if (!from_.end) return;
         if (from_.end->reads_light) builder_.end_constants(light_vectors, write_light);
         for (const FileInput& input : from_.end->inputs) {
-            const FrameImageRow* const row = frame_row(input.name);
-            const PassVector neutral = row == nullptr ? PassVector{} : row->neutral;
+            const plan::FrameInput* const of_frame = frame_row(input.name);
+            const PassVector neutral = of_frame == nullptr ? PassVector{} : of_frame->neutral;
             if (input.is_loaded)
                 builder_.loaded_side(std::string(input.name), image(input.name), neutral);
             else
@@ -64,15 +65,15 @@ class Build {
         }
     }
 
-    static const FrameImageRow* frame_row(std::string_view name) {
-        const auto found = std::ranges::find(frame_images, name, &FrameImageRow::name);
-        return found == frame_images.end() ? nullptr : &*found;
+    static const plan::FrameInput* frame_row(std::string_view name) {
+        const auto found = std::ranges::find(plan::frame_inputs, name, &plan::FrameInput::shader_name);
+        return found == plan::frame_inputs.end() ? nullptr : &*found;
     }
 
     PassImage image(std::string_view name) {
         if (name == "picture") return builder_.picture();
         if (name == "source") return builder_.source();
-        if (const FrameImageRow* const row = frame_row(name)) return row->make(builder_);
+        if (const plan::FrameInput* const of_frame = frame_row(name)) return plain_image(builder_, of_frame->image);
         if (const auto found = images_.find(name); found != images_.end()) return found->second;
         return previous_.at(name.substr(0, name.rfind('_')));
     }

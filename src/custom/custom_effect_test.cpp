@@ -97,8 +97,8 @@ TEST(CustomEffect, TouchAndNeedsAreRead) {
         "x");
     ASSERT_TRUE(parsed) << parsed.error().text;
     EXPECT_EQ(parsed->info().touch, Touch::Warp);
-    EXPECT_TRUE(parsed->info().needs.depth && parsed->info().needs.ui);
-    EXPECT_FALSE(parsed->info().needs.normals);
+    EXPECT_TRUE(parsed->info().needs.contains(FrameImage::Depth) && parsed->info().needs.contains(FrameImage::Ui));
+    EXPECT_FALSE(parsed->info().needs.contains(FrameImage::Normals));
     EXPECT_EQ(parsed->info().accepts.bits, Domains::all().bits);
 }
 
@@ -114,7 +114,7 @@ TEST(CustomEffect, ErrorsNameThePlaceTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of_line("@accepts linear"),
               "my.glsl:3: @accepts linear: allowed is scene_linear, display_linear, encoded");
     EXPECT_EQ(error_of_line("@needs money"),
-              "my.glsl:3: @needs money: allowed is depth, normals, velocity, shadows, ui, second");
+              "my.glsl:3: @needs money: allowed is depth, normals, velocity, shadows, ui, reactive, exposure, second");
     EXPECT_EQ(error_of_line("@param double a = 1 in [0, 2]: A."),
               "my.glsl:3: @param double: allowed is float, int, toggle, choice, vec2, vec3, vec4, rgb");
     EXPECT_EQ(error_of_line("@effect other: Other."), "my.glsl:3: a second @effect; a file holds one");

@@ -8,9 +8,9 @@
 
 #include "core/text/param_text.hpp"
 #include "custom/description.hpp"
-#include "custom/frame_images.hpp"
 #include "custom/words.hpp"
 #include "gpu/shader/glsl_scan.hpp"
+#include "plan/frame_inputs.hpp"
 
 namespace darkroom::custom {
 
@@ -123,11 +123,11 @@ Result<> check_code(std::string_view text, std::size_t& line) {
 }
 
 Result<> read_uses(const Description& from, FileFunction& function, std::string_view code) {
-    for (const FrameImageRow& row : frame_images) {
-        if (!names_word(code, row.name)) continue;
-        if (!(from.info.needs.*row.need))
-            return user_error(fmt::format("{}: read without `@needs {}`", row.name, row.need_name));
-        function.inputs.push_back({.name = row.name});
+    for (const plan::FrameInput& input : plan::frame_inputs) {
+        if (!names_word(code, input.shader_name)) continue;
+        if (!from.info.needs.contains(input.image))
+            return user_error(fmt::format("{}: read without `@needs {}`", input.shader_name, input.name));
+        function.inputs.push_back({.name = input.shader_name});
     }
     if (function.inputs.size() > most_inputs)
         return user_error(fmt::format("{} images are read, of the frame and of the file; at most {} are allowed",

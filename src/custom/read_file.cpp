@@ -10,6 +10,7 @@
 #include "custom/description.hpp"
 #include "custom/light.hpp"
 #include "custom/words.hpp"
+#include "plan/frame_inputs.hpp"
 #include "plan/text/glsl_names.hpp"
 
 namespace darkroom::custom {
@@ -19,11 +20,11 @@ namespace {
 constexpr Names<Touch, 2> touches{{{"pointwise", Touch::Pointwise}, {"warp", Touch::Warp}}};
 constexpr Names<Domain, 3> domains{
     {{"scene_linear", Domain::SceneLinear}, {"display_linear", Domain::DisplayLinear}, {"encoded", Domain::Encoded}}};
-constexpr Names<bool Needs::*, 5> needs{{{"depth", &Needs::depth},
-                                         {"normals", &Needs::normals},
-                                         {"velocity", &Needs::velocity},
-                                         {"shadows", &Needs::shadows},
-                                         {"ui", &Needs::ui}}};
+constexpr auto needs = [] {
+    Names<FrameImage, frame_image_count> out;
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {plan::frame_inputs[i].name, plan::frame_inputs[i].image};
+    return out;
+}();
 constexpr std::string_view second_name = "second";
 
 /// gaussian_blur -> GaussianBlur
@@ -89,7 +90,7 @@ Result<> read_needs(Description& out, std::string_view text) {
         if (!need && name != second_name)
             return user_error(fmt::format("@needs {}: allowed is {}, {}", printable(name), listed(needs), second_name));
         if (need)
-            out.info.needs.** need = true;
+            out.info.needs.add(*need);
         else
             out.info.has_second = true;
     } while (!text.empty());
@@ -238,7 +239,7 @@ class FileReader {
         if (!plan::calls_name(code, name))
             return user_error(fmt::format("no function {}: expected `vec4 {}({}Pixel pixel, {} parameters)`", name,
                                           name, first_argument, struct_name_));
-        function.reads_light = out_.info.needs.shadows && reads_light(code, out_.info.name);
+        function.reads_light = out_.info.needs.contains(FrameImage::Shadows) && reads_light(code, out_.info.name);
         if (function.reads_light)
             code = fmt::format("{}#line 1 \"{}\"\n{}", light_code(out_.info.name, !function.name.empty()), shown_name_,
                                code);

@@ -10,6 +10,7 @@
 #include "develop/upload.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/resource/resources.hpp"
+#include "plan/frame_inputs.hpp"
 
 namespace darkroom {
 
@@ -57,9 +58,7 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, c
 /// Do two descriptions that one DevelopDesc made ask for the same?
 bool is_same(const CompileDesc& a, const CompileDesc& b) {
     return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
-           a.color == b.color && a.depth == b.depth && a.is_depth_planar == b.is_depth_planar &&
-           a.is_velocity_plain == b.is_velocity_plain && a.normals == b.normals && a.velocity == b.velocity &&
-           a.ui == b.ui && a.has_shadows == b.has_shadows;
+           plan::bring_the_same(a, b);
 }
 
 }  // namespace
@@ -73,10 +72,9 @@ CompileDesc compile_desc_for(gpu::Context& context, const DeviceFrame& input, co
     CompileDesc out = compile_desc_for(context, desc);
     out.max_extent = frame.color.used_region().extent;
     out.color = {frame.color.format, input.color_usage};
-    out.depth = {frame.depth.format, input.layer_usage};
+    for (const plan::FrameInput& layer : plan::frame_inputs)
+        if (layer.use != nullptr) out.*layer.use = {(frame.*layer.given).format, input.layer_usage};
     out.is_depth_planar = frame.depth.is_given() && frame.camera.depth == DepthKind::Planar;
-    out.normals = {frame.normals.format, input.layer_usage};
-    out.velocity = {frame.velocity.format, input.layer_usage};
     out.is_velocity_plain = frame.camera.velocity == VelocityKind{};
     out.ui = {frame.ui.format};
     if (!input.ui.empty()) out.ui = {VK_FORMAT_R8G8B8A8_UNORM, shader_usage(context, VK_FORMAT_R8G8B8A8_UNORM)};
@@ -303,7 +301,9 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
         if (!made) return failure(std::move(made));
         readback = std::move(*made);
     }
-    std::vector<ImageRef*> images{&frame.color, &frame.depth, &frame.normals, &frame.velocity};
+    std::vector<ImageRef*> images{&frame.color};
+    for (const plan::FrameInput& layer : plan::frame_inputs)
+        if (layer.given != nullptr && layer.image != FrameImage::Ui) images.push_back(&(frame.*layer.given));
     state.lights.assign(frame.lights.begin(), frame.lights.end());
     for (Light& light : state.lights) images.push_back(&light.cascades);
     frame.lights = state.lights;

@@ -141,7 +141,7 @@ TEST_F(ComposeDeveloperLights, AreTheReferencesLight) {
     const ReferenceImage color = picture_of(color_, 4), depth = picture_of(depth_, 1);
     const auto reference = [&](std::span<const ReferenceLight> lights) {
         return test::must(run_reference(composer_, {.color = &color,
-                                                    .depth = &depth,
+                                                    .images = {{FrameImage::Depth, &depth}},
                                                     .lights = lights,
                                                     .camera = camera_,
                                                     .target_domain = Domain::SceneLinear}));

@@ -9,6 +9,7 @@
 #include <deque>
 
 #include "compose/chain/camera_jump.hpp"
+#include "plan/frame_inputs.hpp"
 #include "shared/blend_modes_reference.hpp"
 #include "shared/reading_reference.hpp"
 #include "shared/srgb_reference.hpp"
@@ -19,19 +20,10 @@ namespace {
 
 double srgb_curve(double light) { return srgb_encoded(std::clamp(light, 0.0, 1.0)); }
 
-std::string missing_needs(const Needs& needs, const ReferenceChainInput& input) {
-    std::string out;
-    const auto say = [&](bool is_needed, bool is_there, std::string_view name) {
-        if (is_needed && !is_there) out += fmt::format("{}{}", out.empty() ? "" : " and ", name);
-    };
-    say(needs.depth, input.depth != nullptr, "depth");
-    say(needs.normals, input.normals != nullptr, "normals");
-    say(needs.velocity, input.velocity != nullptr, "velocity");
-    const bool has_shadows = std::any_of(input.lights.begin(), input.lights.end(),
-                                         [](const ReferenceLight& light) { return !light.cascades.empty(); });
-    say(needs.shadows, has_shadows, "shadows");
-    say(needs.ui, input.ui != nullptr, "a UI image");
-    return out;
+bool is_there(const ReferenceChainInput& input, FrameImage image) {
+    if (image == FrameImage::Shadows)
+        return std::ranges::any_of(input.lights, [](const ReferenceLight& light) { return !light.cascades.empty(); });
+    return input.images[image] != nullptr;
 }
 
 // As shared/merge.glsl has it.
@@ -60,7 +52,7 @@ class Chain {
             pixel = {grey, grey, grey, 1};
         }
         domains_.assign(2, Domain::SceneLinear);
-        pictures_.push_back(input_.ui != nullptr ? *input_.ui : ReferenceImage());
+        pictures_.push_back(ui_ != nullptr ? *ui_ : ReferenceImage());
         domains_.push_back(Domain::Encoded);
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
@@ -129,11 +121,12 @@ class Chain {
     Handle second_of(std::size_t entry) const {
         const EffectInfo& info = *composer_.info(composer_.entry(entry));
         const EntryDesc& desc = *composer_.desc(composer_.entry(entry));
-        return desc.second.is_given() || !info.has_second || !info.needs.ui ? desc.second : before(entry, true);
+        return desc.second.is_given() || !info.has_second || !info.needs.contains(FrameImage::Ui) ? desc.second
+                                                                                                  : before(entry, true);
     }
     /// Does it name an interface that is not there, or what would be made of one?
     bool is_missing(Handle wire, std::size_t entry) const {
-        if (input_.ui != nullptr) return false;
+        if (ui_ != nullptr) return false;
         const std::size_t from = wire.is_given() && !wire.is_previous ? index_of(wire) : entry;
         return wire == ui_layer || (from < entry && is_missing_[from]);
     }
@@ -211,9 +204,10 @@ class Chain {
         values_.push_back(value_of(desc.input, index));
         is_missing_.push_back(is_missing(desc.input.is_given() ? desc.input : before(index, desc.is_ui), index));
         Needs needs = info.needs;
-        needs.ui |= is_missing_.back();
-        for (const Handle wire : {desc.source, second_of(index), desc.mask}) needs.ui |= is_missing(wire, index);
-        std::string why = missing_needs(needs, input_);
+        if (is_missing_.back()) needs.add(FrameImage::Ui);
+        for (const Handle wire : {desc.source, second_of(index), desc.mask})
+            if (is_missing(wire, index)) needs.add(FrameImage::Ui);
+        std::string why = plan::missing_needs(needs, [&](FrameImage image) { return is_there(input_, image); });
         if (!why.empty()) why = fmt::format("needs {}, which the frame does not have", why);
         if (why.empty() && info.is_last_step && input_.target_domain == Domain::SceneLinear)
             why = "the target takes scene-linear floats";
@@ -308,19 +302,19 @@ class Chain {
             second = is_in_place ? &pictures_[keep(picture_of(reading->second, base.width, base.height))]
                                  : wired(wire, nullptr);
         }
-        ReferenceImage layer = info.reference(words.data(), {.picture = &base,
-                                                             .source = wired(desc.source, &base),
-                                                             .second = second,
-                                                             .depth = input_.depth,
-                                                             .normals = input_.normals,
-                                                             .velocity = input_.velocity,
-                                                             .lights = input_.lights,
-                                                             .resources = &composer_.resources(),
-                                                             .camera = input_.camera,
-                                                             .time = input_.time,
-                                                             .delta_time = input_.delta_time,
-                                                             .frame_index = input_.frame_index,
-                                                             .history = history_of(composer_.entry(index))});
+        ReferenceInput given{.picture = &base,
+                             .source = wired(desc.source, &base),
+                             .second = second,
+                             .lights = input_.lights,
+                             .resources = &composer_.resources(),
+                             .camera = input_.camera,
+                             .time = input_.time,
+                             .delta_time = input_.delta_time,
+                             .frame_index = input_.frame_index,
+                             .history = history_of(composer_.entry(index))};
+        for (const plan::FrameInput& input : plan::frame_inputs)
+            if (input.reference != nullptr) given.*input.reference = input_.images[input.image];
+        ReferenceImage layer = info.reference(words.data(), given);
         const bool is_same_size = layer.width == base.width && layer.height == base.height;
         if (is_plain(desc) || !is_same_size) return layer;
         const ReferenceImage* const mask = wired(desc.mask, nullptr);
@@ -333,6 +327,7 @@ class Chain {
 
     const Composer& composer_;
     const ReferenceChainInput& input_;
+    const ReferenceImage* const ui_ = input_.images[FrameImage::Ui];
     std::deque<ReferenceImage> pictures_;      // that none moves while others are added
     std::vector<Domain> domains_;              // of each picture
     std::vector<std::size_t> values_;          // of each entry: its picture

@@ -4,10 +4,13 @@
 // and what `develop --reference` runs. It needs no device, since Device::assumed() does for the Composer that holds the
 // stack, and it is slow.
 
+#include <array>
 #include <darkroom/composer.hpp>
 #include <darkroom/reference.hpp>
+#include <initializer_list>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace darkroom {
@@ -20,12 +23,25 @@ struct ReferenceHistories {
     Matrix camera{};                                    ///< its Camera::view
 };
 
+/// What a frame brings beside its colour: images by their kind, those that are not there null. As ReferenceInput has
+/// them, and the interface encoded and premultiplied.
+class ReferenceImages {
+  public:
+    ReferenceImages() = default;
+    ReferenceImages(std::initializer_list<std::pair<FrameImage, const ReferenceImage*>> given) {
+        for (const auto& [which, image] : given) images_[static_cast<std::size_t>(which)] = image;
+    }
+    [[nodiscard]] const ReferenceImage* operator[](FrameImage which) const {
+        return images_[static_cast<std::size_t>(which)];
+    }
+
+  private:
+    std::array<const ReferenceImage*, frame_image_count> images_{};
+};
+
 struct ReferenceChainInput {
     const ReferenceImage* color = nullptr;
-    const ReferenceImage* depth = nullptr;
-    const ReferenceImage* normals = nullptr;
-    const ReferenceImage* velocity = nullptr;
-    const ReferenceImage* ui = nullptr;  ///< encoded, premultiplied
+    ReferenceImages images{};
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;

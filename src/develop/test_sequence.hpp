@@ -33,8 +33,8 @@ inline std::vector<ReferenceImage> reference_sequence(const Fill& fill, std::spa
     const auto given = [](const ReferenceImage& image) { return image.pixels.empty() ? nullptr : &image; };
     for (const Shot& shot : shots)
         out.push_back(gpu::test::must(run_reference(composer, {.color = &shot.color,
-                                                               .depth = given(shot.depth),
-                                                               .velocity = given(shot.velocity),
+                                                               .images = {{FrameImage::Depth, given(shot.depth)},
+                                                                          {FrameImage::Velocity, given(shot.velocity)}},
                                                                .camera = shot.camera,
                                                                .time = shot.time,
                                                                .delta_time = shot.delta_time,

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "gpu/resource/formats.hpp"
 #include "plan/frame/frame_values.hpp"
+#include "plan/frame_inputs.hpp"
 
 namespace darkroom::plan {
 
@@ -57,12 +57,13 @@ void remark_domains(const Program& program, const FrameValues& values, std::span
 namespace {
 
 std::vector<std::string> frame_images(const Program& program) {
-    constexpr std::array<const char*, 5> names{"color", "depth", "normals", "velocity", "ui"};
+    using Kind = HostImage::Kind;
     std::vector<std::string> out;
     for (const std::optional<HostImage>& image : program.imports) {
-        if (!image || *image == HostImage::Target || watch_number(*image) >= 0) continue;
-        const auto number = static_cast<std::size_t>(*image);
-        const char* const name = number < names.size() ? names[number] : "shadows";
+        if (!image || image->kind == Kind::Target || image->kind == Kind::Watched) continue;
+        const std::string_view name = image->kind == Kind::Color    ? "color"
+                                      : image->kind == Kind::Shadow ? frame_input(FrameImage::Shadows).name
+                                                                    : frame_inputs[image->number].name;
         if (std::ranges::find(out, name) == out.end()) out.emplace_back(name);
     }
     return out;
@@ -74,7 +75,8 @@ std::vector<std::uint32_t> add_images(const Program& program, const graph::Compi
     using Kind = graph::Slot::Kind;
     std::vector<std::uint32_t> out;
     for (const graph::Slot& slot : compiled.slots()) {
-        const bool is_watch = slot.kind == Kind::Import && watch_number(*program.imports[slot.import_index]) >= 0;
+        const bool is_watch =
+            slot.kind == Kind::Import && program.imports[slot.import_index]->kind == HostImage::Kind::Watched;
         if (slot.kind == Kind::Constant || is_watch) {
             out.push_back(PlanImage::never);
             continue;
@@ -91,7 +93,8 @@ std::vector<std::uint32_t> add_images(const Program& program, const graph::Compi
                             .bytes = slot.size,
                             .offset = slot.offset};
             // How large a light's cascades are, each frame says.
-            if (slot.kind == Kind::Import && shadow_number(*program.imports[slot.import_index]) >= 0) image.extent = {};
+            if (slot.kind == Kind::Import && program.imports[slot.import_index]->kind == HostImage::Kind::Shadow)
+                image.extent = {};
             if (slot.kind != Kind::Transient && image.extent.width != 0)
                 for (std::uint32_t level = 0; level < slot.desc.mip_levels; ++level)
                     image.bytes += bytes_of(slot, frame, level);

@@ -223,7 +223,7 @@ TEST_F(ComposePlan, MissingInputsLeaveAnEffectOut) {
                                  .doc = "Reads depth.",
                                  .parameters = {.struct_name = "Deep"},
                                  .files = {&file, 1},
-                                 .needs = {.depth = true, .velocity = true}};
+                                 .needs = {FrameImage::Depth, FrameImage::Velocity}};
     add(composer, "exposure");
     composer.add(deep, nullptr);
     CompileDesc desc = hd();

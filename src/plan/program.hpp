@@ -147,27 +147,14 @@ struct FixedImage {
 };
 
 /// Which import of the graph is which image of the host.
-enum class HostImage : std::uint32_t {
-    Color,
-    Depth,
-    Normals,
-    Velocity,
-    Ui,
-    Target,
-    Shadow0,
-    Shadow1,
-    Shadow2,
-    Shadow3,
-    FirstWatched,  ///< and as many more as there are watches
+struct HostImage {
+    enum class Kind : std::uint8_t { Color, Input, Shadow, Target, Watched };
+    Kind kind = Kind::Color;
+    std::uint32_t number = 0;  ///< a FrameImage; of lights with cascades; of CompileDesc::watches
+    friend auto operator<=>(const HostImage&, const HostImage&) = default;
 };
-/// The number of a shadow map; negative for what is none.
-[[nodiscard]] constexpr std::int32_t shadow_number(HostImage image) {
-    if (image >= HostImage::FirstWatched) return -1;
-    return static_cast<std::int32_t>(image) - static_cast<std::int32_t>(HostImage::Shadow0);
-}
-/// Of CompileDesc::watches, whose target this is; negative for what is none.
-[[nodiscard]] constexpr std::int32_t watch_number(HostImage image) {
-    return static_cast<std::int32_t>(image) - static_cast<std::int32_t>(HostImage::FirstWatched);
+[[nodiscard]] constexpr HostImage host_input(FrameImage image) {
+    return {HostImage::Kind::Input, static_cast<std::uint32_t>(image)};
 }
 
 /// In place of an entry: the scene.

@@ -202,7 +202,7 @@ TEST_F(ChainUi, FusedAndUnfusedAndReferenceAreOnePicture) {
     };
     Composer composer(gpu::test::device());
     build(composer);
-    const auto expected = run_reference(composer, {.color = &world, .ui = &ui});
+    const auto expected = run_reference(composer, {.color = &world, .images = {{FrameImage::Ui, &ui}}});
     ASSERT_TRUE(expected) << expected.error().text;
     for (const bool fuse : {true, false})
         EXPECT_LE(test::worst_difference(test::develop(build, world, {.fuse = fuse, .ui = &ui, .ui_format = float4}),
@@ -223,7 +223,8 @@ TEST_F(ChainUi, MapsMixLikeAnyEntry) {
     };
     Composer composer(gpu::test::device());
     build(composer);
-    const auto expected = run_reference(composer, {.color = &world, .ui = &mask, .encodes_target = false});
+    const auto expected =
+        run_reference(composer, {.color = &world, .images = {{FrameImage::Ui, &mask}}, .encodes_target = false});
     ASSERT_TRUE(expected) << expected.error().text;
     for (const bool fuse : {true, false})
         EXPECT_LE(test::worst_difference(test::develop(build, world, {.fuse = fuse, .ui = &mask}), expected->picture),

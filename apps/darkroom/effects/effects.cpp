@@ -11,6 +11,7 @@
 #include "apps/darkroom/run/json.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/text/param_text.hpp"
+#include "plan/frame_inputs.hpp"
 
 namespace app {
 
@@ -68,11 +69,9 @@ Json json_of(const EffectInfo& effect, const darkroom::ParamInfo& row) {
 
 Json json_of(const EffectInfo& effect) {
     Json needs = Json::array(), rows = Json::array();
-    for (const auto& [is_needed, what] :
-         {std::pair(effect.needs.depth, "depth"), std::pair(effect.needs.normals, "normals"),
-          std::pair(effect.needs.velocity, "velocity"), std::pair(effect.needs.shadows, "shadows"),
-          std::pair(effect.needs.ui, "ui"), std::pair(effect.has_second, "second")})
-        if (is_needed) needs.push_back(what);
+    for (const darkroom::plan::FrameInput& input : darkroom::plan::frame_inputs)
+        if (effect.needs.contains(input.image)) needs.push_back(input.name);
+    if (effect.has_second) needs.push_back("second");
     for (const darkroom::ParamInfo& row : effect.parameters.rows) rows.push_back(json_of(effect, row));
     const bool is_flat = effect.flat.documented >= 0 || effect.flat.scene_linear >= 0;
     return {{"name", effect.name},

@@ -232,13 +232,15 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
     for (std::size_t i = 0; i < ui.pixels.size(); ++i)
         ui.pixels[i] = {byte(4 * i), byte(4 * i + 1), byte(4 * i + 2), byte(4 * i + 3)};
     const auto given = [](const ReferenceImage& image) { return image.pixels.empty() ? nullptr : &image; };
+    using darkroom::FrameImage;
+    const darkroom::ReferenceImages images{{FrameImage::Depth, given(depth)},
+                                           {FrameImage::Normals, given(normals)},
+                                           {FrameImage::Velocity, given(velocity)},
+                                           {FrameImage::Ui, given(ui)}};
     const darkroom::Domain domain =
         target == DevelopTarget::SceneLinear ? darkroom::Domain::SceneLinear : darkroom::Domain::Encoded;
     Result<darkroom::ReferenceChainOutput> made = darkroom::run_reference(composer, {.color = &color,
-                                                                                     .depth = given(depth),
-                                                                                     .normals = given(normals),
-                                                                                     .velocity = given(velocity),
-                                                                                     .ui = given(ui),
+                                                                                     .images = images,
                                                                                      .lights = input.lights,
                                                                                      .camera = input.camera,
                                                                                      .time = input.time,

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gpu/device/context.hpp"
+#include "plan/frame_inputs.hpp"
 
 namespace app {
 
@@ -28,9 +29,7 @@ VkExtent2D least_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.wi
 bool is_equal(VkExtent2D a, VkExtent2D b) { return a.width == b.width && a.height == b.height; }
 
 bool is_same(const CompileDesc& a, const CompileDesc& b) {
-    return a.color == b.color && a.depth == b.depth && a.is_depth_planar == b.is_depth_planar &&
-           a.is_velocity_plain == b.is_velocity_plain && a.normals == b.normals && a.velocity == b.velocity &&
-           a.ui == b.ui && a.has_shadows == b.has_shadows && a.watches == b.watches;
+    return darkroom::plan::bring_the_same(a, b) && a.watches == b.watches;
 }
 
 }  // namespace

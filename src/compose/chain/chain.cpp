@@ -81,12 +81,12 @@ bool Chain::abandon() {
 
 const ImageRef& Chain::image_of(const Frame& frame, HostImage which) const {
     static const ImageRef none;
-    if (const std::int32_t watch = plan::watch_number(which); watch >= 0) {
-        const Watched* const watched = watched_[static_cast<std::size_t>(watch)];
+    if (which.kind == HostImage::Kind::Watched) {
+        const Watched* const watched = watched_[which.number];
         return watched != nullptr ? watched->target : none;
     }
-    if (plan::shadow_number(which) < 0) return host_image(frame, which);
-    const Light* const light = shadow_light(frame.lights, static_cast<std::uint32_t>(plan::shadow_number(which)));
+    if (which.kind != HostImage::Kind::Shadow) return host_image(frame, which);
+    const Light* const light = shadow_light(frame.lights, which.number);
     return light != nullptr ? light->cascades : lit_.reference;
 }
 
@@ -199,7 +199,7 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
                 .region = {region.offset, region.extent, host.extent},
                 .is_nearest = is_nearest_[slot] != 0,
                 .is_lent = true,
-                .sampler = plan::shadow_number(which) >= 0 ? context_.shadow_sampler : VK_NULL_HANDLE,
+                .sampler = which.kind == HostImage::Kind::Shadow ? context_.shadow_sampler : VK_NULL_HANDLE,
                 .layout = schedule_->read_layout(slot)};
     }
     if (image.kind == graph::Slot::Kind::Constant) {

@@ -54,7 +54,9 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Worker& work
     auto tables = Tables::create(context, program.fixed_images);
     if (!tables) return failure(std::move(tables));
     chain->tables_ = std::move(*tables);
-    const auto is_shadow_map = [](const auto& import) { return import && plan::shadow_number(*import) >= 0; };
+    const auto is_shadow_map = [](const auto& import) {
+        return import && import->kind == plan::HostImage::Kind::Shadow;
+    };
     if (std::ranges::any_of(program.imports, is_shadow_map)) {
         auto lit = LitShadowMap::create(context);
         if (!lit) return failure(std::move(lit));

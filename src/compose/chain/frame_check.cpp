@@ -8,31 +8,34 @@
 
 #include "gpu/device/context.hpp"
 #include "gpu/resource/formats.hpp"
+#include "plan/frame_inputs.hpp"
 
 namespace darkroom::compose {
 
 namespace {
 
 using plan::HostImage;
-using plan::shadow_number;
-using plan::watch_number;
+using plan::InputExtent;
+using Kind = HostImage::Kind;
 
 /// An image of the frame that the plan uses, and what an error calls it: "depth", "lights[2].cascades".
 struct Given {
-    HostImage which = HostImage::Color;
+    HostImage which{};
     std::size_t place = 0;  ///< in the frame: of the light whose cascades they are, or of what is watched
     const ImageRef* image = nullptr;
 
-    [[nodiscard]] bool is_cascades() const { return shadow_number(which) >= 0; }
-    [[nodiscard]] bool is_watched() const { return watch_number(which) >= 0; }
-    [[nodiscard]] bool is_written() const { return which == HostImage::Target || is_watched(); }
+    [[nodiscard]] bool is_cascades() const { return which.kind == Kind::Shadow; }
+    [[nodiscard]] bool is_watched() const { return which.kind == Kind::Watched; }
+    [[nodiscard]] bool is_written() const { return which.kind == Kind::Target || is_watched(); }
+    /// Of an input.
+    [[nodiscard]] const plan::FrameInput& input() const { return plan::frame_inputs[which.number]; }
 };
 
 std::string name_of(const Given& given) {
     if (given.is_cascades()) return fmt::format("frame.lights[{}].cascades", given.place);
     if (given.is_watched()) return fmt::format("frame.watched[{}].target", given.place);
-    constexpr std::array names{"color", "depth", "normals", "velocity", "ui", "target"};
-    return fmt::format("frame.{}", names[static_cast<std::size_t>(given.which)]);
+    if (given.which.kind == Kind::Input) return fmt::format("frame.{}", given.input().name);
+    return given.which.kind == Kind::Color ? "frame.color" : "frame.target";
 }
 
 template <class... Arguments>
@@ -41,21 +44,9 @@ Failure refused(const Given& given, fmt::format_string<Arguments...> text, Argum
         fmt::format("record: {}{}", name_of(given), fmt::format(text, std::forward<Arguments>(arguments)...)));
 }
 
-const ImageUse& use_of(const CompileDesc& desc, HostImage which) {
-    switch (which) {
-        case HostImage::Color:
-            return desc.color;
-        case HostImage::Depth:
-            return desc.depth;
-        case HostImage::Normals:
-            return desc.normals;
-        case HostImage::Velocity:
-            return desc.velocity;
-        case HostImage::Ui:
-            return desc.ui;
-        default:
-            return desc.target;
-    }
+const ImageUse& use_of(const CompileDesc& desc, const Given& given) {
+    if (given.which.kind == Kind::Input) return desc.*given.input().use;
+    return given.which.kind == Kind::Color ? desc.color : desc.target;
 }
 
 bool is_same(VkExtent2D a, VkExtent2D b) { return a.width == b.width && a.height == b.height; }
@@ -103,24 +94,30 @@ Result<> check_region(const Given& given) {
 Result<> check_picture(const Given& given, const plan::Program& program, const CompileDesc& desc, const Frame& frame) {
     const ImageRef& image = *given.image;
     if (auto ok = check_handles(given); !ok) return ok;
-    if (auto ok = check_state(given, use_of(desc, given.which).format, "as compiled"); !ok) return ok;
+    if (auto ok = check_state(given, use_of(desc, given).format, "as compiled"); !ok) return ok;
     if (auto ok = check_region(given); !ok) return ok;
     if (image.layer_count != 1) return refused(given, ".layer_count is {}: allowed is 1", image.layer_count);
     const VkExtent2D extent = image.used_region().extent, color = frame.color.used_region().extent;
-    const VkExtent2D most = given.which == HostImage::Target ? desc.target_extent : desc.max_extent;
-    if (given.which == HostImage::Color || (given.which == HostImage::Target && !is_empty(most))) {
+    const bool is_target = given.which.kind == Kind::Target;
+    const VkExtent2D most = is_target ? desc.target_extent : desc.max_extent;
+    if (given.which.kind == Kind::Color || (is_target && !is_empty(most))) {
         if (is_empty(extent) || extent.width > most.width || extent.height > most.height)
             return refused(given, " is {}x{}: allowed is 1x1 to {}x{}, as compiled", extent.width, extent.height,
                            most.width, most.height);
         return {};
     }
-    if (given.which == HostImage::Ui && !is_empty(desc.target_extent)) {
+    const InputExtent of = is_target ? InputExtent::Scene : given.input().extent;
+    if (of == InputExtent::Texel) {
+        if (is_same(extent, {1, 1})) return {};
+        return refused(given, " is {}x{}: allowed is one texel", extent.width, extent.height);
+    }
+    if (of == InputExtent::Interface && !is_empty(desc.target_extent)) {
         const VkExtent2D target = frame.target.used_region().extent;
         if (is_same(extent, target)) return {};
         return refused(given, " is {}x{}: with a target of {}x{} it must be as large", extent.width, extent.height,
                        target.width, target.height);
     }
-    const VkExtent2D wanted = given.which == HostImage::Target ? program.target_size.of(color) : color;
+    const VkExtent2D wanted = is_target ? program.target_size.of(color) : color;
     if (!is_same(extent, wanted))
         return refused(given, " is {}x{}: with a color of {}x{} it must be {}x{}", extent.width, extent.height,
                        color.width, color.height, wanted.width, wanted.height);
@@ -148,13 +145,13 @@ Result<> check_cascades(const Given& given, const Light& light) {
 
 /// The images of one frame that the plan uses; no more than these, so that nothing is allocated.
 struct AllGiven {
-    std::array<Given, 6 + max_shadow_lights> images;
+    std::array<Given, 2 + frame_image_count + max_shadow_lights> images;
     std::size_t count = 0;
 };
 
 Result<> check_lights(const plan::Program& program, const Frame& frame, AllGiven& all) {
     bool reads_shadows = false;
-    for (const auto& which : program.imports) reads_shadows = reads_shadows || (which && shadow_number(*which) >= 0);
+    for (const auto& which : program.imports) reads_shadows |= which && which->kind == Kind::Shadow;
     if (!reads_shadows) return {};
     std::uint32_t number = 0;
     for (std::size_t i = 0; i < frame.lights.size() && number < max_shadow_lights; ++i) {
@@ -162,8 +159,7 @@ Result<> check_lights(const plan::Program& program, const Frame& frame, AllGiven
         // Without cascades it casts no shadow, and is not one of the first four that do.
         const bool has_image = light.cascades.image != VK_NULL_HANDLE || light.cascades.view != VK_NULL_HANDLE;
         if (!has_image || light.cascade_count == 0) continue;
-        const Given given{static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::Shadow0) + number), i,
-                          &light.cascades};
+        const Given given{{Kind::Shadow, number}, i, &light.cascades};
         if (auto ok = check_cascades(given, light); !ok) return ok;
         all.images[all.count++] = given;
         ++number;
@@ -179,7 +175,7 @@ bool overlap(const ImageRef& a, const ImageRef& b) {
 /// Two inputs may be one image only where no barrier has to move it: each would start from the layout the host named.
 bool stays_readable(const Given& given, const CompileDesc& desc) {
     const ImageRef& image = *given.image;
-    const bool is_sampled = given.is_cascades() || (use_of(desc, given.which).usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0;
+    const bool is_sampled = given.is_cascades() || (use_of(desc, given).usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0;
     return is_sampled && image.layout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL &&
            (image.final_layout == image.layout || image.final_layout == VK_IMAGE_LAYOUT_UNDEFINED);
 }
@@ -190,8 +186,7 @@ Result<> check_watched(const AllGiven& all, const CompileDesc& desc, const Frame
         const Watched& watched = frame.watched[i];
         const auto number = watch_with(desc, watched.id);
         if (!number || !watched.target.is_given()) continue;
-        const auto which = static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::FirstWatched) + *number);
-        const Given given{which, i, &watched.target};
+        const Given given{{Kind::Watched, static_cast<std::uint32_t>(*number)}, i, &watched.target};
         if (auto ok = check_handles(given); !ok) return ok;
         if (auto ok = check_state(given, desc.watches[*number].target.format, "as compiled"); !ok) return ok;
         if (auto ok = check_region(given); !ok) return ok;
@@ -235,13 +230,7 @@ Result<> check_overlaps(const AllGiven& all, const CompileDesc& desc) {
     return {};
 }
 
-bool can_hold_depth(VkFormat format) {
-    return gpu::is_depth(format) || format == VK_FORMAT_R32_SFLOAT || format == VK_FORMAT_R16_SFLOAT ||
-           format == VK_FORMAT_R16_UNORM;
-}
-
-Result<> check_input(const gpu::Context& context, const char* name, const ImageUse& use) {
-    if (use.format == VK_FORMAT_UNDEFINED) return {};
+Result<> check_input(const gpu::Context& context, std::string_view name, const ImageUse& use) {
     if ((use.usage & VK_IMAGE_USAGE_SAMPLED_BIT) == 0)
         return user_error(fmt::format("compile: {}.usage = {:#x}: allowed is what contains SAMPLED", name, use.usage));
     if (!context.supports(use.format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT))
@@ -292,38 +281,22 @@ Result<> check_watches(const gpu::Context& context, const CompileDesc& desc) {
 }  // namespace
 
 const ImageRef& host_image(const Frame& frame, HostImage which) {
-    switch (which) {
-        case HostImage::Color:
-            return frame.color;
-        case HostImage::Depth:
-            return frame.depth;
-        case HostImage::Normals:
-            return frame.normals;
-        case HostImage::Velocity:
-            return frame.velocity;
-        case HostImage::Ui:
-            return frame.ui;
-        default:
-            return frame.target;
-    }
+    if (which.kind == Kind::Input) return frame.*plan::frame_inputs[which.number].given;
+    return which.kind == Kind::Color ? frame.color : frame.target;
 }
 
 Result<> check_images(const gpu::Context& context, const CompileDesc& desc) {
     if (desc.color.format == VK_FORMAT_UNDEFINED)
         return user_error("compile: color.format = UNDEFINED: allowed is the format of every frame's color");
-    if (desc.depth.format != VK_FORMAT_UNDEFINED && !can_hold_depth(desc.depth.format))
-        return user_error(
-            fmt::format("compile: depth.format = {}: allowed are depth formats, R32_SFLOAT, R16_SFLOAT "
-                        "and R16_UNORM",
-                        gpu::format_name(desc.depth.format)));
     if (auto ok = check_input(context, "color", desc.color); !ok) return ok;
-    if (auto ok = check_input(context, "depth", desc.depth); !ok) return ok;
-    if (auto ok = check_input(context, "normals", desc.normals); !ok) return ok;
-    if (auto ok = check_input(context, "velocity", desc.velocity); !ok) return ok;
-    if (auto ok = check_input(context, "ui", desc.ui); !ok) return ok;
-    if (desc.ui.format == VK_FORMAT_A2B10G10R10_UNORM_PACK32 || desc.ui.format == VK_FORMAT_A2R10G10B10_UNORM_PACK32)
-        return user_error(fmt::format("compile: ui.format = {}: allowed is what has 8 bits of alpha and more",
-                                      gpu::format_name(desc.ui.format)));
+    for (const plan::FrameInput& input : plan::frame_inputs) {
+        if (input.use == nullptr || !plan::is_given(desc, input)) continue;
+        const ImageUse& use = desc.*input.use;
+        if (input.can_hold != nullptr && !input.can_hold(use.format))
+            return user_error(fmt::format("compile: {}.format = {}: allowed {}", input.name,
+                                          gpu::format_name(use.format), input.allowed));
+        if (auto ok = check_input(context, input.name, use); !ok) return ok;
+    }
     if (auto ok = check_target(context, "target", desc.target); !ok) return ok;
     return check_watches(context, desc);
 }
@@ -337,10 +310,9 @@ std::optional<std::size_t> watch_with(const CompileDesc& desc, std::uint32_t id)
 Result<> check_frame(const plan::Program& program, const CompileDesc& desc, const Frame& frame) {
     AllGiven all;
     // The colour first: the extents of the others are compared with its own.
-    if (auto ok = check_picture({.which = HostImage::Color, .image = &frame.color}, program, desc, frame); !ok)
-        return ok;
+    if (auto ok = check_picture({.image = &frame.color}, program, desc, frame); !ok) return ok;
     for (const auto& which : program.imports) {
-        if (!which || shadow_number(*which) >= 0 || watch_number(*which) >= 0) continue;
+        if (!which || which->kind == Kind::Shadow || which->kind == Kind::Watched) continue;
         const Given given{.which = *which, .image = &host_image(frame, *which)};
         if (auto ok = check_picture(given, program, desc, frame); !ok) return ok;
         all.images[all.count++] = given;

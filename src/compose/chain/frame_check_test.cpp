@@ -15,6 +15,7 @@ constexpr EffectFile files[] = {
      "vec4 reader(vec4 color, Pixel pixel, Reader parameters) {\n"
      "    vec4 sum = load(reader_depth, pixel.texel) + load(reader_normals, pixel.texel);\n"
      "    sum += load(reader_velocity, pixel.texel) + load(reader_ui, pixel.texel);\n"
+     "    sum += load(reader_reactive, pixel.texel) * load(reader_exposure, ivec2(0));\n"
      "    return color + sum * texture(reader_shadow, vec4(pixel.uv, 0.0, 0.5));\n}\n"},
 };
 void build_reader(PassBuilder& builder) {
@@ -22,6 +23,8 @@ void build_reader(PassBuilder& builder) {
     builder.side("reader_normals", builder.frame_image(FrameImage::Normals), {});
     builder.side("reader_velocity", builder.frame_image(FrameImage::Velocity), {});
     builder.side("reader_ui", builder.frame_image(FrameImage::Ui), {});
+    builder.side("reader_reactive", builder.frame_image(FrameImage::Reactive), {});
+    builder.side("reader_exposure", builder.frame_image(FrameImage::Exposure), {});
     builder.side("reader_shadow", builder.shadow_map(0), {});
 }
 /// Reads every image that a frame may bring.
@@ -29,7 +32,8 @@ const EffectInfo reader{.name = "reader",
                         .doc = "Adds every image of the frame.",
                         .parameters = {.struct_name = "Reader"},
                         .files = files,
-                        .needs = {.depth = true, .normals = true, .velocity = true, .shadows = true, .ui = true},
+                        .needs = {FrameImage::Depth, FrameImage::Normals, FrameImage::Velocity, FrameImage::Shadows,
+                                  FrameImage::Ui, FrameImage::Reactive, FrameImage::Exposure},
                         .build = build_reader};
 
 ReferenceLight striped() {
@@ -47,6 +51,8 @@ class ComposeFrameCheck : public ::testing::Test {
         desc.normals = {VK_FORMAT_R16G16B16A16_SFLOAT};
         desc.velocity = {VK_FORMAT_R16G16_SFLOAT};
         desc.ui = {VK_FORMAT_R8G8B8A8_UNORM};
+        desc.reactive = {VK_FORMAT_R8G8B8A8_UNORM};
+        desc.exposure = {VK_FORMAT_R32_SFLOAT};
         desc.has_shadows = true;
         return desc;
     }
@@ -56,6 +62,8 @@ class ComposeFrameCheck : public ::testing::Test {
         frame.normals = test::image_ref(normals);
         frame.velocity = test::image_ref(velocity);
         frame.ui = test::image_ref(ui);
+        frame.reactive = test::image_ref(reactive);
+        frame.exposure = test::image_ref(exposure);
         frame.lights = lights;
         return frame;
     }
@@ -71,6 +79,8 @@ class ComposeFrameCheck : public ::testing::Test {
     gpu::test::Picture normals = gpu::test::blank(context(), frame_extent, VK_FORMAT_R16G16B16A16_SFLOAT);
     gpu::test::Picture velocity = gpu::test::blank(context(), frame_extent, VK_FORMAT_R16G16_SFLOAT);
     gpu::test::Picture ui = gpu::test::blank(context(), frame_extent, VK_FORMAT_R8G8B8A8_UNORM);
+    gpu::test::Picture reactive = gpu::test::blank(context(), frame_extent, VK_FORMAT_R8G8B8A8_UNORM);
+    gpu::test::Picture exposure = gpu::test::blank(context(), {1, 1}, VK_FORMAT_R32_SFLOAT);
     gpu::Image shadow_map = test::upload_shadow_map(context(), striped());
     std::array<Light, 2> lights;  ///< the first casts no shadow
     Composer composer{host.device};
@@ -116,6 +126,16 @@ TEST_F(ComposeFrameCheck, EveryFaultNamesImageAndField) {
              f.normals.extent = {23, 18};
          },
          "frame.normals is 23x18: with a color of 24x18"},
+        {[](Frame& f, Light&) {
+             f.reactive.extent = {24, 17};
+         },
+         "frame.reactive is 24x17: with a color of 24x18"},
+        {[](Frame& f, Light&) {
+             f.exposure.extent = {2, 1};
+         },
+         "frame.exposure is 2x1: allowed is one texel"},
+        {[](Frame& f, Light&) { f.exposure.format = VK_FORMAT_R16_SFLOAT; },
+         "frame.exposure.format is R16_SFLOAT: allowed is R32_SFLOAT, as compiled"},
         {[](Frame& f, Light&) {
              f.depth.region = {{1, 0}, {24, 18}};
          },

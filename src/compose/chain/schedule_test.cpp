@@ -78,12 +78,13 @@ struct Copy {
 std::vector<graph::ImportState> states_of(const Program& program) {
     std::vector<graph::ImportState> states(program.imports.size());
     for (std::size_t i = 0; i < states.size(); ++i) {
-        if (program.imports[i] == HostImage::Color)
+        if (program.imports[i] == HostImage{HostImage::Kind::Color})
             states[i] = {.layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                          .stages = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
                          .access = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                          .final_layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-        if (program.imports[i] == HostImage::Target) states[i].final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+        if (program.imports[i] == HostImage{HostImage::Kind::Target})
+            states[i].final_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     }
     return states;
 }

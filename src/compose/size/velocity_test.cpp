@@ -23,7 +23,7 @@ const EffectInfo moved{
     .doc = "Shows velocity.",
     .parameters = {.struct_name = "Moved"},
     .files = files,
-    .needs = {.velocity = true},
+    .needs = {FrameImage::Velocity},
     .build = [](PassBuilder& builder) { builder.loaded_side("moved_velocity", velocity(builder), {}); }};
 
 /// A point of the picture, in pixels from its top left, y down, as a projection without jitter shows it.

@@ -7,6 +7,7 @@
 #include "gpu/device/context.hpp"
 #include "gpu/resource/format_use.hpp"
 #include "gpu/shader/flat_values.hpp"
+#include "plan/frame_inputs.hpp"
 
 namespace darkroom::compose {
 
@@ -41,7 +42,8 @@ bool StackProgram::serves(std::span<const plan::Entry> other_stack, const Compil
     const auto is_same = [&](const plan::Entry& a, const plan::Entry& b) {
         return wiring_of(a) == wiring_of(b) && a.values_at_compile() == b.values_at_compile();
     };
-    return facts_of(desc) == facts_of(other_desc) && std::ranges::equal(stack, other_stack, is_same) &&
+    return plan::bring_the_same(desc, other_desc) && facts_of(desc) == facts_of(other_desc) &&
+           std::ranges::equal(stack, other_stack, is_same) &&
            std::ranges::all_of(program.extent_answers, [&](const plan::Program::ExtentAnswer& asked) {
                return asked.question(asked.size.of(other_desc.max_extent)) == asked.answer;
            });

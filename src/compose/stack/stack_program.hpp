@@ -11,11 +11,11 @@
 
 namespace darkroom::compose {
 
-/// All but the largest extent and the views, which a program is independent of, as far as its answers are the same.
+/// All but what the frames bring, and the largest extent and the views, which a program is independent of, as far as
+/// its answers are the same.
 [[nodiscard]] inline auto facts_of(const CompileDesc& desc) {
-    return std::tie(desc.color, desc.depth, desc.is_depth_planar, desc.normals, desc.velocity, desc.is_velocity_plain,
-                    desc.ui, desc.has_shadows, desc.target, desc.target_extent.width, desc.target_extent.height,
-                    desc.target_domain, desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate, desc.watches);
+    return std::tie(desc.target, desc.target_extent.width, desc.target_extent.height, desc.target_domain,
+                    desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate, desc.watches);
 }
 
 struct StackProgram {

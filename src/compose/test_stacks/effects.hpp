@@ -189,7 +189,7 @@ inline const EffectInfo absent_effect{.name = "absent",
                                       .doc = "Is never there.",
                                       .parameters = absent_rows.table(),
                                       .files = test_effect_files,
-                                      .needs = {.ui = true}};
+                                      .needs = {FrameImage::Ui}};
 /// A result of half the size.
 inline const EffectInfo halve_effect{
     .name = "halve",

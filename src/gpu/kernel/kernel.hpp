@@ -75,6 +75,7 @@ struct KernelImage {
     bool is_filtered_by_loads = false;
     /// Its format is one of depth, so the sampler it is bound with takes the nearest texel.
     bool is_depth = false;
+    bool is_single = false;  ///< one texel, which load() gives everywhere
 };
 
 struct KernelSpec {

@@ -114,6 +114,8 @@ void write_filter(Text text, std::string_view name) {
                    name);
 }
 
+std::string_view place_of(const KernelImage& image) { return image.is_single ? "ivec2(0)" : "texel"; }
+
 void write_storage_input(Text text, const KernelImage& image, std::uint32_t binding, bool is_whole) {
     const FormatTraits traits = format_traits(image.storage_format);
     const std::string_view prefix = prefix_of(traits.numeric);
@@ -122,9 +124,9 @@ void write_storage_input(Text text, const KernelImage& image, std::uint32_t bind
     fmt::format_to(
         text,
         "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n"
-        "{1}vec4 load_{0}(ivec2 texel) {{ return imageLoad({0}, texel{2}); }}\n"
+        "{1}vec4 load_{0}(ivec2 texel) {{ return imageLoad({0}, {3}{2}); }}\n"
         "{1}vec4 load_clamped_{0}(ivec2 texel) {{ return load_{0}(clamp(texel, ivec2(0), size_{0}() - 1)); }}\n",
-        image.name, prefix, is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name));
+        image.name, prefix, is_whole ? "" : fmt::format(" + darkroom_region_{}.xy", image.name), place_of(image));
     if (prefix.empty()) write_filter(text, image.name);
 }
 
@@ -133,7 +135,7 @@ std::string texel_of(const KernelImage& image, bool has_quads, std::string_view 
     if (!image.loads_by.empty()) return fmt::format("load_{}(texel)", image.loads_by);
     if (has_quads && image.is_depth)
         return fmt::format("texture({0}, (vec2(texel) + 0.5) / vec2(size_{0}()))", image.name);
-    return fmt::format("texelFetch({}, texel{}, 0)", image.name, offset);
+    return fmt::format("texelFetch({}, {}{}, 0)", image.name, place_of(image), offset);
 }
 
 void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& image, std::uint32_t binding,

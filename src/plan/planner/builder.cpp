@@ -88,52 +88,32 @@ PassBuilder::History Builder::history(const PassImageDesc& desc) {
     return {remember_new(made.current, image), remember_new(made.previous, image)};
 }
 
-namespace {
-
-struct FrameImageRow {
-    HostImage image;
-    const char* name;
-    ImageUse use;
-};
-
-FrameImageRow frame_image_row(const CompileDesc& desc, FrameImage which) {
-    const std::array<FrameImageRow, 4> rows{{{HostImage::Depth, "depth", desc.depth},
-                                             {HostImage::Normals, "normals", desc.normals},
-                                             {HostImage::Velocity, "velocity", desc.velocity},
-                                             {HostImage::Ui, "ui", desc.ui}}};
-    return rows[static_cast<std::size_t>(which)];
-}
-
-}  // namespace
-
-bool Builder::has_frame_image(FrameImage which) const {
-    return frame_image_row(planner_.desc_, which).use.format != VK_FORMAT_UNDEFINED;
-}
+bool Builder::has_frame_image(FrameImage which) const { return is_given(planner_.desc_, which); }
 
 PassImage Builder::frame_image(FrameImage which) {
-    const FrameImageRow row = frame_image_row(planner_.desc_, which);
-    if (row.use.format == VK_FORMAT_UNDEFINED) {
-        error = fmt::format("effect '{}' reads the frame's {} without naming it in its needs",
-                            planner_.stack_[entry_].info->name, row.name);
-        return {};
-    }
-    const graph::Version image = planner_.import_host(row.image, row.name, row.use, {});
-    return at_own_size(planner_.frame_image_at_size(which, image, planner_.values_[input_].size));
+    const FrameInput& input = frame_input(which);
+    DARKROOM_ASSERT(input.use != nullptr);
+    if (has_frame_image(which)) return at_own_size(planner_.input_at_size(input, planner_.values_[input_].size));
+    if (input.is_optional)
+        return remember({.version = planner_.import_neutral(VK_FORMAT_R32G32B32A32_SFLOAT, input.neutral),
+                         .format = VK_FORMAT_R32G32B32A32_SFLOAT});
+    error = fmt::format("effect '{}' reads the frame's {} without naming it in its needs",
+                        planner_.stack_[entry_].info->name, input.name);
+    return {};
 }
 
 PassImage Builder::shadow_map(std::uint32_t number) {
     constexpr std::array<const char*, max_shadow_lights> names{"shadow 0", "shadow 1", "shadow 2", "shadow 3"};
     DARKROOM_ASSERT(number < max_shadow_lights);
-    if (!planner_.desc_.has_shadows) {
+    if (!has_frame_image(FrameImage::Shadows)) {
         error = fmt::format("effect '{}' reads shadows without naming them in its needs",
                             planner_.stack_[entry_].info->name);
         return {};
     }
-    const auto which = static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::Shadow0) + number);
-    return remember(
-        {.version = planner_.import_host(which, names[number], {VK_FORMAT_D32_SFLOAT}, {.width = 1, .height = 1}),
-         .format = VK_FORMAT_D32_SFLOAT,
-         .is_shadow_map = true});
+    return remember({.version = planner_.import_host({HostImage::Kind::Shadow, number}, names[number],
+                                                     {VK_FORMAT_D32_SFLOAT}, {.width = 1, .height = 1}),
+                     .format = VK_FORMAT_D32_SFLOAT,
+                     .is_shadow_map = true});
 }
 
 PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&), ConditionFunction condition) {
@@ -199,7 +179,8 @@ PassImage Builder::add(const KernelPassDesc& desc) {
         if (input.is_loaded && planner_.traits_.is_software && format != VK_FORMAT_UNDEFINED) {
             image.loads_by = image.name + "_texels";
             pass.inputs.push_back(from);
-            pass.spec.images.push_back({.name = image.loads_by, .storage_format = format});
+            pass.spec.images.push_back(
+                {.name = image.loads_by, .storage_format = format, .is_single = image.is_single});
         }
         pass.inputs.push_back(from);
         pass.spec.images.push_back(std::move(image));

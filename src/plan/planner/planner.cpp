@@ -21,19 +21,6 @@ std::uint32_t vectors_of(std::span<const FusedStep> steps) {
     return vectors;
 }
 
-std::string missing_needs(const Needs& needs, const CompileDesc& desc) {
-    std::string out;
-    const auto say = [&](bool is_needed, bool is_there, std::string_view name) {
-        if (is_needed && !is_there) out += fmt::format("{}{}", out.empty() ? "" : " and ", name);
-    };
-    say(needs.depth, desc.depth.format != VK_FORMAT_UNDEFINED, "depth");
-    say(needs.normals, desc.normals.format != VK_FORMAT_UNDEFINED, "normals");
-    say(needs.velocity, desc.velocity.format != VK_FORMAT_UNDEFINED, "velocity");
-    say(needs.shadows, desc.has_shadows, "shadows");
-    say(needs.ui, desc.ui.format != VK_FORMAT_UNDEFINED, "a UI image");
-    return out;
-}
-
 }  // namespace
 
 Planner::Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits)
@@ -45,7 +32,7 @@ Result<Program> Planner::run() {
     program_.is_mixable.assign(stack_.size(), true);
     program_.watch_gates.assign(desc_.watches.size(), -1);
 
-    const graph::Version color = import_host(HostImage::Color, "color", desc_.color, {});
+    const graph::Version color = import_host({HostImage::Kind::Color}, "color", desc_.color, {});
     values_.push_back({.image = color, .why = "the scene colour starts here"});
     entry_values_.assign(stack_.size(), 0);
     leave_out();
@@ -78,12 +65,13 @@ Result<Program> Planner::run() {
 
 void Planner::leave_out() {
     // Entries whose picture would be an interface that is not there. What reads one of those is left out.
-    std::vector<bool> is_missing(stack_.size(), desc_.ui.format == VK_FORMAT_UNDEFINED);
+    const bool has_ui = is_given(desc_, FrameImage::Ui);
+    std::vector<bool> is_missing(stack_.size(), !has_ui);
     for (std::uint32_t i = 0; i < stack_.size(); ++i) {
         const EffectInfo& info = *stack_[i].info;
         const EntryDesc& desc = stack_[i].desc;
         const auto reads_missing = [&](Handle wire) {
-            if (desc_.ui.format != VK_FORMAT_UNDEFINED) return false;
+            if (has_ui) return false;
             return wire == ui_layer || (is_of_entry(wire) && index_of(wire) < i && is_missing[index_of(wire)]);
         };
         const std::uint32_t before = entry_before(i, desc.is_ui);
@@ -92,10 +80,11 @@ void Planner::leave_out() {
                                                               : before == ui_entry ? ui_layer
                                                                                    : Handle{});
         Needs needs = info.needs;
-        needs.ui |=
-            is_missing[i] || std::ranges::any_of(std::array{desc.source, second_of(i), desc.mask}, reads_missing);
+        if (is_missing[i] || std::ranges::any_of(std::array{desc.source, second_of(i), desc.mask}, reads_missing))
+            needs.add(FrameImage::Ui);
         std::string why;
-        if (const std::string missing = missing_needs(needs, desc_); !missing.empty())
+        const auto is_there = [&](FrameImage image) { return is_given(desc_, image); };
+        if (const std::string missing = missing_needs(needs, is_there); !missing.empty())
             why = fmt::format("needs {}, which the frame does not have", missing);
         else if (info.is_last_step && target_domain_ == Domain::SceneLinear)
             why = "the target takes scene-linear floats";
@@ -289,7 +278,7 @@ Result<> Planner::finish() {
                         "it, bilinearly.",
                         own.width, own.height));
     program_.target_size = kernels_[kernel].size;
-    const graph::Version target = import_host(HostImage::Target, "target", desc_.target, program_.target_size);
+    const graph::Version target = import_host({HostImage::Kind::Target}, "target", desc_.target, program_.target_size);
     auto version = close_kernel(kernel, target, desc_.target.format, finish, true);
     if (!version) return failure(std::move(version));
     program_.graph.keep(*version);

@@ -47,6 +47,18 @@ graph::Version Planner::import_host(HostImage image, const std::string& name, co
     return version;
 }
 
+graph::Version Planner::import_input(const FrameInput& input) {
+    // Where the target has no extent of its own, the interface is as large as the scene.
+    const graph::Size size = input.extent == InputExtent::Scene   ? graph::Size{}
+                             : input.extent == InputExtent::Texel ? graph::Size{.width = 1, .height = 1}
+                                                                  : graph::Size{.width = desc_.target_extent.width,
+                                                                                .height = desc_.target_extent.height};
+    const graph::Version version =
+        import_host(host_input(input.image), std::string(input.name), desc_.*input.use, size);
+    facts_[version.index].is_single = input.extent == InputExtent::Texel;
+    return version;
+}
+
 /// One texel, in the format of the images it stands in for where that holds the value.
 graph::Version Planner::import_neutral(VkFormat format, const PassVector& value) {
     TableDesc desc{.name = "neutral", .format = VK_FORMAT_R32G32B32A32_SFLOAT};
@@ -67,6 +79,7 @@ graph::Version Planner::import_neutral(VkFormat format, const PassVector& value)
     }
     const graph::Version version = import_constant(std::move(desc), {.width = 1, .height = 1});
     facts_[version.index].size = {};
+    facts_[version.index].is_single = true;
     return version;
 }
 
@@ -88,7 +101,9 @@ void Planner::fall_back(graph::Version version, graph::Version instead) {
 
 gpu::KernelImage Planner::kernel_image(std::string name, const PassInput& input) const {
     if (input.is_shadow_map) return {.name = std::move(name), .sampler_type = "sampler2DArrayShadow"};
-    if (input.table == no_table) return {.name = std::move(name)};
+    if (input.table == no_table)
+        return {.name = std::move(name),
+                .is_single = input.version.is_valid() && facts_.at(input.version.index).is_single};
     const TableDesc& desc = program_.fixed_images[input.table].desc;
     return {.name = std::move(name),
             .storage_format = desc.is_load_only ? desc.format : VK_FORMAT_UNDEFINED,
@@ -132,20 +147,18 @@ VkFormat Planner::storage_format(graph::Version version) const {
     return facts.format;
 }
 
-Result<graph::Version> Planner::frame_image_at_size(FrameImage which, graph::Version version, graph::Size size) {
-    if (has_size(version, size)) return version;
+Result<graph::Version> Planner::input_at_size(const FrameInput& input, graph::Size size) {
+    const graph::Version version = import_input(input);
+    if (input.extent == InputExtent::Texel || has_size(version, size)) return version;
+    const FrameImage which = input.image;
     if (const auto found = resampled_.find({which, fraction_text(size)}); found != resampled_.end())
         return found->second;
-    // Between two distances, directions or motions there is none that is true of either.
-    const bool is_nearest = which != FrameImage::Ui;
-    const VkFormat format = which == FrameImage::Depth ? VK_FORMAT_R32_SFLOAT
-                            : is_nearest               ? VK_FORMAT_R32G32B32A32_SFLOAT
-                                                       : desc_.intermediate;
-    const std::string name = fmt::format("frame image {} at {}", static_cast<int>(which), fraction_text(size));
+    const VkFormat format = input.resampled == VK_FORMAT_UNDEFINED ? desc_.intermediate : input.resampled;
+    const std::string name = fmt::format("{} at {}", input.name, fraction_text(size));
     kernels_.push_back({.picture = version,
                         .size = size,
                         .boundary = "it is read behind a picture of another size",
-                        .resampling = is_nearest ? Resampling::Nearest : Resampling::Linear});
+                        .resampling = input.resampling});
     auto out = close_kernel(kernels_.size() - 1, create_picture(name, size, format), format, Finish::None, true);
     if (out) resampled_.emplace(std::pair(which, fraction_text(size)), *out);
     return out;

@@ -62,7 +62,8 @@ Result<> Planner::add_step(std::size_t kernel, FusedStep step) {
 Result<std::size_t> Planner::at_target_size(std::uint32_t entry, std::size_t input) {
     const EffectInfo& info = *stack_[entry].info;
     const graph::Size target{.width = desc_.target_extent.width, .height = desc_.target_extent.height};
-    if (target.width == 0 || program_.is_left_out[entry] || !info.needs.ui || !info.has_second) return input;
+    if (target.width == 0 || program_.is_left_out[entry] || !info.needs.contains(FrameImage::Ui) || !info.has_second)
+        return input;
     const auto stays_in_kernel = [&](std::uint32_t i) {
         const Entry& other = stack_[i];
         return other.info->touch == Touch::Pointwise && !other.info->has_second && !other.desc.mask.is_given() &&

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "plan/frame_inputs.hpp"
 #include "plan/program.hpp"
 
 namespace darkroom::plan {
@@ -69,6 +70,7 @@ class Planner {
         VkImageUsageFlags usage = 0;
         std::vector<graph::Version> fall_backs;
         std::string name;
+        bool is_single = false;  ///< one texel that stands for all
     };
 
     [[nodiscard]] Result<> check_handles() const;
@@ -120,8 +122,7 @@ class Planner {
     /// An image of exactly this size for what is read by texel: resampled, if anything else may stand there.
     [[nodiscard]] Result<graph::Version> at_size(graph::Version version, graph::Size size, const std::string& name);
     /// An image of the host at an entry's size, where that is another one.
-    [[nodiscard]] Result<graph::Version> frame_image_at_size(FrameImage which, graph::Version version,
-                                                             graph::Size size);
+    [[nodiscard]] Result<graph::Version> input_at_size(const FrameInput& input, graph::Size size);
     [[nodiscard]] bool has_size(graph::Version version, graph::Size size) const;
     [[nodiscard]] Result<graph::Version> close_kernel(std::size_t kernel, graph::Version target, VkFormat format,
                                                       Finish finish, bool is_always_on);
@@ -136,6 +137,7 @@ class Planner {
     [[nodiscard]] std::int32_t toggle_index(Gate toggle);
     [[nodiscard]] graph::Version import_host(HostImage image, const std::string& name, const ImageUse& use,
                                              graph::Size size);
+    [[nodiscard]] graph::Version import_input(const FrameInput& input);
     [[nodiscard]] graph::Version create_picture(const std::string& name, graph::Size size, VkFormat format);
     /// The name, or name#2 and so on where another image has it.
     [[nodiscard]] std::string own_name(const std::string& name);

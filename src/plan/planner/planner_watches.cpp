@@ -42,7 +42,7 @@ std::optional<Planner::WatchedImage> Planner::watched_image(const Watch& watch) 
     const auto first = std::ranges::find_if(program_.passes, makes_level);
     if (first == program_.passes.end()) {
         for (const auto& [which, version] : host_images_)
-            if (has_name(version) && can_read(version) && shadow_number(which) < 0 && watch.mip_level == 0)
+            if (has_name(version) && can_read(version) && which.kind != HostImage::Kind::Shadow && watch.mip_level == 0)
                 return WatchedImage{.input = {.version = version}};
         return std::nullopt;
     }
@@ -66,9 +66,8 @@ Result<> Planner::add_watch(std::uint32_t number, const WatchedImage& image) {
     program_.gates.push_back({.entries = {}, .conditions = {}, .watch = number, .writer = image.writer});
     program_.watch_gates[number] = gate;
     if (image.writer >= 0) program_.graph.imply(gate, image.writer);
-    const auto which = static_cast<HostImage>(static_cast<std::uint32_t>(HostImage::FirstWatched) + number);
-    const graph::Version target =
-        import_host(which, fmt::format("watch {}", watch.id), watch.target, {.width = 1, .height = 1});
+    const graph::Version target = import_host({HostImage::Kind::Watched, number}, fmt::format("watch {}", watch.id),
+                                              watch.target, {.width = 1, .height = 1});
     ProgramPass pass{.name = fmt::format("watch {}", shown),
                      .kind = CopyPass{.resampling = Resampling::Nearest, .watch = number},
                      .toggle = gate,

@@ -89,7 +89,8 @@ std::uint32_t Planner::last_of_picture() const {
 
 Handle Planner::second_of(std::uint32_t entry) const {
     const Entry& own = stack_[entry];
-    if (own.desc.second.is_given() || !own.info->has_second || !own.info->needs.ui) return own.desc.second;
+    if (own.desc.second.is_given() || !own.info->has_second || !own.info->needs.contains(FrameImage::Ui))
+        return own.desc.second;
     const std::uint32_t last = entry_before(entry, true);
     return last == ui_entry ? ui_layer : Handle{stack_[last].id};
 }
@@ -163,11 +164,10 @@ Result<> Planner::make_wires() {
                 auto value = previous_of(handle);
                 if (!value) return failure(std::move(value));
             } else if (handle == ui_layer) {
-                if (desc_.ui.format == VK_FORMAT_UNDEFINED) continue;
-                const graph::Size size{.width = desc_.target_extent.width, .height = desc_.target_extent.height};
-                values_.push_back({.image = import_host(HostImage::Ui, "ui", desc_.ui, size),
-                                   .size = size,
-                                   .why = "the interface starts here"});
+                if (!is_given(desc_, FrameImage::Ui)) continue;
+                const graph::Version image = import_input(frame_input(FrameImage::Ui));
+                values_.push_back(
+                    {.image = image, .size = facts_.at(image.index).size, .why = "the interface starts here"});
             } else if (handle == scene_alpha) {
                 kernels_.push_back(
                     {.picture = values_[0].image, .boundary = "the scene's alpha becomes a picture", .is_alpha = true});
