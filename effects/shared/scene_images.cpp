@@ -30,6 +30,9 @@ void velocity_constants(const void*, const PassContext& context, std::span<PassV
     const VelocityKind& kind = camera.velocity;
     const std::array<float, 2> pixels{static_cast<float>(context.frame_extent.width),
                                       static_cast<float>(context.frame_extent.height)};
+    // Jitter is told in pixels of the scene.
+    const std::array<float, 2> jitter_scale{pixels[0] / static_cast<float>(context.scene_extent.width),
+                                            pixels[1] / static_cast<float>(context.scene_extent.height)};
     const float sign = kind.sign == VelocityKind::Sign::PreviousMinusCurrent ? 1.0f : -1.0f;
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const float unit = kind.unit == VelocityKind::Unit::Pixels ? 1.0f
@@ -38,7 +41,8 @@ void velocity_constants(const void*, const PassContext& context, std::span<PassV
         const float direction = axis == 1 && !kind.is_y_down ? -1.0f : 1.0f;
         out[0][axis] = sign * unit * direction;
         // A point that stands still moves in the picture as its jitter changes.
-        out[0][axis + 2] = kind.has_jitter ? camera.jitter[axis] - camera.previous_jitter[axis] : 0.0f;
+        out[0][axis + 2] =
+            kind.has_jitter ? (camera.jitter[axis] - camera.previous_jitter[axis]) * jitter_scale[axis] : 0.0f;
     }
 }
 

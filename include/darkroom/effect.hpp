@@ -70,6 +70,7 @@ struct FlatPlace {
 
 /// Values that passes may depend on while recording.
 struct PassContext {
+    VkExtent2D scene_extent{};   ///< of the frame's colour
     VkExtent2D frame_extent{};   ///< of the picture that the effect gets
     VkExtent2D output_extent{};  ///< of the image that the pass writes
     double time = 0;
@@ -99,7 +100,8 @@ struct PassImageDesc {
     std::uint32_t numerator = 1;
     std::uint32_t denominator = 1;
     std::uint32_t mip_levels = 1;
-    VkExtent2D extent{};  ///< where it is not 0: of mip level 0, whatever the frame's
+    VkExtent2D extent{};        ///< where it is not 0: of mip level 0, whatever the frame's
+    bool is_of_output = false;  ///< the fraction is one of what the frame is finished at, as EffectInfo::makes_output
 };
 
 /// A pass of one kernel.
@@ -217,7 +219,10 @@ struct EffectInfo {
     FlatPlace flat;
     std::uint32_t toggle_key = 0;  ///< of a viewer: F1 .. F12 that switches it; 0: none
     OutputScale output_scale;      ///< of effects with a result of their own
-    bool has_second = false;       ///< reads a second picture, as side image `second`
+    /// An upscaler: its result has the extent of the frame's output, whatever its input's. That is the target's where
+    /// CompileDesc::target_extent is given, else the scene's.
+    bool makes_output = false;
+    bool has_second = false;  ///< reads a second picture, as side image `second`
     /// Its text names no image `second`, but calls `vec4 <name>_second(Pixel pixel)`: a reading is then made in place.
     bool has_second_in_place = false;
     bool parts_channels = false;  ///< of a map: Place::barrel differs from channel to channel

@@ -66,6 +66,7 @@ struct ReferenceInput {
     double time = 0;
     double delta_time = 0;
     std::uint64_t frame_index = 0;
+    std::uint32_t output_width = 0, output_height = 0;  ///< what the frame is finished at
     ReferenceHistory* history = nullptr;  ///< of this entry, to be read and written; null: a frame by itself
 };
 

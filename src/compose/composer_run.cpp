@@ -175,7 +175,7 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const {
     if (!snapshot) return failure(std::move(snapshot));
     auto program = plan::plan_program(snapshot->values, desc, compose::planner_traits(*state_->context, desc.kernels));
     if (!program) return failure(std::move(program));
-    auto compiled = program->graph.compile(desc.max_extent, graph::measure_on(*state_->context));
+    auto compiled = program->graph.compile(plan::largest_extents(desc), graph::measure_on(*state_->context));
     if (!compiled) return failure(std::move(compiled));
     std::vector<const plan::Entry*> entries;
     for (const plan::Entry& entry : snapshot->values) entries.push_back(&entry);

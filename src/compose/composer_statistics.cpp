@@ -29,7 +29,7 @@ Result<std::vector<KernelStatistics>> Composer::statistics(const CompileDesc& de
     if (!snapshot) return failure(std::move(snapshot));
     const auto program = plan::plan_program(snapshot->values, desc, compose::planner_traits(context, desc.kernels));
     if (!program) return failure(program.error());
-    const auto compiled = program->graph.compile(desc.max_extent, graph::measure_on(context));
+    const auto compiled = program->graph.compile(plan::largest_extents(desc), graph::measure_on(context));
     if (!compiled) return failure(compiled.error());
     std::vector<const plan::Entry*> entries;
     for (const plan::Entry& entry : snapshot->values) entries.push_back(&entry);
@@ -43,7 +43,8 @@ Result<std::vector<KernelStatistics>> Composer::statistics(const CompileDesc& de
         if (kept == ~0u || !schedule.runs(kept)) continue;
         const plan::ProgramPass& pass = program->passes[i];
         auto one = statistics_of(
-            context, pass, plan::expected_shape(*program, *compiled, schedule, values, entries, pass, desc.max_extent));
+            context, pass,
+            plan::expected_shape(*program, *compiled, schedule, values, entries, pass, plan::largest_extents(desc)));
         if (!one) return failure(std::move(one));
         out.push_back(std::move(*one));
     }

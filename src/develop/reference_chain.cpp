@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <tuple>
 
 #include "compose/chain/camera_jump.hpp"
+#include "graph/graph.hpp"
 #include "plan/frame_inputs.hpp"
 #include "shared/blend_modes_reference.hpp"
 #include "shared/reading_reference.hpp"
@@ -54,13 +56,16 @@ class Chain {
         domains_.assign(2, Domain::SceneLinear);
         pictures_.push_back(ui_ != nullptr ? *ui_ : ReferenceImage());
         domains_.push_back(Domain::Encoded);
+        sizes_ = {{}, {}, frame_output()};
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
         if (input_.histories != nullptr) {
             input_.histories->entries = std::move(histories_);
+            input_.histories->sizes = std::move(history_sizes_);
             input_.histories->outputs = outputs_read_later();
         }
-        const std::size_t last = value_of({}, composer_.size());
+        std::size_t last = value_of({}, composer_.size());
+        if (input_.target_extent.width != 0) last = at_size(last, frame_output());
         ReferenceChainOutput out{.picture = pictures_[last], .left_out = std::move(left_out_)};
         const Domain domain = domains_[last];
         if (input_.target_domain == Domain::Encoded && domain != Domain::Encoded && input_.encodes_target)
@@ -74,21 +79,23 @@ class Chain {
     void begin_histories() {
         if (input_.histories == nullptr) return;
         ReferenceHistories& kept = *input_.histories;
-        const bool goes_on = !input_.camera.is_cut && input_.delta_time > 0 && kept.width == input_.color->width &&
-                             kept.height == input_.color->height &&
-                             !compose::is_camera_jump(kept.camera, input_.camera.view);
+        const bool goes_on =
+            !input_.camera.is_cut && input_.delta_time > 0 && !compose::is_camera_jump(kept.camera, input_.camera.view);
         if (!goes_on) {
             kept.entries.clear();
             kept.outputs.clear();
         }
-        kept.width = input_.color->width;
-        kept.height = input_.color->height;
         kept.camera = input_.camera.view;
     }
 
-    /// Those of entries that are off in this frame are dropped. Null: a frame by itself.
-    ReferenceHistory* history_of(Handle handle) {
+    /// Those of entries that are off in this frame, or get a picture of another size, are dropped. Null: a frame by
+    /// itself.
+    ReferenceHistory* history_of(Handle handle, const ReferenceImage& picture) {
         if (input_.histories == nullptr) return nullptr;
+        const std::pair size(picture.width, picture.height);
+        const auto last = input_.histories->sizes.find(handle.id);
+        if (last != input_.histories->sizes.end() && last->second != size) input_.histories->entries.erase(handle.id);
+        history_sizes_[handle.id] = size;
         return &(histories_[handle.id] = std::move(input_.histories->entries[handle.id]));
     }
 
@@ -165,29 +172,50 @@ class Chain {
     std::size_t keep(ReferenceImage image) {
         pictures_.push_back(std::move(image));
         domains_.push_back(Domain::SceneLinear);
+        const ReferenceImage& kept = pictures_.back();
+        sizes_.push_back({.width = kept.width, .height = kept.height});
         return pictures_.size() - 1;
     }
+    std::size_t keep(ReferenceImage image, graph::Size size) {
+        const std::size_t made = keep(std::move(image));
+        sizes_[made] = size;
+        return made;
+    }
     /// By one bilinear tap a pixel, as kernels read pictures of another size.
-    std::size_t at_size(std::size_t picture, std::uint32_t width, std::uint32_t height) {
+    std::size_t at_size(std::size_t picture, graph::Size size) {
         const ReferenceImage& from = pictures_[picture];
+        const auto [width, height] = size.of(extents());
         if (from.width == width && from.height == height) return picture;
         ReferenceImage out(width, height);
         for (std::uint32_t y = 0; y < height; ++y)
             for (std::uint32_t x = 0; x < width; ++x)
                 out.at(x, y) = sample_reference(from, (x + 0.5) / width, (y + 0.5) / height);
         const Domain domain = domains_[picture];
-        const std::size_t made = keep(std::move(out));
+        const std::size_t made = keep(std::move(out), size);
         domains_[made] = domain;
         return made;
+    }
+    graph::Extents extents() const {
+        const VkExtent2D scene{input_.color->width, input_.color->height};
+        return {scene, input_.target_extent.width != 0 ? input_.target_extent : scene};
+    }
+    graph::Size frame_output() const {
+        return {.extent = input_.target_extent.width != 0 ? graph::Extent::Output : graph::Extent::Scene};
+    }
+    /// What the frame brings, for a picture of this size: see plan::FrameInput.
+    const ReferenceImage* input_at(const plan::FrameInput& input, const ReferenceImage& like) {
+        const ReferenceImage* const image = input_.images[input.image];
+        const bool is_as_large = image != nullptr && image->width == like.width && image->height == like.height;
+        if (image == nullptr || is_as_large || input.extent == plan::InputExtent::Texel) return image;
+        const auto [found, is_new] = resampled_.try_emplace({input.image, like.width, like.height});
+        if (is_new) found->second = plan::resampled_reference(*image, input, like.width, like.height);
+        return &found->second;
     }
     /// The picture that an entry gets, at the size it works at.
     std::size_t input_of(const EntryDesc& desc, std::size_t index) {
         std::size_t from = value_of(desc.input, index);
-        if (desc.input.is_previous) from = at_size(from, input_.color->width, input_.color->height);
-        const auto scaled = [&](std::uint32_t size) {
-            return std::max(1u, size * desc.scale.numerator / desc.scale.denominator);
-        };
-        return at_size(from, scaled(pictures_[from].width), scaled(pictures_[from].height));
+        if (desc.input.is_previous) from = at_size(from, {});
+        return at_size(from, sizes_[from].scaled(desc.scale.numerator, desc.scale.denominator));
     }
 
     Result<> add(std::size_t index) {
@@ -230,9 +258,21 @@ class Chain {
         if (is_reading)
             values_.back() = read_on(info, words, from, is_off);
         else
-            values_.back() = keep(is_off ? pictures_[from] : encoded_result(info, desc, words, index, from));
+            values_.back() = keep_result(info, desc, words, index, from, is_off);
         domains_.back() = is_off || info.makes == nullptr ? before : info.makes(before, words.data());
         return {};
+    }
+
+    /// What an entry that is off hands on has the size of its result.
+    std::size_t keep_result(const EffectInfo& info, const EntryDesc& desc, const std::vector<std::uint32_t>& words,
+                            std::size_t index, std::size_t from, bool is_off) {
+        const bool has_result = info.touch == Touch::Neighbourhood || info.touch == Touch::History;
+        const graph::Size size = !has_result ? sizes_[from]
+                                 : info.makes_output
+                                     ? frame_output()
+                                     : sizes_[from].scaled(info.output_scale.numerator, info.output_scale.denominator);
+        if (is_off) return keep(pictures_[at_size(from, size)], size);
+        return keep(encoded_result(info, desc, words, index, from), size);
     }
 
     static bool is_plain(const EntryDesc& desc) {
@@ -256,7 +296,8 @@ class Chain {
         Reading reading = found != readings_.end() ? found->second : Reading{from, {}};
         if (!is_off) reading.steps.emplace_back(&info, words);
         const std::size_t made =
-            keep(is_off ? pictures_[from] : picture_of(reading, pictures_[from].width, pictures_[from].height));
+            keep(is_off ? pictures_[from] : picture_of(reading, pictures_[from].width, pictures_[from].height),
+                 sizes_[from]);
         readings_[made] = std::move(reading);
         return made;
     }
@@ -284,7 +325,7 @@ class Chain {
             for (Rgba& pixel : image.pixels) pixel = {curve(pixel.r), curve(pixel.g), curve(pixel.b), pixel.a};
         };
         each(encoded, srgb_encoded);
-        ReferenceImage out = result(info, desc, words, index, keep(std::move(encoded)));
+        ReferenceImage out = result(info, desc, words, index, keep(std::move(encoded), sizes_[from]));
         each(out, srgb_decoded);
         return out;
     }
@@ -293,7 +334,7 @@ class Chain {
                           std::size_t index, std::size_t from) {
         const ReferenceImage& base = pictures_[from];
         const auto wired = [&](Handle wire, const ReferenceImage* otherwise) {
-            return wire.is_given() ? &pictures_[at_size(value_of(wire, index), base.width, base.height)] : otherwise;
+            return wire.is_given() ? &pictures_[at_size(value_of(wire, index), sizes_[from])] : otherwise;
         };
         const ReferenceImage* second = nullptr;
         if (const Handle wire = second_of(index); info.has_second) {
@@ -302,6 +343,7 @@ class Chain {
             second = is_in_place ? &pictures_[keep(picture_of(reading->second, base.width, base.height))]
                                  : wired(wire, nullptr);
         }
+        const VkExtent2D output = frame_output().of(extents());
         ReferenceInput given{.picture = &base,
                              .source = wired(desc.source, &base),
                              .second = second,
@@ -311,9 +353,11 @@ class Chain {
                              .time = input_.time,
                              .delta_time = input_.delta_time,
                              .frame_index = input_.frame_index,
-                             .history = history_of(composer_.entry(index))};
+                             .output_width = output.width,
+                             .output_height = output.height,
+                             .history = history_of(composer_.entry(index), base)};
         for (const plan::FrameInput& input : plan::frame_inputs)
-            if (input.reference != nullptr) given.*input.reference = input_.images[input.image];
+            if (input.reference != nullptr) given.*input.reference = input_at(input, base);
         ReferenceImage layer = info.reference(words.data(), given);
         const bool is_same_size = layer.width == base.width && layer.height == base.height;
         if (is_plain(desc) || !is_same_size) return layer;
@@ -330,12 +374,16 @@ class Chain {
     const ReferenceImage* const ui_ = input_.images[FrameImage::Ui];
     std::deque<ReferenceImage> pictures_;      // that none moves while others are added
     std::vector<Domain> domains_;              // of each picture
+    std::vector<graph::Size> sizes_;           // of each picture
     std::vector<std::size_t> values_;          // of each entry: its picture
     std::map<std::size_t, Reading> readings_;  // of pictures that are one
     std::vector<bool> is_left_out_;            // of each entry
     std::vector<bool> is_missing_;             // of each entry: its picture is an interface that is not there
     std::vector<std::string> left_out_;
     std::map<std::uint32_t, ReferenceHistory> histories_;  // of this frame
+    std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> history_sizes_;
+    /// What the frame brings, at other extents.
+    std::map<std::tuple<FrameImage, std::uint32_t, std::uint32_t>, ReferenceImage> resampled_;
 };
 
 }  // namespace

@@ -19,8 +19,9 @@ namespace darkroom {
 struct ReferenceHistories {
     std::map<std::uint32_t, ReferenceHistory> entries;  ///< by Handle::id: of those that the last frame ran
     std::map<std::uint32_t, ReferenceImage> outputs;    ///< of those that are read one frame later
-    std::uint32_t width = 0, height = 0;                ///< of the last frame
-    Matrix camera{};                                    ///< its Camera::view
+    /// Of the last frame, by entry: the picture that it got. One of another size starts its history anew.
+    std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> sizes;
+    Matrix camera{};  ///< its Camera::view
 };
 
 /// What a frame brings beside its colour: images by their kind, those that are not there null. As ReferenceInput has
@@ -42,6 +43,7 @@ class ReferenceImages {
 struct ReferenceChainInput {
     const ReferenceImage* color = nullptr;
     ReferenceImages images{};
+    VkExtent2D target_extent{};  ///< as CompileDesc has it; (0, 0): as large as the picture at the end
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;

@@ -31,8 +31,8 @@ std::string usage_names(VkImageUsageFlags usage) {
 
 class Compiler {
   public:
-    Compiler(const Declaration& declaration, VkExtent2D max_extent)
-        : declaration_(declaration), max_extent_(max_extent), solution_(std::make_unique<Solution>()) {}
+    Compiler(const Declaration& declaration, const Extents& largest)
+        : declaration_(declaration), largest_(largest), solution_(std::make_unique<Solution>()) {}
 
     Result<std::unique_ptr<const Solution>> run(const Measure& measure) {
         if (auto result = find_final_history(); !result) return failure(std::move(result));
@@ -162,7 +162,7 @@ class Compiler {
                   .history_key = image.history_key,
                   .history_parity = parity,
                   .first_pass = none,
-                  .extent = image.desc.size.of(max_extent_)};
+                  .extent = image.desc.size.of(largest_)};
         solution_->slots.push_back(std::move(slot));
         return static_cast<std::uint32_t>(solution_->slots.size() - 1);
     }
@@ -274,7 +274,7 @@ class Compiler {
         for (std::uint32_t index = 0; index < solution_->slots.size(); ++index) {
             Slot& slot = solution_->slots[index];
             if (slot.kind != Slot::Kind::Transient) continue;
-            auto measured = measure(slot.desc, slot.usage, max_extent_);
+            auto measured = measure(slot.desc, slot.usage, largest_);
             if (!measured) return failure(std::move(measured));
             solution_->memory_type_bits &= measured->memory_type_bits;
             if (solution_->memory_type_bits == 0) {
@@ -312,7 +312,7 @@ class Compiler {
     }
 
     const Declaration& declaration_;
-    VkExtent2D max_extent_;
+    Extents largest_;
     std::unique_ptr<Solution> solution_;
     Needs needs_;
     std::vector<Past> own_past_;
@@ -320,9 +320,9 @@ class Compiler {
 
 }  // namespace
 
-Result<Compiled> Graph::compile(VkExtent2D max_extent, const Measure& measure) const {
-    if (auto result = validate(*declaration_, max_extent); !result) return failure(std::move(result));
-    auto solution = Compiler(*declaration_, max_extent).run(measure);
+Result<Compiled> Graph::compile(const Extents& largest, const Measure& measure) const {
+    if (auto result = validate(*declaration_, largest); !result) return failure(std::move(result));
+    auto solution = Compiler(*declaration_, largest).run(measure);
     if (!solution) return failure(std::move(solution));
     return Compiled(std::move(*solution));
 }

@@ -297,7 +297,7 @@ TEST(GraphError, NoMemoryTypeForAll) {
     Graph graph;
     read(graph, "b", write(graph, "a", graph.create(image("x"))));
     read(graph, "d", write(graph, "c", graph.create(image("y"))));
-    const Measure apart = [](const ImageDesc& desc, VkImageUsageFlags, VkExtent2D) -> Result<Requirements> {
+    const Measure apart = [](const ImageDesc& desc, VkImageUsageFlags, const Extents&) -> Result<Requirements> {
         return Requirements{.size = 16, .alignment = 1, .memory_type_bits = desc.name == "x" ? 1u : 2u};
     };
     EXPECT_EQ(error_of(graph, full_hd, apart),

@@ -10,6 +10,7 @@
 // 4. Per frame: for every step of the schedule record its barriers, then the pass; then the final barriers.
 
 #include <vulkan/vulkan.h>
+#include <compare>
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <functional>
@@ -41,15 +42,29 @@ inline constexpr std::uint8_t use_count = 10;
 [[nodiscard]] VkImageLayout layout_of(Use use);
 [[nodiscard]] VkImageUsageFlags usage_of(Use use);
 
-/// Extent in pixels: a fraction of the frame's extent, floored, at least 1; or absolute where `width` is not 0.
+/// What a size is a fraction of: the frame's colour, or what the frame is finished at.
+enum class Extent : std::uint8_t { Scene, Output };
+/// The named extents of one frame.
+struct Extents {
+    VkExtent2D scene{}, output{};
+    Extents() = default;
+    Extents(VkExtent2D all) : scene(all), output(all) {}  // NOLINT(google-explicit-constructor): a frame of one extent
+    Extents(VkExtent2D of_scene, VkExtent2D of_output) : scene(of_scene), output(of_output) {}
+    [[nodiscard]] VkExtent2D of(Extent name) const { return name == Extent::Scene ? scene : output; }
+};
+
+/// Extent in pixels: a reduced fraction of a named extent, floored, at least 1; or absolute where `width` is not 0.
 struct Size {
     std::uint32_t numerator = 1;
     std::uint32_t denominator = 1;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-
-    [[nodiscard]] VkExtent2D of(VkExtent2D frame) const;
+    Extent extent = Extent::Scene;
+    [[nodiscard]] VkExtent2D of(const Extents& frame) const;
+    /// Of an absolute size floored, else reduced; two ways to the same fraction give the same size.
+    [[nodiscard]] Size scaled(std::uint32_t by_numerator, std::uint32_t by_denominator) const;
     [[nodiscard]] static Size fraction(std::uint32_t denominator) { return {.denominator = denominator}; }
+    friend auto operator<=>(const Size&, const Size&) = default;
 };
 /// The extent of a mip level: floored halves, at least 1.
 [[nodiscard]] VkExtent2D mip_extent(VkExtent2D extent, std::uint32_t mip_level);
@@ -119,7 +134,7 @@ struct Requirements {
     VkDeviceSize alignment = 1;
     std::uint32_t memory_type_bits = ~0u;
 };
-using Measure = std::function<Result<Requirements>(const ImageDesc&, VkImageUsageFlags, VkExtent2D frame)>;
+using Measure = std::function<Result<Requirements>(const ImageDesc&, VkImageUsageFlags, const Extents& frame)>;
 
 class Compiled;
 struct Declaration;
@@ -131,7 +146,6 @@ class Graph {
     ~Graph();
     Graph(Graph&&) noexcept;
     Graph& operator=(Graph&&) noexcept;
-
     [[nodiscard]] Version import(ImportDesc desc);
     [[nodiscard]] Version create(ImageDesc desc);
     /// An image that outlives the frame. `current` starts each frame undefined and must be written; `previous` is what
@@ -158,7 +172,7 @@ class Graph {
 
     /// Checks, culls, computes lifetimes and packs. Errors: use after overwrite, a version nobody writes, a cycle of
     /// fall-backs, a gated pass whose output is read without a fall-back, a use the host's image was not made for.
-    [[nodiscard]] Result<Compiled> compile(VkExtent2D max_extent, const Measure& measure) const;
+    [[nodiscard]] Result<Compiled> compile(const Extents& largest, const Measure& measure) const;
 
   private:
     std::unique_ptr<Declaration> declaration_;
@@ -209,7 +223,6 @@ class Compiled {
     ~Compiled();
     Compiled(Compiled&&) noexcept;
     Compiled& operator=(Compiled&&) noexcept;
-
     [[nodiscard]] std::span<const PassDesc> passes() const;        ///< kept ones, in order
     [[nodiscard]] std::span<const std::string> culled() const;     ///< names of those left out
     [[nodiscard]] std::span<const Slot> slots() const;             ///< the first ones are the imports, in their order
@@ -257,7 +270,6 @@ class Schedule {
     /// imported; those beyond the span have the default state. `frame` tells the parity of histories. Barriers against
     /// the previous frame on the same queue are included: on aliased memory, too.
     void derive(std::span<const bool> gates, std::span<const ImportState> imports, std::uint64_t frame);
-
     [[nodiscard]] std::span<const Step> steps() const;
     [[nodiscard]] std::span<const Barrier> barriers() const;        ///< of all steps
     [[nodiscard]] std::span<const Barrier> final_barriers() const;  ///< after the last step: the host's layouts

@@ -22,13 +22,13 @@ const Slot& slot_named(const Compiled& compiled, std::string_view name) {
 }  // namespace
 
 TEST(GraphSize, FractionsAreFlooredButNotBelowOne) {
-    const VkExtent2D half = Size::fraction(2).of({1921, 1});
+    const VkExtent2D half = Size::fraction(2).of(VkExtent2D{1921, 1});
     EXPECT_EQ(half.width, 960u);
     EXPECT_EQ(half.height, 1u);
-    const VkExtent2D larger = Size{.numerator = 3, .denominator = 2}.of({100, 51});
+    const VkExtent2D larger = Size{.numerator = 3, .denominator = 2}.of(VkExtent2D{100, 51});
     EXPECT_EQ(larger.width, 150u);
     EXPECT_EQ(larger.height, 76u);
-    const VkExtent2D fixed = Size{.width = 64, .height = 32}.of({1920, 1080});
+    const VkExtent2D fixed = Size{.width = 64, .height = 32}.of(VkExtent2D{1920, 1080});
     EXPECT_EQ(fixed.width, 64u);
     EXPECT_EQ(fixed.height, 32u);
     const VkExtent2D level = mip_extent({1921, 3}, 2);

@@ -153,7 +153,7 @@ struct Alternative {
                                                     std::int32_t reader_gate, std::uint32_t instead = none);
 
 /// All errors of a declaration that need no device.
-[[nodiscard]] Result<> validate(const Declaration& declaration, VkExtent2D max_extent);
+[[nodiscard]] Result<> validate(const Declaration& declaration, const Extents& largest);
 
 struct Interval {
     VkDeviceSize size = 0, alignment = 1;

@@ -18,7 +18,7 @@ inline constexpr VkImageUsageFlags any_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_I
                                                VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
 /// Eight bytes a pixel, a third more with mip levels, aligned to 64 KiB.
-inline Result<Requirements> measure(const ImageDesc& desc, VkImageUsageFlags, VkExtent2D frame) {
+inline Result<Requirements> measure(const ImageDesc& desc, VkImageUsageFlags, const Extents& frame) {
     const VkExtent2D extent = desc.size.of(frame);
     VkDeviceSize size = VkDeviceSize{8} * extent.width * extent.height;
     if (desc.mip_levels > 1) size += size / 3;

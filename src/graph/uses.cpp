@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <numeric>
 
 #include "graph/graph.hpp"
 
@@ -92,13 +93,40 @@ VkImageUsageFlags usage_of(Use use) {
     return 0;
 }
 
-VkExtent2D Size::of(VkExtent2D frame) const {
+VkExtent2D Size::of(const Extents& extents) const {
+    const VkExtent2D frame = extents.of(extent);
     if (width != 0) return {width, std::max(height, 1u)};
     const auto scale = [this](std::uint32_t value) {
         const std::uint64_t scaled = std::uint64_t{value} * numerator / std::max(denominator, 1u);
-        return std::max(static_cast<std::uint32_t>(scaled), 1u);
+        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(scaled, 1, ~0u));
     };
     return {scale(frame.width), scale(frame.height)};
+}
+
+Size Size::scaled(std::uint32_t by_numerator, std::uint32_t by_denominator) const {
+    Size out = *this;
+    if (width != 0) {
+        const auto side = [&](std::uint32_t value) {
+            const std::uint64_t made = std::uint64_t{value} * by_numerator / std::max(by_denominator, 1u);
+            return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(made, 1, ~0u));
+        };
+        out.width = side(width);
+        out.height = side(height);
+        return out;
+    }
+    std::uint64_t above = std::uint64_t{numerator} * by_numerator;
+    std::uint64_t below = std::uint64_t{denominator} * std::max(by_denominator, 1u);
+    const std::uint64_t divisor = std::gcd(above, below);
+    above /= divisor;
+    below /= divisor;
+    // What no 32 bits hold is rounded, the same for the same fraction.
+    while (above > ~0u || below > ~0u) {
+        above = std::max<std::uint64_t>(above >> 1, 1);
+        below = std::max<std::uint64_t>(below >> 1, 1);
+    }
+    out.numerator = static_cast<std::uint32_t>(above);
+    out.denominator = static_cast<std::uint32_t>(below);
+    return out;
 }
 
 VkExtent2D mip_extent(VkExtent2D extent, std::uint32_t mip_level) {

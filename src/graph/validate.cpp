@@ -32,8 +32,7 @@ Certainty certainty(const Declaration& declaration, std::int32_t gate, std::span
 
 class Validator {
   public:
-    Validator(const Declaration& declaration, VkExtent2D max_extent)
-        : declaration_(declaration), max_extent_(max_extent) {}
+    Validator(const Declaration& declaration, const Extents& largest) : declaration_(declaration), largest_(largest) {}
 
     Result<> run() const {
         for (const Image& image : declaration_.images) {
@@ -61,7 +60,7 @@ class Validator {
             return user_error(fmt::format("image '{}' has the size {}/{} of the frame: both must be at least 1",
                                           desc.name, desc.size.numerator, desc.size.denominator));
         }
-        const VkExtent2D extent = desc.size.of(max_extent_);
+        const VkExtent2D extent = desc.size.of(largest_);
         const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(extent.width, extent.height)));
         if (desc.mip_levels == 0 || desc.mip_levels > most) {
             return user_error(fmt::format("image '{}' of {}x{} has {} mip levels: 1 to {} are allowed", desc.name,
@@ -263,7 +262,7 @@ class Validator {
     }
 
     const Declaration& declaration_;
-    VkExtent2D max_extent_;
+    Extents largest_;
 };
 
 }  // namespace
@@ -294,12 +293,13 @@ std::vector<Alternative> alternatives(const Declaration& declaration, std::uint3
     return result;
 }
 
-Result<> validate(const Declaration& declaration, VkExtent2D max_extent) {
+Result<> validate(const Declaration& declaration, const Extents& largest) {
+    const VkExtent2D max_extent = largest.scene;
     if (max_extent.width == 0 || max_extent.height == 0) {
         return user_error(
             fmt::format("the largest frame is {}x{}: at least 1x1 is needed", max_extent.width, max_extent.height));
     }
-    return Validator(declaration, max_extent).run();
+    return Validator(declaration, largest).run();
 }
 
 }  // namespace darkroom::graph

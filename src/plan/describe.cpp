@@ -11,7 +11,7 @@ namespace darkroom::plan {
 
 namespace {
 
-std::uint64_t bytes_of(const graph::Slot& slot, VkExtent2D frame, std::uint32_t mip_level) {
+std::uint64_t bytes_of(const graph::Slot& slot, const graph::Extents& frame, std::uint32_t mip_level) {
     const VkExtent2D extent =
         graph::mip_extent(slot.desc.size.of(frame), mip_level < slot.desc.mip_levels ? mip_level : 0);
     return std::uint64_t{extent.width} * extent.height * gpu::format_traits(slot.desc.format).bits / 8;
@@ -70,8 +70,8 @@ std::vector<std::string> frame_images(const Program& program) {
 }
 
 /// Which of Plan::images each slot is; PlanImage::never: a constant one.
-std::vector<std::uint32_t> add_images(const Program& program, const graph::Compiled& compiled, VkExtent2D frame,
-                                      std::vector<PlanImage>& images) {
+std::vector<std::uint32_t> add_images(const Program& program, const graph::Compiled& compiled,
+                                      const graph::Extents& frame, std::vector<PlanImage>& images) {
     using Kind = graph::Slot::Kind;
     std::vector<std::uint32_t> out;
     for (const graph::Slot& slot : compiled.slots()) {
@@ -130,12 +130,13 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
               .frame_images = frame_images(program),
               .transient_bytes = compiled.transient_bytes(),
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
+    const graph::Extents largest = largest_extents(desc);
     const FrameValues values = example_values(program, desc, entries);
     remark_domains(program, values, entries, plan.remarks);
     graph::Schedule schedule(compiled);
     schedule.derive(values.gates(), std::vector<graph::ImportState>(program.imports.size()), 0);
 
-    const std::vector<std::uint32_t> image_of = add_images(program, compiled, desc.max_extent, plan.images);
+    const std::vector<std::uint32_t> image_of = add_images(program, compiled, largest, plan.images);
     const auto use_of = [&](std::uint32_t slot, std::uint32_t mip_level) {
         return PlanUse{.image = image_of[slot],
                        .mip_level = std::min(mip_level, compiled.slots()[slot].desc.mip_levels - 1),
@@ -151,8 +152,8 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
                      .stage = pass.stage == gpu::Stage::Compute ? "compute" : "raster",
                      .entries = {},
                      .boundary = pass.boundary,
-                     .extent = graph::mip_extent(output.desc.size.of(desc.max_extent), pass.output_mip_level),
-                     .bytes_written = bytes_of(output, desc.max_extent, pass.output_mip_level),
+                     .extent = graph::mip_extent(output.desc.size.of(largest), pass.output_mip_level),
+                     .bytes_written = bytes_of(output, largest, pass.output_mip_level),
                      .reads = {},
                      .writes = use_of(output_slot, pass.output_mip_level)};
         for (std::size_t k = 0; k < pass.inputs.size(); ++k) {
@@ -160,7 +161,7 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
             // An image that is both loaded and sampled stands there twice.
             if (input.table != no_table || !pass.spec.images[k].loads_by.empty()) continue;
             const std::uint32_t slot = schedule.slot_of(input.version, input.instead);
-            out.bytes_read += bytes_of(compiled.slots()[slot], desc.max_extent, input.mip_level);
+            out.bytes_read += bytes_of(compiled.slots()[slot], largest, input.mip_level);
             if (image_of[slot] != PlanImage::never) out.reads.push_back(use_of(slot, input.mip_level));
         }
         if (pass.spec.is_additive) out.bytes_read += out.bytes_written;

@@ -2,6 +2,8 @@
 #include "plan/frame_inputs.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "gpu/resource/formats.hpp"
 
@@ -22,6 +24,48 @@ bool bring_the_same(const CompileDesc& a, const CompileDesc& b) {
            std::ranges::all_of(frame_inputs, [&](const FrameInput& input) {
                return input.use == nullptr || a.*input.use == b.*input.use;
            });
+}
+
+namespace {
+
+/// Along one side: the texel under a pixel's centre, and the two around it with the weight of the second.
+struct Around {
+    std::int64_t nearest = 0, low = 0, high = 0;
+    double weight = 0;
+};
+Around around(std::int64_t pixel, std::int64_t made, std::int64_t given) {
+    const std::int64_t twice = 2 * made, place = (2 * pixel + 1) * given - made;
+    const std::int64_t low = (place + twice) / twice - 1, rest = place - low * twice;
+    return {(2 * pixel + 1) * given / twice, low, low + (rest != 0 ? 1 : 0),
+            static_cast<double>(rest) / static_cast<double>(twice)};
+}
+
+}  // namespace
+
+ReferenceImage resampled_reference(const ReferenceImage& image, const FrameInput& input, std::uint32_t width,
+                                   std::uint32_t height) {
+    ReferenceImage out(width, height);
+    // Distances are planar here and motions in pixels, whatever the host's are.
+    const double wider = 1.0 * width / image.width, higher = 1.0 * height / image.height;
+    for (std::uint32_t j = 0; j < height; ++j)
+        for (std::uint32_t i = 0; i < width; ++i) {
+            const Around x = around(i, width, image.width), y = around(j, height, image.height);
+            const Rgba nearest = image.clamped(x.nearest, y.nearest);
+            const std::array four{image.clamped(x.low, y.low), image.clamped(x.high, y.low),
+                                  image.clamped(x.low, y.high), image.clamped(x.high, y.high)};
+            const auto mixed = [&](double Rgba::*c) {
+                const double above = std::lerp(four[0].*c, four[1].*c, x.weight);
+                return std::lerp(above, std::lerp(four[2].*c, four[3].*c, x.weight), y.weight);
+            };
+            Rgba& pixel = out.at(i, j);
+            pixel = nearest;
+            if (input.resampling == Resampling::Closest) pixel = *std::ranges::min_element(four, {}, &Rgba::r);
+            if (input.resampling == Resampling::Motion)
+                pixel = {nearest.r * wider, nearest.g * higher, nearest.b, nearest.a};
+            if (input.resampling == Resampling::Linear)
+                pixel = {mixed(&Rgba::r), mixed(&Rgba::g), mixed(&Rgba::b), mixed(&Rgba::a)};
+        }
+    return out;
 }
 
 }  // namespace darkroom::plan

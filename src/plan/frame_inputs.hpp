@@ -48,6 +48,7 @@ inline constexpr std::array<FrameInput, frame_image_count> frame_inputs{{
      .use = &CompileDesc::depth,
      .reference = &ReferenceInput::depth,
      .neutral = {1e10f, 0, 0, 0},
+     .resampling = Resampling::Closest,
      .resampled = VK_FORMAT_R32_SFLOAT,
      .can_hold = can_hold_depth,
      .allowed = "are depth formats, R32_SFLOAT, R16_SFLOAT and R16_UNORM"},
@@ -64,7 +65,8 @@ inline constexpr std::array<FrameInput, frame_image_count> frame_inputs{{
      .shader_name = "frame_velocity",
      .given = &Frame::velocity,
      .use = &CompileDesc::velocity,
-     .reference = &ReferenceInput::velocity},
+     .reference = &ReferenceInput::velocity,
+     .resampling = Resampling::Motion},
     {.image = FrameImage::Shadows, .name = "shadows", .shown = "shadows", .shader_name = "frame_shadow"},
     {.image = FrameImage::Ui,
      .name = "ui",
@@ -115,6 +117,10 @@ static_assert([] {
 }
 /// Are frames of both alike in what they bring?
 [[nodiscard]] bool bring_the_same(const CompileDesc& a, const CompileDesc& b);
+
+/// An image of a frame at another extent, as kernels have it.
+[[nodiscard]] ReferenceImage resampled_reference(const ReferenceImage& image, const FrameInput& input,
+                                                 std::uint32_t width, std::uint32_t height);
 
 /// What is needed and not there, as "depth and normals"; empty: nothing.
 template <class IsThere>

@@ -105,7 +105,8 @@ struct KernelPass {
 /// An image as it is, or brought to another size.
 struct CopyPass {
     Resampling resampling = Resampling::None;
-    std::optional<std::uint32_t> watch;  ///< of CompileDesc::watches: copies part of its input for it
+    std::optional<std::uint32_t> watch{};   ///< of CompileDesc::watches: copies part of its input for it
+    ConstantsFunction constants = nullptr;  ///< of the resampling
 };
 
 struct ProgramPass {
@@ -188,6 +189,14 @@ struct Program {
     std::vector<ExtentAnswer> extent_answers;
 };
 
+/// Those of the largest frame, and of one whose colour and target are of these extents.
+[[nodiscard]] inline graph::Extents extents_of(const CompileDesc& desc, VkExtent2D scene, VkExtent2D target) {
+    return {scene, desc.target_extent.width != 0 ? target : scene};
+}
+[[nodiscard]] inline graph::Extents largest_extents(const CompileDesc& desc) {
+    return extents_of(desc, desc.max_extent, desc.target_extent);
+}
+
 struct PlannerTraits {
     /// Which stage runs a kernel: gpu::preferred_stage, or the one the user asked for where it can.
     std::function<Result<gpu::Stage>(const gpu::KernelSpec&)> stage_of;
@@ -195,9 +204,10 @@ struct PlannerTraits {
     std::function<bool(VkFormat)> can_load{};
     /// Whether a linear sampler reads this format; null: every one. Else the kernels filter by loads.
     std::function<bool(VkFormat)> can_filter{};
-    bool is_software = false;              ///< see gpu/kernel/kernel.hpp
-    bool has_robust_images = false;        ///< likewise
-    bool packing_pays = true;              ///< smaller pixels take less time, which no software driver shows
+    bool is_software = false;        ///< see gpu/kernel/kernel.hpp
+    bool has_robust_images = false;  ///< likewise
+    bool packing_pays = true;        ///< smaller pixels take less time, which no software driver shows
+    std::uint32_t max_image_side = 16384;
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
     std::array<std::uint32_t, 2> workgroup{16, 8};
 };

@@ -23,7 +23,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
     find_watched(frame);
     const VkExtent2D extent = frame.color.used_region().extent;
-    const PassContext context{.frame_extent = extent,
+    const PassContext context{.scene_extent = extent,
+                              .frame_extent = extent,
                               .output_extent = extent,
                               .time = frame.time,
                               .delta_time = frame.delta_time,
@@ -34,7 +35,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     has_missing_kernel_ = false;
     tables_.upload(commands, recordings_);
     lit_.upload(commands, recordings_);
-    values_.evaluate(program_of(), desc_.compile, entries_, context, watched_);
+    values_.evaluate(program_of(), desc_.compile, entries_, context, frame.target.used_region().extent, watched_);
     note_watch_states();
     write_frame_block(frame);
     lend_images(frame);
@@ -179,7 +180,7 @@ void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
         if (!is_related || (is_on && !history->state.was_on)) history->state.needs_reset = true;
         history->state.was_on = is_on;
     }
-    physical_->begin(commands, context_.vk, frame.color.used_region().extent, frame.view);
+    physical_->begin(commands, context_.vk, values_.extents(), frame.view);
     std::ranges::fill(has_history_, std::uint8_t{1});
     for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
         const std::uint32_t entry = program_of().history_entries[i];
@@ -188,8 +189,7 @@ void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
     }
 }
 
-gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
-                              VkExtent2D extent) const {
+gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame) const {
     const graph::Slot& image = compiled_->slots()[slot];
     if (image.kind == graph::Slot::Kind::Import) {
         const HostImage which = *program_of().imports[image.import_index];
@@ -210,14 +210,14 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
     const std::uint32_t mip = std::min(mip_level, image.desc.mip_levels - 1);
     return {.view = physical_->mip_view(slot, mip, frame.view),
             .region = {{},
-                       graph::mip_extent(image.desc.size.of(extent), mip),
-                       graph::mip_extent(image.desc.size.of(desc_.compile.max_extent), mip)},
+                       graph::mip_extent(image.desc.size.of(values_.extents()), mip),
+                       graph::mip_extent(image.extent, mip)},
             .is_nearest = is_nearest_[slot] != 0};
 }
 
-gpu::Binding Chain::bind(const PassInput& input, const Frame& frame, VkExtent2D extent) const {
+gpu::Binding Chain::bind(const PassInput& input, const Frame& frame) const {
     if (input.table != plan::no_table) return tables_.binding(input.table);
-    return bind_slot(schedule_->slot_of(input.version, input.instead), input.mip_level, frame, extent);
+    return bind_slot(schedule_->slot_of(input.version, input.instead), input.mip_level, frame);
 }
 
 /// The values of the members of the pass's own block.
@@ -283,25 +283,26 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     const ProgramPass& pass = program_of().passes[index];
     std::array<gpu::Binding, gpu::most_images> images;
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
-        images[i] = bind(pass.inputs[i], frame, context.frame_extent);
+        images[i] = bind(pass.inputs[i], frame);
         if (!pass.spec.images[i].loads_by.empty()) images[i].layout = VK_IMAGE_LAYOUT_GENERAL;
     }
     if (const auto watch = pass.watch())
         images[0].region = watched_region(images[0].region, *watched_[*watch], context.frame_extent);
     const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
-    const gpu::Binding output =
-        bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame, context.frame_extent);
+    const gpu::Binding output = bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame);
 
     const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
     PassContext own = context;
     own.output_extent = output.region.extent;
     const auto fill = [&](ConstantsFunction constants, std::uint32_t entry, std::span<PassVector> out) {
         if (constants == nullptr) return;
-        own.frame_extent = program_of().entry_sizes[entry].of(context.frame_extent);
+        own.frame_extent = program_of().entry_sizes[entry].of(values_.extents());
         own.has_history = has_history_[entry] != 0;
         constants(values_.words(entry), own, out);
     };
     if (const auto* const kernel = pass.as<plan::KernelPass>()) fill(kernel->constants, kernel->step.entry, custom);
+    if (const auto* const copy = pass.as<plan::CopyPass>(); copy != nullptr && copy->constants != nullptr)
+        copy->constants(nullptr, own, custom);
     for (const plan::FusedStep& step : pass.steps())
         fill(step.constants, step.entry, custom.subspan(step.first_vector, step.custom_vectors));
     gpu::write_own_block(

@@ -71,9 +71,8 @@ class Chain final : public Garbage {
     void prepare_histories(VkCommandBuffer commands, const Frame& frame);
     void derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame);
     [[nodiscard]] plan::Shape expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const;
-    [[nodiscard]] gpu::Binding bind(const plan::PassInput& input, const Frame& frame, VkExtent2D extent) const;
-    [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame,
-                                         VkExtent2D extent) const;
+    [[nodiscard]] gpu::Binding bind(const plan::PassInput& input, const Frame& frame) const;
+    [[nodiscard]] gpu::Binding bind_slot(std::uint32_t slot, std::uint32_t mip_level, const Frame& frame) const;
     [[nodiscard]] std::span<const std::uint32_t> write_words(const plan::ProgramPass& pass);
     [[nodiscard]] const gpu::Kernel& kernel_of(std::uint32_t pass, const gpu::Region& output,
                                                std::span<const gpu::Binding> inputs);

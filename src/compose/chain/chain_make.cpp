@@ -47,7 +47,7 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Worker& work
                                              ChainDesc desc, std::span<const plan::Entry> values) {
     std::unique_ptr<Chain> chain(new Chain(context, worker, std::move(desc)));
     const plan::Program& program = chain->program_of();
-    auto compiled = program.graph.compile(chain->desc_.compile.max_extent, graph::measure_on(context));
+    auto compiled = program.graph.compile(plan::largest_extents(chain->desc_.compile), graph::measure_on(context));
     if (!compiled) return failure(std::move(compiled));
     chain->compiled_.emplace(std::move(*compiled));
     chain->schedule_.emplace(*chain->compiled_);
@@ -69,7 +69,7 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Worker& work
 }
 
 void Chain::derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame) {
-    values_.evaluate(program_of(), desc_.compile, entries, context);
+    values_.evaluate(program_of(), desc_.compile, entries, context, desc_.compile.target_extent);
     schedule_->derive(values_.gates(), import_states_, frame);
 }
 
@@ -88,7 +88,7 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     import_states_.resize(program.imports.size());
     const VkExtent2D extent = desc_.compile.max_extent;
     const Camera camera;
-    derive({.frame_extent = extent, .output_extent = extent, .camera = &camera}, entries, 0);
+    derive({.scene_extent = extent, .frame_extent = extent, .output_extent = extent, .camera = &camera}, entries, 0);
     last_shapes_.resize(program.passes.size());
     for (const std::uint32_t i : kept) last_shapes_[i] = expected_shape(i, entries);
 
@@ -110,13 +110,13 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
 plan::Shape Chain::expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const {
     const plan::Program& program = program_of();
     return plan::expected_shape(program, *compiled_, *schedule_, values_, entries, program.passes[pass],
-                                desc_.compile.max_extent);
+                                plan::largest_extents(desc_.compile));
 }
 
 Result<> Chain::build_lean() {
     const VkExtent2D extent = desc_.compile.max_extent;
     const Camera camera;
-    derive({.frame_extent = extent, .output_extent = extent, .camera = &camera}, entries_, 0);
+    derive({.scene_extent = extent, .frame_extent = extent, .output_extent = extent, .camera = &camera}, entries_, 0);
     for (std::size_t i = 0; i < program_of().passes.size(); ++i) {
         if (pass_sets_[i].first == ~0u) continue;
         PassKernels& kernels = *desc_.program->kernels[i];

@@ -117,7 +117,7 @@ Result<> check_picture(const Given& given, const plan::Program& program, const C
         return refused(given, " is {}x{}: with a target of {}x{} it must be as large", extent.width, extent.height,
                        target.width, target.height);
     }
-    const VkExtent2D wanted = is_target ? program.target_size.of(color) : color;
+    const VkExtent2D wanted = is_target ? program.target_size.of(graph::Extents(color)) : color;
     if (!is_same(extent, wanted))
         return refused(given, " is {}x{}: with a color of {}x{} it must be {}x{}", extent.width, extent.height,
                        color.width, color.height, wanted.width, wanted.height);

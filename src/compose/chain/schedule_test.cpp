@@ -42,7 +42,7 @@ std::vector<Entry> random_stack(std::mt19937& random) {
 }
 
 /// Bytes and alignment of an invented device.
-Result<graph::Requirements> measure(const graph::ImageDesc& desc, VkImageUsageFlags, VkExtent2D frame) {
+Result<graph::Requirements> measure(const graph::ImageDesc& desc, VkImageUsageFlags, const graph::Extents& frame) {
     VkDeviceSize size = 0;
     for (std::uint32_t level = 0; level < desc.mip_levels; ++level) {
         const VkExtent2D extent = graph::mip_extent(desc.size.of(frame), level);

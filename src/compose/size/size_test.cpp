@@ -19,12 +19,19 @@ ReferenceImage distances(VkExtent2D extent) {
     for (std::uint32_t i = 0; i < depth.pixels.size(); ++i) depth.pixels[i].r = 5.0 + (i * 37) % 100;
     return depth;
 }
-ReferenceImage nearest(const ReferenceImage& image, const ReferenceImage& like) {
+/// Of the four texels around the centre of a pixel, or of fewer where it lies on one's, the one that is closest.
+ReferenceImage closest(const ReferenceImage& image, const ReferenceImage& like) {
     ReferenceImage out(like.width, like.height);
     for (std::uint32_t y = 0; y < out.height; ++y)
-        for (std::uint32_t x = 0; x < out.width; ++x)
-            out.at(x, y) =
-                image.at((2 * x + 1) * image.width / (2 * out.width), (2 * y + 1) * image.height / (2 * out.height));
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const double u = (x + 0.5) * image.width / out.width - 0.5, v = (y + 0.5) * image.height / out.height - 0.5;
+            constexpr double rounding = 1e-9;
+            out.at(x, y).r = 1e30;
+            for (const double i : {std::floor(u + rounding), std::ceil(u - rounding)})
+                for (const double j : {std::floor(v + rounding), std::ceil(v - rounding)})
+                    out.at(x, y).r = std::min(
+                        out.at(x, y).r, image.clamped(static_cast<std::int64_t>(i), static_cast<std::int64_t>(j)).r);
+        }
     return out;
 }
 
@@ -75,7 +82,7 @@ TEST_F(ComposeSize, DepthIsReadAtTheSizeOfThePicture) {
                                    {.picture = &picture, .source = &picture, .depth = &depth, .camera = camera});
                 const ReferenceImage half =
                     test::halve_effect.reference(composer.words(halve).data(), {.picture = &first, .source = &first});
-                const ReferenceImage half_depth = nearest(depth, half);
+                const ReferenceImage half_depth = closest(depth, half);
                 const ReferenceImage expected =
                     fog->reference(composer.words(behind).data(),
                                    {.picture = &half, .source = &half, .depth = &half_depth, .camera = camera});

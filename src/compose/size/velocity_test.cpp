@@ -49,7 +49,7 @@ class ComposeVelocity : public ::testing::Test {
   protected:
     /// What the effect sees of a host's velocity; `passes`: of the plan.
     ReferenceImage seen(const Camera& camera, bool is_plain, VkFormat format = VK_FORMAT_R32G32_SFLOAT,
-                        std::size_t* passes = nullptr) {
+                        std::size_t* passes = nullptr, const OutputScale& scale = {}) {
         const VelocityKind& kind = camera.velocity;
         const auto pixels = gpu::test::make_pixels(width, height, [&](std::uint32_t x, std::uint32_t y) {
             const Point now = told(current(x, y), kind, camera.jitter),
@@ -62,17 +62,20 @@ class ComposeVelocity : public ::testing::Test {
         const gpu::test::Picture velocity =
             gpu::test::upload(host.device.context(), pixels, format, VK_IMAGE_LAYOUT_GENERAL);
         Composer composer(host.device);
-        composer.add(moved, nullptr);
+        composer.add(moved, nullptr, {.scale = scale});
         CompileDesc desc = host.compile_desc();
         desc.velocity = {format};
         desc.is_velocity_plain = is_plain;
         const Plan plan = test::must(composer.compile(desc));
         if (passes != nullptr) *passes = plan.passes.size();
         Frame frame = host.frame();
+        const gpu::test::Picture target =
+            gpu::test::blank(host.device.context(), plan.passes.back().extent, desc.target.format);
+        frame.target = test::image_ref(target);
         frame.velocity = test::image_ref(velocity);
         frame.camera = camera;
         test::must(host.record(composer, frame));
-        return host.read_target();
+        return test::image_of(gpu::test::download(host.device.context(), target));
     }
 };
 
@@ -101,6 +104,29 @@ TEST_F(ComposeVelocity, EveryConventionBecomesTheLibrarysOwn) {
                         << "sign " << static_cast<int>(sign) << ", unit " << static_cast<int>(unit) << ", y down "
                         << is_y_down << ", jitter " << has_jitter;
                 }
+}
+
+TEST_F(ComposeVelocity, BehindAnotherSizeItIsInThePixelsOfThatPicture) {
+    for (const OutputScale& scale : {OutputScale{1, 2}, {3, 1}})
+        for (const Unit unit : {Unit::Pixels, Unit::Uv, Unit::Ndc})
+            for (const bool is_plain : {false, true}) {
+                if (is_plain && unit != Unit::Pixels) continue;
+                Camera camera{.velocity = {.unit = unit, .has_jitter = !is_plain},
+                              .jitter = {0.375F, -0.25F},
+                              .previous_jitter = {-0.125F, 0.4375F}};
+                const ReferenceImage out = seen(camera, is_plain, VK_FORMAT_R32G32_SFLOAT, nullptr, scale);
+                ASSERT_EQ(out.width, width * scale.numerator / scale.denominator);
+                const double wider = 1.0 * out.width / width, higher = 1.0 * out.height / height;
+                for (std::uint32_t y = 0; y < out.height; ++y)
+                    for (std::uint32_t x = 0; x < out.width; ++x) {
+                        const std::uint32_t i = (2 * x + 1) * width / (2 * out.width);
+                        const std::uint32_t j = (2 * y + 1) * height / (2 * out.height);
+                        const Point now = current(i, j), then = previous(i, j);
+                        // Of halves near 27.
+                        ASSERT_NEAR(out.at(x, y).r, (then.x - now.x) * wider, 0x1p-6 + 1e-4) << x << ", " << y;
+                        ASSERT_NEAR(out.at(x, y).g, (then.y - now.y) * higher, 0x1p-6 + 1e-4) << x << ", " << y;
+                    }
+            }
 }
 
 TEST_F(ComposeVelocity, WhatIsPromisedToBePlainIsReadWithoutAPass) {

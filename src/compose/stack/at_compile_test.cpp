@@ -42,7 +42,7 @@ class ComposeAtCompile : public testing::Test {
         for (const plan::FixedImage& image : program.fixed_images)
             out.append(reinterpret_cast<const char*>(image.desc.data.data()), image.desc.data.size());
         const auto compiled = program.graph.compile(
-            desc.max_extent, [&](const graph::ImageDesc& image, VkImageUsageFlags, VkExtent2D frame) {
+            desc.max_extent, [&](const graph::ImageDesc& image, VkImageUsageFlags, const graph::Extents& frame) {
                 const VkExtent2D extent = image.size.of(frame);
                 out += fmt::format("image of {}x{}\n", extent.width, extent.height);
                 return graph::Requirements{.size = 4, .alignment = 4};

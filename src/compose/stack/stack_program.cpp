@@ -45,7 +45,7 @@ bool StackProgram::serves(std::span<const plan::Entry> other_stack, const Compil
     return plan::bring_the_same(desc, other_desc) && facts_of(desc) == facts_of(other_desc) &&
            std::ranges::equal(stack, other_stack, is_same) &&
            std::ranges::all_of(program.extent_answers, [&](const plan::Program::ExtentAnswer& asked) {
-               return asked.question(asked.size.of(other_desc.max_extent)) == asked.answer;
+               return asked.question(asked.size.of(plan::largest_extents(other_desc))) == asked.answer;
            });
 }
 
@@ -56,6 +56,7 @@ plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kern
             .is_software = context.traits.is_software && gpu::writes_flat_values(context),
             .has_robust_images = context.traits.has_robust_images,
             .packing_pays = !context.traits.is_software,
+            .max_image_side = context.traits.max_image_dimension,
             .max_storage_images = context.traits.max_storage_images,
             .workgroup = gpu::usual_workgroup(context)};
 }

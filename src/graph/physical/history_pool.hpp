@@ -35,7 +35,7 @@ struct HistoryImages {
 /// What the histories of a view have in common. Recording alone touches it.
 struct HistoryView {
     std::uint64_t recordings = 0;    ///< what Schedule::derive takes as the next frame: its parity is that of all
-    VkExtent2D extent{};             ///< of the last frame
+    Extents extents;                 ///< of the last frame
     std::uint64_t recorder = 0;      ///< number of the Physical that recorded last
     std::array<float, 16> camera{};  ///< for the caller: world to camera, of the last frame
 };

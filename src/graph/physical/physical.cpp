@@ -27,7 +27,7 @@ constexpr VkAccessFlags2 any_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_
 }  // namespace
 
 Measure measure_on(gpu::Context& context) {
-    return [&context](const ImageDesc& desc, VkImageUsageFlags usage, VkExtent2D frame) -> Result<Requirements> {
+    return [&context](const ImageDesc& desc, VkImageUsageFlags usage, const Extents& frame) -> Result<Requirements> {
         auto measured = gpu::Image::measure(context, info_of(desc, usage, desc.size.of(frame)));
         if (!measured) return failure(std::move(measured));
         return Requirements{measured->size, measured->alignment, measured->memoryTypeBits};
@@ -181,10 +181,16 @@ HistoryImages* Physical::history(std::uint32_t history_index, std::uint32_t view
     return is_used ? histories_[history_index].views[view_index].get() : nullptr;
 }
 
-void Physical::begin(VkCommandBuffer commands, const gpu::Dispatch& vk, VkExtent2D extent,
+bool Physical::has_same_extent(std::uint32_t history_index, const Extents& a, const Extents& b) const {
+    const Size& size = entries_[histories_[history_index].slots[0]].size;
+    const VkExtent2D of_a = size.of(a), of_b = size.of(b);
+    return of_a.width == of_b.width && of_a.height == of_b.height;
+}
+
+void Physical::begin(VkCommandBuffer commands, const gpu::Dispatch& vk, const Extents& extents,
                      std::uint32_t view_index) const {
     HistoryView& view = histories(view_index);
-    const VkExtent2D last = std::exchange(view.extent, extent);
+    const Extents last = std::exchange(view.extents, extents);
     if (std::exchange(view.recorder, recorder_) != recorder_ && view.recordings > 0) {
         // A schedule knows what its own plan does to a history, not what another one did.
         const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
@@ -196,16 +202,15 @@ void Physical::begin(VkCommandBuffer commands, const gpu::Dispatch& vk, VkExtent
             .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
         vk.CmdPipelineBarrier2(commands, &dependency);
     }
-    bool goes_on = false;
+    bool is_resampled = false;
     for (std::uint32_t index = 0; index < history_count(); ++index) {
         HistoryImages* const images = history(index, view_index);
         if (images == nullptr) continue;
         images->state.needs_reset |= images->state.recordings != view.recordings;
         images->state.was_reset = false;
-        goes_on |= !images->state.needs_reset;
+        is_resampled |= !images->state.needs_reset && !has_same_extent(index, last, extents);
     }
-    if (goes_on && (last.width != extent.width || last.height != extent.height))
-        return record_resample(commands, vk, view_index, last, extent);
+    if (is_resampled) return record_resample(commands, vk, view_index, last, extents);
     for (std::uint32_t index = 0; index < history_count(); ++index) {
         const HistoryImages* const images = history(index, view_index);
         if (images != nullptr && images->state.needs_reset) record_reset(commands, vk, view_index, index);
@@ -277,7 +282,7 @@ void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, s
 /// the region only if the driver likes ("Image Copies with Scaling" in the specification), and what lies beyond is the
 /// rest of some larger frame.
 void Physical::record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t slot,
-                              std::uint32_t view_index, VkExtent2D from, VkExtent2D to) const {
+                              std::uint32_t view_index, const Extents& from, const Extents& to) const {
     const Entry& entry = entries_[slot];
     for (std::uint32_t mip = 0; mip < entry.mip_levels; ++mip) {
         const VkExtent2D whole = mip_extent(entry.extent, mip);
@@ -302,11 +307,12 @@ void Physical::record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk,
 
 /// From the image of the last frame to the other one.
 void Physical::record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t history_index,
-                           std::uint32_t view_index, VkExtent2D from, VkExtent2D to) const {
+                           std::uint32_t view_index, const Extents& from, const Extents& to) const {
     const History& history = histories_[history_index];
     const std::size_t parity = histories(view_index).recordings & 1;
     const std::uint32_t source = history.slots[1 - parity], target = history.slots[parity];
-    const bool is_linear = history.views[view_index]->resampling == HistoryImages::Resampling::Linear;
+    const bool is_linear = history.views[view_index]->resampling == HistoryImages::Resampling::Linear &&
+                           !has_same_extent(history_index, from, to);
     const Entry& entry = entries_[source];
     constexpr VkImageLayout source_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
     constexpr VkImageLayout target_layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
@@ -320,7 +326,7 @@ void Physical::record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, st
         record_barriers(commands, vk, {&padded, 1}, view_index);
     }
     for (std::uint32_t mip = 0; mip < entry.mip_levels; ++mip) {
-        const auto corner = [&](VkExtent2D frame) {
+        const auto corner = [&](const Extents& frame) {
             const VkExtent2D extent = mip_extent(entry.size.of(frame), mip);
             return VkOffset3D{static_cast<std::int32_t>(extent.width), static_cast<std::int32_t>(extent.height), 1};
         };
@@ -334,7 +340,7 @@ void Physical::record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, st
 }
 
 void Physical::record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
-                               VkExtent2D from, VkExtent2D to) const {
+                               const Extents& from, const Extents& to) const {
     HistoryView& view = histories(view_index);
     for (std::uint32_t index = 0; index < history_count(); ++index) {
         HistoryImages* const images = history(index, view_index);

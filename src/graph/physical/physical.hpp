@@ -61,9 +61,9 @@ class Physical {
     [[nodiscard]] std::uint32_t history_count() const { return static_cast<std::uint32_t>(histories_.size()); }
 
     /// Orders this recording after all that another Physical, an older or a newer one, did to the view's histories.
-    /// Resets those that need it, or were not part of the view's last recording; resamples the others if the frame's
-    /// extent is not the last one's.
-    void begin(VkCommandBuffer commands, const gpu::Dispatch& vk, VkExtent2D extent,
+    /// Resets those that need it, or were not part of the view's last recording; resamples the others if an extent that
+    /// one of them is a fraction of is not the last frame's.
+    void begin(VkCommandBuffer commands, const gpu::Dispatch& vk, const Extents& extents,
                std::uint32_t view_index = 0) const;
     /// The recording of the view is complete.
     void end(std::uint32_t view_index = 0) const;
@@ -72,12 +72,12 @@ class Physical {
                       std::uint32_t history_index) const;
     /// All of a view.
     void record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index = 0) const;
-    /// Resamples what the next frame of the view, of the extent `to`, gets as previous, from one of the extent `from`,
-    /// each the top left of its image. The parity of the view advances, so all its histories are resampled together:
-    /// linearly where their formats allow, by the nearest texel where they do not. What cannot be resampled, or needs a
-    /// reset, is reset.
-    void record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index, VkExtent2D from,
-                         VkExtent2D to) const;
+    /// Resamples what the next frame of the view, of the extents `to`, gets as previous, from one of the extents
+    /// `from`, each the top left of its image. The parity of the view advances, so all its histories are resampled
+    /// together: as they are where their own extent stays, else linearly where their formats allow, by the nearest
+    /// texel where they do not. What cannot be resampled, or needs a reset, is reset.
+    void record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index,
+                         const Extents& from, const Extents& to) const;
 
   private:
     struct Entry {
@@ -108,10 +108,12 @@ class Physical {
     /// A barrier of a whole image for transfers, after and before everything else.
     [[nodiscard]] Barrier before_transfer(std::uint32_t slot, VkImageLayout from, VkImageLayout to) const;
     [[nodiscard]] Barrier after_transfer(std::uint32_t slot, VkImageLayout from) const;
+    /// Is a history as large in both frames?
+    [[nodiscard]] bool has_same_extent(std::uint32_t history_index, const Extents& a, const Extents& b) const;
     void record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t slot, std::uint32_t view_index,
-                        VkExtent2D from, VkExtent2D to) const;
+                        const Extents& from, const Extents& to) const;
     void record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t history_index,
-                     std::uint32_t view_index, VkExtent2D from, VkExtent2D to) const;
+                     std::uint32_t view_index, const Extents& from, const Extents& to) const;
 
     gpu::Memory memory_;  ///< before the images, so that they are destroyed first
     std::vector<gpu::Image> images_;

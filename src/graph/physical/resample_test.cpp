@@ -193,7 +193,7 @@ TEST(GraphPhysicalResample, WhatCannotBeBlittedStartsFromZero) {
     counting.CmdBlitImage = [](VkCommandBuffer, VkImage, VkImageLayout, VkImage, VkImageLayout, std::uint32_t,
                                const VkImageBlit*, VkFilter) { ++blits; };
     bed.physical.history(0)->state.needs_reset = false;
-    bed.physical.record_resample(VK_NULL_HANDLE, counting, 0, {50, 30}, {60, 40});
+    bed.physical.record_resample(VK_NULL_HANDLE, counting, 0, VkExtent2D{50, 30}, VkExtent2D{60, 40});
     EXPECT_EQ(clears, 2u);
     EXPECT_EQ(blits, 0u);
 }

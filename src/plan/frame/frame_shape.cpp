@@ -51,10 +51,10 @@ Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, c
 
 Shape expected_shape(const Program& program, const graph::Compiled& compiled, const graph::Schedule& schedule,
                      const FrameValues& values, std::span<const Entry* const> entries, const ProgramPass& pass,
-                     VkExtent2D largest) {
+                     const graph::Extents& largest) {
     const auto region = [&](std::uint32_t slot, std::uint32_t mip_level) {
         // A pass that is off has no slot: any region does.
-        if (slot >= compiled.slots().size()) return gpu::Region{{}, largest, largest};
+        if (slot >= compiled.slots().size()) return gpu::Region{{}, largest.scene, largest.scene};
         const graph::ImageDesc& desc = compiled.slots()[slot].desc;
         const VkExtent2D extent = graph::mip_extent(desc.size.of(largest), std::min(mip_level, desc.mip_levels - 1));
         return gpu::Region{{}, extent, extent};

@@ -14,6 +14,7 @@ namespace darkroom::plan {
 /// `schedule` was derived from the gates of `values`; `entries` may be other ones of the same stack.
 [[nodiscard]] Shape expected_shape(const Program& program, const graph::Compiled& compiled,
                                    const graph::Schedule& schedule, const FrameValues& values,
-                                   std::span<const Entry* const> entries, const ProgramPass& pass, VkExtent2D largest);
+                                   std::span<const Entry* const> entries, const ProgramPass& pass,
+                                   const graph::Extents& largest);
 
 }  // namespace darkroom::plan

@@ -56,7 +56,8 @@ FrameValues::FrameValues(const Program& program, std::span<const Entry* const> e
 }
 
 void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
-                           const PassContext& context, std::span<const Watched* const> watched) {
+                           const PassContext& context, VkExtent2D target, std::span<const Watched* const> watched) {
+    extents_ = extents_of(desc, context.scene_extent, target);
     const Moment moment = moment_of(context.time, context.camera == nullptr ? Camera{} : *context.camera);
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         const Entry& entry = *entries[i];
@@ -79,7 +80,7 @@ bool FrameValues::is_open(const Program& program, const Gate& gate, const PassCo
     const auto holds = [&](std::uint32_t entry, ConditionFunction condition) {
         if (condition == nullptr) return true;
         PassContext own = context;
-        own.frame_extent = program.entry_sizes[entry].of(context.frame_extent);
+        own.frame_extent = program.entry_sizes[entry].of(extents_);
         return condition(words(entry), own, gate.argument);
     };
     bool is_wanted = false;
@@ -92,9 +93,13 @@ FrameValues example_values(const Program& program, const CompileDesc& desc, std:
     FrameValues values(program, entries);
     const Camera camera;
     const auto lights = example_lights(desc);
-    values.evaluate(
-        program, desc, entries,
-        {.frame_extent = desc.max_extent, .output_extent = desc.max_extent, .camera = &camera, .lights = lights});
+    values.evaluate(program, desc, entries,
+                    {.scene_extent = desc.max_extent,
+                     .frame_extent = desc.max_extent,
+                     .output_extent = desc.max_extent,
+                     .camera = &camera,
+                     .lights = lights},
+                    desc.target_extent);
     return values;
 }
 

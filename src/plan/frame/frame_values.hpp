@@ -17,7 +17,7 @@ class FrameValues {
     /// Allocates nothing. The entries are those that the program was planned from, in their order. `watched`: per
     /// watch, what the frame wants of it, or null.
     void evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
-                  const PassContext& context, std::span<const Watched* const> watched = {});
+                  const PassContext& context, VkExtent2D target, std::span<const Watched* const> watched = {});
 
     /// The parameters of an entry, modulation and overrides included.
     [[nodiscard]] const std::uint32_t* words(std::uint32_t entry) const { return words_.data() + first_word_[entry]; }
@@ -32,6 +32,7 @@ class FrameValues {
     [[nodiscard]] Finish finish() const { return finish_; }
     /// Of the frame's camera, see glsl.hpp.
     [[nodiscard]] bool rays_meet() const { return rays_meet_; }
+    [[nodiscard]] const graph::Extents& extents() const { return extents_; }
     [[nodiscard]] std::span<const bool> gates() const { return {gates_.get(), gate_count_}; }
 
   private:
@@ -47,6 +48,7 @@ class FrameValues {
     std::vector<Domain> domains_;  ///< behind each entry
     Finish finish_ = Finish::None;
     bool rays_meet_ = false;
+    graph::Extents extents_;
     std::unique_ptr<bool[]> gates_;
     std::size_t gate_count_ = 0;
 };

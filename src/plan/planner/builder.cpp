@@ -41,12 +41,12 @@ PassImage Builder::at_own_size(Result<graph::Version> version) {
 }
 
 graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
-    const graph::Size size = planner_.values_[input_].size;
+    const graph::Size size = desc.is_of_output ? planner_.frame_output() : planner_.values_[input_].size;
     const bool is_absolute = desc.extent.width != 0;
     return {.name = planner_.own_name(fmt::format("{}.{}", planner_.stack_[entry_].desc.name, desc.name)),
             .format = desc.format,
             .size = is_absolute ? graph::Size{.width = desc.extent.width, .height = desc.extent.height}
-                                : scaled(size, {desc.numerator, desc.denominator}),
+                                : size.scaled(desc.numerator, desc.denominator),
             .mip_levels = desc.mip_levels};
 }
 
@@ -62,7 +62,7 @@ PassImage Builder::remember_new(graph::Version version, const graph::ImageDesc& 
 
 std::uint32_t Builder::from_max_extent(std::uint32_t (*question)(VkExtent2D)) {
     const graph::Size size = planner_.values_[input_].size;
-    const std::uint32_t answer = question(size.of(planner_.desc_.max_extent));
+    const std::uint32_t answer = question(size.of(largest_extents(planner_.desc_)));
     planner_.program_.extent_answers.push_back({question, size, answer});
     return answer;
 }
@@ -117,7 +117,7 @@ PassImage Builder::shadow_map(std::uint32_t number) {
 }
 
 PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&), ConditionFunction condition) {
-    const std::string key = fmt::format("{} {}", name, fraction_text(planner_.values_[input_].size));
+    const std::string key = fmt::format("{} {}", name, size_text(planner_.values_[input_].size));
     auto found = planner_.shared_.find(key);
     if (found == planner_.shared_.end()) {
         // A toggle of its own, which further effects join; what is shared may itself need something shared.

@@ -140,7 +140,7 @@ Result<std::size_t> Planner::add_result(std::uint32_t entry, std::size_t input, 
     auto picture = materialise(input, fmt::format("{} reads around its pixels", stack_[entry].desc.name));
     if (!picture) return failure(std::move(picture));
     const std::string why = fmt::format("{} has passes of its own", stack_[entry].desc.name);
-    const graph::Size size = scaled(values_[input].size, stack_[entry].info->output_scale);
+    const graph::Size size = result_size(*stack_[entry].info, values_[input].size);
     // Whoever reads the output counts on its size, on or off.
     picture = at_size(*picture, size, fmt::format("{}.resampled input", stack_[entry].desc.name));
     if (!picture) return failure(std::move(picture));
@@ -238,7 +238,7 @@ Result<graph::Version> Planner::materialise_into(std::size_t index, graph::Versi
 
 bool Planner::has_size(graph::Version version, graph::Size size) const {
     const Facts& facts = facts_.at(version.index);
-    return is_same(facts.size, size) &&
+    return facts.size == size &&
            std::ranges::all_of(facts.fall_backs, [&](graph::Version instead) { return has_size(instead, size); });
 }
 
@@ -259,10 +259,10 @@ Result<> Planner::finish() {
         if (stack_[i].info->makes != nullptr) finish = Finish::OfFrame;
     const VkExtent2D own = desc_.target_extent;
     std::size_t kernel = values_[last].kernel;
-    const graph::Size target_size{.width = own.width, .height = own.height};
+    const graph::Size target_size = frame_output();
     // Where the interface is composed, the picture has been sampled already.
     const bool is_scaled = own.width != 0 && !(kernel != no_kernel && values_[last].reader.empty() &&
-                                               is_same(kernels_[kernel].size, target_size));
+                                               kernels_[kernel].size == target_size);
     if (is_scaled || kernel == no_kernel || !values_[last].reader.empty()) {
         const std::string why = is_scaled
                                     ? "the target has an extent of its own: the picture is sampled into it"
@@ -302,6 +302,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     }
     if (pass.name.empty()) pass.name = kernel.is_alpha ? "scene alpha" : "copy";
     pass.spec.name = pass.name;
+    if (kernel.constants != nullptr) pass.spec.custom_vectors = 1;
     if (finish == Finish::OfFrame) pass.spec.members.insert(pass.spec.members.begin(), finish_member());
     pass.spec.frame = frame_members();
     pass.spec.outputs = {format};
@@ -313,7 +314,8 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     const bool is_resampled = !is_warp && !has_size(kernel.picture, kernel.size);
     const Resampling resampling = is_resampled ? kernel.resampling : Resampling::None;
     pass.kind = FusedPass{kernel.steps, finish, resampling, kernel.is_alpha};
-    if (kernel.steps.empty() && finish == Finish::None && !kernel.is_alpha) pass.kind = CopyPass{resampling};
+    if (kernel.steps.empty() && finish == Finish::None && !kernel.is_alpha)
+        pass.kind = CopyPass{.resampling = resampling, .constants = kernel.constants};
     const bool loads_alone = is_warp && traits_.is_software && kernel.steps.front().text->loads_picture_alone;
     const bool is_filtered = is_moved_here && !loads_alone;
     const bool is_sampled = is_filtered || is_shared || is_resampled;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 #include "gpu/resource/formats.hpp"
 #include "plan/planner/planner_state.hpp"
@@ -13,9 +12,35 @@
 
 namespace darkroom::plan {
 
-std::string fraction_text(graph::Size size) {
-    const std::uint32_t divisor = std::gcd(size.numerator, size.denominator);
-    return fmt::format("{}/{}", size.numerator / divisor, size.denominator / divisor);
+namespace {
+
+/// Which of four distances is closest to the eye: the smallest number, or the largest.
+void depth_constants(const void*, const PassContext& context, std::span<PassVector> out) {
+    out[0] = {context.camera->depth == DepthKind::Reversed ? 1.0f : 0.0f, 0, 0, 0};
+}
+
+/// A motion in pixels is one in the pixels of its image.
+void velocity_constants(const void*, const PassContext& context, std::span<PassVector> out) {
+    const bool is_in_pixels = context.camera->velocity.unit == VelocityKind::Unit::Pixels;
+    const auto ratio = [&](std::uint32_t made, std::uint32_t given) {
+        return is_in_pixels ? static_cast<float>(made) / static_cast<float>(given) : 1.0f;
+    };
+    out[0] = {ratio(context.output_extent.width, context.scene_extent.width),
+              ratio(context.output_extent.height, context.scene_extent.height), 1, 1};
+}
+
+ConstantsFunction constants_of(Resampling resampling) {
+    return resampling == Resampling::Closest  ? depth_constants
+           : resampling == Resampling::Motion ? velocity_constants
+                                              : nullptr;
+}
+
+}  // namespace
+
+std::string size_text(graph::Size size) {
+    if (size.width != 0) return fmt::format("{}x{}", size.width, size.height);
+    return fmt::format("{}/{}{}", size.numerator, size.denominator,
+                       size.extent == graph::Extent::Output ? " of the output" : "");
 }
 
 std::string Planner::own_name(const std::string& name) {
@@ -48,11 +73,9 @@ graph::Version Planner::import_host(HostImage image, const std::string& name, co
 }
 
 graph::Version Planner::import_input(const FrameInput& input) {
-    // Where the target has no extent of its own, the interface is as large as the scene.
     const graph::Size size = input.extent == InputExtent::Scene   ? graph::Size{}
                              : input.extent == InputExtent::Texel ? graph::Size{.width = 1, .height = 1}
-                                                                  : graph::Size{.width = desc_.target_extent.width,
-                                                                                .height = desc_.target_extent.height};
+                                                                  : frame_output();
     const graph::Version version =
         import_host(host_input(input.image), std::string(input.name), desc_.*input.use, size);
     facts_[version.index].is_single = input.extent == InputExtent::Texel;
@@ -151,16 +174,16 @@ Result<graph::Version> Planner::input_at_size(const FrameInput& input, graph::Si
     const graph::Version version = import_input(input);
     if (input.extent == InputExtent::Texel || has_size(version, size)) return version;
     const FrameImage which = input.image;
-    if (const auto found = resampled_.find({which, fraction_text(size)}); found != resampled_.end())
-        return found->second;
+    if (const auto found = resampled_.find({which, size}); found != resampled_.end()) return found->second;
     const VkFormat format = input.resampled == VK_FORMAT_UNDEFINED ? desc_.intermediate : input.resampled;
-    const std::string name = fmt::format("{} at {}", input.name, fraction_text(size));
+    const std::string name = fmt::format("{} at {}", input.name, size_text(size));
     kernels_.push_back({.picture = version,
                         .size = size,
                         .boundary = "it is read behind a picture of another size",
-                        .resampling = input.resampling});
+                        .resampling = input.resampling,
+                        .constants = constants_of(input.resampling)});
     auto out = close_kernel(kernels_.size() - 1, create_picture(name, size, format), format, Finish::None, true);
-    if (out) resampled_.emplace(std::pair(which, fraction_text(size)), *out);
+    if (out) resampled_.emplace(std::pair(which, size), *out);
     return out;
 }
 

@@ -61,15 +61,16 @@ Result<> Planner::add_step(std::size_t kernel, FusedStep step) {
 
 Result<std::size_t> Planner::at_target_size(std::uint32_t entry, std::size_t input) {
     const EffectInfo& info = *stack_[entry].info;
-    const graph::Size target{.width = desc_.target_extent.width, .height = desc_.target_extent.height};
-    if (target.width == 0 || program_.is_left_out[entry] || !info.needs.contains(FrameImage::Ui) || !info.has_second)
+    const graph::Size target = frame_output();
+    if (target.extent == graph::Extent::Scene || program_.is_left_out[entry] || !info.needs.contains(FrameImage::Ui) ||
+        !info.has_second)
         return input;
     const auto stays_in_kernel = [&](std::uint32_t i) {
         const Entry& other = stack_[i];
         return other.info->touch == Touch::Pointwise && !other.info->has_second && !other.desc.mask.is_given() &&
                (other.info->build == nullptr || other.info->is_last_step) && !other.desc.input.is_given();
     };
-    if (!desc_.fuse || is_same(values_[input].size, target)) return input;
+    if (!desc_.fuse || values_[input].size == target) return input;
     for (std::uint32_t i = entry; i < stack_.size(); ++i) {
         if (stack_[i].desc.is_ui) continue;
         if (!image_reader_[i].empty() || (i != entry && !program_.is_left_out[i] && !stays_in_kernel(i))) return input;

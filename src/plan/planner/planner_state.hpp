@@ -25,10 +25,8 @@ inline constexpr VkImageUsageFlags own_usage =
 [[nodiscard]] constexpr bool is_reading(Touch touch) { return touch == Touch::Map || touch == Touch::Tap; }
 
 /// One text for equal sizes.
-[[nodiscard]] std::string fraction_text(graph::Size size);
+[[nodiscard]] std::string size_text(graph::Size size);
 
-[[nodiscard]] graph::Size scaled(graph::Size size, const OutputScale& scale);
-[[nodiscard]] bool is_same(graph::Size a, graph::Size b);
 class Planner {
   public:
     Planner(std::span<const Entry> stack, const CompileDesc& desc, const PlannerTraits& traits);
@@ -59,6 +57,7 @@ class Planner {
         graph::Size size{};
         std::string boundary;
         Resampling resampling = Resampling::Linear;  ///< where the picture has another size
+        ConstantsFunction constants = nullptr;       ///< of the resampling
         bool is_alpha = false;                       ///< makes a grey picture of the alpha before anything else
         std::vector<FusedStep> steps;
         std::vector<std::pair<std::string, PassInput>> images;
@@ -96,6 +95,12 @@ class Planner {
     [[nodiscard]] Result<> previous_of(Handle handle);
     [[nodiscard]] Result<graph::Version> copy_into(std::size_t value, graph::Version image);
     [[nodiscard]] graph::Size output_size(std::uint32_t entry) const;
+    /// What the frame is finished at, and the interface has.
+    [[nodiscard]] graph::Size frame_output() const;
+    /// Of the result of an effect of its own passes.
+    [[nodiscard]] graph::Size result_size(const EffectInfo& info, graph::Size input) const;
+    /// Is what an entry works at no larger than the device allows?
+    [[nodiscard]] Result<> check_size(std::uint32_t entry, graph::Size size) const;
     [[nodiscard]] Result<std::size_t> scaled_input(std::uint32_t entry);
     [[nodiscard]] Result<> keep_output(std::uint32_t entry);
     void count_readers();
@@ -192,7 +197,7 @@ class Planner {
              std::shared_ptr<const EffectText>>
         texts_;
 
-    std::map<std::pair<FrameImage, std::string>, graph::Version> resampled_;  ///< by size
+    std::map<std::pair<FrameImage, graph::Size>, graph::Version> resampled_;
 
     /// What several effects share, by name and the size of the picture at their place; its passes run while any of
     /// those that asked is on.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "gpu/resource/formats.hpp"
 #include "plan/planner/planner_state.hpp"
 
 namespace darkroom::plan {
@@ -26,16 +27,25 @@ TableDesc texels_of(const ResourceImage& image) {
 
 }  // namespace
 
-bool is_same(graph::Size a, graph::Size b) {
-    if (a.width != 0 || b.width != 0) return a.width == b.width && a.height == b.height;
-    return std::uint64_t{a.numerator} * b.denominator == std::uint64_t{b.numerator} * a.denominator;
+graph::Size Planner::frame_output() const {
+    return {.extent = desc_.target_extent.width != 0 ? graph::Extent::Output : graph::Extent::Scene};
 }
 
-graph::Size scaled(graph::Size size, const OutputScale& scale) {
-    if (size.width != 0)
-        return {.width = std::max(1u, size.width * scale.numerator / scale.denominator),
-                .height = std::max(1u, size.height * scale.numerator / scale.denominator)};
-    return {.numerator = size.numerator * scale.numerator, .denominator = size.denominator * scale.denominator};
+graph::Size Planner::result_size(const EffectInfo& info, graph::Size input) const {
+    return info.makes_output ? frame_output()
+                             : input.scaled(info.output_scale.numerator, info.output_scale.denominator);
+}
+
+Result<> Planner::check_size(std::uint32_t entry, graph::Size size) const {
+    const VkExtent2D extent = size.of(largest_extents(desc_));
+    const std::uint32_t most = traits_.max_image_side;
+    if (extent.width <= most && extent.height <= most) return {};
+    const EntryDesc& desc = stack_[entry].desc;
+    const double gibibytes =
+        1.0 * extent.width * extent.height * gpu::format_traits(desc_.intermediate).bits / 8 / (1U << 30U);
+    return user_error(fmt::format(
+        "stack entry '{}': scale = {}/{} makes pictures of {}x{}, {:.1f} GiB each: allowed are at most {}x{}",
+        desc.name, desc.scale.numerator, desc.scale.denominator, extent.width, extent.height, gibibytes, most, most));
 }
 
 bool Planner::is_of_entry(Handle handle) const {
@@ -226,13 +236,13 @@ graph::Size Planner::output_size(std::uint32_t entry) const {
     if (const ResourceImage* const picture = desc.input.is_given() ? picture_of(entry, desc.input) : nullptr)
         size = {.width = picture->width, .height = picture->height};
     else if (!desc.input.is_previous && program_.entry_inputs[entry] == ui_entry)
-        size = {.width = desc_.target_extent.width, .height = desc_.target_extent.height};
+        size = frame_output();
     else if (!desc.input.is_previous && program_.entry_inputs[entry] != no_entry)
         size = output_size(program_.entry_inputs[entry]);
     if (program_.is_left_out[entry]) return size;
-    size = scaled(size, desc.scale);
+    size = size.scaled(desc.scale.numerator, desc.scale.denominator);
     const bool has_result = info.touch == Touch::Neighbourhood || info.touch == Touch::History;
-    return has_result ? scaled(size, info.output_scale) : size;
+    return has_result ? result_size(info, size) : size;
 }
 
 /// The picture that an entry gets, at the size it works at.
@@ -240,8 +250,10 @@ Result<std::size_t> Planner::scaled_input(std::uint32_t entry) {
     const EntryDesc& desc = stack_[entry].desc;
     const std::size_t input = value_of(desc.input, entry);
     const graph::Size own = desc.input.is_previous ? graph::Size{} : values_[input].size;
-    const graph::Size size = program_.is_left_out[entry] ? values_[input].size : scaled(own, desc.scale);
-    if (is_same(size, values_[input].size)) return input;
+    const graph::Size size =
+        program_.is_left_out[entry] ? values_[input].size : own.scaled(desc.scale.numerator, desc.scale.denominator);
+    if (size == values_[input].size) return input;
+    if (auto ok = check_size(entry, size); !ok) return failure(std::move(ok));
     auto image = materialise(input, fmt::format("{} works at another size", desc.name));
     if (!image) return failure(std::move(image));
     kernels_.push_back(

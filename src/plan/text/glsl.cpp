@@ -341,6 +341,21 @@ bool is_moved(std::span<const FusedStep> steps) {
     return steps.front().info->touch == Touch::Warp || steps.front().reads == picture_name;
 }
 
+namespace {
+
+/// In integers: a pixel's centre, in half texels, lies on a texel's centre or between two.
+constexpr std::string_view closest_function = R"(vec4 closest_texel(Pixel pixel) {
+    ivec2 twice = 2 * pixel.size, place = (2 * pixel.texel + 1) * size(picture) - pixel.size;
+    ivec2 low = (place + twice) / twice - 1, high = low + ivec2(notEqual(low * twice, place));
+    float a = load_clamped(picture, low).r, b = load_clamped(picture, ivec2(high.x, low.y)).r;
+    float c = load_clamped(picture, ivec2(low.x, high.y)).r, d = load_clamped(picture, high).r;
+    float least = min(min(a, b), min(c, d)), most = max(max(a, b), max(c, d));
+    return vec4(custom[0].x != 0.0 ? most : least);
+}
+)";
+
+}  // namespace
+
 Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha) {
     std::string declarations, code;
     std::set<std::string_view> structs;
@@ -416,8 +431,13 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
     std::string_view read = is_moved(steps) ? "load_clamped(picture, pixel.texel)" : "load(picture, pixel.texel)";
     if (resampling == Resampling::Linear) read = "sample_linear(picture, pixel.uv)";
     // The texel under the pixel's centre; in integers, because a product of floats may fall short of it.
-    if (resampling == Resampling::Nearest)
+    if (resampling == Resampling::Nearest || resampling == Resampling::Motion)
         read = "load_clamped(picture, (2 * pixel.texel + 1) * size(picture) / (2 * pixel.size))";
+    if (resampling == Resampling::Motion) code += "    color *= custom[0];\n";
+    if (resampling == Resampling::Closest) {
+        declarations += closest_function;
+        read = "closest_texel(pixel)";
+    }
     if (reads_picture) read = "reading_picture(pixel)";
     if (is_alpha) read = "vec4(vec3(clamp(load(picture, pixel.texel).a, 0.0, 1.0)), 1.0)";
     return fmt::format(

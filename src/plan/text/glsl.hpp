@@ -87,7 +87,13 @@ enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb, OfFrame };
 /// The member of the block that Finish::OfFrame reads.
 [[nodiscard]] gpu::BlockMember finish_member();
 /// How a fused kernel reads a picture that may have another extent than its output.
-enum class Resampling : std::uint8_t { None, Linear, Nearest };
+enum class Resampling : std::uint8_t {
+    None,
+    Linear,
+    Nearest,
+    Closest,  ///< of the four texels around, the least red; where custom[0].x is not 0, the most
+    Motion,   ///< the nearest, times custom[0]
+};
 /// The image that a kernel's picture is.
 inline constexpr std::string_view picture_name = "picture";
 /// Do the first steps read the picture at other places than the pixel's own?
