@@ -221,13 +221,14 @@ export HOME=$work/home
 : >"$STUB_LOG"
 "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run"
 [[ $(grep -c 'preset release .*-DCMAKE_COMPILE_WARNING_AS_ERROR=ON' "$STUB_LOG") == 1 ]] || fail ".ci/run: warnings"
+! grep -qE -- "-B .*/build --preset" "$STUB_LOG" || fail ".ci/run leaves its flags in build/"
 [[ $(tail -n 3 "$work/out" | xargs) == *"(.ci/more): never on this machine 100% tests passed Total Test time" ]] ||
     fail ".ci/run: closing lines: $(<"$work/out")"
 : >"$STUB_LOG"
 "$tree/.ci/more" >"$work/out" 2>"$work/said" || fail ".ci/more"
 [[ $(grep -oE 'preset (clang|plain|sanitize|release)' "$STUB_LOG" | cut -d' ' -f2 | xargs) == "clang plain sanitize release" ]] ||
     fail ".ci/more: builds"
-! STUB_RED=build-thread "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run passes where a test fails"
+! STUB_RED=build-ci-thread "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run passes where a test fails"
 [[ $("$tree/.ci/more" --last) == "last ran "*": passed" ]] || fail ".ci/more --last"
 "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run again"
 grep -q '(.ci/more): last ran .*: passed' "$work/out" || fail ".ci/run says when .ci/more ran"
