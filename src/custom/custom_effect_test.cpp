@@ -219,6 +219,53 @@ TEST(ComposeCustomEffect, FusesWithOthersAndObeysItsParameters) {
     }
 }
 
+TEST(CustomEffect, DefinedValuesStandInTheFileAlone) {
+    const auto effect = CustomEffect::parse(
+        "// @effect mine: Mine.\n#define pow min // not a power\n#define rg xy\n#include \"shared/srgb.glsl\"\n"
+        "vec4 mine(vec4 color, Pixel pixel, Mine parameters) { return pow(color.rgrg, color); }\n",
+        "my.glsl");
+    ASSERT_TRUE(effect) << effect.error().text;
+    EXPECT_EQ(effect->info().files[0].text,
+              "// @effect mine: Mine.\n\n\n#include \"shared/srgb.glsl\"\n"
+              "vec4 mine(vec4 color, Pixel pixel, Mine parameters) { return min(color.rgrg, color); }\n");
+}
+
+TEST(ComposeCustomEffect, WhatOneFileDefinesReachesNoEffectBesideIt) {
+    const auto loaded = CustomEffect::parse(
+        "// @effect mine: Mine.\n// @param float gain = 0.5 in [0, 1]: Gain.\n#define pow min\n#define TAPS 2.0\n"
+        "#define mine_gain parameters.gain\n"
+        "vec4 mine(vec4 color, Pixel pixel, Mine parameters) { return vec4(pow(color.rgb, vec3(0.25)) * TAPS * "
+        "mine_gain, "
+        "1); }\n",
+        "my.glsl");
+    ASSERT_TRUE(loaded) << loaded.error().text;
+    const auto other = CustomEffect::parse(
+        "// @effect other: Other.\n#define TAPS 1.0\n"
+        "vec4 other(vec4 color, Pixel pixel, Other parameters) { return vec4(pow(color.rgb, vec3(2.0)) * TAPS, 1); }\n",
+        "other.glsl");
+    ASSERT_TRUE(other) << other.error().text;
+    const ReferenceImage out = test::develop(
+        [&](Composer& composer) {
+            composer.add(loaded->info(), nullptr);
+            composer.add(other->info(), nullptr);
+        },
+        test::uniform(4, 4, {0.5, 0.125, 0.25, 1}));
+    ASSERT_FALSE(out.pixels.empty());
+    EXPECT_NEAR(out.pixels[5].r, 0.0625, 1e-6);
+    EXPECT_NEAR(out.pixels[5].g, 0.015625, 1e-6);
+}
+
+TEST(ComposeCustomEffect, MayHaveANameThatSharedFilesUse) {
+    const auto loaded = CustomEffect::parse(
+        "// @effect base: Base.\nvec4 base(vec4 color, Pixel pixel, Base parameters) { return color * 0.5; }\n",
+        "base.glsl");
+    ASSERT_TRUE(loaded) << loaded.error().text;
+    const ReferenceImage out = test::develop([&](Composer& composer) { composer.add(loaded->info(), nullptr); },
+                                             test::uniform(4, 4, {0.5, 0.125, 0.25, 1}));
+    ASSERT_FALSE(out.pixels.empty());
+    EXPECT_NEAR(out.pixels[5].r, 0.25, 1e-6);
+}
+
 TEST(ComposeCustomEffect, GlslErrorsComeBackFromCompile) {
     const auto loaded = CustomEffect::parse(
         "// @effect broken: Broken.\nvec4 broken(vec4 color, Pixel pixel, Broken parameters) { return nonsense; }\n",

@@ -84,8 +84,9 @@ struct Halves {
 
 /// Adds the images of the frame that `code`, the function's own, names, and says which images are loaded alone.
 [[nodiscard]] Result<> read_uses(const Description& from, FileFunction& function, std::string_view code);
-/// Files define functions, structs and constants; the kernels around them declare what they read and write.
-[[nodiscard]] Result<> check_code(std::string_view text, std::size_t& line);
+/// Files define functions, structs and constants; the kernels around them declare what they read and write. Returns the
+/// text with the values of its `#define`s in place, line by line: a macro would reach the effects of the same kernel.
+[[nodiscard]] Result<std::string> expand_code(std::string_view text, std::size_t& line);
 
 /// The whole file; errors read "shown_name:line: ...".
 [[nodiscard]] Result<> read_description(Description& out, std::string_view text, std::string_view shown_name);

@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/text/param_text.hpp"
 #include "custom/description.hpp"
@@ -21,7 +26,7 @@ using gpu::Token;
 /// Words with which a shader declares what it reads and writes, or how it runs.
 constexpr std::array<std::string_view, 9> refused_words{"attribute", "buffer", "layout",     "main",   "sampler2D",
                                                         "shade",     "shared", "subroutine", "uniform"};
-/// A value goes wherever its name stands, so it is short and names no other: text cannot grow without bound.
+/// A value goes wherever its name stands, so it is short: text cannot grow without bound.
 constexpr std::size_t longest_value = 120;
 /// The compiler walks the tree of an expression by recursion: one of 7000 nested calls ends the process.
 constexpr std::size_t longest_statement = 2000;
@@ -59,10 +64,33 @@ bool is_loaded_alone(std::string_view code, std::string_view name) {
     return is_loaded && !is_sampled;
 }
 
+/// What stands for a name from its line on.
 struct Define {
-    std::string_view name, value;
+    std::string_view name;
+    std::string value;
     std::size_t line = 0;
 };
+
+bool is_refused(std::string_view word) { return std::ranges::find(refused_words, word) != refused_words.end(); }
+Result<> refuse_word(std::string_view word) {
+    return user_error(
+        fmt::format("{}: the kernel around the file's functions declares its images and its main "
+                    "function; allowed are functions, structs and constants",
+                    word));
+}
+
+/// Without its comments, which would hide what follows the name that it stands for.
+Result<std::string> read_value(std::string_view name, std::string_view text) {
+    std::string value;
+    gpu::GlslScanner scanner(text);
+    for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
+        if (token.kind == Token::Kind::Directive || (token.text.starts_with("/*") && !token.text.ends_with("*/")))
+            return user_error(fmt::format("#define {}: its value does not end in its line", printable(name)));
+        if (is_refused(token.text)) return failure(refuse_word(token.text));
+        value += token.text.starts_with("//") || token.text.starts_with("/*") ? " " : token.text;
+    }
+    return std::string(trimmed(value));
+}
 
 /// `#include "shared/camera.glsl"` and `#define NAME VALUE`.
 Result<std::optional<Define>> read_directive(std::string_view text, std::size_t line) {
@@ -79,37 +107,19 @@ Result<std::optional<Define>> read_directive(std::string_view text, std::size_t 
     if (rest.size() > longest_value)
         return user_error(
             fmt::format("#define {}: a value of at most {} characters is allowed", printable(name), longest_value));
-    return Define{name, rest, line};
+    auto value = read_value(name, rest);
+    if (!value) return failure(std::move(value));
+    return Define{name, std::move(*value), line};
 }
 
-}  // namespace
+std::size_t count_words_and_marks(std::string_view code) {
+    std::size_t count = 0;
+    for_each_token(code, [&](const Token&, const Token&, const Token&) { ++count; });
+    return count;
+}
 
-Result<> check_code(std::string_view text, std::size_t& line) {
-    std::vector<Define> defines;
-    gpu::GlslScanner scanner(text);
-    std::size_t statement = 0;
-    line = 1;
-    for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
-        if (token.kind == Token::Kind::Directive) {
-            auto define = read_directive(token.text, line);
-            if (!define) return failure(std::move(define));
-            if (*define) defines.push_back(**define);
-        }
-        // A line that goes on in the next would part what is read here from what is compiled.
-        if (token.text == "\\" || (token.text.ends_with('\\') && token.kind != Token::Kind::Blank))
-            return user_error("a backslash: GLSL has no use for one here");
-        if (token.kind == Token::Kind::Word && std::ranges::find(refused_words, token.text) != refused_words.end())
-            return user_error(
-                fmt::format("{}: the kernel around the file's functions declares its images and its main "
-                            "function; allowed are functions, structs and constants",
-                            token.text));
-        statement = token.text == ";" || token.text == "{" || token.text == "}" ? 0
-                    : token.kind == Token::Kind::Blank                          ? statement
-                                                                                : statement + 1;
-        if (statement > longest_statement)
-            return user_error(fmt::format("a statement of more than {} words and marks", longest_statement));
-        line += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
-    }
+/// A value is put in once: it names no other.
+Result<> check_values(std::span<const Define> defines, std::size_t& line) {
     std::set<std::string_view> names;
     for (const Define& define : defines) names.insert(define.name);
     for (const Define& define : defines)
@@ -120,6 +130,47 @@ Result<> check_code(std::string_view text, std::size_t& line) {
                                               printable(name)));
             }
     return {};
+}
+
+}  // namespace
+
+Result<std::string> expand_code(std::string_view text, std::size_t& line) {
+    std::string out;
+    std::vector<Define> defines;
+    std::map<std::string_view, std::string> values;
+    gpu::GlslScanner scanner(text);
+    std::size_t statement = 0;
+    line = 1;
+    for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
+        // A line that goes on in the next would part what is read here from what is compiled.
+        if (token.text == "\\" || (token.text.ends_with('\\') && token.kind != Token::Kind::Blank))
+            return user_error("a backslash: GLSL has no use for one here");
+        if (token.kind == Token::Kind::Word && is_refused(token.text)) return failure(refuse_word(token.text));
+        const auto value = token.kind == Token::Kind::Word || token.kind == Token::Kind::Member
+                               ? values.find(token.text)
+                               : values.end();
+        if (token.kind == Token::Kind::Directive) {
+            auto define = read_directive(token.text, line);
+            if (!define) return failure(std::move(define));
+            if (*define) {
+                values[(*define)->name] = (*define)->value;
+                defines.push_back(std::move(**define));
+            } else {
+                out += token.text;
+            }
+        } else {
+            out += value == values.end() ? token.text : std::string_view(value->second);
+        }
+        if (token.text == ";" || token.text == "{" || token.text == "}")
+            statement = 0;
+        else if (token.kind != Token::Kind::Blank)
+            statement += value == values.end() ? 1 : count_words_and_marks(value->second);
+        if (statement > longest_statement)
+            return user_error(fmt::format("a statement of more than {} words and marks", longest_statement));
+        line += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
+    }
+    if (auto ok = check_values(defines, line); !ok) return failure(std::move(ok));
+    return out;
 }
 
 Result<> read_uses(const Description& from, FileFunction& function, std::string_view code) {

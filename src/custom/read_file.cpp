@@ -121,15 +121,10 @@ std::string_view comment_of(std::string_view line) { return line.starts_with("//
 class FileReader {
   public:
     FileReader(Description& out, std::string_view text, std::string_view shown_name)
-        : out_(out), text_(out.keep(text)), shown_name_(printable(shown_name)) {
+        : out_(out), text_(text), shown_name_(printable(shown_name)) {
         // It stands in quotes in the text that is compiled.
         for (char& c : shown_name_)
             if (c == '"' || c == '\\') c = '_';
-        for (std::string_view rest = text_; !rest.empty();) {
-            const std::size_t end = rest.find('\n');
-            lines_.push_back(rest.substr(0, end));
-            rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
-        }
     }
 
     Result<> run() {
@@ -142,7 +137,9 @@ class FileReader {
     Result<> read() {
         line_ = 1;
         if (text_.find('\0') != std::string_view::npos) return user_error("a zero byte; the file is no text");
-        if (auto ok = check_code(text_, line_); !ok) return ok;
+        auto code = expand_code(text_, line_);
+        if (!code) return failure(std::move(code));
+        split_lines(out_.keep(*code));
         if (auto ok = read_lines(); !ok) return ok;
         line_ = 1;
         if (out_.info.name.empty()) return user_error("no line `// @effect NAME: SENTENCE.` before the code");
@@ -163,6 +160,14 @@ class FileReader {
         out_.info.files = out_.files;
         out_.info.parameters = {struct_name_, out_.rows, out_.defaults};
         return {};
+    }
+
+    void split_lines(std::string_view code) {
+        while (!code.empty()) {
+            const std::size_t end = code.find('\n');
+            lines_.push_back(code.substr(0, end));
+            code = end == std::string_view::npos ? std::string_view{} : code.substr(end + 1);
+        }
     }
 
     Result<> read_lines() {

@@ -171,9 +171,17 @@ TEST(CustomPasses, CodeDeclaresNothingOfTheKernel) {
     says("#define A(x) x x", "#define A(x): expected a name without parameters");
     says("#define A " + std::string(500, 'x'), "#define A: a value of at most 120 characters");
     says("#define A 1\\\n", "a backslash");
+    says("#define A uniform", "uniform: the kernel around");
+    says("#define A #define pow min", "#define A: its value does not end in its line");
+    says("#define A 1 /* begins", "#define A: its value does not end in its line");
     std::string sum = "float mine_sum(float x) { return x";
     for (int i = 0; i < 1000; ++i) sum += "+x";
     says(sum + "; }", "a statement of more than 2000 words and marks");
+    const std::string half(100, '+');
+    std::string halves = "#define A " + half + "\nfloat mine_sum(float x) { return x";
+    for (int i = 0; i < 30; ++i) halves += " A";
+    EXPECT_EQ(error_of_file("// @effect mine: Mine.\n" + halves + "; }\nmine("),
+              "my.glsl:3: a statement of more than 2000 words and marks");
     EXPECT_EQ(error_of_file("// @effect mine: Mine.\n#define A 1\n#define B A A\nmine("),
               "my.glsl:3: #define B: its value names A, another one");
     EXPECT_EQ(error_of_file("// @effect mine: Mine.\n#define TAU (2.0 * 3.14159)\nmine("), "");

@@ -302,7 +302,7 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, st
         if (token.kind == gpu::Token::Kind::Member) members.insert(token.text);
         if (token.kind != gpu::Token::Kind::Word) continue;
         const bool is_own =
-            (token.text == info.name || token.text.starts_with(prefix)) && !shared_words().contains(token.text);
+            token.text == info.name || (token.text.starts_with(prefix) && !shared_words().contains(token.text));
         if (is_own || std::ranges::find(images, token.text) != images.end()) renamed += place_suffix(place);
         out.asks_sizes |= token.text == "input_is_twice" || token.text == "output_is_twice";
         out.asks_parameters |= token.text == loader;
