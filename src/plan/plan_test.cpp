@@ -90,6 +90,24 @@ TEST_F(ComposePlan, UnfusedEveryEffectIsAKernel) {
     EXPECT_NE(made.passes[2].boundary.find("fusion is off"), std::string::npos) << made.passes[2].boundary;
 }
 
+TEST_F(ComposePlan, ALongStackHasKernelsAndPicturesWithinBounds) {
+    const std::vector<std::string> effects{"exposure", "vignette", "grayscale", "negative"};
+    for (std::size_t i = 0; i < 300; ++i) add(composer, effects[i % effects.size()]);
+    const Plan made = plan();
+    std::size_t entries = 0, joined = 0;
+    for (const PlanPass& pass : made.passes) {
+        EXPECT_LE(pass.entries.size(), 16u);
+        entries += pass.entries.size();
+        joined += pass.entries.size() - 1;
+    }
+    EXPECT_EQ(entries, 300u);
+    EXPECT_EQ(joined, 96u);
+    EXPECT_NE(made.passes[1].boundary.find("at most 16 entries"), std::string::npos) << made.passes[1].boundary;
+    EXPECT_NE(made.passes.back().boundary.find("joins at most 96 entries"), std::string::npos);
+    // Those behind kernels that may be off, and two for all others.
+    EXPECT_LE(made.transient_bytes, 36u * 1920 * 1080 * 8);
+}
+
 TEST_F(ComposePlan, AnEmptyStackIsACopy) {
     const Plan made = plan();
     EXPECT_EQ(made.passes.size(), 1u);

@@ -177,6 +177,12 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
                      (second == nullptr ? 0 : vectors_of(second->steps)) >
                  most_fused_vectors)
             why = fmt::format("a kernel holds at most {} vectors of its effects", most_fused_vectors);
+        else if (kernels_[kernel].steps.size() + (second == nullptr ? 0 : second->steps.size()) >= most_fused_entries)
+            why = fmt::format("a kernel holds at most {} entries", most_fused_entries);
+        else if (joined_entries_ >= most_joined_entries)
+            why = fmt::format("a plan joins at most {} entries to the kernels of others", most_joined_entries);
+        else
+            ++joined_entries_;
         if (!why.empty()) {
             if (auto image = materialise(input, why); !image) return failure(std::move(image));
             kernel = open_kernel(input, std::move(why));
@@ -221,7 +227,7 @@ Result<graph::Version> Planner::materialise(std::size_t index, const std::string
     if (values_[index].image.is_valid()) return values_[index].image;
     return materialise_into(
         index, create_picture(fmt::format("picture {}", kernels_.size()), values_[index].size, desc_.intermediate),
-        false, why);
+        kernels_.size() > most_gated_kernels, why);
 }
 
 Result<graph::Version> Planner::materialise_into(std::size_t index, graph::Version image, bool is_always_on,

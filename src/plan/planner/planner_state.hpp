@@ -189,6 +189,7 @@ class Planner {
     std::map<std::uint32_t, graph::Version> kept_outputs_;  ///< by entry: where its output lies for the next frame
     std::vector<std::string> image_reader_;                 ///< per entry: who reads its output as an image
     std::vector<OpenKernel> kernels_;
+    std::size_t joined_entries_ = 0;
     std::vector<Reading> readings_;
     std::map<std::uint32_t, Facts> facts_;  ///< by version
     std::set<std::string> image_names_;
