@@ -61,10 +61,10 @@ std::vector<NamedStack> stacks(bool has_every_choice) {
 }
 
 plan::Shape usual_shape(const plan::ProgramPass& pass, std::span<const plan::Entry> entries) {
-    plan::Shape shape{.steps = plan::Shape::is_whole | plan::Shape::rays_meet};
+    plan::Shape shape{.flags = plan::Shape::is_whole | plan::Shape::rays_meet};
     const std::span<const plan::FusedStep> steps = pass.steps();
     if (pass.as<plan::FusedPass>() != nullptr)
-        for (std::size_t i = 0; i < steps.size(); ++i) shape.steps |= std::uint64_t{1} << (2 * i);
+        for (std::size_t i = 0; i < steps.size(); ++i) shape.set_step(i, true);
     for (const plan::Literal& literal : pass.literals) {
         const std::uint32_t value = entries[steps[literal.step].entry].base[literal.row->word];
         shape.choices |= (value & literal.mask()) << literal.bit;

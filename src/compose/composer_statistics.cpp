@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a driver's compiler makes of a plan's kernels.
 #include "compose/composer_state.hpp"
+#include "core/caught.hpp"
 
 namespace darkroom {
 
@@ -8,7 +9,7 @@ namespace {
 
 /// Of the kernel that a frame gets for this pass.
 Result<KernelStatistics> statistics_of(gpu::Context& context, const plan::ProgramPass& pass, const plan::Shape& shape) {
-    const auto spec = plan::has_lean(pass) ? plan::lean_spec(pass, shape) : plan::complete_spec(pass);
+    const auto spec = plan::lean_spec(pass, shape);
     if (!spec) return failure(spec.error());
     const auto kernel = gpu::Kernel::create(context, *spec, pass.stage);
     if (!kernel) return failure(kernel.error());
@@ -19,7 +20,7 @@ Result<KernelStatistics> statistics_of(gpu::Context& context, const plan::Progra
 
 }  // namespace
 
-Result<std::vector<KernelStatistics>> Composer::statistics(const CompileDesc& desc) const {
+Result<std::vector<KernelStatistics>> Composer::statistics(const CompileDesc& desc) const try {
     gpu::Context& context = *state_->context;
     if (!context.compiles_only)
         return user_error(
@@ -49,6 +50,8 @@ Result<std::vector<KernelStatistics>> Composer::statistics(const CompileDesc& de
         out.push_back(std::move(*one));
     }
     return out;
+} catch (...) {
+    return caught("statistics");
 }
 
 }  // namespace darkroom

@@ -222,6 +222,13 @@ struct PlannerTraits {
 [[nodiscard]] Result<Program> plan_program(std::span<const Entry> stack, const CompileDesc& desc,
                                            const PlannerTraits& traits);
 
+/// Will a plan lay the entry's result over its input, so that its opacity may change while recording? One without
+/// passes, and no part of a reading, always mixes.
+[[nodiscard]] inline bool is_merged(const Entry& entry) {
+    const Touch touch = entry.info->touch;
+    return touch == Touch::Pointwise || touch == Touch::Warp || !entry.is_plain();
+}
+
 /// What the target needs of a picture in this domain: it is encoded exactly once, by a kernel or by the format.
 [[nodiscard]] Finish finish_of(Domain domain, const CompileDesc& desc);
 [[nodiscard]] Domain target_domain(const CompileDesc& desc);

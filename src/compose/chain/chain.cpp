@@ -31,6 +31,8 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
                               .frame_index = frame.frame_index,
                               .camera = &frame.camera,
                               .lights = frame.lights};
+    StackProgram& program = *desc_.program;
+    program.most_unfinished = std::max(program.most_unfinished, desc_.slots);
     slot_ = static_cast<std::uint32_t>(recordings_ % desc_.slots);
     has_missing_kernel_ = false;
     tables_.upload(commands, recordings_);
@@ -62,6 +64,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     physical_->record_barriers(commands, context_.vk, schedule_->final_barriers(), frame.view);
     physical_->end(frame.view);
     ++recordings_;
+    ++program.recordings;
     is_abandonable_ = true;
     if (has_missing_kernel_) worker_.wake();
     return {};
@@ -71,6 +74,7 @@ bool Chain::abandon() {
     if (!is_abandonable_) return false;
     is_abandonable_ = false;
     --recordings_;
+    --desc_.program->recordings;
     tables_.take_back(recordings_);
     lit_.take_back(recordings_);
     physical_->histories(before_.view_index) = before_.view;
@@ -247,7 +251,8 @@ const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& outpu
                                     std::span<const gpu::Binding> inputs) {
     PassKernels& kernels = *desc_.program->kernels[pass];
     last_shapes_[pass] = plan::shape_of(program_of().passes[pass], entries_, values_, output, inputs);
-    if (const gpu::Kernel* const kernel = kernels.find(last_shapes_[pass], recordings_, desc_.slots, worker_.garbage()))
+    if (const gpu::Kernel* const kernel = kernels.find(last_shapes_[pass], desc_.program->recordings,
+                                                       desc_.program->most_unfinished, worker_.garbage()))
         return *kernel;
     worker_.want(kernels, last_shapes_[pass]);
     has_missing_kernel_ = true;

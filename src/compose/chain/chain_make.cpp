@@ -121,7 +121,9 @@ Result<> Chain::build_lean() {
         if (pass_sets_[i].first == ~0u) continue;
         PassKernels& kernels = *desc_.program->kernels[i];
         for (const plan::Shape& shape : {expected_shape(i, entries_), last_shapes_[i]}) {
-            if (kernels.find(shape, recordings_, desc_.slots, worker_.garbage()) != nullptr) continue;
+            if (kernels.find(shape, desc_.program->recordings, desc_.program->most_unfinished, worker_.garbage()) !=
+                nullptr)
+                continue;
             if (auto ok = kernels.build(*context_.kernels, shape); !ok) return ok;
         }
     }
@@ -145,10 +147,6 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
     VkDeviceSize at = align(plan::frame_words * 4, context_.traits.uniform_alignment);
     for (const plan::ProgramPass& pass : program_of().passes) {
         const std::size_t size = gpu::own_block_size(pass.spec);
-        if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > plan::most_custom_vectors)
-            return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
-                                          pass.name, pass.spec.images.size(), pass.spec.custom_vectors,
-                                          gpu::most_images, plan::most_custom_vectors));
         if (size > most_bytes)
             return user_error(
                 fmt::format("pass '{}': {} bytes of parameters; at most {} are allowed", pass.name, size, most_bytes));

@@ -2,6 +2,7 @@
 #include "compose/chain/pass_kernels.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace darkroom::compose {
 
@@ -23,7 +24,6 @@ Result<> PassKernels::build_complete(gpu::KernelStore& store) {
 }
 
 Result<> PassKernels::build(gpu::KernelStore& store, const plan::Shape& shape) {
-    if (!plan::has_lean(pass_)) return {};
     auto arrival = std::make_unique<Arrival>();
     arrival->lean.shape = shape;
     Result<> result;
@@ -41,18 +41,20 @@ Result<> PassKernels::build(gpu::KernelStore& store, const plan::Shape& shape) {
 
 bool PassKernels::was_built(const plan::Shape& shape) const {
     const std::scoped_lock lock(built_mutex_);
-    return !plan::has_lean(pass_) || std::ranges::find(built_, shape) != built_.end();
+    return std::ranges::find(built_, shape) != built_.end();
 }
 
 std::optional<plan::Shape> PassKernels::take_wanted() {
     // Also a release: whoever wants something next may link it anew, after the worker has read the link.
     if (!is_wanted_.exchange(false, std::memory_order_acq_rel)) return std::nullopt;
-    return plan::Shape{wanted_steps_.load(std::memory_order_relaxed), wanted_choices_.load(std::memory_order_relaxed)};
+    ShapeWords words;
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = wanted_[i].load(std::memory_order_relaxed);
+    return std::bit_cast<plan::Shape>(words);
 }
 
 bool PassKernels::want(const plan::Shape& shape) {
-    wanted_steps_.store(shape.steps, std::memory_order_relaxed);
-    wanted_choices_.store(shape.choices, std::memory_order_relaxed);
+    const auto words = std::bit_cast<ShapeWords>(shape);
+    for (std::size_t i = 0; i < words.size(); ++i) wanted_[i].store(words[i], std::memory_order_relaxed);
     return !is_wanted_.exchange(true, std::memory_order_acq_rel);
 }
 
@@ -84,7 +86,6 @@ void PassKernels::take_arrivals(std::uint64_t recording, std::uint64_t unfinishe
 
 const gpu::Kernel* PassKernels::find(const plan::Shape& shape, std::uint64_t recording, std::uint64_t unfinished,
                                      AtomicStack<Garbage>& garbage) {
-    if (!plan::has_lean(pass_)) return complete_.get();
     if (!arrivals_.is_empty()) take_arrivals(recording, unfinished, garbage);
     Lean* const lean = known(shape);
     if (lean == nullptr) return nullptr;

@@ -36,8 +36,8 @@ class PassKernels {
     [[nodiscard]] std::optional<plan::Shape> take_wanted();
 
     // On the thread that records.
-    /// Null: the kernel is not there yet. `recording` counts recordings, of which the last `unfinished` may still use
-    /// what they found. What must go goes to `garbage`.
+    /// Null: the kernel is not there yet. `recording` counts those of all chains of the program, of which the last
+    /// `unfinished` may still use what they found. What must go goes to `garbage`.
     [[nodiscard]] const gpu::Kernel* find(const plan::Shape& shape, std::uint64_t recording, std::uint64_t unfinished,
                                           AtomicStack<Garbage>& garbage);
     /// True: it was not wanted yet, so the worker has to be told.
@@ -68,8 +68,9 @@ class PassKernels {
     AtomicStack<Arrival> arrivals_;
     std::array<Lean, 64> lean_{};
     std::size_t count_ = 0;
-    // Two words that may tear: the worst is a kernel that nobody asked for.
-    std::atomic<std::uint64_t> wanted_steps_{0}, wanted_choices_{0};
+    // Words that may tear: the worst is a kernel that nobody asked for.
+    using ShapeWords = std::array<std::uint64_t, sizeof(plan::Shape) / sizeof(std::uint64_t)>;
+    std::array<std::atomic<std::uint64_t>, sizeof(plan::Shape) / sizeof(std::uint64_t)> wanted_{};
     std::atomic<bool> is_wanted_{false};
 };
 

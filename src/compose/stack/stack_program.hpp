@@ -23,6 +23,9 @@ struct StackProgram {
     std::vector<std::unique_ptr<PassKernels>> kernels;  ///< per pass
     std::vector<plan::Entry> stack;
     CompileDesc desc;
+    // By all chains that have used it, one after the other: the clock of its kernels. Recording alone touches them.
+    std::uint64_t recordings = 0;
+    std::uint32_t most_unfinished = 1;
 
     /// Would planning `other_stack` for `other_desc` give this program again?
     [[nodiscard]] bool serves(std::span<const plan::Entry> other_stack, const CompileDesc& other_desc) const;

@@ -21,23 +21,21 @@ bool is_twice(VkExtent2D larger, VkExtent2D smaller) {
 Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, const FrameValues& values,
                const gpu::Region& output, std::span<const gpu::Binding> inputs) {
     Shape shape;
-    if (!has_lean(pass)) return shape;
     if (is_whole(output) && std::ranges::all_of(inputs, [](const gpu::Binding& b) { return is_whole(b.region); }))
-        shape.steps |= Shape::is_whole;
+        shape.flags |= Shape::is_whole;
     if (pass.asks_sizes && !inputs.empty()) {
-        if (is_twice(inputs[0].region.extent, output.extent)) shape.steps |= Shape::input_is_twice;
-        if (is_twice(output.extent, inputs[0].region.extent)) shape.steps |= Shape::output_is_twice;
+        if (is_twice(inputs[0].region.extent, output.extent)) shape.flags |= Shape::input_is_twice;
+        if (is_twice(output.extent, inputs[0].region.extent)) shape.flags |= Shape::output_is_twice;
     }
-    if (pass.asks_rays_meet && values.rays_meet()) shape.steps |= Shape::rays_meet;
+    if (pass.asks_rays_meet && values.rays_meet()) shape.flags |= Shape::rays_meet;
     const bool is_fused = pass.as<FusedPass>() != nullptr;
     const std::span<const FusedStep> steps = pass.steps();
     if (is_fused) {
-        if (pass.finishes_by_frame()) shape.steps |= static_cast<std::uint64_t>(values.finish()) << Shape::finish_bit;
+        if (pass.finishes_by_frame()) shape.flags |= static_cast<std::uint64_t>(values.finish()) << Shape::finish_bit;
         for (std::size_t i = 0; i < steps.size(); ++i) {
             const std::uint32_t entry = steps[i].entry;
             if (!values.is_on(entry)) continue;
-            shape.steps |= (entries[entry]->is_plain(values.opacity(entry)) ? std::uint64_t{1} : std::uint64_t{3})
-                           << (2 * i);
+            shape.set_step(i, entries[entry]->is_plain(values.opacity(entry)));
         }
     }
     for (const Literal& literal : pass.literals) {
@@ -71,7 +69,7 @@ Shape expected_shape(const Program& program, const graph::Compiled& compiled, co
     }
     Shape shape = shape_of(pass, entries, values, region(schedule.slot_of(pass.output), pass.output_mip_level),
                            {inputs.data(), pass.inputs.size()});
-    if (pass.asks_rays_meet) shape.steps |= Shape::rays_meet;
+    if (pass.asks_rays_meet) shape.flags |= Shape::rays_meet;
     return shape;
 }
 

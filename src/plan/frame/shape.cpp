@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "plan/frame/shape.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "plan/program.hpp"
@@ -11,7 +13,8 @@ namespace {
 
 std::uint32_t bits_of(const ParamInfo& row) {
     if (row.is_loop_count) return 8;
-    return row.kind == Kind::Choice ? 5 : 1;
+    if (row.kind != Kind::Choice) return 1;
+    return std::max(1U, static_cast<std::uint32_t>(std::bit_width(row.choices.size() - 1)));
 }
 
 Result<std::string> body_of(const FusedPass& pass, std::span<const FusedStep> steps, Finish finish) {
@@ -57,8 +60,6 @@ void lay_out_literals(ProgramPass& pass) {
     }
 }
 
-bool has_lean(const ProgramPass& pass) { return pass.steps().size() <= max_lean_steps; }
-
 Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass) { return spec_of(pass, pass.steps(), Finish::OfFrame); }
 
 Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
@@ -68,18 +69,20 @@ Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
         steps[literal.step].baked.push_back(
             {literal.row, static_cast<std::uint32_t>(shape.choices >> literal.bit & literal.mask())});
     if (pass.as<FusedPass>() != nullptr) {
-        for (std::size_t i = 0; i < steps.size(); ++i) {
-            steps[i].is_certain = (shape.steps >> (2 * i) & 1) != 0;
-            steps[i].is_plain = (shape.steps >> (2 * i) & 2) == 0;
+        const std::size_t known = std::min(steps.size(), Shape::most_steps);
+        for (std::size_t i = 0; i < known; ++i) {
+            steps[i].is_certain = shape.is_on(i);
+            steps[i].is_plain = shape.is_plain(i);
         }
-        std::erase_if(steps, [](const FusedStep& step) { return !step.is_certain; });
+        const auto end = steps.begin() + static_cast<std::ptrdiff_t>(known);
+        steps.erase(std::remove_if(steps.begin(), end, [](const FusedStep& step) { return !step.is_certain; }), end);
     }
-    auto spec = spec_of(pass, steps, static_cast<Finish>(shape.steps >> Shape::finish_bit & 3));
+    auto spec = spec_of(pass, steps, static_cast<Finish>(shape.flags >> Shape::finish_bit & 3));
     if (!spec) return spec;
-    spec->is_whole = (shape.steps & Shape::is_whole) != 0;
-    spec->input_is_twice = (shape.steps & Shape::input_is_twice) != 0;
-    spec->output_is_twice = (shape.steps & Shape::output_is_twice) != 0;
-    spec->rays_meet = (shape.steps & Shape::rays_meet) != 0;
+    spec->is_whole = (shape.flags & Shape::is_whole) != 0;
+    spec->input_is_twice = (shape.flags & Shape::input_is_twice) != 0;
+    spec->output_is_twice = (shape.flags & Shape::output_is_twice) != 0;
+    spec->rays_meet = (shape.flags & Shape::rays_meet) != 0;
     return spec;
 }
 

@@ -4,6 +4,7 @@
 // each for one shape of the frame: which entries are on, which are plain, how regions lie, and the values of choices.
 // Pure: from a pass and a shape to a spec.
 
+#include <array>
 #include <cstdint>
 #include <darkroom/param.hpp>
 
@@ -13,20 +14,26 @@ namespace darkroom::plan {
 
 struct ProgramPass;
 
-/// What a lean kernel is made for. `steps`: two bits a step, whether it is on and whether it has an opacity, a blend
-/// mode or a mask; then what it does for the target. `choices`: the values of the literals that the pass's text names,
-/// as far as they fit.
+/// What a lean kernel is made for: which of its steps are on, and which of those have an opacity, a blend mode or a
+/// mask, two bits a step; how regions lie and what it does for the target; and the values of the literals that the
+/// pass's text names, as far as they fit.
 struct Shape {
-    std::uint64_t steps = 0;
+    static constexpr std::size_t most_steps = 128;  ///< those behind them keep their branches
+    std::array<std::uint64_t, most_steps / 32> steps{};
+    std::uint64_t flags = 0;
     std::uint64_t choices = 0;
-    static constexpr std::uint64_t output_is_twice = std::uint64_t{1} << 58;  ///< in steps
-    static constexpr std::uint64_t rays_meet = std::uint64_t{1} << 59;        ///< in steps
-    static constexpr std::uint32_t finish_bit = 60;  ///< in steps, two bits: a Finish, for kernels of Finish::OfFrame
-    static constexpr std::uint64_t is_whole = std::uint64_t{1} << 62;        ///< in steps: all regions are whole images
-    static constexpr std::uint64_t input_is_twice = std::uint64_t{1} << 63;  ///< in steps
+    static constexpr std::uint64_t output_is_twice = 1, rays_meet = 2, input_is_twice = 4;  ///< in flags
+    static constexpr std::uint64_t is_whole = 8;    ///< in flags: all regions are whole images
+    static constexpr std::uint32_t finish_bit = 4;  ///< in flags, two bits: a Finish, for kernels of Finish::OfFrame
     friend bool operator==(const Shape&, const Shape&) = default;
+
+    void set_step(std::size_t step, bool is_plain) {
+        if (step < most_steps)
+            steps[step / 32] |= (is_plain ? std::uint64_t{1} : std::uint64_t{3}) << (2 * (step % 32));
+    }
+    [[nodiscard]] bool is_on(std::size_t step) const { return (steps[step / 32] >> (2 * (step % 32)) & 1) != 0; }
+    [[nodiscard]] bool is_plain(std::size_t step) const { return (steps[step / 32] >> (2 * (step % 32)) & 2) == 0; }
 };
-inline constexpr std::size_t max_lean_steps = 29;
 
 /// A row whose value is a literal of the lean kernels of a pass, and its bits in Shape::choices.
 struct Literal {
@@ -39,10 +46,9 @@ struct Literal {
 /// Gives the rows that the texts of the steps name their bits.
 void lay_out_literals(ProgramPass& pass);
 
-/// Has this pass lean kernels at all?
-[[nodiscard]] bool has_lean(const ProgramPass& pass);
 [[nodiscard]] Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass);
-/// Same images, outputs and members as the complete one; only the steps that are on, and no branches.
+/// Same images, outputs and members as the complete one; only the steps that are on, and no branches, but for those
+/// behind Shape::most_steps.
 [[nodiscard]] Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape);
 
 }  // namespace darkroom::plan

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
-#include <utility>
 
 #include "gpu/resource/formats.hpp"
 #include "plan/planner/planner_state.hpp"
@@ -328,10 +326,13 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     pass.spec.images.push_back(
         {.name = "picture", .storage_format = is_sampled ? VK_FORMAT_UNDEFINED : storage_format(kernel.picture)});
     pass.inputs.push_back({.version = kernel.picture});
+    std::size_t beside = 0;  // images that stand there twice
     for (const auto& [name, input] : kernel.images) {
         gpu::KernelImage image = kernel_image(name, input);
         if (is_storage_side(kernel, input)) image.storage_format = storage_format(input.version);
-        if (is_loaded_beside(kernel, name)) {
+        const std::size_t more = kernel.images.size() - (pass.spec.images.size() - 1 - beside);
+        if (is_loaded_beside(kernel, name) && pass.spec.images.size() + more < gpu::most_images) {
+            ++beside;
             image.loads_by = name + "_texels";
             pass.spec.images.push_back({.name = image.loads_by, .storage_format = storage_format(input.version)});
             pass.inputs.push_back(input);
@@ -391,6 +392,10 @@ bool Planner::can_filter(const PassInput& input) const {
 
 Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level) {
     limit_storage_images(pass);
+    if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > most_custom_vectors)
+        return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
+                                      pass.name, pass.spec.images.size(), pass.spec.custom_vectors, gpu::most_images,
+                                      most_custom_vectors));
     for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
         gpu::KernelImage& image = pass.spec.images[i];
         image.is_filtered_by_loads = image.storage_format == VK_FORMAT_UNDEFINED && image.sampler_type == "sampler2D" &&

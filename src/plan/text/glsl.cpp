@@ -238,20 +238,23 @@ void append_parameter_members(const EffectInfo& info, std::uint32_t place, std::
 
 namespace {
 
-/// `struct Bloom { float intensity; ... };` and a constant for every choice: Bloom_mode_additive.
-std::string parameter_struct(const ParamTable& table) {
+/// `struct Bloom_e0 { float intensity; ... };` and a constant for every choice: Bloom_mode_additive_e0. One for each
+/// place: effects of several files may have one name.
+std::string parameter_struct(const ParamTable& table, std::uint32_t place) {
+    const std::string suffix = place_suffix(place);
     std::string members, constants;
     for (const ParamInfo& row : table.rows) {
         if (!is_in_block(row)) continue;
         members += fmt::format("    {} {};\n", glsl_type(row.kind), row.name);
         for (std::size_t i = 0; i < row.choices.size(); ++i)
-            constants += fmt::format("const uint {}_{}_{} = {}u;\n", table.struct_name, row.name, row.choices[i], i);
+            constants +=
+                fmt::format("const uint {}_{}_{}{} = {}u;\n", table.struct_name, row.name, row.choices[i], suffix, i);
     }
     if (members.empty()) members = "    uint unused_;\n";
-    return fmt::format("struct {} {{\n{}}};\n{}", table.struct_name, members, constants);
+    return fmt::format("struct {}{} {{\n{}}};\n{}", table.struct_name, suffix, members, constants);
 }
 
-/// `Bloom bloom_parameters_e3() { return Bloom(bloom_e3_intensity, ...); }`
+/// `Bloom_e3 bloom_parameters_e3() { return Bloom_e3(bloom_e3_intensity, ...); }`
 std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::span<const Baked> baked) {
     const std::string prefix = block_prefix(info, place);
     std::string arguments;
@@ -268,8 +271,8 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::s
         arguments += fmt::format("{}({})", glsl_type(row.kind), components);
     }
     if (arguments.empty()) arguments = "0u";
-    return fmt::format("{0} {1}_parameters{2}() {{\n    return {0}({3});\n}}\n", info.parameters.struct_name, info.name,
-                       place_suffix(place), arguments);
+    return fmt::format("{0}{2} {1}_parameters{2}() {{\n    return {0}{2}({3});\n}}\n", info.parameters.struct_name,
+                       info.name, place_suffix(place), arguments);
 }
 
 }  // namespace
@@ -287,6 +290,8 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, st
     EffectText out;
     std::set<std::string_view> members;
     const std::string prefix = std::string(info.name) + "_", loader = prefix + "parameters";
+    const std::string_view type = info.parameters.struct_name;
+    const std::string choice_prefix = std::string(type) + "_";
     std::string renamed;
     std::string_view function, before;
     gpu::GlslScanner scanner(expanded);
@@ -303,7 +308,9 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, st
         if (token.kind != gpu::Token::Kind::Word) continue;
         const bool is_own =
             token.text == info.name || (token.text.starts_with(prefix) && !shared_words().contains(token.text));
-        if (is_own || std::ranges::find(images, token.text) != images.end()) renamed += place_suffix(place);
+        const bool is_of_type = token.text == type || token.text.starts_with(choice_prefix);
+        if (is_own || is_of_type || std::ranges::find(images, token.text) != images.end())
+            renamed += place_suffix(place);
         out.asks_sizes |= token.text == "input_is_twice" || token.text == "output_is_twice";
         out.asks_parameters |= token.text == loader;
     }
@@ -318,7 +325,7 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, st
 
 std::string pass_body(const FusedStep& step) {
     if (!step.text->asks_parameters) return step.text->glsl;
-    return parameter_struct(step.info->parameters) + parameter_loader(*step.info, step.place, step.baked) +
+    return parameter_struct(step.info->parameters, step.place) + parameter_loader(*step.info, step.place, step.baked) +
            step.text->glsl;
 }
 
@@ -358,7 +365,6 @@ constexpr std::string_view closest_function = R"(vec4 closest_texel(Pixel pixel)
 
 Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha) {
     std::string declarations, code;
-    std::set<std::string_view> structs;
     bool has_merge = false, has_reading = false, reads_picture = false, has_wrap = false;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const FusedStep& step = steps[i];
@@ -367,8 +373,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
         has_reading |= is_of_reading;
         if (step.info->has_second_in_place && !step.is_merge) declarations += second_function(step, steps.first(i));
         if (!step.is_merge) {
-            if (structs.insert(step.info->parameters.struct_name).second)
-                declarations += parameter_struct(step.info->parameters);
+            declarations += parameter_struct(step.info->parameters, step.place);
             declarations += parameter_loader(*step.info, step.place, step.baked);
             if (step.custom_vectors > 0)
                 declarations += fmt::format("vec4 {}_custom{}(int index) {{ return custom[{} + index]; }}\n",

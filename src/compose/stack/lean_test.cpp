@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Lean kernels: a pass has one for every shape that frames ask for, however long the Composer runs and however long the
+// stack is.
+
+#include "compose/test_stacks/host.hpp"
+#include "gpu/kernel/kernel_store.hpp"
+
+namespace darkroom {
+namespace {
+
+using test::add;
+using test::Host;
+
+class ComposeLean : public test::StackTest {};
+
+/// Kernels that this device's store was asked for.
+std::uint64_t lean_requests() { return gpu::test::context().kernels->counters().requests; }
+
+/// Has the present shape a kernel of its own, that a frame finds? One that is not found would be asked for again.
+bool has_lean_kernel(const Host& host, Composer& composer) {
+    static_cast<void>(host.run(composer));
+    composer.wait_for_kernels();
+    static_cast<void>(host.run(composer));
+    const std::uint64_t before = lean_requests();
+    composer.wait_for_kernels();
+    return lean_requests() == before;
+}
+
+void switch_by(Composer& composer, std::uint32_t bits) {
+    for (std::size_t i = 0; i < composer.size(); ++i)
+        test::must(composer.set_enabled(composer.entry(i), (bits >> i & 1) != 0));
+}
+
+TEST_F(ComposeLean, TheyComeAfterAResizeThoughManyShapesWereSeen) {
+    const Host host(test::random_display(8, 8, 2));
+    Composer composer(host.device, {.frames_in_flight = 1, .max_threads = 0});
+    for (int i = 0; i < 7; ++i) add(composer, "negative");
+    CompileDesc desc = host.compile_desc();
+    test::must(composer.compile(desc));
+    constexpr std::uint32_t kept = 64;  // shapes that a pass remembers
+    for (std::uint32_t shape = 1; shape < kept + 8; ++shape) {
+        switch_by(composer, shape);
+        EXPECT_TRUE(has_lean_kernel(host, composer)) << "shape " << shape;
+    }
+    desc.max_extent = {16, 16};
+    test::must(composer.compile(desc));
+    for (std::uint32_t shape = kept + 8; shape < kept + 12; ++shape) {
+        switch_by(composer, shape);
+        EXPECT_TRUE(has_lean_kernel(host, composer)) << "shape " << shape << " after the resize";
+    }
+}
+
+TEST_F(ComposeLean, LongKernelsHaveThemToo) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(8, 8, 2));
+    const Host host(picture);
+    for (const std::size_t length : {30U, 129U}) {
+        SCOPED_TRACE(length);
+        Composer composer(host.device, {.max_threads = 0});
+        for (std::size_t i = 0; i < length; ++i) add(composer, "exposure", {{"exposure", i % 2 == 0 ? 2.0 : 0.5}});
+        test::must(composer.compile(host.compile_desc()));
+        const std::uint64_t before = lean_requests();
+        test::must(composer.set_enabled(composer.entry(length - 1), false));
+        test::must(composer.set_enabled(composer.entry(0), false));
+        const ReferenceImage complete = host.run(composer);
+        composer.wait_for_kernels();
+        EXPECT_GT(lean_requests(), before) << "no kernel of the present shape was asked for";
+        EXPECT_EQ(test::worst_difference(host.run(composer), complete), 0);
+        const double scale = length % 2 == 0 ? 1 : 0.5;
+        EXPECT_NEAR(complete.at(3, 3).g, picture.at(3, 3).g * scale, 1e-6);
+    }
+}
+
+}  // namespace
+}  // namespace darkroom
