@@ -11,6 +11,7 @@
 
 #include <darkroom/describe.hpp>
 #include "compose/composer_state.hpp"
+#include "core/caught.hpp"
 #include "core/text/param_text.hpp"
 
 namespace darkroom {
@@ -158,23 +159,31 @@ Composer::Composer(Composer&&) noexcept = default;
 Composer& Composer::operator=(Composer&&) noexcept = default;
 Composer::~Composer() = default;
 
-Handle Composer::add(const EffectInfo& info, const void* parameters, const EntryDesc& desc) {
+Handle Composer::add(const EffectInfo& info, const void* parameters, const EntryDesc& desc) try {
     return {state_->stack.emplace_back(state_->make_entry(info, parameters, desc))->id};
-}
-
-Result<Handle> Composer::insert(Handle before, const EffectInfo& info, const void* parameters, const EntryDesc& desc) {
-    if (auto ok = check(before); !ok) return failure(std::move(ok));
-    const auto place = state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(before));
-    return Handle{(*state_->stack.insert(place, state_->make_entry(info, parameters, desc)))->id};
-}
-
-Result<> Composer::remove(Handle handle) {
-    if (auto ok = check(handle); !ok) return ok;
-    state_->stack.erase(state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(handle)));
+} catch (...) {
+    state_->context->say(Severity::Error, caught("add").value().text);
     return {};
 }
 
-Result<> Composer::move(Handle handle, Handle before) {
+Result<Handle> Composer::insert(Handle before, const EffectInfo& info, const void* parameters,
+                                const EntryDesc& desc) try {
+    if (auto ok = check(before); !ok) return failure(std::move(ok));
+    const auto place = state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(before));
+    return Handle{(*state_->stack.insert(place, state_->make_entry(info, parameters, desc)))->id};
+} catch (...) {
+    return caught("insert");
+}
+
+Result<> Composer::remove(Handle handle) try {
+    if (auto ok = check(handle); !ok) return ok;
+    state_->stack.erase(state_->stack.begin() + static_cast<std::ptrdiff_t>(state_->index_of(handle)));
+    return {};
+} catch (...) {
+    return caught("remove");
+}
+
+Result<> Composer::move(Handle handle, Handle before) try {
     if (auto ok = check(handle); !ok) return ok;
     if (before.is_given())
         if (auto ok = check(before); !ok) return ok;
@@ -188,9 +197,11 @@ Result<> Composer::move(Handle handle, Handle before) {
     else
         std::rotate(to, from, from + 1);
     return {};
+} catch (...) {
+    return caught("move");
 }
 
-Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* parameters) {
+Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* parameters) try {
     auto entry = state_->checked(handle);
     if (!entry) return failure(std::move(entry));
     plan::Entry& old = **entry;
@@ -205,9 +216,11 @@ Result<> Composer::replace(Handle handle, const EffectInfo& info, const void* pa
     }
     state_->stack[state_->index_of(handle)] = std::move(made);
     return {};
+} catch (...) {
+    return caught("replace");
 }
 
-Result<> Composer::rewire(Handle handle, const EntryDesc& desc) {
+Result<> Composer::rewire(Handle handle, const EntryDesc& desc) try {
     auto entry = state_->checked(handle);
     if (!entry) return failure(std::move(entry));
     // A new entry under the old number: the present plan goes on as it was wired.
@@ -225,11 +238,13 @@ Result<> Composer::rewire(Handle handle, const EntryDesc& desc) {
     if (!desc.name.empty()) own.name = desc.name;
     state_->stack[state_->index_of(handle)] = std::move(made);
     return {};
+} catch (...) {
+    return caught("rewire");
 }
 
 void Composer::clear() { state_->stack.clear(); }
 
-Result<Resource> Composer::define(ResourceData data) {
+Result<Resource> Composer::define(ResourceData data) try {
     if (auto ok = check_resource(data); !ok) return failure(std::move(ok));
     const Resource out{next_id()};
     // Plans under way keep the map they began with.
@@ -237,12 +252,17 @@ Result<Resource> Composer::define(ResourceData data) {
     all.emplace(out.id, std::make_shared<const ResourceData>(std::move(data)));
     state_->resources = std::make_shared<const Resources>(std::move(all));
     return out;
+} catch (...) {
+    return caught("define");
 }
 
-void Composer::forget(Resource resource) {
+void Composer::forget(Resource resource) try {
     Resources all = *state_->resources;
     all.erase(resource.id);
     state_->resources = std::make_shared<const Resources>(std::move(all));
+} catch (...) {
+    // It stays until it can be forgotten: a later call, or the Composer's end.
+    state_->context->say(Severity::Warning, caught("forget").value().text);
 }
 
 const Resources& Composer::resources() const { return *state_->resources; }
@@ -256,9 +276,11 @@ std::size_t Composer::size() const { return state_->stack.size(); }
 Handle Composer::entry(std::size_t index) const {
     return index < state_->stack.size() ? Handle{state_->stack[index]->id} : Handle{};
 }
-Result<> Composer::check(Handle handle) const {
+Result<> Composer::check(Handle handle) const try {
     auto entry = state_->checked(handle);
     return entry ? Result<>{} : failure(std::move(entry));
+} catch (...) {
+    return caught("check");
 }
 const EffectInfo* Composer::info(Handle handle) const {
     const plan::Entry* const entry = state_->entry(handle);
@@ -273,32 +295,34 @@ std::span<const std::uint32_t> Composer::words(Handle handle) const {
     return entry == nullptr ? std::span<const std::uint32_t>{} : entry->base;
 }
 
-Result<> Composer::set_enabled(Handle handle, bool enabled) {
+Result<> Composer::set_enabled(Handle handle, bool enabled) try {
     auto entry = state_->checked(handle);
     if (!entry) return failure(std::move(entry));
     (*entry)->desc.enabled = enabled;
     return {};
+} catch (...) {
+    return caught("set_enabled");
 }
 
-Result<> Composer::set_opacity(Handle handle, float opacity) {
+Result<> Composer::set_opacity(Handle handle, float opacity) try {
     auto found = state_->checked(handle);
     if (!found) return failure(std::move(found));
     plan::Entry& entry = **found;
     if (!(opacity >= 0 && opacity <= 1))
         return user_error(fmt::format("{}: opacity = {}: allowed is [0, 1]", entry.desc.name, opacity));
     // An entry with passes of its own is laid over its input by the next kernel, if that was planned so.
-    const auto place = state_->chain ? state_->chain->index_of(entry.id) : std::nullopt;
-    const bool is_mixable = !place || state_->chain->program()->program.is_mixable[*place];
-    if (!is_mixable && opacity > 0 && opacity < 1)
+    if (opacity > 0 && opacity < 1 && !state_->is_mixable(entry))
         return user_error(fmt::format(
             "{}: opacity = {}: it has passes of its own and was compiled with opacity 1; allowed are 0 and 1, "
             "or add it with an opacity below 1 and compile",
             entry.desc.name, opacity));
     entry.desc.opacity = opacity;
     return {};
+} catch (...) {
+    return caught("set_opacity");
 }
 
-Result<> Composer::set(Handle handle, std::string_view parameter, std::span<const std::uint32_t> words) {
+Result<> Composer::set(Handle handle, std::string_view parameter, std::span<const std::uint32_t> words) try {
     auto found_entry = state_->checked(handle);
     if (!found_entry) return failure(std::move(found_entry));
     plan::Entry& entry = **found_entry;
@@ -307,9 +331,11 @@ Result<> Composer::set(Handle handle, std::string_view parameter, std::span<cons
     if (auto ok = check_value(entry, **row, words); !ok) return ok;
     std::copy(words.begin(), words.end(), entry.base.begin() + (*row)->word);
     return {};
+} catch (...) {
+    return caught("set");
 }
 
-Result<> Composer::set(Handle handle, std::string_view parameter, double value) {
+Result<> Composer::set(Handle handle, std::string_view parameter, double value) try {
     auto found_entry = state_->checked(handle);
     if (!found_entry) return failure(std::move(found_entry));
     plan::Entry& entry = **found_entry;
@@ -326,9 +352,11 @@ Result<> Composer::set(Handle handle, std::string_view parameter, double value) 
         return {};
     }
     return assign(info, entry.base, value, shown(entry, info));
+} catch (...) {
+    return caught("set");
 }
 
-Result<> Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) {
+Result<> Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) try {
     auto found_entry = state_->checked(handle);
     if (!found_entry) return failure(std::move(found_entry));
     plan::Entry& entry = **found_entry;
@@ -337,10 +365,12 @@ Result<> Composer::set_all(Handle handle, const EffectInfo& info, const void* pa
     if (auto ok = check_values(entry, words); !ok) return ok;
     std::copy(words.begin(), words.end(), entry.base.begin());
     return {};
+} catch (...) {
+    return caught("set");
 }
 
 Result<> Composer::set_override(Handle handle, std::string_view parameter, std::string_view owner,
-                                std::span<const std::uint32_t> words) {
+                                std::span<const std::uint32_t> words) try {
     auto found_entry = state_->checked(handle);
     if (!found_entry) return failure(std::move(found_entry));
     plan::Entry& entry = **found_entry;
@@ -356,6 +386,8 @@ Result<> Composer::set_override(Handle handle, std::string_view parameter, std::
     }
     std::copy(words.begin(), words.end(), entry.overrides.back().value.begin());
     return {};
+} catch (...) {
+    return caught("set_override");
 }
 
 void Composer::drop_overrides(std::string_view owner) {
@@ -363,7 +395,7 @@ void Composer::drop_overrides(std::string_view owner) {
         std::erase_if(entry->overrides, [&](const auto& o) { return o.owner == owner; });
 }
 
-std::uint32_t Composer::pre_roll(double delta_time) const {
+std::uint32_t Composer::pre_roll(double delta_time) const try {
     std::uint64_t frames = 0;
     for (const auto& entry : state_->stack) {
         const EntryDesc& desc = entry->desc;
@@ -375,6 +407,9 @@ std::uint32_t Composer::pre_roll(double delta_time) const {
             frames += entry->info->pre_roll(words.data(), delta_time);
     }
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(frames, std::numeric_limits<std::uint32_t>::max()));
+} catch (...) {
+    state_->context->say(Severity::Warning, caught("pre_roll").value().text);
+    return 0;
 }
 
 }  // namespace darkroom

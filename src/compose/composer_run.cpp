@@ -7,6 +7,7 @@
 
 #include "compose/chain/frame_check.hpp"
 #include "compose/composer_state.hpp"
+#include "core/caught.hpp"
 #include "gpu/device/assumed_device.hpp"
 
 namespace darkroom {
@@ -170,7 +171,7 @@ std::unique_lock<std::mutex> Composer::State::stop_compiling() {
     return lock;
 }
 
-Result<Plan> Composer::plan(const CompileDesc& desc) const {
+Result<Plan> Composer::plan(const CompileDesc& desc) const try {
     auto snapshot = state_->snapshot(desc);
     if (!snapshot) return failure(std::move(snapshot));
     auto program = plan::plan_program(snapshot->values, desc, compose::planner_traits(*state_->context, desc.kernels));
@@ -182,17 +183,38 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const {
     Plan plan = plan::describe_program(*program, *compiled, desc, entries);
     if (state_->context->is_assumed) plan.remarks.emplace_back(gpu::assumed_device_remark);
     return plan;
+} catch (...) {
+    return caught("plan");
 }
 
-Result<Plan> Composer::compile(const CompileDesc& desc) {
-    if (auto ok = state_->check_device(); !ok) return failure(std::move(ok));
-    auto snapshot = state_->snapshot(desc);
-    if (!snapshot) return failure(std::move(snapshot));
-    const auto lock = state_->stop_compiling();
-    auto chain = state_->make_chain(std::move(*snapshot));
-    if (!chain) return failure(std::move(chain));
-    state_->take(std::move(*chain));
-    return state_->chain->plan();
+Result<Plan> Composer::State::compile(const CompileDesc& wanted) {
+    if (auto ok = check_device(); !ok) return failure(std::move(ok));
+    auto made = snapshot(wanted);
+    if (!made) return failure(std::move(made));
+    const auto lock = stop_compiling();
+    auto newer = make_chain(std::move(*made));
+    if (!newer) return failure(std::move(newer));
+    Plan plan = (*newer)->plan();
+    take(std::move(*newer));
+    return plan;
+}
+
+Result<Plan> Composer::compile(const CompileDesc& desc) try { return state_->compile(desc); } catch (...) {
+    return caught("compile");
+}
+
+std::optional<CompileDesc> Composer::State::last_desc() const {
+    const std::scoped_lock lock(pending_mutex);
+    if ((is_compiling || ready.load() != nullptr) && later) return later->desc;
+    return chain ? std::optional(chain->compiled_for()) : std::nullopt;
+}
+
+bool Composer::State::is_mixable(const plan::Entry& entry) const {
+    const std::scoped_lock lock(pending_mutex);
+    if ((is_compiling || ready.load() != nullptr) && later && std::ranges::count(later->unmixed, entry.id) > 0)
+        return false;
+    const auto place = chain ? chain->index_of(entry.id) : std::nullopt;
+    return !place || chain->program()->program.is_mixable[*place];
 }
 
 void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
@@ -202,48 +224,69 @@ void Composer::State::compile_now(Snapshot wanted, std::uint64_t number) {
         return number != requests;
     };
     if (is_outdated()) return;
-    auto made = make_chain(std::move(wanted));
+    // On the worker nobody else would catch it.
+    auto made = [&]() -> Result<std::unique_ptr<compose::Chain>> {
+        try {
+            return make_chain(std::move(wanted));
+        } catch (...) {
+            return caught("compile");
+        }
+    }();
     const std::scoped_lock guard(pending_mutex);
     if (number != requests) return;
     is_compiling = false;
     if (!made) {
-        pending_error = made.error();
+        pending_error = std::move(made).error();
         return;
     }
     delete ready.exchange(made->release());
 }
 
-Result<> Composer::compile_later(const CompileDesc& desc) {
+Result<> Composer::compile_later(const CompileDesc& desc) try {
     if (auto ok = state_->check_device(); !ok) return ok;
     auto snapshot = state_->snapshot(desc);
     if (!snapshot) return failure(std::move(snapshot));
     State& state = *state_;
-    std::uint64_t number = 0;
+    State::Later later{.desc = desc};
+    for (const plan::Entry& entry : snapshot->values)
+        if (!plan::is_merged(entry)) later.unmixed.push_back(entry.id);
+    // Whatever may fail for lack of memory comes before the promise.
+    struct Request {
+        State::Snapshot snapshot;
+        std::uint64_t number = 0;
+    };
+    auto request = std::make_shared<Request>(Request{std::move(*snapshot)});
+    std::function<void()> task = [&state, request] {
+        state.compile_now(std::move(request->snapshot), request->number);
+    };
     {
         const std::scoped_lock lock(state.pending_mutex);
-        number = ++state.requests;
+        request->number = ++state.requests;
         state.is_compiling = true;
+        state.later = std::move(later);
         state.pending_error.reset();
     }
     if (state.worker->is_running()) {
-        // std::function copies what it holds.
-        auto shared = std::make_shared<State::Snapshot>(std::move(*snapshot));
-        state.worker->run([&state, shared, number] { state.compile_now(std::move(*shared), number); });
+        state.worker->run(std::move(task));
         return {};
     }
     state.worker->clean_up();
-    state.compile_now(std::move(*snapshot), number);
+    task();
     return {};
+} catch (...) {
+    return caught("compile_later");
 }
 
-PendingCompile Composer::pending() const {
+PendingCompile Composer::pending() const try {
     const std::scoped_lock lock(state_->pending_mutex);
     return {.is_pending = state_->is_compiling || state_->ready.load() != nullptr, .error = state_->pending_error};
+} catch (...) {
+    return {.is_pending = false, .error = caught("pending").value()};
 }
 
 const Plan* Composer::current_plan() const { return state_->chain ? &state_->chain->plan() : nullptr; }
 
-Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {
+Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) try {
     const auto start = std::chrono::steady_clock::now();
     State& state = *state_;
     if (state.ready.load(std::memory_order_relaxed) != nullptr)
@@ -257,18 +300,24 @@ Result<> Composer::record(VkCommandBuffer commands, const Frame& frame) {
     state.record_microseconds =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
     return ok;
+} catch (...) {
+    return caught("record");
 }
 
-Result<> Composer::abandon() {
+Result<> Composer::abandon() try {
     if (!state_->chain || !state_->chain->abandon())
         return user_error("abandon: the composer has no last recording that could be taken back");
     for (compose::Chain* old = state_->retired; old != nullptr; old = old->next_retired) ++old->recordings_left;
     return {};
+} catch (...) {
+    return caught("abandon");
 }
 
-void Composer::wait_for_kernels() {
+void Composer::wait_for_kernels() try {
     if (!state_->chain) return;
     if (const auto ok = state_->chain->build_lean(); !ok) state_->context->say(Severity::Warning, ok.error().text);
+} catch (...) {
+    state_->context->say(Severity::Warning, caught("wait_for_kernels").value().text);
 }
 
 RecordingTimes Composer::times() { return state_->chain ? state_->chain->times() : RecordingTimes{}; }
@@ -277,13 +326,20 @@ WatchState Composer::watch_state(std::uint32_t id) const {
 }
 double Composer::record_microseconds() const { return state_->record_microseconds; }
 
-Result<Plan> Composer::rebind(const Device& device) {
-    if (!state_->chain) return user_error("rebind: the composer was never compiled");
-    const CompileDesc desc = state_->chain->compiled_for();
+Result<Plan> Composer::rebind(const Device& device) try {
+    const std::optional<CompileDesc> desc = state_->last_desc();
+    if (!desc) return user_error("rebind: the composer was never compiled");
+    // Beside the old state, which stays as it is unless all of this works.
     auto newer = std::make_unique<State>(device.shared_context(), state_->desc);
-    newer->stack = std::move(state_->stack);
-    state_ = std::move(newer);
-    return compile(desc);
+    newer->stack = state_->stack;
+    newer->resources = state_->resources;
+    newer->last = state_->last;
+    newer->is_any_waiting = state_->is_any_waiting;
+    auto plan = newer->compile(*desc);
+    if (plan) state_ = std::move(newer);
+    return plan;
+} catch (...) {
+    return caught("rebind");
 }
 
 }  // namespace darkroom

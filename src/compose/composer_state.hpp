@@ -6,6 +6,7 @@
 #include <darkroom/composer.hpp>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "compose/chain/chain.hpp"
@@ -44,6 +45,11 @@ struct Composer::State {
     [[nodiscard]] Result<Snapshot> snapshot(const CompileDesc& compile_desc) const;
     /// With compile_mutex held.
     [[nodiscard]] Result<std::unique_ptr<compose::Chain>> make_chain(Snapshot snapshot);
+    [[nodiscard]] Result<Plan> compile(const CompileDesc& wanted);
+    /// What a rebind compiles for: the plan that is on its way, else the one there is.
+    [[nodiscard]] std::optional<CompileDesc> last_desc() const;
+    /// May its opacity change, by the plan there is and by the one that is on its way?
+    [[nodiscard]] bool is_mixable(const plan::Entry& entry) const;
     /// For the task of compile_later(): `number` is that of its request.
     void compile_now(Snapshot snapshot, std::uint64_t number);
     /// Ends what compile_later() began: with the lock, nothing runs, and nothing will be taken.
@@ -68,8 +74,14 @@ struct Composer::State {
     graph::HistoryPool histories;
     std::shared_ptr<compose::StackProgram> program;  ///< of the last compile
 
-    mutable std::mutex pending_mutex;  ///< guards the next three; record() never takes it
+    mutable std::mutex pending_mutex;  ///< guards the next four; record() never takes it
     std::uint64_t requests = 0;
+    /// What the last compile_later() was asked for.
+    struct Later {
+        CompileDesc desc;
+        std::vector<std::uint32_t> unmixed{};  ///< entries whose result nobody merges
+    };
+    std::optional<Later> later;
     bool is_compiling = false;
     std::optional<Error> pending_error;
     std::atomic<compose::Chain*> ready{nullptr};  ///< for record() to take; owned

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "core/caught.hpp"
 #include "core/thread/parallel.hpp"
 
 namespace darkroom::compose {
@@ -51,9 +52,13 @@ void Worker::clean_up() {
 void Worker::build_wanted(PassKernels* list) {
     while (list != nullptr && !is_ending_) {
         PassKernels* const after = list->next;  // once its wish is taken, it may be pushed again
-        if (const std::optional<plan::Shape> shape = list->take_wanted())
-            if (const auto ok = list->build(*context_.kernels, *shape); !ok)
-                context_.say(Severity::Warning, "a lean kernel could not be built: " + ok.error().text);
+        try {
+            if (const std::optional<plan::Shape> shape = list->take_wanted())
+                if (const auto ok = list->build(*context_.kernels, *shape); !ok)
+                    context_.say(Severity::Warning, "a lean kernel could not be built: " + ok.error().text);
+        } catch (...) {
+            context_.say(Severity::Warning, caught("building a lean kernel").value().text);
+        }
         list = after;
     }
 }

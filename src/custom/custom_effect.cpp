@@ -4,6 +4,7 @@
 #include <darkroom/custom_effect.hpp>
 #include <utility>
 
+#include "core/caught.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
 #include "custom/description.hpp"
@@ -19,7 +20,7 @@ CustomEffect::~CustomEffect() = default;
 
 const EffectInfo& CustomEffect::info() const { return state_->info; }
 
-Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view shown_name) {
+Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view shown_name) try {
     if (text.size() > most_bytes)
         return user_error(fmt::format("{}: {} bytes, the file of an effect has at most {}", printable(shown_name),
                                       text.size(), most_bytes));
@@ -31,12 +32,16 @@ Result<CustomEffect> CustomEffect::parse(std::string_view text, std::string_view
     state->info.build = [own](PassBuilder& builder) { custom::build(builder, *own); };
     if (own->pre_roll) state->info.pre_roll = [frames = *own->pre_roll](const void*, double) { return frames; };
     return CustomEffect(std::move(state));
+} catch (...) {
+    return caught("reading an effect");
 }
 
-Result<CustomEffect> CustomEffect::load(const std::string& file) {
+Result<CustomEffect> CustomEffect::load(const std::string& file) try {
     auto bytes = read_file(file, {.max_size = most_bytes});
     if (!bytes) return failure(std::move(bytes));
     return parse({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
+} catch (...) {
+    return caught("reading an effect");
 }
 
 }  // namespace darkroom

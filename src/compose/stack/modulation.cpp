@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "compose/composer_state.hpp"
+#include "core/caught.hpp"
 #include "core/text/param_text.hpp"
 
 namespace darkroom {
@@ -73,7 +74,7 @@ Result<> add_value(const plan::Entry& entry, const LayerValue& value, plan::Laye
 
 }  // namespace
 
-Result<> Composer::add_pulse(const PulseDesc& desc) {
+Result<> Composer::add_pulse(const PulseDesc& desc) try {
     auto entry = state_->checked(desc.entry);
     if (!entry) return failure(std::move(entry));
     const auto row = State::row(**entry, desc.parameter);
@@ -82,6 +83,8 @@ Result<> Composer::add_pulse(const PulseDesc& desc) {
     (*entry)->pulses.push_back(
         {.event = desc.event, .row = *row, .amount = desc.amount, .shape = desc.envelope, .duration = desc.duration});
     return {};
+} catch (...) {
+    return caught("add_pulse");
 }
 
 std::size_t Composer::fire(std::string_view event, std::optional<double> time) {
@@ -104,7 +107,7 @@ void Composer::State::start_pulses(double time) {
             if (std::exchange(pulse.is_waiting, false)) pulse.start = time;
 }
 
-Result<> Composer::add_layer(const LayerDesc& desc) {
+Result<> Composer::add_layer(const LayerDesc& desc) try {
     const std::string shown = shown_layer(desc.name);
     if (std::ranges::count(layer_names(), desc.name) > 0)
         return user_error(fmt::format("{}: there is one of this name", shown));
@@ -123,11 +126,14 @@ Result<> Composer::add_layer(const LayerDesc& desc) {
                 found, {*entry, {.name = desc.name, .weight = desc.weight, .distance = desc.distance, .values = {}}});
         if (auto ok = add_value(**entry, value, found->second); !ok) return ok;
     }
+    for (auto& [entry, layer] : made) entry->layers.reserve(entry->layers.size() + 1);
     for (auto& [entry, layer] : made) entry->layers.push_back(std::move(layer));
     return {};
+} catch (...) {
+    return caught("add_layer");
 }
 
-Result<> Composer::set_layer_weight(std::string_view name, float weight) {
+Result<> Composer::set_layer_weight(std::string_view name, float weight) try {
     if (!(weight >= 0 && weight <= 1)) return check_weight(shown_layer(name), weight);
     bool is_any = false;
     for (const auto& entry : state_->stack)
@@ -139,14 +145,18 @@ Result<> Composer::set_layer_weight(std::string_view name, float weight) {
     if (is_any) return {};
     return user_error(
         fmt::format("{}: there is no layer of this name{}", shown_layer(name), suggestion(name, layer_names())));
+} catch (...) {
+    return caught("set_layer_weight");
 }
 
-std::vector<std::string> Composer::layer_names() const {
+std::vector<std::string> Composer::layer_names() const try {
     std::vector<std::string> out;
     for (const auto& entry : state_->stack)
         for (const plan::Layer& layer : entry->layers)
             if (std::ranges::count(out, layer.name) == 0) out.push_back(layer.name);
     return out;
+} catch (...) {
+    return {};
 }
 
 void Composer::remove_pulses() {
@@ -157,15 +167,17 @@ void Composer::remove_layer(std::string_view name) {
         std::erase_if(entry->layers, [&](const plan::Layer& layer) { return layer.name == name; });
 }
 
-std::vector<std::uint32_t> Composer::current(Handle handle) const {
+std::vector<std::uint32_t> Composer::current(Handle handle) const try {
     const plan::Entry* const entry = state_->entry(handle);
     if (entry == nullptr) return {};
     std::vector<std::uint32_t> out(entry->base.size());
     entry->evaluate(out, state_->last);
     return out;
+} catch (...) {
+    return {};
 }
 
-Composer::EntryValues Composer::values_at(Handle handle, double time, const Camera& camera) const {
+Composer::EntryValues Composer::values_at(Handle handle, double time, const Camera& camera) const try {
     const plan::Entry* const entry = state_->entry(handle);
     if (entry == nullptr) return {};
     EntryValues out{.words = std::vector<std::uint32_t>(entry->base.size())};
@@ -173,6 +185,8 @@ Composer::EntryValues Composer::values_at(Handle handle, double time, const Came
     out.is_enabled = presence.is_enabled;
     out.opacity = presence.opacity;
     return out;
+} catch (...) {
+    return {};
 }
 
 }  // namespace darkroom

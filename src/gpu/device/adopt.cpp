@@ -6,6 +6,7 @@
 #include <darkroom/device.hpp>
 #include <string_view>
 
+#include "core/caught.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/device/device_facts.hpp"
 
@@ -125,7 +126,7 @@ Failure lacking(const AdoptDesc& desc, const Result<>& loaded) {
 
 }  // namespace
 
-Result<Device> Device::adopt(const AdoptDesc& desc) {
+Result<Device> Device::adopt(const AdoptDesc& desc) try {
     if (Result<> checked = check_desc(desc); !checked) return failure(std::move(checked));
     auto context = std::make_shared<Context>();
     context->log = desc.log;
@@ -158,6 +159,8 @@ Result<Device> Device::adopt(const AdoptDesc& desc) {
     context->device = desc.device;
     if (Result<> finished = context->finish(); !finished) return failure(std::move(finished));
     return Device(std::move(context));
+} catch (...) {
+    return caught("adopting a device");
 }
 
 }  // namespace darkroom

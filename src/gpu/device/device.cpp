@@ -9,6 +9,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "core/caught.hpp"
 #include "gpu/device/assumed_device.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/device/device_facts.hpp"
@@ -291,17 +292,19 @@ Device::~Device() = default;
 const DeviceInfo& Device::info() const { return context_->info; }
 std::uint64_t Device::validation_messages() const { return context_->validation_messages; }
 
-Result<std::vector<DeviceInfo>> Device::list() {
+Result<std::vector<DeviceInfo>> Device::list() try {
     Context context;
     if (Result<> created = create_instance(context, false); !created) return failure(std::move(created));
     const Result<std::vector<Candidate>> candidates = find_devices(context);
     if (!candidates) return failure(candidates.error());
     return infos_of(*candidates);
+} catch (...) {
+    return caught("listing devices");
 }
 
 Device Device::assumed() { return Device(gpu::assumed_context()); }
 
-Result<Device> Device::create(const DeviceDesc& desc) {
+Result<Device> Device::create(const DeviceDesc& desc) try {
     auto context = std::make_shared<Context>();
     context->log = desc.log;
     context->compiles_only = desc.compiles_only;
@@ -319,6 +322,8 @@ Result<Device> Device::create(const DeviceDesc& desc) {
         return failure(std::move(created));
     if (Result<> finished = context->finish(); !finished) return failure(std::move(finished));
     return Device(std::move(context));
+} catch (...) {
+    return caught("creating a device");
 }
 
 }  // namespace darkroom

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/caught.hpp"
+
 namespace darkroom::gpu {
 
 namespace {
@@ -35,7 +37,14 @@ Result<std::shared_ptr<const Kernel>> KernelStore::get(const KernelSpec& spec, S
     }
     entries_[key].last_used = now;
     lock.unlock();
-    Result<std::unique_ptr<Kernel>> made = Kernel::create(context_, spec, stage, std::move(source));
+    // Whoever waits for this kernel waits until it is made or has failed.
+    auto made = [&]() -> Result<std::unique_ptr<Kernel>> {
+        try {
+            return Kernel::create(context_, spec, stage, std::move(source));
+        } catch (...) {
+            return caught("making a kernel");
+        }
+    }();
     lock.lock();
     ++(made ? counters_.built : counters_.failed);
     Result<std::shared_ptr<const Kernel>> result;
@@ -43,7 +52,6 @@ Result<std::shared_ptr<const Kernel>> KernelStore::get(const KernelSpec& spec, S
         Entry& entry = entries_[key];
         entry.kernel = std::move(*made);
         result = entry.kernel;
-        drop_unused();
     } else {
         result = failure(made.error());
         if (made.error().fault == Fault::User)
@@ -51,8 +59,8 @@ Result<std::shared_ptr<const Kernel>> KernelStore::get(const KernelSpec& spec, S
         else
             entries_.erase(key);
     }
-    lock.unlock();
     built_.notify_all();
+    if (made) drop_unused();
     return result;
 }
 
