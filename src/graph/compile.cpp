@@ -55,7 +55,7 @@ class Compiler {
     Result<> find_final_history() {
         solution_->final_history_version.assign(declaration_.history_count, none);
         for (const Image& image : declaration_.images) {
-            if (image.kind != Slot::Kind::History || image.is_previous) continue;
+            if ((image.kind != Slot::Kind::History && image.kind != Slot::Kind::Lasting) || image.is_previous) continue;
             solution_->final_history_version[image.history_index] = image.versions.back();
         }
         for (const PassRecord& pass : declaration_.passes) {
@@ -122,7 +122,7 @@ class Compiler {
                  alternatives(declaration_, read.version.index, pass.gate, read.instead.index)) {
                 if (found.version == none) continue;
                 const Image& image = declaration_.image_of(found.version);
-                if (!image.is_previous || is_read[image.history_index]) continue;
+                if (!image.carries_over() || is_read[image.history_index]) continue;
                 is_read[image.history_index] = is_changed = true;
                 need(needs_, {.version = {solution_->final_history_version[image.history_index]}}, -1);
             }
@@ -199,7 +199,8 @@ class Compiler {
         }
         for (std::size_t i = 0; i < solution_->images.size(); ++i) {
             Image& image = solution_->images[i];
-            if (image.kind == Slot::Kind::Transient && is_used[i]) image.slots.fill(add_slot(image, 0));
+            const bool is_single = image.kind == Slot::Kind::Transient || image.kind == Slot::Kind::Lasting;
+            if (is_single && is_used[i]) image.slots.fill(add_slot(image, 0));
             if (image.kind != Slot::Kind::History || image.is_previous || !is_history_used[image.history_index])
                 continue;
             image.slots = {add_slot(image, 0), add_slot(image, 1)};
@@ -274,6 +275,13 @@ class Compiler {
         for (std::uint32_t index = 0; index < solution_->slots.size(); ++index) {
             Slot& slot = solution_->slots[index];
             if (slot.kind != Slot::Kind::Transient) continue;
+            if (slot.desc.is_buffer()) {
+                // No device asks for more than 256 between storage or uniform buffers.
+                slot.offset = solution_->buffer_bytes;
+                slot.size = slot.desc.buffer_bytes;
+                solution_->buffer_bytes += (slot.size + 255) / 256 * 256;
+                continue;
+            }
             auto measured = measure(slot.desc, slot.usage, largest_);
             if (!measured) return failure(std::move(measured));
             solution_->memory_type_bits &= measured->memory_type_bits;
@@ -302,7 +310,8 @@ class Compiler {
             for (std::size_t j = 0; j < solution_->slots.size(); ++j) {
                 const Slot &a = solution_->slots[i], &b = solution_->slots[j];
                 const bool is_aliased = a.kind == Slot::Kind::Transient && b.kind == Slot::Kind::Transient &&
-                                        a.offset < b.offset + b.size && b.offset < a.offset + a.size;
+                                        !a.desc.is_buffer() && !b.desc.is_buffer() && a.offset < b.offset + b.size &&
+                                        b.offset < a.offset + a.size;
                 if (i != j && !is_aliased) continue;
                 solution_->past[i].stages |= own_past_[j].stages;
                 solution_->past[i].access |= own_past_[j].access;
@@ -337,6 +346,7 @@ std::span<const std::string> Compiled::culled() const { return solution_->culled
 std::span<const Slot> Compiled::slots() const { return solution_->slots; }
 VkDeviceSize Compiled::transient_bytes() const { return solution_->transient_bytes; }
 VkDeviceSize Compiled::transient_bytes_unaliased() const { return solution_->transient_bytes_unaliased; }
+VkDeviceSize Compiled::buffer_bytes() const { return solution_->buffer_bytes; }
 std::uint32_t Compiled::memory_type_bits() const { return solution_->memory_type_bits; }
 std::uint32_t Compiled::kept_pass_of(PassId declared) const {
     return declared.index < solution_->kept_pass.size() ? solution_->kept_pass[declared.index] : none;

@@ -64,6 +64,23 @@ bool is_inside(Declaration& declaration, const std::string& pass_name, Version v
     return false;
 }
 
+/// Says so, and returns false, if a buffer is used as an image, or an image as a buffer.
+bool is_of_kind(Declaration& declaration, const std::string& pass_name, Version version, Use use) {
+    const ImageDesc& desc = declaration.image_of(version.index).desc;
+    if (desc.is_buffer() == is_of_buffers(use)) return true;
+    declaration.complain(fmt::format("pass '{}' uses '{}' as {}", pass_name, desc.name,
+                                     desc.is_buffer() ? "an image, which is a buffer" : "a buffer, which is an image"));
+    return false;
+}
+
+/// A buffer stands in for buffers, an image for images.
+void check_stand_in(Declaration& declaration, Version version, Version instead) {
+    const ImageDesc &desc = declaration.image_of(version.index).desc, &other = declaration.image_of(instead.index).desc;
+    if (desc.is_buffer() == other.is_buffer()) return;
+    declaration.complain(
+        fmt::format("'{}' cannot stand in for '{}': one is a buffer, one an image", other.name, desc.name));
+}
+
 Version add_write(Declaration& declaration, const PassDesc& desc, const Write& write) {
     const std::string& pass_name = desc.name;
     if (!is_usable(declaration, pass_name, write.version, "writes")) return {};
@@ -80,6 +97,7 @@ Version add_write(Declaration& declaration, const PassDesc& desc, const Write& w
                                          image.desc.name, image.is_previous ? "the last frame's history" : "constant"));
         return {};
     }
+    if (!is_of_kind(declaration, pass_name, write.version, write.use)) return {};
     const MipMask mips = mip_mask(write.mips, image.desc.mip_levels);
     const auto pass = static_cast<std::uint32_t>(declaration.passes.size());
     VersionRecord& replaced = declaration.versions[write.version.index];
@@ -129,14 +147,28 @@ Graph::History Graph::history(ImageDesc desc, HistoryKey key) {
     return {current, add_image(*declaration_, std::move(image))};
 }
 
+Version Graph::create_buffer(std::string name, VkDeviceSize bytes) {
+    return add_image(*declaration_, {.desc = {.name = std::move(name), .buffer_bytes = bytes}});
+}
+
+Version Graph::lasting_buffer(std::string name, VkDeviceSize bytes, HistoryKey key) {
+    return add_image(*declaration_, {.desc = {.name = std::move(name), .buffer_bytes = bytes},
+                                     .kind = Slot::Kind::Lasting,
+                                     .history_index = declaration_->history_count++,
+                                     .history_key = key});
+}
+
 std::vector<Version> Graph::add(PassDesc desc) {
     Declaration& declaration = *declaration_;
     for (const Read& read : desc.reads) {
         if (!is_usable(declaration, desc.name, read.version, "reads")) continue;
         is_inside(declaration, desc.name, read.version, read.mips, "reads");
+        is_of_kind(declaration, desc.name, read.version, read.use);
         if (read.instead.is_valid() && read.instead.index >= declaration.versions.size()) {
             declaration.complain(fmt::format("pass '{}' reads '{}', or a version that does not exist", desc.name,
                                              declaration.image_of(read.version.index).desc.name));
+        } else if (read.instead.is_valid()) {
+            check_stand_in(declaration, read.version, read.instead);
         }
         if (is_write(read.use)) {
             declaration.complain(fmt::format("pass '{}' reads '{}' with a use that writes", desc.name,
@@ -164,6 +196,7 @@ void Graph::fall_back(Version version, Version instead) {
         return;
     }
     record.instead = instead.index;
+    check_stand_in(declaration, version, instead);
 }
 
 void Graph::imply(std::int32_t gate, std::int32_t implied) { declaration_->implications.push_back({gate, implied}); }

@@ -21,7 +21,7 @@
 
 namespace darkroom::graph {
 
-/// How a pass touches an image. From it follow the stage, the access mask, the layout and the usage flags.
+/// How a pass touches an image or a buffer. From it follow the stage, the access mask, the layout and the usage flags.
 enum class Use : std::uint8_t {
     SampledCompute,         ///< texture() or texelFetch in a compute shader
     SampledFragment,        ///< the same in a fragment shader
@@ -33,8 +33,15 @@ enum class Use : std::uint8_t {
     StorageReadWrite,     ///< imageLoad and imageStore: the old content is kept
     ColorWrite,           ///< colour attachment, every texel of the region written: the old content is dropped
     ColorBlend,           ///< colour attachment, blended over the old content
+    // Of buffers:
+    BufferRead,  ///< storage or uniform buffer in a compute shader
+    BufferReadFragment,
+    BufferWrite,      ///< storage buffer of a compute shader, all of it written: the old content is dropped
+    BufferReadWrite,  ///< the same, or by atomics: the old content is kept
+    BufferCopy,       ///< copied out of
 };
-inline constexpr std::uint8_t use_count = 10;
+inline constexpr std::uint8_t use_count = 15;
+[[nodiscard]] bool is_of_buffers(Use use);
 [[nodiscard]] bool is_write(Use use);
 [[nodiscard]] bool keeps_content(Use use);  ///< a write that needs what was there before
 [[nodiscard]] VkPipelineStageFlags2 stages_of(Use use);
@@ -69,12 +76,16 @@ struct Size {
 /// The extent of a mip level: floored halves, at least 1.
 [[nodiscard]] VkExtent2D mip_extent(VkExtent2D extent, std::uint32_t mip_level);
 
+/// Of an image; or of a buffer, which has no more than a name and a size.
 struct ImageDesc {
     std::string name;
     VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT;
     Size size{};
     std::uint32_t mip_levels = 1;
     std::uint32_t array_layers = 1;
+    VkDeviceSize buffer_bytes = 0;
+
+    [[nodiscard]] bool is_buffer() const { return buffer_bytes != 0; }
 };
 
 /// What the host promises about an image it lends for a frame: where it is before, where it shall be after.
@@ -155,6 +166,11 @@ class Graph {
         Version current, previous;
     };
     [[nodiscard]] History history(ImageDesc desc, HistoryKey key = {});
+    /// A buffer of this frame alone. Buffers share no memory: they are small.
+    [[nodiscard]] Version create_buffer(std::string name, VkDeviceSize bytes);
+    /// A buffer that outlives the frame, one that is written in place: the version is what the last frame left in it
+    /// (zero after a reset), and stays where no pass writes it. Counted and keyed as histories are.
+    [[nodiscard]] Version lasting_buffer(std::string name, VkDeviceSize bytes, HistoryKey key = {});
 
     /// Adds a pass. Returns, for each of desc.writes, the version it makes. A write of some mip levels keeps the
     /// others. Mistakes are kept for compile() to report, so declaring code needs no checks.
@@ -178,9 +194,9 @@ class Graph {
     std::unique_ptr<Declaration> declaration_;
 };
 
-/// A physical image: an import, a transient, or one of the two images of a history.
+/// A physical image: an import, a transient, or one of the two images of a history; or a buffer, transient or lasting.
 struct Slot {
-    enum class Kind : std::uint8_t { Import, Constant, Transient, History };
+    enum class Kind : std::uint8_t { Import, Constant, Transient, History, Lasting };
     Kind kind = Kind::Transient;
     ImageDesc desc;
     VkImageUsageFlags usage = 0;  ///< union over all passes that were kept
@@ -188,7 +204,7 @@ struct Slot {
     std::uint32_t history_index = ~0u;
     HistoryKey history_key{};
     std::uint32_t history_parity = 0;  ///< 0: written in even frames, 1: in odd ones
-    VkDeviceSize offset = 0;           ///< in the shared allocation, transients only
+    VkDeviceSize offset = 0;           ///< in the shared allocation of images, or in that of buffers, transients only
     VkDeviceSize size = 0;
     std::uint32_t first_pass = 0, last_pass = 0;  ///< lifetime, in pass order
     VkExtent2D extent{};                          ///< at the largest frame
@@ -228,6 +244,7 @@ class Compiled {
     [[nodiscard]] std::span<const Slot> slots() const;             ///< the first ones are the imports, in their order
     [[nodiscard]] VkDeviceSize transient_bytes() const;            ///< after aliasing
     [[nodiscard]] VkDeviceSize transient_bytes_unaliased() const;  ///< the sum of the transient images
+    [[nodiscard]] VkDeviceSize buffer_bytes() const;               ///< of all transient buffers
     [[nodiscard]] std::uint32_t memory_type_bits() const;          ///< what all transients accept
     [[nodiscard]] std::uint32_t kept_pass_of(PassId declared) const;  ///< ~0u if culled
     /// The versions that a kept pass makes, one for each of its writes.

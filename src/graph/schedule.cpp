@@ -243,7 +243,7 @@ bool Schedule::State::mark_histories() {
     for (std::uint32_t pass = 0; pass < solution->passes.size(); ++pass) {
         if (!is_live[pass]) continue;
         for (const std::uint32_t found : reads_of(pass)) {
-            if (found == none || !solution->image_of(found).is_previous) continue;
+            if (found == none || !solution->image_of(found).carries_over()) continue;
             const std::uint32_t history = solution->image_of(found).history_index;
             if (is_history_read[history] != 0) continue;
             is_history_read[history] = 1;
@@ -315,11 +315,13 @@ void Schedule::State::start(std::span<const ImportState> imports) {
             state = {.layout = host.layout, .write_stages = host.stages, .write_access = host.access & all_writes};
         }
         const bool is_current = slot.kind == Slot::Kind::History && slot.history_parity == (frame & 1);
-        if (slot.kind == Slot::Kind::History && !is_current) {
+        if ((slot.kind == Slot::Kind::History && !is_current) || slot.kind == Slot::Kind::Lasting) {
             state.layout = slot.rest_layout;
             state.seen_by = none;  // finish() saw to that.
             // The last frame may have read it in any of these after it wrote it.
             state.read_stages = state.write_stages;
+            // A buffer that no pass may only read came to no rest: who writes it next waits for the write itself.
+            if (slot.kind == Slot::Kind::Lasting) state.read_access = state.write_access;
         }
         std::fill_n(mips.begin() + solution->first_mip[index], slot.desc.mip_levels, state);
     }
@@ -380,10 +382,10 @@ void Schedule::State::finish(std::span<const ImportState> imports) {
             barrier.target_stages = host.final_stages;
             barrier.target_access = host.final_access;
             barrier.new_layout = host.final_layout;
-        } else if (slot.kind != Slot::Kind::History) {
+        } else if (slot.kind != Slot::Kind::History && slot.kind != Slot::Kind::Lasting) {
             continue;
         }
-        if (barrier.new_layout == VK_IMAGE_LAYOUT_UNDEFINED) continue;
+        if (barrier.new_layout == VK_IMAGE_LAYOUT_UNDEFINED && !slot.desc.is_buffer()) continue;
         for (std::uint32_t level = 0; level < slot.desc.mip_levels; ++level) {
             const MipState& state = mips[solution->first_mip[index] + level];
             const bool is_elsewhere = state.layout != barrier.new_layout;

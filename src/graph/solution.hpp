@@ -36,11 +36,14 @@ struct Image {
     std::uint32_t history_index = none;
     HistoryKey history_key{};
     bool is_previous = false;
+
+    /// Is what a frame reads of it wanted of the frame before?
+    [[nodiscard]] bool carries_over() const { return is_previous || kind == Slot::Kind::Lasting; }
     std::vector<std::uint32_t> versions;             ///< in the order they were made
     std::array<std::uint32_t, 2> slots{none, none};  ///< histories: in even and in odd frames; else twice the same
 
     [[nodiscard]] bool starts_defined() const {
-        return kind == Slot::Kind::Import || kind == Slot::Kind::Constant || is_previous;
+        return kind == Slot::Kind::Import || kind == Slot::Kind::Constant || kind == Slot::Kind::Lasting || is_previous;
     }
 };
 
@@ -127,6 +130,7 @@ struct Solution {
     std::vector<std::uint32_t> final_history_version;  ///< per history: what the next frame gets as previous
     VkDeviceSize transient_bytes = 0;
     VkDeviceSize transient_bytes_unaliased = 0;
+    VkDeviceSize buffer_bytes = 0;
     std::uint32_t memory_type_bits = none;
 
     [[nodiscard]] const Image& image_of(std::uint32_t version) const { return images[versions[version].image]; }

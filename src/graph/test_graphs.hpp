@@ -76,6 +76,8 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
         unwritten.push_back({history.current, image_count++});
         live.push_back({history.previous, image_count++, 1, false});
     }
+    // Buffers that hold something; the first is read and written across frames.
+    std::vector<Version> buffers{graph.lasting_buffer("lasting", 64)};
     const std::uint32_t pass_count = 4 + pick(16);
     for (std::uint32_t i = 0; i < pass_count; ++i) {
         PassDesc pass{.name = fmt::format("pass{}", i)};
@@ -115,11 +117,30 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
             pass.writes.push_back({fresh, fresh_writes[pick(2)], {0, mips == 3 && pick(2) == 0 ? 1 : ~0u}});
             made.push_back({fresh, image_count++, mips});
         }
+        const std::size_t image_writes = pass.writes.size();
+        const bool has_second_output = kind > 1 && pick(4) == 0;
+        if (has_second_output) {
+            pass.writes.push_back({graph.create(image(fmt::format("second{}", i))), pass.writes[0].use});
+            ++image_count;
+        }
+        constexpr Use buffer_reads[] = {Use::BufferRead, Use::BufferReadFragment, Use::BufferCopy};
+        const std::uint32_t buffer_kind = pick(5);
+        const std::size_t buffer = pick(buffers.size());
+        if (buffer_kind == 0) pass.reads.push_back({buffers[buffer], buffer_reads[pick(3)]});
+        if (buffer_kind == 1)
+            pass.writes.push_back({buffers[buffer], pick(3) == 0 ? Use::BufferWrite : Use::BufferReadWrite});
+        if (buffer_kind == 2 && pass.gate < 0)
+            pass.writes.push_back({graph.create_buffer(fmt::format("buffer{}", i), 256), Use::BufferWrite});
+        const bool writes_buffer = pass.writes.size() > image_writes + (has_second_output ? 1 : 0);
         const bool is_pyramid = made[0].mip_levels == 3 && pass.writes[0].mips.count == 1;
         const std::int32_t gate = pass.gate;
         const Version instead = pick(2) == 0 || pass.reads.empty() ? black : pass.reads[0].version;
         const std::string name = pass.name;
-        made[0].version = graph.add(std::move(pass))[0];
+        const std::vector<Version> written = graph.add(std::move(pass));
+        made[0].version = written[0];
+        if (has_second_output && gate < 0) live.push_back({written[1], image_count - 1});
+        if (writes_buffer && buffer_kind == 1) buffers[buffer] = written.back();
+        if (writes_buffer && buffer_kind == 2) buffers.push_back(written.back());
         if (is_pyramid) {
             for (std::uint32_t level = 1; level < 3; ++level) {
                 made[0].version = graph.add({.name = fmt::format("{}-mip{}", name, level),
@@ -132,6 +153,10 @@ inline Graph random_graph(std::uint32_t seed, std::uint32_t& import_count) {
         for (const std::size_t index : replaced) live.erase(live.begin() + static_cast<std::ptrdiff_t>(index));
         live.push_back(made[0]);
     }
+    if (pick(2) == 0)
+        graph.add({.name = "read back",
+                   .reads = {{buffers[pick(buffers.size())], Use::BufferCopy}},
+                   .has_side_effect = true});
     graph.add({.name = "result", .reads = {{live.back().version, Use::SampledFragment}}, .has_side_effect = true});
     graph.add({.name = "other result",
                .reads = {{.version = live[pick(live.size())].version, .use = Use::SampledFragment, .instead = white}},

@@ -12,13 +12,19 @@ bool is_write(Use use) {
         case Use::StorageReadWrite:
         case Use::ColorWrite:
         case Use::ColorBlend:
+        case Use::BufferWrite:
+        case Use::BufferReadWrite:
             return true;
         default:
             return false;
     }
 }
 
-bool keeps_content(Use use) { return use == Use::StorageReadWrite || use == Use::ColorBlend; }
+bool keeps_content(Use use) {
+    return use == Use::StorageReadWrite || use == Use::ColorBlend || use == Use::BufferReadWrite;
+}
+
+bool is_of_buffers(Use use) { return use >= Use::BufferRead; }
 
 VkPipelineStageFlags2 stages_of(Use use) {
     switch (use) {
@@ -27,11 +33,17 @@ VkPipelineStageFlags2 stages_of(Use use) {
         case Use::StorageRead:
         case Use::StorageWrite:
         case Use::StorageReadWrite:
+        case Use::BufferRead:
+        case Use::BufferWrite:
+        case Use::BufferReadWrite:
             return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
         case Use::SampledFragment:
         case Use::SampledGeneralFragment:
         case Use::StorageReadFragment:
+        case Use::BufferReadFragment:
             return VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+        case Use::BufferCopy:
+            return VK_PIPELINE_STAGE_2_COPY_BIT;
         case Use::ColorWrite:
         case Use::ColorBlend:
             return VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
@@ -50,7 +62,14 @@ VkAccessFlags2 access_of(Use use) {
         case Use::StorageReadFragment:
             return VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
         case Use::StorageWrite:
+        case Use::BufferWrite:
             return VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+        case Use::BufferRead:
+        case Use::BufferReadFragment:
+            return VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
+        case Use::BufferCopy:
+            return VK_ACCESS_2_TRANSFER_READ_BIT;
+        case Use::BufferReadWrite:
         case Use::StorageReadWrite:
             return VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
         case Use::ColorWrite:
@@ -70,7 +89,7 @@ VkImageLayout layout_of(Use use) {
         case Use::ColorBlend:
             return VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
         default:
-            return VK_IMAGE_LAYOUT_GENERAL;
+            return is_of_buffers(use) ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_GENERAL;
     }
 }
 
@@ -89,8 +108,9 @@ VkImageUsageFlags usage_of(Use use) {
         case Use::ColorWrite:
         case Use::ColorBlend:
             return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        default:
+            return 0;
     }
-    return 0;
 }
 
 VkExtent2D Size::of(const Extents& extents) const {

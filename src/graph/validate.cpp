@@ -56,6 +56,7 @@ class Validator {
     std::int32_t gate_of(std::uint32_t pass) const { return declaration_.passes[pass].desc.gate; }
 
     Result<> check_image(const ImageDesc& desc) const {
+        if (desc.is_buffer()) return {};
         if (desc.size.denominator == 0 || (desc.size.numerator == 0 && desc.size.width == 0)) {
             return user_error(fmt::format("image '{}' has the size {}/{} of the frame: both must be at least 1",
                                           desc.name, desc.size.numerator, desc.size.denominator));

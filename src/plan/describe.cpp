@@ -77,7 +77,7 @@ std::vector<std::uint32_t> add_images(const Program& program, const graph::Compi
     for (const graph::Slot& slot : compiled.slots()) {
         const bool is_watch =
             slot.kind == Kind::Import && program.imports[slot.import_index]->kind == HostImage::Kind::Watched;
-        if (slot.kind == Kind::Constant || is_watch) {
+        if (slot.kind == Kind::Constant || is_watch || slot.desc.is_buffer()) {
             out.push_back(PlanImage::never);
             continue;
         }

@@ -114,6 +114,7 @@ void load_device_functions(Dispatch& table, Load& load) {
     load(table.CmdDraw, "vkCmdDraw");
     load(table.CmdDrawIndexed, "vkCmdDrawIndexed");
     load(table.CmdCopyBuffer, "vkCmdCopyBuffer");
+    load(table.CmdFillBuffer, "vkCmdFillBuffer");
     load(table.CmdBlitImage, "vkCmdBlitImage");
     load(table.CmdCopyImage, "vkCmdCopyImage");
     load(table.CmdCopyBufferToImage, "vkCmdCopyBufferToImage");

@@ -107,6 +107,7 @@ struct Dispatch {
     PFN_vkCmdDraw CmdDraw = nullptr;
     PFN_vkCmdDrawIndexed CmdDrawIndexed = nullptr;
     PFN_vkCmdCopyBuffer CmdCopyBuffer = nullptr;
+    PFN_vkCmdFillBuffer CmdFillBuffer = nullptr;
     PFN_vkCmdBlitImage CmdBlitImage = nullptr;
     PFN_vkCmdCopyImage CmdCopyImage = nullptr;
     PFN_vkCmdCopyBufferToImage CmdCopyBufferToImage = nullptr;

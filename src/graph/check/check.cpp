@@ -40,9 +40,10 @@ StageSet stage_set(VkPipelineStageFlags2 mask) {
     return set;
 }
 
-constexpr VkAccessFlags2 read_bits =
-    VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
-    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_HOST_READ_BIT;
+constexpr VkAccessFlags2 read_bits = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_READ_BIT |
+                                     VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
+                                     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_TRANSFER_READ_BIT |
+                                     VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
 constexpr VkAccessFlags2 write_bits = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
                                       VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT |
                                       VK_ACCESS_2_HOST_WRITE_BIT;
@@ -92,7 +93,8 @@ class Checker {
             Level level;
             if (slot.kind == Slot::Kind::Constant) level.content.kind = Content::Kind::Host;
             if (slot.kind == Slot::Kind::History) level.layout = slot.rest_layout;
-            if (slot.kind == Slot::Kind::History) level.content.kind = Content::Kind::Reset;
+            const bool lasts = slot.kind == Slot::Kind::History || slot.kind == Slot::Kind::Lasting;
+            if (lasts) level.content.kind = Content::Kind::Reset;
             levels_.emplace_back(slot.desc.mip_levels, level);
         }
     }
@@ -215,7 +217,7 @@ class Checker {
         if (slot.kind != Slot::Kind::Transient) return {};
         for (std::uint32_t other = 0; other < solution_.slots.size(); ++other) {
             const Slot& rival = solution_.slots[other];
-            if (other == barrier.slot || rival.kind != Slot::Kind::Transient) continue;
+            if (other == barrier.slot || rival.kind != Slot::Kind::Transient || rival.desc.is_buffer()) continue;
             if (rival.offset >= slot.offset + slot.size || slot.offset >= rival.offset + rival.size) continue;
             for (Level& level : levels_[other]) {
                 if (auto result = check_transition(barrier, level, where, who); !result) return result;
@@ -307,7 +309,9 @@ class Checker {
             solution_.slots[slot].kind == Slot::Kind::History && !solution_.image_of(version).is_previous;
         const bool is_transient = solution_.slots[slot].kind == Slot::Kind::Transient;
         const bool is_import = solution_.slots[slot].kind == Slot::Kind::Import;
-        const bool is_overwritten = is_import && content.kind == Content::Kind::Pass;
+        const bool is_older = solution_.slots[slot].kind == Slot::Kind::Lasting && content.frame != recording_.frame;
+        const bool lasts = is_import || solution_.slots[slot].kind == Slot::Kind::Lasting;
+        const bool is_overwritten = lasts && content.kind == Content::Kind::Pass && !is_older;
         if (is_current || is_transient || is_overwritten || content.kind == Content::Kind::Nothing) {
             return user_error(fmt::format("{} reads {}, which holds nothing it may read", who, place(slot, mip)));
         }
@@ -419,7 +423,7 @@ class Checker {
                                                   place(index, mip), static_cast<int>(level.layout),
                                                   static_cast<int>(slot.rest_layout)));
                 }
-                if (slot.kind == Slot::Kind::History) {
+                if (slot.kind == Slot::Kind::History || slot.kind == Slot::Kind::Lasting) {
                     if (auto result = check_rest(index, mip); !result) return result;
                 }
                 if (slot.kind != Slot::Kind::Import || host.final_layout == VK_IMAGE_LAYOUT_UNDEFINED) continue;

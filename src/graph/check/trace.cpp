@@ -20,6 +20,7 @@ constexpr Name stage_names[] = {
     {VK_PIPELINE_STAGE_2_HOST_BIT, "host"}};
 constexpr Name access_names[] = {{VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "sample"},
                                  {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "load"},
+                                 {VK_ACCESS_2_UNIFORM_READ_BIT, "uniform"},
                                  {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "store"},
                                  {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT, "color-read"},
                                  {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "color-write"},

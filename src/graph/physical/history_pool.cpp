@@ -32,9 +32,21 @@ Result<std::shared_ptr<HistoryImages>> HistoryPool::acquire(gpu::Context& contex
     const std::pair key(slot.history_key, view_index);
     if (is_shared) {
         const auto found = images_.find(key);
-        if (found != images_.end() && fits(found->second->images[0].info, slot)) return found->second;
+        const auto is_there = [&](const HistoryImages& there) {
+            return slot.desc.is_buffer() ? there.buffer.memory.size >= slot.desc.buffer_bytes
+                                         : fits(there.images[0].info, slot);
+        };
+        if (found != images_.end() && is_there(*found->second)) return found->second;
     }
     auto made = std::make_shared<HistoryImages>();
+    if (slot.desc.is_buffer()) {
+        auto buffer = gpu::Buffer::create(context, slot.desc.buffer_bytes, buffer_usage, gpu::Memory::Kind::Device,
+                                          fmt::format("{} of view {}", slot.desc.name, view_index));
+        if (!buffer) return failure(std::move(buffer));
+        made->buffer = std::move(*buffer);
+        if (is_shared) images_[key] = made;
+        return made;
+    }
     made->resampling = resampling_of(context, slot.desc.format);
     VkImageUsageFlags usage = slot.usage;
     if (made->resampling != HistoryImages::Resampling::None) usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;

@@ -28,6 +28,7 @@ struct HistoryState {
 struct HistoryImages {
     enum class Resampling : std::uint8_t { None, Nearest, Linear };
     std::array<gpu::Image, 2> images;  ///< by Slot::history_parity
+    gpu::Buffer buffer;                ///< of a lasting buffer, in place of the images
     Resampling resampling = Resampling::None;
     HistoryState state;
 };
@@ -39,6 +40,11 @@ struct HistoryView {
     std::uint64_t recorder = 0;      ///< number of the Physical that recorded last
     std::array<float, 16> camera{};  ///< for the caller: world to camera, of the last frame
 };
+
+/// How buffers of the graph are made: for whatever passes do with them.
+inline constexpr VkBufferUsageFlags buffer_usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
 class HistoryPool {
   public:

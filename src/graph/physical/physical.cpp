@@ -56,7 +56,7 @@ Result<> Physical::adopt_history(gpu::Context& context, const Slot& slot, std::u
             if (!images) return failure(std::move(images));
             history.views.push_back(std::move(*images));
         }
-        adopt(entry, history.views[view_index]->images[slot.history_parity]);
+        if (!slot.desc.is_buffer()) adopt(entry, history.views[view_index]->images[slot.history_parity]);
     }
     return {};
 }
@@ -77,6 +77,12 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
         if (!memory) return failure(std::move(memory));
         physical.memory_ = std::move(*memory);
     }
+    if (compiled.buffer_bytes() > 0) {
+        auto buffers = gpu::Buffer::create(context, compiled.buffer_bytes(), buffer_usage, gpu::Memory::Kind::Device,
+                                           "transient buffers");
+        if (!buffers) return failure(std::move(buffers));
+        physical.buffers_ = std::move(*buffers);
+    }
     for (const Slot& slot : compiled.slots()) {
         Entry entry{.kind = slot.kind,
                     .format = slot.desc.format,
@@ -89,7 +95,12 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
         const auto index = static_cast<std::uint32_t>(physical.entries_.size());
         physical.entries_.push_back(std::move(entry));
         Entry& kept = physical.entries_.back();
-        if (slot.kind == Slot::Kind::Transient) {
+        if (slot.desc.is_buffer()) {
+            kept.buffer = {physical.buffers_.handle, slot.offset, slot.desc.buffer_bytes};
+            kept.history = slot.history_index;
+            if (slot.kind != Slot::Kind::Lasting) continue;
+            if (auto ok = physical.adopt_history(context, slot, index, pool); !ok) return failure(std::move(ok));
+        } else if (slot.kind == Slot::Kind::Transient) {
             const gpu::ImageInfo info = info_of(slot.desc, slot.usage, slot.extent);
             auto image = gpu::Image::place(context, info, physical.memory_, slot.offset);
             if (!image) return failure(std::move(image));
@@ -120,6 +131,13 @@ void Physical::bind(std::uint32_t import_index, const LentImage& image) {
     if (image.mip_views.empty() && entry.mip_levels == 1) entry.mip_views[0] = image.view;
 }
 
+Physical::BufferRange Physical::buffer(std::uint32_t slot, std::uint32_t view_index) const {
+    BufferRange range = entries_[slot].buffer;
+    const std::uint32_t index = entries_[slot].history;
+    if (index != ~0u) range.handle = histories_[index].views[view_index]->buffer.handle;
+    return range;
+}
+
 VkImage Physical::handle(std::uint32_t slot, std::uint32_t view_index) const {
     return entries_[slot].handles[instance(entries_[slot], view_index)];
 }
@@ -136,41 +154,47 @@ void Physical::record_barriers(VkCommandBuffer commands, const gpu::Dispatch& vk
     std::array<VkImageMemoryBarrier2, 32> batch;
     while (!barriers.empty()) {
         const std::size_t count = std::min(barriers.size(), batch.size());
+        std::uint32_t images = 0;
         // A barrier of one image makes writes through that image available. What lay in the same memory before was
-        // written through another one, so a transient that begins takes a barrier for all memory along.
+        // written through another one, so a transient that begins takes a barrier for all memory along. So does a
+        // buffer: drivers do no less for one.
         VkMemoryBarrier2 memory{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-        for (std::size_t i = 0; i < count; ++i) {
-            const Barrier& barrier = barriers[i];
+        for (const Barrier& barrier : barriers.first(count)) {
             const Entry& entry = entries_[barrier.slot];
-            batch[i] = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                        .srcStageMask = barrier.source_stages,
-                        .srcAccessMask = barrier.source_access,
-                        .dstStageMask = barrier.target_stages,
-                        .dstAccessMask = barrier.target_access,
-                        .oldLayout = barrier.old_layout,
-                        .newLayout = barrier.new_layout,
-                        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                        .image = handle(barrier.slot, view_index),
-                        .subresourceRange = {.aspectMask = barrier.is_depth_alone
-                                                               ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
-                                                               : gpu::format_traits(entry.format).aspects,
-                                             .baseMipLevel = entry.base_mip_level + barrier.mips.first,
-                                             .levelCount = barrier.mips.count,
-                                             .baseArrayLayer = entry.base_array_layer,
-                                             .layerCount = entry.array_layers}};
-            DARKROOM_ASSERT(batch[i].image != VK_NULL_HANDLE);
-            if (entry.kind != Slot::Kind::Transient || barrier.old_layout != VK_IMAGE_LAYOUT_UNDEFINED) continue;
-            memory.srcStageMask |= barrier.source_stages;
-            memory.srcAccessMask |= barrier.source_access;
-            memory.dstStageMask |= barrier.target_stages;
-            memory.dstAccessMask |= barrier.target_access;
+            const bool begins = entry.kind == Slot::Kind::Transient && barrier.old_layout == VK_IMAGE_LAYOUT_UNDEFINED;
+            if (begins || entry.buffer.size != 0) {
+                memory.srcStageMask |= barrier.source_stages;
+                memory.srcAccessMask |= barrier.source_access;
+                memory.dstStageMask |= barrier.target_stages;
+                memory.dstAccessMask |= barrier.target_access;
+            }
+            if (entry.buffer.size != 0) continue;
+            batch[images] = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                             .srcStageMask = barrier.source_stages,
+                             .srcAccessMask = barrier.source_access,
+                             .dstStageMask = barrier.target_stages,
+                             .dstAccessMask = barrier.target_access,
+                             .oldLayout = barrier.old_layout,
+                             .newLayout = barrier.new_layout,
+                             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                             .image = handle(barrier.slot, view_index),
+                             .subresourceRange = {.aspectMask = barrier.is_depth_alone
+                                                                    ? VkImageAspectFlags{VK_IMAGE_ASPECT_DEPTH_BIT}
+                                                                    : gpu::format_traits(entry.format).aspects,
+                                                  .baseMipLevel = entry.base_mip_level + barrier.mips.first,
+                                                  .levelCount = barrier.mips.count,
+                                                  .baseArrayLayer = entry.base_array_layer,
+                                                  .layerCount = entry.array_layers}};
+            DARKROOM_ASSERT(batch[images].image != VK_NULL_HANDLE);
+            ++images;
         }
-        const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                          .memoryBarrierCount = memory.srcAccessMask != 0 ? 1u : 0u,
-                                          .pMemoryBarriers = &memory,
-                                          .imageMemoryBarrierCount = static_cast<std::uint32_t>(count),
-                                          .pImageMemoryBarriers = batch.data()};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+            .memoryBarrierCount = (memory.srcStageMask | memory.srcAccessMask) != 0 ? 1u : 0u,
+            .pMemoryBarriers = &memory,
+            .imageMemoryBarrierCount = images,
+            .pImageMemoryBarriers = batch.data()};
         vk.CmdPipelineBarrier2(commands, &dependency);
         barriers = barriers.subspan(count);
     }
@@ -182,7 +206,9 @@ HistoryImages* Physical::history(std::uint32_t history_index, std::uint32_t view
 }
 
 bool Physical::has_same_extent(std::uint32_t history_index, const Extents& a, const Extents& b) const {
-    const Size& size = entries_[histories_[history_index].slots[0]].size;
+    const Entry& entry = entries_[histories_[history_index].slots[0]];
+    if (entry.buffer.size != 0) return true;
+    const Size& size = entry.size;
     const VkExtent2D of_a = size.of(a), of_b = size.of(b);
     return of_a.width == of_b.width && of_a.height == of_b.height;
 }
@@ -251,6 +277,7 @@ void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, s
                             std::uint32_t history_index) const {
     HistoryImages* const images = history(history_index, view_index);
     if (images == nullptr) return;
+    if (images->buffer.handle != VK_NULL_HANDLE) return record_fill(commands, vk, *images);
     const auto [even, odd] = histories_[history_index].slots;
     constexpr VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     const std::array before{before_transfer(even, VK_IMAGE_LAYOUT_UNDEFINED, layout),
@@ -272,6 +299,24 @@ void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, s
     record_barriers(commands, vk, after, view_index);
     images->state.needs_reset = false;
     images->state.was_reset = true;
+}
+
+void Physical::record_fill(VkCommandBuffer commands, const gpu::Dispatch& vk, HistoryImages& images) {
+    const auto wait = [&](VkPipelineStageFlags2 from, VkPipelineStageFlags2 to) {
+        const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                   .srcStageMask = from,
+                                   .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                   .dstStageMask = to,
+                                   .dstAccessMask = any_access};
+        const VkDependencyInfo dependency{
+            .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &all};
+        vk.CmdPipelineBarrier2(commands, &dependency);
+    };
+    wait(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT);
+    vk.CmdFillBuffer(commands, images.buffer.handle, 0, VK_WHOLE_SIZE, 0);
+    wait(VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+    images.state.needs_reset = false;
+    images.state.was_reset = true;
 }
 
 void Physical::record_reset(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t view_index) const {
@@ -345,9 +390,10 @@ void Physical::record_resample(VkCommandBuffer commands, const gpu::Dispatch& vk
     for (std::uint32_t index = 0; index < history_count(); ++index) {
         HistoryImages* const images = history(index, view_index);
         if (images == nullptr) continue;
-        if (images->state.needs_reset || images->resampling == HistoryImages::Resampling::None) {
+        const bool is_buffer = images->buffer.handle != VK_NULL_HANDLE;
+        if (images->state.needs_reset || (!is_buffer && images->resampling == HistoryImages::Resampling::None)) {
             record_reset(commands, vk, view_index, index);
-        } else {
+        } else if (!is_buffer) {
             record_blit(commands, vk, index, view_index, from, to);
         }
         images->state.recordings = view.recordings + 1;

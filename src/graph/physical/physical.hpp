@@ -46,6 +46,11 @@ class Physical {
     /// All mip levels.
     [[nodiscard]] VkImageView view(std::uint32_t slot, std::uint32_t view_index = 0) const;
     [[nodiscard]] VkImageView mip_view(std::uint32_t slot, std::uint32_t mip_level, std::uint32_t view_index = 0) const;
+    struct BufferRange {
+        VkBuffer handle = VK_NULL_HANDLE;
+        VkDeviceSize offset = 0, size = 0;
+    };
+    [[nodiscard]] BufferRange buffer(std::uint32_t slot, std::uint32_t view_index = 0) const;
     [[nodiscard]] VkFormat format(std::uint32_t slot) const { return entries_[slot].format; }
     /// Of the whole image; a frame may use its top left part only.
     [[nodiscard]] VkExtent2D extent(std::uint32_t slot) const { return entries_[slot].extent; }
@@ -89,6 +94,8 @@ class Physical {
         VkImageLayout rest_layout = VK_IMAGE_LAYOUT_UNDEFINED;
         std::uint32_t import_index = ~0u;
         std::uint32_t base_mip_level = 0, base_array_layer = 0;
+        BufferRange buffer;                  ///< its size is 0 of an image
+        std::uint32_t history = ~0u;         ///< of a lasting buffer
         std::vector<VkImage> handles;        ///< one, or one a view
         std::vector<VkImageView> views;      ///< the same
         std::vector<VkImageView> mip_views;  ///< view after view
@@ -110,12 +117,14 @@ class Physical {
     [[nodiscard]] Barrier after_transfer(std::uint32_t slot, VkImageLayout from) const;
     /// Is a history as large in both frames?
     [[nodiscard]] bool has_same_extent(std::uint32_t history_index, const Extents& a, const Extents& b) const;
+    static void record_fill(VkCommandBuffer commands, const gpu::Dispatch& vk, HistoryImages& images);
     void record_padding(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t slot, std::uint32_t view_index,
                         const Extents& from, const Extents& to) const;
     void record_blit(VkCommandBuffer commands, const gpu::Dispatch& vk, std::uint32_t history_index,
                      std::uint32_t view_index, const Extents& from, const Extents& to) const;
 
-    gpu::Memory memory_;  ///< before the images, so that they are destroyed first
+    gpu::Buffer buffers_;  ///< all transient ones
+    gpu::Memory memory_;   ///< before the images, so that they are destroyed first
     std::vector<gpu::Image> images_;
     std::vector<Entry> entries_;
     std::vector<History> histories_;  ///< by Slot::history_index
