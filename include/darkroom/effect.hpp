@@ -117,6 +117,9 @@ struct KernelPassDesc {
     std::vector<Input> inputs;
     PassImage output;
     std::uint32_t output_mip_level = 0;
+    /// Images of the same extent that it writes, too, at most three: add_all() tells their new names. The shader then
+    /// defines `void shade(Pixel pixel, out vec4 result[N])`.
+    std::vector<PassImage> more_outputs{};
     bool is_additive = false;          ///< adds to what `output` holds
     std::uint32_t custom_vectors = 0;  ///< at most 512
     ConstantsFunction constants = nullptr;
@@ -180,6 +183,8 @@ class PassBuilder {
     [[nodiscard]] virtual PassImage table(const TableDesc& desc) = 0;
     /// Adds a pass; returns the written image's new name.
     virtual PassImage add(const KernelPassDesc& desc) = 0;
+    /// The same of a pass with several outputs, `output` first; none after an error.
+    virtual std::vector<PassImage> add_all(const KernelPassDesc& desc) { return {add(desc)}; }
     /// The pointwise end samples `image` under `name`. While the effect, or all that writes `image`, is off, a 1x1
     /// image of `neutral` stands in.
     virtual void side(std::string name, PassImage image, PassVector neutral) = 0;

@@ -45,6 +45,7 @@ struct PlanPass {
     std::uint64_t bytes_written = 0;
     std::vector<PlanUse> reads;
     PlanUse writes;
+    std::vector<PlanUse> more_writes{};  ///< of a pass with several outputs
 };
 
 struct Plan {

@@ -115,6 +115,7 @@ void add_lifetimes(Plan& plan) {
     for (std::uint32_t i = 0; i < plan.passes.size(); ++i) {
         for (const PlanUse& read : plan.passes[i].reads) note(read, i);
         note(plan.passes[i].writes, i);
+        for (const PlanUse& write : plan.passes[i].more_writes) note(write, i);
     }
 }
 
@@ -156,6 +157,11 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
                      .bytes_written = bytes_of(output, largest, pass.output_mip_level),
                      .reads = {},
                      .writes = use_of(output_slot, pass.output_mip_level)};
+        for (const graph::Version more : pass.more_outputs) {
+            const std::uint32_t slot = schedule.slot_of(more);
+            out.bytes_written += bytes_of(compiled.slots()[slot], desc.max_extent, pass.output_mip_level);
+            out.more_writes.push_back(use_of(slot, pass.output_mip_level));
+        }
         for (std::size_t k = 0; k < pass.inputs.size(); ++k) {
             const PassInput& input = pass.inputs[k];
             // An image that is both loaded and sampled stands there twice.

@@ -120,8 +120,9 @@ struct ProgramPass {
     std::variant<FusedPass, KernelPass, CopyPass> kind;
     gpu::KernelSpec spec;  ///< without its body: see plan/frame/shape.hpp
     gpu::Stage stage = gpu::Stage::Compute;
-    std::vector<PassInput> inputs;  ///< one per spec.images
-    graph::Version output;          ///< the version that this pass makes
+    std::vector<PassInput> inputs;               ///< one per spec.images
+    graph::Version output;                       ///< the version that this pass makes
+    std::vector<graph::Version> more_outputs{};  ///< of the same extent
     std::uint32_t output_mip_level = 0;
     std::int32_t toggle = -1;
     std::string boundary;

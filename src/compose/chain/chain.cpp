@@ -262,7 +262,7 @@ const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& outpu
 /// The pass's set of this slot, written anew where a view changed. A host's view is always written: handles are given
 /// again, and one that is known may be another image now.
 VkDescriptorSet Chain::updated_set(std::uint32_t pass, const gpu::Kernel& kernel, std::span<const gpu::Binding> inputs,
-                                   const gpu::Binding& output) {
+                                   std::span<const gpu::Binding> outputs) {
     const Sets& sets = pass_sets_[pass];
     const VkDescriptorSet set = sets_.sets[sets.first + slot_];
     Written* const written = written_.data() + sets.first_written + std::size_t{slot_} * sets.images;
@@ -273,14 +273,14 @@ VkDescriptorSet Chain::updated_set(std::uint32_t pass, const gpu::Kernel& kernel
         written[at] = now;
     };
     for (std::size_t i = 0; i < inputs.size(); ++i) note(i, inputs[i]);
-    note(inputs.size(), output);
+    for (std::size_t i = 0; i < outputs.size(); ++i) note(inputs.size() + i, outputs[i]);
     if (!is_changed) return set;
     const VkDeviceSize start = slot_stride_ * slot_;
     kernel.write_set({.set = set,
                       .frame = {blocks_.handle, start, plan::frame_words * 4},
                       .own = {blocks_.handle, start + block_at_[pass], gpu::own_block_size(kernel.spec())},
                       .images = inputs,
-                      .outputs = {&output, 1}});
+                      .outputs = outputs});
     return set;
 }
 
@@ -294,7 +294,14 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     if (const auto watch = pass.watch())
         images[0].region = watched_region(images[0].region, *watched_[*watch], context.frame_extent);
     const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
-    const gpu::Binding output = bind_slot(schedule_->slot_of(pass.output), pass.output_mip_level, frame);
+    std::array<gpu::Binding, gpu::most_outputs> written;
+    const auto bind_output = [&](graph::Version version) {
+        return bind_slot(schedule_->slot_of(version), pass.output_mip_level, frame);
+    };
+    written[0] = bind_output(pass.output);
+    std::ranges::transform(pass.more_outputs, written.begin() + 1, bind_output);
+    const std::span<const gpu::Binding> outputs(written.data(), 1 + pass.more_outputs.size());
+    const gpu::Binding& output = outputs.front();
 
     const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
     PassContext own = context;
@@ -314,9 +321,9 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
         pass.spec, output.region, inputs, custom, write_words(pass),
         {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index], gpu::own_block_size(pass.spec)});
     const gpu::Kernel& kernel = kernel_of(index, output.region, inputs);
-    const VkDescriptorSet set = updated_set(index, kernel, inputs, output);
+    const VkDescriptorSet set = updated_set(index, kernel, inputs, outputs);
     gpu::begin_label(context_, commands, pass.name.c_str());
-    kernel.record(commands, set, {&output, 1});
+    kernel.record(commands, set, outputs);
     gpu::end_label(context_, commands);
 }
 

@@ -77,7 +77,8 @@ class Chain final : public Garbage {
     [[nodiscard]] const gpu::Kernel& kernel_of(std::uint32_t pass, const gpu::Region& output,
                                                std::span<const gpu::Binding> inputs);
     [[nodiscard]] VkDescriptorSet updated_set(std::uint32_t pass, const gpu::Kernel& kernel,
-                                              std::span<const gpu::Binding> inputs, const gpu::Binding& output);
+                                              std::span<const gpu::Binding> inputs,
+                                              std::span<const gpu::Binding> outputs);
     void record_pass(VkCommandBuffer commands, std::uint32_t pass, const Frame& frame, const PassContext& context);
 
     gpu::Context& context_;

@@ -174,7 +174,7 @@ Result<> Chain::make_sets() {
         Sets& sets = pass_sets_[i];
         sets = {.first = static_cast<std::uint32_t>(layouts.size()),
                 .first_written = written,
-                .images = static_cast<std::uint32_t>(pass.inputs.size() + 1)};
+                .images = static_cast<std::uint32_t>(pass.inputs.size() + pass.spec.outputs.size())};
         written += sets.images * desc_.slots;
         layouts.insert(layouts.end(), desc_.slots, desc_.program->kernels[i]->complete().set_layout());
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <iterator>
 
@@ -184,6 +185,7 @@ void write_sampled_input(Text text, const KernelSpec& spec, const KernelImage& i
 
 /// To the nearest of the packed floats of 6 and 5 bits, so that no driver is left to cut off. The largest are those
 /// that are finite.
+constexpr VkFormat packed_format = VK_FORMAT_B10G11R11_UFLOAT_PACK32;
 constexpr std::string_view packed_rounding = R"(vec4 darkroom_rounded(vec4 value) {
     uvec3 bits = floatBitsToUint(clamp(value.rgb, vec3(0.0), vec3(65024.0, 65024.0, 64512.0)));
     bits = bits + uvec3(0x10000u, 0x10000u, 0x20000u) & uvec3(0xfffe0000u, 0xfffe0000u, 0xfffc0000u);
@@ -201,8 +203,7 @@ void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index
     fmt::format_to(text, "layout(set = 0, binding = {}{}{}) uniform {}{}image2D result_{};\n", binding, separator,
                    traits.glsl_qualifier, access, prefix_of(traits.numeric), index);
     const std::string_view old = is_read ? " + imageLoad(result_0, place)" : "";
-    const bool is_packed = spec.outputs[index] == VK_FORMAT_B10G11R11_UFLOAT_PACK32;
-    if (is_packed) fmt::format_to(text, "{}", packed_rounding);
+    const bool is_packed = spec.outputs[index] == packed_format;
     fmt::format_to(text,
                    "void store_{0}(ivec2 texel, vec4 value) {{\n"
                    "    ivec2 place = texel{3};\n"
@@ -213,6 +214,8 @@ void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index
 }
 
 void write_outputs(Text text, const KernelSpec& spec, Stage stage) {
+    if (stage == Stage::Compute && std::ranges::find(spec.outputs, packed_format) != spec.outputs.end())
+        fmt::format_to(text, "{}", packed_rounding);
     for (std::uint32_t index = 0; index < spec.outputs.size(); ++index) {
         if (stage == Stage::Compute) {
             write_compute_output(text, spec, index);

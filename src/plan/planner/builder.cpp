@@ -164,9 +164,33 @@ PassInput Builder::input_of(const Image& image, std::uint32_t mip_level) const {
         .version = image.version, .mip_level = mip_level, .table = image.table, .is_shadow_map = image.is_shadow_map};
 }
 
-PassImage Builder::add(const KernelPassDesc& desc) {
+PassImage Builder::remember_written(PassImage image, graph::Version version) {
+    Image written = images_[image.index];
+    written.version = version;
+    if (!written.first_written.is_valid()) written.first_written = version;
+    return remember(written);
+}
+
+bool Builder::check_outputs(const KernelPassDesc& desc) {
+    if (!error.empty() || desc.output.index >= images_.size()) return false;
+    const std::string_view effect = planner_.stack_[entry_].info->name;
+    if (desc.more_outputs.size() >= gpu::most_outputs)
+        error = fmt::format("effect '{}': pass '{}' writes {} images; at most {} are allowed", effect, desc.name,
+                            desc.more_outputs.size() + 1, gpu::most_outputs);
+    for (const PassImage more : desc.more_outputs) {
+        if (!error.empty() || more.index >= images_.size()) return false;
+        const Planner::Facts &first = planner_.facts_.at(images_[desc.output.index].version.index),
+                             &other = planner_.facts_.at(images_[more.index].version.index);
+        if (first.size != other.size)
+            error = fmt::format("effect '{}': pass '{}' writes '{}' and '{}', which differ in extent", effect,
+                                desc.name, first.name, other.name);
+    }
+    return error.empty();
+}
+
+std::vector<PassImage> Builder::add_all(const KernelPassDesc& desc) {
     const Entry& entry = planner_.stack_[entry_];
-    if (!error.empty() || desc.output.index >= images_.size()) return {};
+    if (!check_outputs(desc)) return {};
     ProgramPass pass{.name = fmt::format("{}.{}", entry.desc.name, desc.name),
                      .boundary = fmt::format("{} has passes of its own", entry.desc.name)};
     FusedStep step{.info = entry.info, .entry = entry_, .name = entry.desc.name};
@@ -185,7 +209,6 @@ PassImage Builder::add(const KernelPassDesc& desc) {
         pass.inputs.push_back(from);
         pass.spec.images.push_back(std::move(image));
     }
-    Image written = images_[desc.output.index];
     auto text = planner_.text_of(*entry.info, std::string(desc.shader), 0, step.images);
     if (!text) {
         error = text.error().text;
@@ -195,7 +218,12 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     if (step.text->asks_parameters) append_parameter_members(*entry.info, 0, pass.spec.members);
     pass.kind = KernelPass{.step = std::move(step), .constants = desc.constants};
     pass.spec.name = pass.name;
-    pass.spec.outputs = {written.format};
+    pass.spec.outputs = {images_[desc.output.index].format};
+    std::vector<graph::Version> more_targets;
+    for (const PassImage more : desc.more_outputs) {
+        pass.spec.outputs.push_back(images_[more.index].format);
+        more_targets.push_back(images_[more.index].version);
+    }
     pass.spec.is_additive = desc.is_additive;
     pass.spec.custom_vectors = desc.custom_vectors;
     pass.spec.frame = frame_members();
@@ -207,14 +235,16 @@ PassImage Builder::add(const KernelPassDesc& desc) {
     for (const KernelPassDesc::Input& input : desc.inputs)
         if (const std::int32_t shared = images_[input.image.index].shared_toggle; shared >= 0)
             planner_.program_.graph.imply(pass.toggle, shared);
-    const auto version = planner_.add_pass(std::move(pass), written.version, desc.output_mip_level);
+    const auto version =
+        planner_.add_pass(std::move(pass), images_[desc.output.index].version, desc.output_mip_level, more_targets);
     if (!version) {
         error = version.error().text;
         return {};
     }
-    written.version = *version;
-    if (!written.first_written.is_valid()) written.first_written = *version;
-    return remember(written);
+    std::vector<PassImage> made{remember_written(desc.output, *version)};
+    for (std::size_t i = 0; i < more_targets.size(); ++i)
+        made.push_back(remember_written(desc.more_outputs[i], planner_.program_.passes.back().more_outputs[i]));
+    return made;
 }
 
 void Builder::add_side(std::string name, PassImage image, const PassVector& neutral, bool is_loaded) {

@@ -390,7 +390,8 @@ bool Planner::can_filter(const PassInput& input) const {
             }));
 }
 
-Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level) {
+Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level,
+                                         std::span<const graph::Version> more_targets) {
     limit_storage_images(pass);
     if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > most_custom_vectors)
         return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
@@ -433,10 +434,17 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     const graph::Use use = pass.spec.is_additive ? (is_raster ? graph::Use::ColorBlend : graph::Use::StorageReadWrite)
                                                  : (is_raster ? graph::Use::ColorWrite : graph::Use::StorageWrite);
     desc.writes.push_back({target, use, {mip_level, 1}});
+    for (const graph::Version more : more_targets) desc.writes.push_back({more, use, {mip_level, 1}});
     pass.output_mip_level = mip_level;
-    pass.output = program_.graph.add(std::move(desc)).front();
-    facts_[pass.output.index] = facts_[target.index];
-    facts_[pass.output.index].fall_backs.clear();
+    pass.more_outputs = program_.graph.add(std::move(desc));
+    pass.output = pass.more_outputs.front();
+    pass.more_outputs.erase(pass.more_outputs.begin());
+    const auto take_facts = [&](graph::Version made, graph::Version from) {
+        facts_[made.index] = facts_[from.index];
+        facts_[made.index].fall_backs.clear();
+    };
+    take_facts(pass.output, target);
+    for (std::size_t i = 0; i < more_targets.size(); ++i) take_facts(pass.more_outputs[i], more_targets[i]);
     program_.passes.push_back(std::move(pass));
     return program_.passes.back().output;
 }

@@ -136,7 +136,8 @@ class Planner {
     void limit_storage_images(ProgramPass& pass) const;
     /// Whether a linear sampler reads whatever may stand behind the input.
     [[nodiscard]] bool can_filter(const PassInput& input) const;
-    [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level);
+    [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level,
+                                                  std::span<const graph::Version> more_targets = {});
     /// One of a watch, or of what entries share: others do not join it because they look alike.
     [[nodiscard]] bool is_special_gate(std::size_t index) const;
     [[nodiscard]] std::int32_t toggle_index(Gate toggle);
@@ -240,7 +241,11 @@ class Builder final : public PassBuilder {
     [[nodiscard]] PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&),
                                    ConditionFunction condition) override;
     [[nodiscard]] PassImage table(const TableDesc& desc) override;
-    PassImage add(const KernelPassDesc& desc) override;
+    PassImage add(const KernelPassDesc& desc) override {
+        const std::vector<PassImage> all = add_all(desc);
+        return all.empty() ? PassImage{} : all.front();
+    }
+    std::vector<PassImage> add_all(const KernelPassDesc& desc) override;
     void side(std::string name, PassImage image, PassVector neutral) override {
         add_side(std::move(name), image, neutral, false);
     }
@@ -273,6 +278,10 @@ class Builder final : public PassBuilder {
     [[nodiscard]] PassImage remember_new(graph::Version version, const graph::ImageDesc& desc);
     [[nodiscard]] PassInput input_of(const Image& image, std::uint32_t mip_level) const;
     [[nodiscard]] PassImage remember(Image image);
+    /// What the image is behind a pass that made this version of it.
+    [[nodiscard]] PassImage remember_written(PassImage image, graph::Version version);
+    /// Says so in `error`, and returns false, if the outputs cannot be written by one pass.
+    [[nodiscard]] bool check_outputs(const KernelPassDesc& desc);
     [[nodiscard]] PassImage image_of(std::size_t value);
     [[nodiscard]] PassImage at_own_size(Result<graph::Version> version);
 
