@@ -66,6 +66,7 @@ plan::Shape usual_shape(const plan::ProgramPass& pass, std::span<const plan::Ent
     if (pass.as<plan::FusedPass>() != nullptr)
         for (std::size_t i = 0; i < steps.size(); ++i) shape.set_step(i, true);
     for (const plan::Literal& literal : pass.literals) {
+        if (literal.row == nullptr) continue;  // for a picture of light
         const std::uint32_t value = entries[steps[literal.step].entry].base[literal.row->word];
         shape.choices |= (value & literal.mask()) << literal.bit;
     }

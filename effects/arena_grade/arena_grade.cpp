@@ -72,7 +72,11 @@ const EffectInfo& effect_info(const ArenaGrade&) {
         .files = embedded_files("arena_grade"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
-        .makes = [](Domain, const void*) { return Domain::DisplayLinear; },
+        .makes =
+            [](ColorState before, const void*) {
+                return ColorState{
+                    .domain = Domain::DisplayLinear, .white_nits = before.white_nits, .peak_nits = before.white_nits};
+            },
         .flat = {.documented = 71, .scene_linear = 72},
         .build = build,
         .reference = arena_grade_reference,

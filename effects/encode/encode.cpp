@@ -11,12 +11,39 @@ namespace {
 
 constexpr auto encode_rows = describe(
     field<&Encode::transfer>("The curve of the display or file that the picture is for."),
-    field<&Encode::white_nits>("Luminance of linear 1.0; for pq and scrgb.", {1, 10000, Scale::Log}, unit::nits),
-    field<&Encode::peak_nits>("What is brighter is clipped, channel by channel; for pq and scrgb.",
+    field<&Encode::white_nits>("Luminance of linear 1.0; for pq, hlg and scrgb.", {1, 10000, Scale::Log}, unit::nits),
+    field<&Encode::peak_nits>("What is brighter is clipped, channel by channel; for pq, hlg and scrgb.",
                               {1, 10000, Scale::Log}, unit::nits));
 
 bool is_none(const void* parameters) {
     return static_cast<const Encode*>(parameters)->transfer == TransferFunction::None;
+}
+
+ColorState makes(ColorState before, const void* parameters) {
+    const Encode& encode = *static_cast<const Encode*>(parameters);
+    ColorState out = srgb_color;
+    const auto high_range = [&](Transfer transfer, Primaries primaries) {
+        return ColorState{Domain::Encoded, primaries, transfer, encode.white_nits, encode.peak_nits};
+    };
+    switch (encode.transfer) {
+        case TransferFunction::Srgb:
+            break;
+        case TransferFunction::Gamma22:
+            out.transfer = Transfer::Gamma22;
+            break;
+        case TransferFunction::Pq:
+            return high_range(Transfer::Pq, Primaries::Rec2020);
+        case TransferFunction::Scrgb:
+            return high_range(Transfer::Scrgb, Primaries::Rec709);
+        case TransferFunction::None:
+            return before;
+        case TransferFunction::Hlg:
+            return high_range(Transfer::Hlg, Primaries::Rec2020);
+        case TransferFunction::P3:
+            out.primaries = Primaries::P3;
+            break;
+    }
+    return out;
 }
 
 }  // namespace
@@ -29,7 +56,7 @@ const EffectInfo& effect_info(const Encode&) {
         .files = embedded_files("encode"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::SceneLinear),
-        .makes = [](Domain before, const void* parameters) { return is_none(parameters) ? before : Domain::Encoded; },
+        .makes = makes,
         .flat = {.documented = 90, .scene_linear = 90, .starts_on = true},
         .is_last_step = true,
         .reference = pointwise_reference<Encode, encode_reference>,

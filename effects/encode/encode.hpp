@@ -15,14 +15,16 @@ enum class TransferFunction : std::uint32_t {
     Pq,       ///< SMPTE ST 2084 in Rec. 2020 primaries; 1.0 is 10000 cd/m2
     Scrgb,    ///< linear Rec. 709; 1.0 is 80 cd/m2
     None,
+    Hlg,  ///< ARIB STD-B67 in Rec. 2020 primaries; 1.0 is peak_nits
+    P3,   ///< the curve of Srgb in P3 primaries
 };
 
 struct Encode {
     /// The curve of the display or file that the picture is for.
     TransferFunction transfer = TransferFunction::Srgb;
-    /// Luminance of linear 1.0; for pq and scrgb. [1, 10000] cd/m2
+    /// Luminance of linear 1.0; for pq, hlg and scrgb. [1, 10000] cd/m2
     float white_nits = 203.0f;
-    /// What is brighter is clipped, channel by channel; for pq and scrgb. [1, 10000] cd/m2
+    /// What is brighter is clipped, channel by channel; for pq, hlg and scrgb. [1, 10000] cd/m2
     float peak_nits = 1000.0f;
 };
 

@@ -9,18 +9,10 @@
 #include <darkroom/effects/encode.hpp>
 #include <darkroom/reference.hpp>
 
+#include "shared/color_state_reference.hpp"
 #include "shared/finite_reference.hpp"
-#include "shared/srgb_reference.hpp"
 
 namespace darkroom {
-
-/// SMPTE ST 2084:2014, inverse EOTF, for [0, 1] of 10000 cd/m2.
-inline double pq_encoded(double light) {
-    const double m1 = 2610.0 / 16384.0, m2 = 2523.0 / 4096.0 * 128.0;
-    const double c1 = 3424.0 / 4096.0, c2 = 2413.0 / 4096.0 * 32.0, c3 = 2392.0 / 4096.0 * 32.0;
-    const double y = std::pow(light, m1);
-    return std::pow((c1 + c2 * y) / (1.0 + c3 * y), m2);
-}
 
 inline Rgba encode_reference(Rgba color, const ReferencePixel&, const Encode& parameters) {
     const double white = parameters.white_nits, peak = parameters.peak_nits;
@@ -43,6 +35,18 @@ inline Rgba encode_reference(Rgba color, const ReferencePixel&, const Encode& pa
         }
         case TransferFunction::Scrgb:
             return each(light, [=](double v) { return std::clamp(v * white, -peak, peak) / 80.0; });
+        case TransferFunction::Hlg:
+        case TransferFunction::P3: {
+            const bool is_hlg = parameters.transfer == TransferFunction::Hlg;
+            const ColorState state{.domain = Domain::Encoded,
+                                   .primaries = is_hlg ? Primaries::Rec2020 : Primaries::P3,
+                                   .transfer = is_hlg ? Transfer::Hlg : Transfer::Linear,
+                                   .white_nits = parameters.white_nits,
+                                   .peak_nits = parameters.peak_nits};
+            const auto numbers = numbers_of({light[0] * white, light[1] * white, light[2] * white}, state);
+            return is_hlg ? each(numbers, [](double v) { return v; })
+                          : each(numbers, [](double v) { return srgb_encoded(std::clamp(v, 0.0, 1.0)); });
+        }
         case TransferFunction::None:
             break;
     }

@@ -72,9 +72,9 @@ TEST(EffectEncode, ScrgbIsLinearAndKeepsNegative) {
 TEST(EffectEncode, MakesEncodedUnlessNone) {
     const Encode srgb, none{.transfer = TransferFunction::None};
     const EffectInfo& info = effect_info(srgb);
-    EXPECT_EQ(info.makes(Domain::DisplayLinear, &srgb), Domain::Encoded);
-    EXPECT_EQ(info.makes(Domain::DisplayLinear, &none), Domain::DisplayLinear);
-    EXPECT_EQ(info.makes(Domain::SceneLinear, &none), Domain::SceneLinear);
+    EXPECT_EQ(info.makes({.domain = Domain::DisplayLinear}, &srgb).domain, Domain::Encoded);
+    EXPECT_EQ(info.makes({.domain = Domain::DisplayLinear}, &none).domain, Domain::DisplayLinear);
+    EXPECT_EQ(info.makes({.domain = Domain::SceneLinear}, &none).domain, Domain::SceneLinear);
     EXPECT_TRUE(info.is_identity(&none));
     EXPECT_FALSE(info.is_identity(&srgb));
 }
@@ -113,8 +113,9 @@ TEST(EffectEncode, GpuSrgbKeepsItsStatedError) {
 TEST(EffectEncode, GpuMatchesReference) {
     const ReferenceImage hdr = test::round_to_float(test::random_hdr(67, 41, 1));
     const ReferenceImage display = test::round_to_float(test::random_display(64, 64, 2));
-    for (const TransferFunction transfer : {TransferFunction::Srgb, TransferFunction::Gamma22, TransferFunction::Pq,
-                                            TransferFunction::Scrgb, TransferFunction::None}) {
+    for (const TransferFunction transfer :
+         {TransferFunction::Srgb, TransferFunction::Gamma22, TransferFunction::Pq, TransferFunction::Scrgb,
+          TransferFunction::None, TransferFunction::Hlg, TransferFunction::P3}) {
         SCOPED_TRACE(static_cast<int>(transfer));
         test::expect_gpu_matches_reference(Encode{.transfer = transfer}, hdr);
         test::expect_gpu_matches_reference(Encode{.transfer = transfer, .white_nits = 80, .peak_nits = 10000}, display);

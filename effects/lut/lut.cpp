@@ -121,10 +121,11 @@ void build(PassBuilder& builder) {
               next != nullptr);
 }
 
-Domain makes(Domain before, const void* parameters) {
+ColorState makes(ColorState before, const void* parameters) {
     const Lut& values = *static_cast<const Lut*>(parameters);
     const bool is_display = values.space == LutSpace::Display || values.result == LutResult::Display;
-    return is_display ? Domain::DisplayLinear : before;
+    if (!is_display) return before;
+    return {.domain = Domain::DisplayLinear, .white_nits = before.white_nits, .peak_nits = before.white_nits};
 }
 
 }  // namespace

@@ -149,7 +149,9 @@ TEST(EffectLut, StandsBetweenTonemapAndEncodeInBothOrders) {
 }
 
 TEST(EffectLut, DomainsFollowWhatTheTableGives) {
-    const auto made = [](Lut values, Domain before) { return effect_info(values).makes(before, &values); };
+    const auto made = [](Lut values, Domain before) {
+        return effect_info(values).makes({.domain = before}, &values).domain;
+    };
     EXPECT_EQ(made({}, Domain::DisplayLinear), Domain::DisplayLinear);
     EXPECT_EQ(made({}, Domain::SceneLinear), Domain::DisplayLinear);
     EXPECT_EQ(made({.space = LutSpace::Acescct}, Domain::SceneLinear), Domain::SceneLinear);

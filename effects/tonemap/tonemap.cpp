@@ -25,7 +25,11 @@ const EffectInfo& effect_info(const Tonemap&) {
         .files = embedded_files("tonemap"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .makes = [](Domain, const void*) { return Domain::DisplayLinear; },
+        .makes = [](ColorState before, const void*) {
+            return ColorState{.domain = Domain::DisplayLinear,
+                              .white_nits = before.white_nits,
+                              .peak_nits = before.white_nits};
+        },
         .flat = {.documented = 70, .scene_linear = 70, .starts_on = true},
         .reference = pointwise_reference<Tonemap, tonemap_reference>,
     };

@@ -109,7 +109,7 @@ TEST(EffectTonemap, BlackIsBlackAndNothingLeavesTheRange) {
 
 TEST(EffectTonemap, MakesDisplayLinear) {
     const Tonemap parameters;
-    EXPECT_EQ(effect_info(parameters).makes(Domain::SceneLinear, &parameters), Domain::DisplayLinear);
+    EXPECT_EQ(effect_info(parameters).makes({}, &parameters).domain, Domain::DisplayLinear);
 }
 
 // `operator` is what an artist looks for and what C++ does not allow.

@@ -13,7 +13,10 @@ constexpr auto ui_composite_rows =
     describe(field<&UiComposite::ui_opacity>("Of the interface; it never fades below 0.1.", {0, 1})
                  .also_named("scr_sbaralpha", true),
              field<&UiComposite::additive>("From laid over (0) to added as light (1), which is dimmed to 0.7.", {0, 1})
-                 .also_named("r_ui_additive"));
+                 .also_named("r_ui_additive"),
+             field<&UiComposite::ui_white_nits>(
+                 "Luminance of the interface's white, where the picture is light or for a display of high range.",
+                 {1, 10000, Scale::Log}, unit::nits));
 
 }  // namespace
 
@@ -30,6 +33,8 @@ const EffectInfo& effect_info(const UiComposite&) {
         .has_second = true,
         .has_second_in_place = true,
         .works_encoded = true,
+        .working_white_nits =
+            [](const void* parameters) { return static_cast<const UiComposite*>(parameters)->ui_white_nits; },
         .reference = ui_composite_reference,
     };
     return info;

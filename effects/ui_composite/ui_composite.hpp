@@ -13,6 +13,8 @@ struct UiComposite {
     float ui_opacity = 1.0f;
     /// From laid over (0) to added as light (1), which is dimmed to 0.7. [0, 1]
     float additive = 0.0f;
+    /// Luminance of the interface's white, where the picture is light or for a display of high range. [1, 10000] cd/m2
+    float ui_white_nits = 203.0f;
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const UiComposite&);

@@ -217,9 +217,11 @@ struct EffectInfo {
     ParamTable parameters;
     std::span<const EffectFile> files;
     Touch touch = Touch::Pointwise;
+    /// Encoded are code values of a display of standard range. A pointwise effect that accepts them, but for the last
+    /// step, gets others (PQ, HLG, scRGB) as sRGB's, and they are turned back behind it.
     Domains accepts = Domains::all();
-    /// The domain after the effect, given that before it and the parameters; null: unchanged.
-    Domain (*makes)(Domain before, const void* parameters) = nullptr;
+    /// The state after the effect, given that before it and the parameters; null: unchanged.
+    ColorState (*makes)(ColorState before, const void* parameters) = nullptr;
     Needs needs{};
     FlatPlace flat;
     std::uint32_t toggle_key = 0;  ///< of a viewer: F1 .. F12 that switches it; 0: none
@@ -232,8 +234,10 @@ struct EffectInfo {
     bool has_second_in_place = false;
     bool parts_channels = false;  ///< of a map: Place::barrel differs from channel to channel
     bool is_ui = false;           ///< of the interface's own chain: see EntryDesc::is_ui
-    bool works_encoded =
-        false;  ///< where the picture is not sRGB-encoded yet, it is for this effect, and back behind it
+    /// Where the picture is no code values, it gets those of sRGB, too, and back behind it.
+    bool works_encoded = false;
+    /// Of such an effect: luminance of the 1.0 that it works with; null: the picture's white.
+    float (*working_white_nits)(const void* parameters) = nullptr;
     /// What a path tracer or a camera puts into its pictures itself: occlusion, light in the air, motion.
     bool is_in_traced_light = false;
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats

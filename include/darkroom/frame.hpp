@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <darkroom/color_state.hpp>
 #include <span>
 
 namespace darkroom {
@@ -44,20 +45,6 @@ struct ImageUse {
     /// Inputs need SAMPLED; with STORAGE own pixels are read cheaper. A target needs COLOR_ATTACHMENT or STORAGE.
     VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT;
     friend bool operator==(const ImageUse&, const ImageUse&) = default;
-};
-
-/// What the numbers of the picture are. display_linear: tone-mapped, [0,1], linear light.
-enum class Domain : std::uint8_t { SceneLinear, DisplayLinear, Encoded };
-struct Domains {
-    std::uint8_t bits = 0;
-    [[nodiscard]] constexpr bool contains(Domain domain) const {
-        return (bits >> static_cast<unsigned>(domain) & 1) != 0;
-    }
-    [[nodiscard]] static constexpr Domains all() { return {7}; }
-    [[nodiscard]] static constexpr Domains only(Domain domain) {
-        return {static_cast<std::uint8_t>(1u << static_cast<unsigned>(domain))};
-    }
-    friend constexpr Domains operator|(Domains a, Domains b) { return {static_cast<std::uint8_t>(a.bits | b.bits)}; }
 };
 
 /// Extent of an entry's output relative to its input: floored, at least 1.

@@ -71,8 +71,9 @@ Result<> read_accepts(Description& out, std::string_view text) {
 }
 
 template <Domain domain>
-Domain makes(Domain, const void*) {
-    return domain;
+ColorState makes(ColorState before, const void*) {
+    if (domain == Domain::Encoded) return srgb_color;
+    return {.domain = domain, .white_nits = before.white_nits, .peak_nits = before.peak_nits};
 }
 
 Result<> read_makes(Description& out, std::string_view text) {

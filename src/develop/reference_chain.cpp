@@ -11,8 +11,10 @@
 
 #include "compose/chain/camera_jump.hpp"
 #include "graph/graph.hpp"
+#include "plan/frame/color.hpp"
 #include "plan/frame_inputs.hpp"
 #include "shared/blend_modes_reference.hpp"
+#include "shared/color_state_reference.hpp"
 #include "shared/reading_reference.hpp"
 #include "shared/srgb_reference.hpp"
 
@@ -53,9 +55,9 @@ class Chain {
             const double grey = std::clamp(pixel.a, 0.0, 1.0);
             pixel = {grey, grey, grey, 1};
         }
-        domains_.assign(2, Domain::SceneLinear);
+        states_.assign(2, {});
         pictures_.push_back(ui_ != nullptr ? *ui_ : ReferenceImage());
-        domains_.push_back(Domain::Encoded);
+        states_.push_back(srgb_color);
         sizes_ = {{}, {}, frame_output()};
         for (std::size_t i = 0; i < composer_.size(); ++i)
             if (Result<> done = add(i); !done) return failure(std::move(done));
@@ -67,7 +69,7 @@ class Chain {
         std::size_t last = value_of({}, composer_.size());
         if (input_.target_extent.width != 0) last = at_size(last, frame_output());
         ReferenceChainOutput out{.picture = pictures_[last], .left_out = std::move(left_out_)};
-        const Domain domain = domains_[last];
+        const Domain domain = states_[last].domain;
         if (input_.target_domain == Domain::Encoded && domain != Domain::Encoded && input_.encodes_target)
             for (Rgba& pixel : out.picture.pixels)
                 pixel = {srgb_curve(pixel.r), srgb_curve(pixel.g), srgb_curve(pixel.b), pixel.a};
@@ -171,7 +173,7 @@ class Chain {
 
     std::size_t keep(ReferenceImage image) {
         pictures_.push_back(std::move(image));
-        domains_.push_back(Domain::SceneLinear);
+        states_.emplace_back();
         const ReferenceImage& kept = pictures_.back();
         sizes_.push_back({.width = kept.width, .height = kept.height});
         return pictures_.size() - 1;
@@ -190,9 +192,9 @@ class Chain {
         for (std::uint32_t y = 0; y < height; ++y)
             for (std::uint32_t x = 0; x < width; ++x)
                 out.at(x, y) = sample_reference(from, (x + 0.5) / width, (y + 0.5) / height);
-        const Domain domain = domains_[picture];
+        const ColorState state = states_[picture];
         const std::size_t made = keep(std::move(out), size);
-        domains_[made] = domain;
+        states_[made] = state;
         return made;
     }
     graph::Extents extents() const {
@@ -249,7 +251,7 @@ class Chain {
             return user_error(fmt::format("stack entry '{}': {} reads two pictures: name the other one as `second`",
                                           desc.name, info.name));
         const std::size_t from = input_of(desc, index);
-        const Domain before = domains_[from];
+        const ColorState before = states_[from];
         const bool is_off =
             !desc.enabled || desc.opacity <= 0 || (info.is_identity != nullptr && info.is_identity(words.data()));
         if (!is_off && info.reference == nullptr)
@@ -259,7 +261,7 @@ class Chain {
             values_.back() = read_on(info, words, from, is_off);
         else
             values_.back() = keep_result(info, desc, words, index, from, is_off);
-        domains_.back() = is_off || info.makes == nullptr ? before : info.makes(before, words.data());
+        states_.back() = is_off || info.makes == nullptr ? before : info.makes(before, words.data());
         return {};
     }
 
@@ -302,31 +304,28 @@ class Chain {
         return made;
     }
 
-    /// Does an entry before this one encode, whether it is on or not?
-    bool may_be_encoded(std::size_t index) const {
-        Handle wire = composer_.entry(index);
-        for (std::size_t i = index;; i = index_of(wire)) {
-            const EntryDesc& desc = *composer_.desc(composer_.entry(i));
-            wire = desc.input.is_given() ? desc.input : before(i, desc.is_ui);
-            if (wire == ui_layer) return true;
-            if (wire.is_previous || index_of(wire) >= i) return false;
-            const EffectInfo& info = *composer_.info(wire);
-            if (info.makes == nullptr || is_left_out_[index_of(wire)]) continue;
-            for (const Domain domain : {Domain::SceneLinear, Domain::DisplayLinear})
-                if (info.makes(domain, info.parameters.defaults.data()) == Domain::Encoded) return true;
-        }
-    }
-    /// The result of an entry that wants the picture encoded, whatever it is.
+    /// The result of an entry that may want the picture as code values of sRGB.
     ReferenceImage encoded_result(const EffectInfo& info, const EntryDesc& desc,
                                   const std::vector<std::uint32_t>& words, std::size_t index, std::size_t from) {
-        if (!info.works_encoded || may_be_encoded(index)) return result(info, desc, words, index, from);
+        const ColorState state = states_[from];
+        const bool may_work = plan::may_need_work(info, state.domain == Domain::Encoded, false);
+        if (!may_work || plan::work_of(info, state, words.data()).word == 0)
+            return result(info, desc, words, index, from);
+        const double white = info.working_white_nits == nullptr ? double{state.white_nits}
+                                                                : double{info.working_white_nits(words.data())};
         ReferenceImage encoded = pictures_[from];
-        const auto each = [](ReferenceImage& image, double (*curve)(double)) {
-            for (Rgba& pixel : image.pixels) pixel = {curve(pixel.r), curve(pixel.g), curve(pixel.b), pixel.a};
+        const auto curve = [](std::array<double, 3> v, auto function) {
+            return std::array{function(v[0]), function(v[1]), function(v[2])};
         };
-        each(encoded, srgb_encoded);
+        for (Rgba& p : encoded.pixels) {
+            const auto v = curve(nits_of({p.r, p.g, p.b}, state), [&](double x) { return srgb_encoded(x / white); });
+            p = {v[0], v[1], v[2], p.a};
+        }
         ReferenceImage out = result(info, desc, words, index, keep(std::move(encoded), sizes_[from]));
-        each(out, srgb_decoded);
+        for (Rgba& p : out.pixels) {
+            const auto v = numbers_of(curve({p.r, p.g, p.b}, [&](double x) { return srgb_decoded(x) * white; }), state);
+            p = {v[0], v[1], v[2], p.a};
+        }
         return out;
     }
 
@@ -373,7 +372,7 @@ class Chain {
     const ReferenceChainInput& input_;
     const ReferenceImage* const ui_ = input_.images[FrameImage::Ui];
     std::deque<ReferenceImage> pictures_;      // that none moves while others are added
-    std::vector<Domain> domains_;              // of each picture
+    std::vector<ColorState> states_;           // of each picture
     std::vector<graph::Size> sizes_;           // of each picture
     std::vector<std::size_t> values_;          // of each entry: its picture
     std::map<std::size_t, Reading> readings_;  // of pictures that are one

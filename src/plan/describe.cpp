@@ -40,7 +40,7 @@ std::string accepted_domains(Domains accepts) {
 void remark_domains(const Program& program, const FrameValues& values, std::span<const Entry* const> entries,
                     std::vector<std::string>& remarks) {
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
-        const Domain domain = values.domain_before(program, i);
+        const Domain domain = values.state_before(program, i).domain;
         const Domains accepts = entries[i]->info->accepts;
         if (program.is_left_out[i] || !entries[i]->desc.enabled || accepts.contains(domain)) continue;
         remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", entries[i]->desc.name,
@@ -49,7 +49,7 @@ void remark_domains(const Program& program, const FrameValues& values, std::span
     if (values.finish() == Finish::EncodeSrgb)
         remarks.push_back(fmt::format(
             "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
-            name_of(values.last_domain(program))));
+            name_of(values.last_state(program).domain)));
 }
 
 }  // namespace
@@ -128,12 +128,15 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
               .images = {},
               .left_out = program.left_out,
               .remarks = program.remarks,
+              .states = {},
               .frame_images = frame_images(program),
               .transient_bytes = compiled.transient_bytes(),
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
     const graph::Extents largest = largest_extents(desc);
     const FrameValues values = example_values(program, desc, entries);
     remark_domains(program, values, entries, plan.remarks);
+    for (std::uint32_t i = 0; i < entries.size(); ++i)
+        if (!program.is_left_out[i]) plan.states.push_back({entries[i]->desc.name, text_of(values.state_after(i))});
     graph::Schedule schedule(compiled);
     schedule.derive(values.gates(), std::vector<graph::ImportState>(program.imports.size()), 0);
 

@@ -56,6 +56,10 @@ std::string json_of(const PlanUse& use) {
                        use.is_previous);
 }
 
+std::string json_of(const PlanState& state) {
+    return fmt::format("{{\"entry\": {}, \"state\": {}}}", json_string(state.entry), json_string(state.state));
+}
+
 std::string json_of(const PlanPass& pass) {
     std::string reads;
     for (const PlanUse& read : pass.reads) reads += (reads.empty() ? "" : ", ") + json_of(read);
@@ -120,6 +124,8 @@ std::string Plan::text() const {
                        mebibytes(bytes_written()));
     out += fmt::format("transient memory: {:.2f} MiB ({:.2f} MiB before aliasing)\n", mebibytes(transient_bytes),
                        mebibytes(transient_bytes_unaliased));
+    if (!states.empty()) out += "colour:\n";
+    for (const PlanState& state : states) out += fmt::format("     {}: {}\n", state.entry, state.state);
     for (const std::string& text : left_out) out += fmt::format("left out: {}\n", text);
     for (const std::string& text : remarks) out += fmt::format("remark: {}\n", text);
     return out;
@@ -129,9 +135,10 @@ std::string Plan::json() const {
     return fmt::format(
         "{{\n  \"width\": {}, \"height\": {}, \"dispatches\": {},\n  \"passes\": [{}\n  ],\n  \"images\": [{}\n  ],\n  "
         "\"bytes_read\": {}, \"bytes_written\": {},\n  \"transient_bytes\": {}, \"transient_bytes_unaliased\": {},\n  "
-        "\"left_out\": {},\n  \"remarks\": {},\n  \"frame_images\": {}\n}}\n",
+        "\"states\": [{}\n  ],\n  \"left_out\": {},\n  \"remarks\": {},\n  \"frame_images\": {}\n}}\n",
         extent.width, extent.height, passes.size(), lines_of(passes), lines_of(images), bytes_read(), bytes_written(),
-        transient_bytes, transient_bytes_unaliased, list(left_out), list(remarks), list(frame_images));
+        transient_bytes, transient_bytes_unaliased, lines_of(states), list(left_out), list(remarks),
+        list(frame_images));
 }
 
 }  // namespace darkroom

@@ -59,7 +59,7 @@ struct Entry {
                (info->is_identity == nullptr || !info->is_identity(words));
     }
     /// What the picture is behind it, in a frame with these values.
-    [[nodiscard]] Domain domain_after(Domain before, const std::uint32_t* words, bool is_on) const {
+    [[nodiscard]] ColorState state_after(const ColorState& before, const std::uint32_t* words, bool is_on) const {
         return is_on && info->makes != nullptr ? info->makes(before, words) : before;
     }
     /// At this opacity: is its result the output as it is?

@@ -92,7 +92,7 @@ class Baker {
         Domain domain = Domain::SceneLinear;
         for (const LookEntry* const entry : darkroom::ordered(look_))
             if (entry->effect->makes != nullptr && entry->state.enabled.on != 0)
-                domain = entry->effect->makes(domain, entry->words.data());
+                domain = entry->effect->makes({.domain = domain}, entry->words.data()).domain;
         is_scene_ = domain == Domain::SceneLinear;
     }
 

@@ -46,8 +46,7 @@ bool switch_tone_mapping_off(darkroom::Look& look) {
     for (darkroom::LookEntry& entry : look.entries) {
         const darkroom::EffectInfo& effect = *entry.effect;
         if (effect.makes == nullptr || !effect.accepts.contains(darkroom::Domain::SceneLinear)) continue;
-        if (effect.makes(darkroom::Domain::SceneLinear, entry.words.data()) != darkroom::Domain::DisplayLinear)
-            continue;
+        if (effect.makes({}, entry.words.data()).domain != darkroom::Domain::DisplayLinear) continue;
         entry.state.enabled = false;
         was_there = true;
     }

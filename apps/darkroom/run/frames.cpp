@@ -183,7 +183,7 @@ void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::
     using darkroom::Domain;
     for (darkroom::LookEntry& entry : look.entries)
         if (options.view && entry.effect->makes != nullptr &&
-            entry.effect->makes(Domain::SceneLinear, entry.words.data()) == Domain::DisplayLinear)
+            entry.effect->makes({}, entry.words.data()).domain == Domain::DisplayLinear)
             entry.state.enabled = false;
     if (target == darkroom::DevelopTarget::Encoded8) return;
     for (darkroom::LookEntry& entry : look.entries)

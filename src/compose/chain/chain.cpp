@@ -235,6 +235,12 @@ std::span<const std::uint32_t> Chain::write_words(const ProgramPass& pass) {
             words_[count++] = values_.is_on(step.entry) ? 1 : 0;
             words_[count++] = std::bit_cast<std::uint32_t>(values_.opacity(step.entry));
             words_[count++] = static_cast<std::uint32_t>(entry.desc.blend);
+            if (step.is_wrapped) {
+                const plan::Work& work = values_.work(step.entry);
+                words_[count++] = work.word;
+                for (const float value : {work.scale, work.limit, work.ootf})
+                    words_[count++] = std::bit_cast<std::uint32_t>(value);
+            }
         } else if (!step.text->asks_parameters) {
             continue;
         }

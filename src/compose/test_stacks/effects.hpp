@@ -179,9 +179,10 @@ inline const EffectInfo recode_effect{.name = "recode",
                                       .parameters = recode_rows.table(),
                                       .files = test_effect_files,
                                       .makes =
-                                          [](Domain, const void* parameters) {
+                                          [](ColorState, const void* parameters) {
                                               const auto& recode = *static_cast<const Recode*>(parameters);
-                                              return recode.is_encoded ? Domain::Encoded : Domain::DisplayLinear;
+                                              return recode.is_encoded ? srgb_color
+                                                                       : ColorState{.domain = Domain::DisplayLinear};
                                           },
                                       .reference = pointwise_reference<Recode, recode_reference>};
 /// Needs what no test brings: left out, it hands on what it gets.

@@ -265,7 +265,9 @@ void Inspector::State::describe_entries(const Frame& frame, std::vector<Recorded
         Domain domain = made.input ? domains[*made.input] : starts_ui ? Domain::Encoded : Domain::SceneLinear;
         const EffectInfo& info = *composer.info(pairs[i].copy);
         if (made.entry.presence == EntryPresence::On && info.makes != nullptr)
-            domain = info.makes(domain, composer.values_at(pairs[i].copy, frame.time, frame.camera).words.data());
+            domain =
+                info.makes({.domain = domain}, composer.values_at(pairs[i].copy, frame.time, frame.camera).words.data())
+                    .domain;
         domains.push_back(made.entry.domain = domain);
         last[entry.is_ui ? 1 : 0] = i + 1;
     }

@@ -109,7 +109,7 @@ bool is_domain_change(const EffectInfo& effect) {
     if (effect.makes == nullptr || !effect.flat.starts_on) return false;
     const void* const defaults = effect.parameters.defaults.data();
     for (const Domain before : {Domain::SceneLinear, Domain::DisplayLinear})
-        if (effect.accepts.contains(before) && effect.makes(before, defaults) != before) return true;
+        if (effect.accepts.contains(before) && effect.makes({.domain = before}, defaults).domain != before) return true;
     return false;
 }
 

@@ -71,7 +71,8 @@ Result<> place_entry(Look& look, LookEntry entry) {
     for (auto other = look.entries.begin(); other != look.entries.end(); ++other) {
         const EffectInfo& effect = *other->effect;
         if (other->is_of_ui) continue;
-        if (effect.makes != nullptr && other->state.enabled.on != 0) domain = effect.makes(domain, other->words.data());
+        if (effect.makes != nullptr && other->state.enabled.on != 0)
+            domain = effect.makes({.domain = domain}, other->words.data()).domain;
         if (!accepts.contains(domain)) continue;
         place = other + 1;
         is_found = true;

@@ -42,7 +42,9 @@ Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, c
         const std::uint32_t entry = steps[literal.step].entry;
         // An entry that is off is not in the kernel; a pass of an effect that is off does not run, or for another one.
         if (is_fused && !values.is_on(entry)) continue;
-        shape.choices |= (values.words(entry)[literal.row->word] & literal.mask()) << literal.bit;
+        const std::uint32_t value =
+            literal.row == nullptr ? values.work(entry).word : values.words(entry)[literal.row->word];
+        shape.choices |= (value & literal.mask()) << literal.bit;
     }
     return shape;
 }

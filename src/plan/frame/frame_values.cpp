@@ -44,7 +44,8 @@ std::vector<std::uint32_t> Entry::values_at_compile() const {
 FrameValues::FrameValues(const Program& program, std::span<const Entry* const> entries)
     : is_on_(entries.size()),
       opacities_(entries.size()),
-      domains_(entries.size()),
+      states_(entries.size()),
+      works_(entries.size()),
       gates_(std::make_unique<bool[]>(program.gates.size() + 1)),
       gate_count_(program.gates.size()) {
     std::uint32_t words = 0;
@@ -65,9 +66,11 @@ void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std:
         const Presence presence = entry.evaluate({words, entry.info->parameters.words()}, moment);
         opacities_[i] = presence.opacity;
         is_on_[i] = !program.is_left_out[i] && entry.is_on(presence, words) ? 1 : 0;
-        domains_[i] = entry.domain_after(domain_before(program, i), words, is_on(i));
+        const ColorState before = state_before(program, i);
+        works_[i] = work_of(*entry.info, before, words);
+        states_[i] = entry.state_after(before, words, is_on(i));
     }
-    finish_ = finish_of(last_domain(program), desc);
+    finish_ = finish_of(last_state(program).domain, desc);
     rays_meet_ = context.camera != nullptr && plan::rays_meet(*context.camera);
     for (std::size_t i = 0; i < gate_count_; ++i) gates_[i] = is_open(program, program.gates[i], context, watched);
 }

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "plan/frame/color.hpp"
 #include "plan/program.hpp"
 
 namespace darkroom::plan {
@@ -25,10 +26,13 @@ class FrameValues {
     [[nodiscard]] bool is_on(std::uint32_t entry) const { return is_on_[entry] != 0; }
     [[nodiscard]] float opacity(std::uint32_t entry) const { return opacities_[entry]; }
     /// What the picture is that an entry gets, and that the target gets.
-    [[nodiscard]] Domain domain_before(const Program& program, std::uint32_t entry) const {
-        return domain_behind(program.entry_inputs[entry]);
+    [[nodiscard]] ColorState state_before(const Program& program, std::uint32_t entry) const {
+        return state_behind(program.entry_inputs[entry]);
     }
-    [[nodiscard]] Domain last_domain(const Program& program) const { return domain_behind(program.last_entry); }
+    [[nodiscard]] ColorState state_after(std::uint32_t entry) const { return states_[entry]; }
+    [[nodiscard]] ColorState last_state(const Program& program) const { return state_behind(program.last_entry); }
+    /// How a step of this entry that may need it gets the picture.
+    [[nodiscard]] const Work& work(std::uint32_t entry) const { return works_[entry]; }
     [[nodiscard]] Finish finish() const { return finish_; }
     /// Of the frame's camera, see glsl.hpp.
     [[nodiscard]] bool rays_meet() const { return rays_meet_; }
@@ -36,8 +40,8 @@ class FrameValues {
     [[nodiscard]] std::span<const bool> gates() const { return {gates_.get(), gate_count_}; }
 
   private:
-    [[nodiscard]] Domain domain_behind(std::uint32_t entry) const {
-        return entry == no_entry ? Domain::SceneLinear : entry == ui_entry ? Domain::Encoded : domains_[entry];
+    [[nodiscard]] ColorState state_behind(std::uint32_t entry) const {
+        return entry == no_entry ? ColorState{} : entry == ui_entry ? srgb_color : states_[entry];
     }
     [[nodiscard]] bool is_open(const Program& program, const Gate& gate, const PassContext& context,
                                std::span<const Watched* const> watched) const;
@@ -45,7 +49,8 @@ class FrameValues {
     std::vector<std::uint32_t> words_, first_word_;
     std::vector<std::uint8_t> is_on_;
     std::vector<float> opacities_;
-    std::vector<Domain> domains_;  ///< behind each entry
+    std::vector<ColorState> states_;  ///< behind each entry
+    std::vector<Work> works_;
     Finish finish_ = Finish::None;
     bool rays_meet_ = false;
     graph::Extents extents_;

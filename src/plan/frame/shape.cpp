@@ -5,6 +5,7 @@
 #include <bit>
 #include <utility>
 
+#include "plan/frame/color.hpp"
 #include "plan/program.hpp"
 
 namespace darkroom::plan {
@@ -58,6 +59,11 @@ void lay_out_literals(ProgramPass& pass) {
             bit += bits;
         }
     }
+    for (std::uint32_t step = 0; step < steps.size(); ++step) {
+        if (!steps[step].is_wrapped || bit + work_bits > 64) continue;
+        pass.literals.push_back({step, nullptr, bit, work_bits});
+        bit += work_bits;
+    }
 }
 
 Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass) { return spec_of(pass, pass.steps(), Finish::OfFrame); }
@@ -65,9 +71,13 @@ Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass) { return spec_of(
 Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
     const std::span<const FusedStep> all = pass.steps();
     std::vector<FusedStep> steps(all.begin(), all.end());
-    for (const Literal& literal : pass.literals)
-        steps[literal.step].baked.push_back(
-            {literal.row, static_cast<std::uint32_t>(shape.choices >> literal.bit & literal.mask())});
+    for (const Literal& literal : pass.literals) {
+        const auto value = static_cast<std::uint32_t>(shape.choices >> literal.bit & literal.mask());
+        if (literal.row == nullptr)
+            steps[literal.step].work = value;
+        else
+            steps[literal.step].baked.push_back({literal.row, value});
+    }
     if (pass.as<FusedPass>() != nullptr) {
         const std::size_t known = std::min(steps.size(), Shape::most_steps);
         for (std::size_t i = 0; i < known; ++i) {

@@ -38,7 +38,7 @@ struct Shape {
 /// A row whose value is a literal of the lean kernels of a pass, and its bits in Shape::choices.
 struct Literal {
     std::uint32_t step = 0;
-    const ParamInfo* row = nullptr;
+    const ParamInfo* row = nullptr;  ///< null: Work::word of the step
     std::uint32_t bit = 0, bits = 0;
 
     [[nodiscard]] std::uint64_t mask() const { return (std::uint64_t{1} << bits) - 1; }

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "gpu/resource/formats.hpp"
+#include "plan/frame/color.hpp"
 #include "plan/planner/planner_state.hpp"
 
 namespace darkroom::plan {
@@ -107,7 +108,7 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
                    .name = stack_[entry].desc.name,
                    .constants = builder.end_function,
                    .custom_vectors = builder.end_vectors};
-    step.is_wrapped = info.works_encoded && !may_be_encoded(entry);
+    step.is_wrapped = may_need_work(info, may_be_encoded(entry), is_of_ui(entry));
     if (is_reading(info.touch)) {
         if (!builder.sides.empty()) return user_error(fmt::format("effect '{}': a map reads no images", info.name));
         return append_reading(entry, input, std::move(step));
@@ -300,7 +301,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         const std::string& name = stack_[step.entry].desc.name;
         pass.name += (pass.name.empty() ? "" : "+") + name;
         toggle.entries.push_back(step.entry);
-        append_header_members(*step.info, step.place, pass.spec.members);
+        append_header_members(step, pass.spec.members);
         append_parameter_members(*step.info, step.place, pass.spec.members);
         pass.spec.custom_vectors += step.custom_vectors;
     }

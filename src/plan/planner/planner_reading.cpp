@@ -95,13 +95,20 @@ bool Planner::is_loaded_beside(const OpenKernel& kernel, std::string_view image)
     return !may_share(kernel.picture, own->second.version) && std::ranges::none_of(kernel.images, shares);
 }
 
+bool Planner::is_of_ui(std::uint32_t entry) const {
+    std::uint32_t i = entry;
+    do i = program_.entry_inputs[i];
+    while (i < stack_.size() && stack_[i].info->makes == nullptr);
+    return i == ui_entry;
+}
+
 bool Planner::may_be_encoded(std::uint32_t entry) const {
     std::uint32_t i = program_.entry_inputs[entry];
     for (; i < stack_.size(); i = program_.entry_inputs[i]) {
         const EffectInfo& info = *stack_[i].info;
         if (info.makes == nullptr || program_.is_left_out[i]) continue;
         for (const Domain before : {Domain::SceneLinear, Domain::DisplayLinear})
-            if (info.makes(before, info.parameters.defaults.data()) == Domain::Encoded) return true;
+            if (info.makes({.domain = before}, info.parameters.defaults.data()).domain == Domain::Encoded) return true;
     }
     return i == ui_entry;
 }

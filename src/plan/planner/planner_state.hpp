@@ -113,6 +113,8 @@ class Planner {
     [[nodiscard]] Result<std::size_t> at_target_size(std::uint32_t entry, std::size_t input);
     /// Does any entry before this one encode?
     [[nodiscard]] bool may_be_encoded(std::uint32_t entry) const;
+    /// Is its picture the interface, through nothing that makes another state of it?
+    [[nodiscard]] bool is_of_ui(std::uint32_t entry) const;
     [[nodiscard]] std::size_t open_kernel(std::size_t input, std::string why);
     /// A map or a tap: goes on with the reading that its input is, or begins one.
     [[nodiscard]] Result<std::size_t> append_reading(std::uint32_t entry, std::size_t input, FusedStep step);

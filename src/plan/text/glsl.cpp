@@ -220,12 +220,15 @@ bool rays_meet(const Camera& camera) {
 
 gpu::BlockMember finish_member() { return {gpu::BlockMember::Type::Uint, "finish_"}; }
 
-void append_header_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
+void append_header_members(const FusedStep& step, std::vector<gpu::BlockMember>& out) {
     using enum gpu::BlockMember::Type;
-    const std::string prefix = block_prefix(info, place);
+    const std::string prefix = block_prefix(*step.info, step.place);
     out.push_back({Uint, prefix + "enabled_"});
     out.push_back({Float, prefix + "opacity_"});
     out.push_back({Uint, prefix + "blend_"});
+    if (!step.is_wrapped) return;
+    out.push_back({Uint, prefix + "work_"});
+    for (const char* const name : {"work_scale_", "work_limit_", "work_ootf_"}) out.push_back({Float, prefix + name});
 }
 
 void append_parameter_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
@@ -400,12 +403,15 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                               : fmt::format("{}opacity_", prefix);
             layer = fmt::format("merge_layer(color, {}, {}, {}blend_)", layer, opacity, prefix);
         }
-        if (step.is_wrapped) {
+        if (step.is_wrapped && step.work != 0u) {
             has_wrap = true;
+            const std::string word = step.work ? fmt::format("{}u", *step.work) : prefix + "work_";
             declarations += fmt::format(
-                "vec4 wrapped{}(vec4 color, Pixel pixel) {{\n    color.rgb = srgb_encode_unbounded(color.rgb);\n"
-                "    color = {};\n    return vec4(srgb_decode_unbounded(color.rgb), color.a);\n}}\n",
-                suffix, layer);
+                "vec4 wrapped{0}(vec4 color, Pixel pixel) {{\n    bool is_other = {1} != 0u;\n"
+                "    if (is_other) color.rgb = color_state_to_srgb(color.rgb, {1}, {2}work_scale_, {2}work_ootf_);\n"
+                "    color = {3};\n    if (is_other)\n        color.rgb = color_state_from_srgb(color.rgb, {1}, "
+                "{2}work_scale_, {2}work_limit_, {2}work_ootf_);\n    return color;\n}}\n",
+                suffix, word, prefix, layer);
             layer = fmt::format("wrapped{}(color, pixel)", suffix);
         }
         code += step.is_certain ? fmt::format("    color = {};\n", layer)
@@ -422,7 +428,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
     if (has_reading)
         if (auto ok = include("shared/place.glsl"); !ok) return failure(std::move(ok));
     if (has_wrap)
-        if (auto ok = include("shared/srgb_unbounded.glsl"); !ok) return failure(std::move(ok));
+        if (auto ok = include("shared/color_state.glsl"); !ok) return failure(std::move(ok));
     if (finish != Finish::None) {
         if (auto ok = include("shared/srgb.glsl"); !ok) return failure(std::move(ok));
         for (const auto& [kind, call] : {std::pair{Finish::EncodeSrgb, "color.rgb = srgb_encode(color.rgb);"},

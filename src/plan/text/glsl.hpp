@@ -8,6 +8,7 @@
 #include <darkroom/effect.hpp>
 #include <darkroom/result.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,9 +19,8 @@
 
 namespace darkroom::plan {
 
-/// Words of a step in its kernel's block: in a fused kernel three of the entry itself (enabled, opacity, blend), then
-/// the parameters in order without resources.
-inline constexpr std::uint32_t entry_header_words = 3;
+/// Words of a step in its kernel's block: in a fused kernel those of the entry itself (append_header_members), then the
+/// parameters in order without resources.
 [[nodiscard]] std::uint32_t parameter_words(const ParamTable& table);
 /// Copies the words of a struct, without resources.
 void write_parameters(const ParamTable& table, std::span<const std::uint32_t> words, std::span<std::uint32_t> out);
@@ -37,7 +37,6 @@ using CameraBlock = std::array<float, 28>;
 [[nodiscard]] bool rays_meet(const Camera& camera);
 inline constexpr std::uint32_t frame_words = 4 + std::tuple_size_v<CameraBlock>;
 
-void append_header_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out);
 void append_parameter_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out);
 
 /// A choice, toggle or loop count that a lean kernel holds as a literal: the compiler then drops the branches not
@@ -71,7 +70,7 @@ struct FusedStep {
     std::string reads;                       ///< of a map or tap: the image that its reading samples
     bool is_layer = false;                   ///< of such: laid over the picture, with opacity, mode and mask
     bool is_second_resampled = false;        ///< its second picture has another size than the kernel's
-    bool is_wrapped = false;                 ///< the picture is encoded for it, and back
+    bool is_wrapped = false;                 ///< it may get the picture as code values of sRGB: see frame/color.hpp
     bool is_merge = false;                   ///< only lays image layer_e<place> over the picture
     bool has_mask = false;                   ///< image mask_e<place>
     ConstantsFunction constants = nullptr;   ///< of a pointwise end
@@ -81,7 +80,10 @@ struct FusedStep {
     bool is_certain = false;  ///< on: no branch
     bool is_plain = false;    ///< opacity 1, no blending, no mask
     std::vector<Baked> baked;
+    std::optional<std::uint32_t> work{};  ///< Work::word
 };
+/// Of an entry: enabled_, opacity_ and blend_, and those of Work where the step may need it.
+void append_header_members(const FusedStep& step, std::vector<gpu::BlockMember>& out);
 /// What the target's kernel does last. OfFrame: the block's member finish_ says which of the others.
 enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb, OfFrame };
 /// The member of the block that Finish::OfFrame reads.

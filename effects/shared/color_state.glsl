@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// From the numbers of a picture to those of an sRGB display, and back: `word` is 1, the transfer from bit 1 and the primaries
+// from bit 4, numbered as in darkroom/color_state.hpp. The curve of sRGB goes on above 1 and below 0.
+#ifndef SHARED_COLOR_STATE
+#define SHARED_COLOR_STATE
+#include "shared/pq.glsl"
+#include "shared/srgb_unbounded.glsl"
+
+// ITU-R BT.2087, and its inverse; P3 with a white of D65 from the chromaticities of SMPTE RP 431-2.
+const mat3 color_state_rec2020 = mat3(0.627403896, 0.069097289, 0.016391439, 0.329283038, 0.919540395, 0.088013308,
+                                      0.043313066, 0.011362316, 0.895595253);
+const mat3 color_state_from_rec2020 = mat3(1.660491002, -0.124550475, -0.018150763, -0.587641140, 1.132899895, -0.100578897,
+                                           -0.072849863, -0.008349420, 1.118729661);
+const mat3 color_state_p3 = mat3(0.822461969, 0.033194199, 0.017082631, 0.177538031, 0.966805801, 0.072397440, 0.0, 0.0,
+                                 0.910519929);
+const mat3 color_state_from_p3 = mat3(1.224940176, -0.042056955, -0.019637555, -0.224940176, 1.042056955, -0.078636046, 0.0,
+                                      0.0, 1.098273600);
+const vec3 color_state_luminance = vec3(0.2627, 0.6780, 0.0593);
+
+// ITU-R BT.2100: light relative to the display's peak, through the OOTF backwards and the OETF.
+vec3 hlg_encode(vec3 light, float ootf) {
+    light = clamp(light, 0.0, 1.0);
+    vec3 scene = light * pow(max(dot(light, color_state_luminance), 1e-9), (1.0 - ootf) / ootf);
+    vec3 power = 0.17883277 * log(max(12.0 * scene - 0.28466892, vec3(1e-6))) + 0.55991073;
+    return mix(power, sqrt(3.0 * scene), lessThanEqual(scene, vec3(1.0 / 12.0)));
+}
+vec3 hlg_decode(vec3 code, float ootf) {
+    code = clamp(code, 0.0, 1.0);
+    vec3 power = (exp((code - 0.55991073) / 0.17883277) + 0.28466892) / 12.0;
+    vec3 scene = mix(power, code * code / 3.0, lessThanEqual(code, vec3(0.5)));
+    return scene * pow(max(dot(scene, color_state_luminance), 1e-9), ootf - 1.0);
+}
+
+vec3 color_state_to_srgb(vec3 color, uint word, float scale, float ootf) {
+    uint transfer = word >> 1 & 7u, primaries = word >> 4;
+    if (transfer == 1u) color = srgb_decode_unbounded(color);
+    if (transfer == 2u) color = pow(max(color, vec3(0.0)), vec3(2.2));
+    if (transfer == 3u) color = pq_decode(color);
+    if (transfer == 4u) color = hlg_decode(color, ootf);
+    if (primaries == 1u) color = color_state_from_rec2020 * color;
+    if (primaries == 2u) color = color_state_from_p3 * color;
+    return srgb_encode_unbounded(color * scale);
+}
+vec3 color_state_from_srgb(vec3 color, uint word, float scale, float limit, float ootf) {
+    uint transfer = word >> 1 & 7u, primaries = word >> 4;
+    color = srgb_decode_unbounded(color) / scale;
+    if (primaries == 1u) color = color_state_rec2020 * color;
+    if (primaries == 2u) color = color_state_p3 * color;
+    if (transfer == 1u) return srgb_encode_unbounded(color);
+    if (transfer == 2u) return pow(clamp(color, 0.0, 1.0), vec3(1.0 / 2.2));
+    if (transfer == 3u) return pq_encode(clamp(color, 0.0, limit));
+    if (transfer == 4u) return hlg_encode(color, ootf);
+    return transfer == 5u ? clamp(color, -limit, limit) : color;
+}
+#endif
