@@ -332,8 +332,10 @@ class Chain {
     ReferenceImage result(const EffectInfo& info, const EntryDesc& desc, const std::vector<std::uint32_t>& words,
                           std::size_t index, std::size_t from) {
         const ReferenceImage& base = pictures_[from];
-        const auto wired = [&](Handle wire, const ReferenceImage* otherwise) {
-            return wire.is_given() ? &pictures_[at_size(value_of(wire, index), sizes_[from])] : otherwise;
+        // By value: what a wire names may be kept anew, and moves them.
+        const graph::Size size = sizes_[from];
+        const auto wired = [&, size](Handle wire, const ReferenceImage* otherwise) {
+            return wire.is_given() ? &pictures_[at_size(value_of(wire, index), size)] : otherwise;
         };
         const ReferenceImage* second = nullptr;
         if (const Handle wire = second_of(index); info.has_second) {
