@@ -280,6 +280,12 @@ const std::vector<HeldRow>& held_rows() {
          {"CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed"}},
         {"words and marks of a statement; characters of the value of a `#define` | 2000; 120",
          {"CustomPasses, CodeDeclaresNothingOfTheKernel"}},
+        {"entries in a fused kernel; entries of a plan that join a kernel begun by another | 16; 96;",
+         {"ComposePlan, ALongStackHasKernelsAndPicturesWithinBounds"}},
+        {"kernels of a plan that do not run while their entries are off, as each keeps a picture | 32;",
+         {"ComposePlan, ALongStackHasKernelsAndPicturesWithinBounds"}},
+        {"picture that `scale` of an entry makes | the same;",
+         {"ComposeExtent, AScaleThatNoDeviceHoldsIsRefusedBeforeItIsTried"}},
         {"undo | 1000 steps, 256 MiB of them", {"Document, HistoryIsBounded", "Document, HistoryOfTablesIsBounded"}},
         {"ground to walk on | 2^20 triangles, 2^22 entries", {"SceneGround, AMeshBeyondTheBudgetIsItsBox"}},
         {"times | 240 frames of 256 passes", {"PanelTimingHistory, KeepsTheLastFramesInOrder"}}};
