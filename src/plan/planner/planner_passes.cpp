@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// Kernels as passes of the graph, within what devices allow.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "gpu/resource/formats.hpp"
+#include "plan/planner/planner_state.hpp"
+
+namespace darkroom::plan {
+
+void Planner::limit_storage_images(ProgramPass& pass) const {
+    std::vector<gpu::KernelImage>& images = pass.spec.images;
+    const auto is_storage = [](const gpu::KernelImage& image) { return image.storage_format != VK_FORMAT_UNDEFINED; };
+    const auto is_beyond = [&] {
+        const auto count = static_cast<std::size_t>(std::ranges::count_if(images, is_storage));
+        return count + pass.spec.outputs.size() > traits_.max_storage_images;
+    };
+    if (!is_beyond()) return;
+    // An image that is both loaded and sampled stands there twice: the sampled one stays.
+    for (gpu::KernelImage& image : images) {
+        if (image.loads_by.empty()) continue;
+        const auto loaded = std::ranges::find(images, std::exchange(image.loads_by, {}), &gpu::KernelImage::name);
+        loaded->name.clear();
+    }
+    for (std::size_t i = images.size(); i-- > 0;) {
+        if (pass.inputs[i].table != no_table) continue;
+        images[i].storage_format = VK_FORMAT_UNDEFINED;
+        if (!images[i].name.empty()) continue;
+        images.erase(images.begin() + static_cast<std::ptrdiff_t>(i));
+        pass.inputs.erase(pass.inputs.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    // Then tables, the last first.
+    for (std::size_t i = images.size(); i-- > 0 && is_beyond();) images[i].storage_format = VK_FORMAT_UNDEFINED;
+}
+
+bool Planner::can_filter(const PassInput& input) const {
+    if (!traits_.can_filter) return true;
+    if (input.table != no_table) return traits_.can_filter(program_.fixed_images[input.table].desc.format);
+    const auto known = facts_.find(input.version.index);
+    if (known == facts_.end()) return true;
+    const Facts& facts = known->second;
+    // Depth is never filtered.
+    return gpu::is_depth(facts.format) ||
+           (traits_.can_filter(facts.format) && std::ranges::all_of(facts.fall_backs, [&](graph::Version instead) {
+                return can_filter({.version = instead});
+            }));
+}
+
+Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level,
+                                         std::span<const graph::Version> more_targets) {
+    limit_storage_images(pass);
+    if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > most_custom_vectors)
+        return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
+                                      pass.name, pass.spec.images.size(), pass.spec.custom_vectors, gpu::most_images,
+                                      most_custom_vectors));
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        gpu::KernelImage& image = pass.spec.images[i];
+        image.is_filtered_by_loads = image.storage_format == VK_FORMAT_UNDEFINED && image.sampler_type == "sampler2D" &&
+                                     !can_filter(pass.inputs[i]);
+        image.is_depth =
+            pass.inputs[i].table == no_table && gpu::is_depth(facts_.at(pass.inputs[i].version.index).format);
+    }
+    pass.spec.is_software = traits_.is_software;
+    pass.spec.has_robust_images = traits_.has_robust_images;
+    pass.spec.workgroup = traits_.workgroup;
+    lay_out_literals(pass);
+    for (const FusedStep& step : pass.steps()) {
+        pass.asks_sizes |= step.text && step.text->asks_sizes;
+        pass.asks_rays_meet |= step.text && step.text->asks_rays_meet;
+    }
+    const auto stage = traits_.stage_of(pass.spec);
+    if (!stage) return failure(stage.error());
+    pass.stage = *stage;
+    // What the host's target was made for decides over what would be faster.
+    const VkImageUsageFlags usage = facts_.at(target.index).usage;
+    if ((usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0) pass.stage = gpu::Stage::Raster;
+    if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) == 0) pass.stage = gpu::Stage::Compute;
+    const bool is_raster = pass.stage == gpu::Stage::Raster;
+    graph::PassDesc desc{.name = pass.name, .has_side_effect = pass.watch().has_value(), .gate = pass.toggle};
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        if (pass.inputs[i].table != no_table) continue;
+        const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
+        const bool is_general = !pass.spec.images[i].loads_by.empty();
+        const graph::Use use =
+            is_storage   ? (is_raster ? graph::Use::StorageReadFragment : graph::Use::StorageRead)
+            : is_general ? (is_raster ? graph::Use::SampledGeneralFragment : graph::Use::SampledGeneralCompute)
+                         : (is_raster ? graph::Use::SampledFragment : graph::Use::SampledCompute);
+        desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}, pass.inputs[i].instead});
+    }
+    const graph::Use use = pass.spec.is_additive ? (is_raster ? graph::Use::ColorBlend : graph::Use::StorageReadWrite)
+                                                 : (is_raster ? graph::Use::ColorWrite : graph::Use::StorageWrite);
+    desc.writes.push_back({target, use, {mip_level, 1}});
+    for (const graph::Version more : more_targets) desc.writes.push_back({more, use, {mip_level, 1}});
+    pass.output_mip_level = mip_level;
+    pass.more_outputs = program_.graph.add(std::move(desc));
+    pass.output = pass.more_outputs.front();
+    pass.more_outputs.erase(pass.more_outputs.begin());
+    const auto take_facts = [&](graph::Version made, graph::Version from) {
+        facts_[made.index] = facts_[from.index];
+        facts_[made.index].fall_backs.clear();
+    };
+    take_facts(pass.output, target);
+    for (std::size_t i = 0; i < more_targets.size(); ++i) take_facts(pass.more_outputs[i], more_targets[i]);
+    program_.passes.push_back(std::move(pass));
+    return program_.passes.back().output;
+}
+
+}  // namespace darkroom::plan
