@@ -93,7 +93,8 @@ Result<std::unique_ptr<ColorChain>> chain_from_space(const std::filesystem::path
     return guarded(configuration, [&]() -> Result<std::unique_ptr<ColorChain>> {
         const Result<Opened> opened = open_config(configuration);
         if (!opened) return failure(opened.error());
-        const auto& [config, link] = *opened;
+        const ocio::ConstConfigRcPtr& config = opened->config;
+        const Link& link = opened->link;
         if (!config->getColorSpace(space.c_str()))
             return unknown("color space", space, names_of(config->getNumColorSpaces(), [&](int i) {
                                return config->getColorSpaceNameByIndex(i);
@@ -113,7 +114,8 @@ Result<std::unique_ptr<ColorChain>> chain_to_view(const std::filesystem::path& c
     return guarded(configuration, [&]() -> Result<std::unique_ptr<ColorChain>> {
         const Result<Opened> opened = open_config(configuration);
         if (!opened) return failure(opened.error());
-        const auto& [config, link] = *opened;
+        const ocio::ConstConfigRcPtr& config = opened->config;
+        const Link& link = opened->link;
         const Names displays = names_of(config->getNumDisplays(), [&](int i) { return config->getDisplay(i); });
         if (std::ranges::find(displays, display) == displays.end()) return unknown("display", display, displays);
         const Names views =

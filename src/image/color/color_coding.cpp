@@ -19,14 +19,14 @@ namespace {
 using Kind = TransferCurve::Kind;
 
 constexpr Chromaticity d65{0.3127, 0.3290}, aces_white{0.32168, 0.33767};
-constexpr TransferCurve linear{}, srgb{Kind::Srgb}, display{Kind::Power, 2.4};
+constexpr TransferCurve linear{}, srgb{Kind::Srgb}, bt1886{Kind::Power, 2.4};
 
 // Rec. 2020: ITU-R BT.2020-2. P3: SMPTE EG 432-1 with D65. ACES: SMPTE ST 2065-1 and S-2014-004. Integers of the two
 // spaces of television are shown by the curve of ITU-R BT.1886.
 constexpr std::array<InputSpace, 6> spaces{{
     {"srgb", {}, srgb, srgb},
-    {"rec709", {}, linear, display},
-    {"rec2020", {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, d65}, linear, display},
+    {"rec709", {}, linear, bt1886},
+    {"rec2020", {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, d65}, linear, bt1886},
     {"p3", {{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, d65}, linear, srgb},
     {"acescg", {{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, aces_white}, linear, linear},
     {"aces2065-1", {{0.7347, 0.2653}, {0, 1}, {0.0001, -0.0770}, aces_white}, linear, linear},

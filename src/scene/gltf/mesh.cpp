@@ -289,8 +289,9 @@ std::vector<VariantMaterial> read_variants(const tinygltf::Primitive& source) {
             out.push_back({static_cast<std::uint32_t>(variants.Get(k).GetNumberAsInt()), material});
     }
     std::ranges::stable_sort(out, {}, &VariantMaterial::variant);
-    const auto rest = std::ranges::unique(out, {}, &VariantMaterial::variant);
-    out.erase(rest.begin(), rest.end());
+    // Not std::ranges::unique, whose subrange clang 14 cannot read in the standard library of gcc 12.
+    const auto is_same = [](const auto& a, const auto& b) { return a.variant == b.variant; };
+    out.erase(std::unique(out.begin(), out.end(), is_same), out.end());
     return out;
 }
 
