@@ -17,14 +17,14 @@ namespace darkroom {
         try {
             throw;
         } catch (const std::bad_alloc&) {
-            return machine_error(std::string(what) + ": out of memory");
+            return machine_error(std::string(what) + ": out of memory", ErrorCode::OutOfMemory);
         } catch (const std::exception& exception) {
             return machine_error(std::string(what) + ": " + exception.what());
         } catch (...) {
             return machine_error(std::string(what) + ": an unknown exception");
         }
     } catch (...) {
-        return machine_error("out of memory");  // no longer than a string holds in place
+        return machine_error("out of memory", ErrorCode::OutOfMemory);  // no longer than a string holds in place
     }
 }
 

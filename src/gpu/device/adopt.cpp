@@ -121,7 +121,8 @@ std::vector<std::string> missing_capabilities(const Context& context, const Adop
 Failure lacking(const AdoptDesc& desc, const Result<>& loaded) {
     return machine_error(
         fmt::format("adopting a device: {}, or the instance was made for an older Vulkan than api_version says ({})",
-                    loaded.error().text, gpu::version_text(desc.api_version)));
+                    loaded.error().text, gpu::version_text(desc.api_version)),
+        ErrorCode::Unsupported);
 }
 
 }  // namespace
@@ -144,7 +145,9 @@ Result<Device> Device::adopt(const AdoptDesc& desc) try {
     context->info = gpu::identify(context->vk, desc.physical_device, 0);
     const EnabledFeatures enabled = read_chain(desc.enabled_features);
     if (const std::vector<std::string> missing = missing_capabilities(*context, desc, enabled); !missing.empty()) {
-        return user_error(fmt::format("adopting \"{}\": it lacks {}", context->info.name, fmt::join(missing, ", ")));
+        return failure({Fault::User,
+                        fmt::format("adopting \"{}\": it lacks {}", context->info.name, fmt::join(missing, ", ")),
+                        ErrorCode::Unsupported});
     }
     context->info.is_usable = true;
     context->traits.has_extended_storage_formats = enabled.core.shaderStorageImageExtendedFormats == VK_TRUE;

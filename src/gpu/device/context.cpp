@@ -68,6 +68,30 @@ std::string result_name(VkResult result) {
     }
 }
 
+namespace {
+
+/// What a host may do about it.
+ErrorCode code_of(VkResult result) {
+    switch (result) {
+        case VK_ERROR_DEVICE_LOST:
+            return ErrorCode::DeviceLost;
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+        case VK_ERROR_OUT_OF_POOL_MEMORY:
+            return ErrorCode::OutOfMemory;
+        case VK_ERROR_LAYER_NOT_PRESENT:
+        case VK_ERROR_EXTENSION_NOT_PRESENT:
+        case VK_ERROR_FEATURE_NOT_PRESENT:
+        case VK_ERROR_FORMAT_NOT_SUPPORTED:
+        case VK_ERROR_INCOMPATIBLE_DRIVER:
+            return ErrorCode::Unsupported;
+        default:
+            return ErrorCode::Other;
+    }
+}
+
+}  // namespace
+
 Context::Context() = default;
 
 Context::~Context() {
@@ -95,7 +119,7 @@ void Context::say(Severity severity, std::string_view text) const {
 
 Result<> Context::check(VkResult result, std::string_view what) const {
     if (result == VK_SUCCESS) return {};
-    return machine_error(fmt::format("{} failed: {}", what, result_name(result)));
+    return machine_error(fmt::format("{} failed: {}", what, result_name(result)), code_of(result));
 }
 
 VkFormatFeatureFlags Context::features_of(VkFormat format) const {

@@ -73,7 +73,7 @@ Result<> check_extensions(std::span<const char* const> wanted, const auto& has, 
     for (const char* const name : wanted)
         if (!has(name)) missing.emplace_back(name);
     if (missing.empty()) return {};
-    return machine_error(fmt::format("{} lacks {}", who, fmt::join(missing, ", ")));
+    return machine_error(fmt::format("{} lacks {}", who, fmt::join(missing, ", ")), ErrorCode::Unsupported);
 }
 
 Result<> create_instance(Context& context, bool validate, std::span<const char* const> wanted = {}) {
@@ -85,12 +85,14 @@ Result<> create_instance(Context& context, bool validate, std::span<const char* 
     vk.EnumerateInstanceVersion(&loader_version);
     if (loader_version < VK_API_VERSION_1_2) {
         return machine_error(fmt::format("the Vulkan loader is of version {}; 1.2 or later is needed",
-                                         gpu::version_text(loader_version)));
+                                         gpu::version_text(loader_version)),
+                             ErrorCode::Unsupported);
     }
     if (validate && !has_layer(vk, validation_layer)) {
         return machine_error(
             fmt::format("validation was asked for, but the layer {} is not installed (package vulkan-validationlayers)",
-                        validation_layer));
+                        validation_layer),
+            ErrorCode::Unsupported);
     }
     // The layer brings the extension with it where the loader has none of its own.
     context.traits.has_debug_labels =
@@ -184,7 +186,8 @@ Result<Candidate> choose(std::span<const Candidate> candidates, const std::strin
     const Candidate& chosen = candidates[*place];
     if (!chosen.info.is_usable) {
         return machine_error(
-            fmt::format("device {} \"{}\": {}", chosen.info.index, chosen.info.name, chosen.info.reason));
+            fmt::format("device {} \"{}\": {}", chosen.info.index, chosen.info.name, chosen.info.reason),
+            ErrorCode::Unsupported);
     }
     return chosen;
 }

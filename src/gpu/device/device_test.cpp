@@ -150,6 +150,14 @@ TEST(GpuContext, ErrorsNameTheResult) {
     ASSERT_FALSE(lost);
     EXPECT_EQ(lost.error().text, "submitting failed: VK_ERROR_DEVICE_LOST");
     EXPECT_EQ(lost.error().fault, Fault::Machine);
+    EXPECT_EQ(lost.error().code, ErrorCode::DeviceLost);
+    for (const VkResult result :
+         {VK_ERROR_OUT_OF_HOST_MEMORY, VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_OUT_OF_POOL_MEMORY})
+        EXPECT_EQ(gpu::test::context().check(result, "allocating").error().code, ErrorCode::OutOfMemory);
+    for (const VkResult result : {VK_ERROR_FEATURE_NOT_PRESENT, VK_ERROR_EXTENSION_NOT_PRESENT,
+                                  VK_ERROR_INCOMPATIBLE_DRIVER, VK_ERROR_FORMAT_NOT_SUPPORTED})
+        EXPECT_EQ(gpu::test::context().check(result, "creating").error().code, ErrorCode::Unsupported);
+    EXPECT_EQ(gpu::test::context().check(VK_ERROR_UNKNOWN, "creating").error().code, ErrorCode::Other);
 }
 
 TEST(GpuTimers, MeasureWithoutWaiting) {

@@ -22,7 +22,7 @@ class Loader {
     }
     [[nodiscard]] Result<> result() const {
         if (missing_.empty()) return {};
-        return machine_error("the Vulkan driver lacks the functions " + missing_);
+        return machine_error("the Vulkan driver lacks the functions " + missing_, ErrorCode::Unsupported);
     }
 
   private:

@@ -12,11 +12,13 @@ Result<PFN_vkGetInstanceProcAddr> open_vulkan_loader(const char* library) {
     if (handle == nullptr) {
         const char* const reason = ::dlerror();
         return machine_error(
-            fmt::format("no Vulkan loader: {}", reason == nullptr ? std::string_view(library) : reason));
+            fmt::format("no Vulkan loader: {}", reason == nullptr ? std::string_view(library) : reason),
+            ErrorCode::Unsupported);
     }
     const auto function = reinterpret_cast<PFN_vkGetInstanceProcAddr>(::dlsym(handle, "vkGetInstanceProcAddr"));
     if (function == nullptr) {
-        return machine_error(fmt::format("no Vulkan loader: {} has no vkGetInstanceProcAddr", library));
+        return machine_error(fmt::format("no Vulkan loader: {} has no vkGetInstanceProcAddr", library),
+                             ErrorCode::Unsupported);
     }
     return function;
 }

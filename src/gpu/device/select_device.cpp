@@ -33,7 +33,7 @@ std::string names_of(std::span<const DeviceInfo> infos) {
 }  // namespace
 
 Result<std::size_t> select_device(std::span<const DeviceInfo> infos, const std::string& select) {
-    if (infos.empty()) return machine_error("no Vulkan device: the loader found no driver");
+    if (infos.empty()) return machine_error("no Vulkan device: the loader found no driver", ErrorCode::Unsupported);
     const std::optional<std::uint32_t> index = as_index(select);
     const auto place = [&](auto found) { return static_cast<std::size_t>(found - infos.begin()); };
     if (index) {
