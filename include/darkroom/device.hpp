@@ -55,15 +55,33 @@ struct DeviceDesc {
     std::span<const char*const> instance_extensions{}, device_extensions{};
 };
 
+/// A piece of device memory that the library needs.
+struct DeviceMemoryRequest {
+    VkDeviceSize size = 0, alignment = 1;
+    std::uint32_t memory_type = 0;  ///< the best one that will do; after an error the library asks for the next
+    bool is_mapped = false;         ///< the type is host-visible and coherent; DeviceMemory::mapped has to be set
+    /// The one image or buffer that it is for, which may have memory of its own (VkMemoryDedicatedAllocateInfo); both
+    /// null where several share it.
+    VkImage image = VK_NULL_HANDLE;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    bool prefers_dedicated = false, requires_dedicated = false;  ///< VkMemoryDedicatedRequirements
+};
+
+/// A piece of device memory that a host gives: a range of an allocation, which may hold others.
+struct DeviceMemory {
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkDeviceSize offset = 0;  ///< a multiple of the alignment that was asked for
+    void* mapped = nullptr;   ///< where `offset` is, until the piece is freed
+    void* owner = nullptr;    ///< the host's own, such as a VmaAllocation
+};
+
 /// Who gives the library its device memory: a few large pieces for images, one for each buffer. Both functions or none.
 /// They are called by whoever compiles, edits or destroys, from several threads where several do, and by the library's
 /// own threads that build kernels; never by record(). `user` is handed to both.
 struct DeviceMemoryHooks {
-    /// As vkAllocateMemory: memory of its own, of the size and type that `info` says, which nobody else maps, since the
-    /// library maps host-visible memory whole and for good. An error makes it try its next best type.
-    VkResult (*allocate)(void* user, VkDevice device, const VkMemoryAllocateInfo* info,
-                         VkDeviceMemory* memory) = nullptr;
-    void (*free)(void* user, VkDevice device, VkDeviceMemory memory) = nullptr;
+    VkResult (*allocate)(void* user, VkDevice device, const DeviceMemoryRequest* request,
+                         DeviceMemory* memory) = nullptr;
+    void (*free)(void* user, VkDevice device, const DeviceMemory* memory) = nullptr;
     void* user = nullptr;
 };
 

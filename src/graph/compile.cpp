@@ -285,6 +285,7 @@ class Compiler {
             auto measured = measure(slot.desc, slot.usage, largest_);
             if (!measured) return failure(std::move(measured));
             solution_->memory_type_bits &= measured->memory_type_bits;
+            solution_->memory_alignment = std::max(solution_->memory_alignment, measured->alignment);
             if (solution_->memory_type_bits == 0) {
                 return machine_error(
                     fmt::format("image '{}' accepts the memory types {:#x}: none of them suits the other "
@@ -348,6 +349,7 @@ VkDeviceSize Compiled::transient_bytes() const { return solution_->transient_byt
 VkDeviceSize Compiled::transient_bytes_unaliased() const { return solution_->transient_bytes_unaliased; }
 VkDeviceSize Compiled::buffer_bytes() const { return solution_->buffer_bytes; }
 std::uint32_t Compiled::memory_type_bits() const { return solution_->memory_type_bits; }
+VkDeviceSize Compiled::memory_alignment() const { return solution_->memory_alignment; }
 std::uint32_t Compiled::kept_pass_of(PassId declared) const {
     return declared.index < solution_->kept_pass.size() ? solution_->kept_pass[declared.index] : none;
 }

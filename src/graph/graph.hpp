@@ -246,6 +246,7 @@ class Compiled {
     [[nodiscard]] VkDeviceSize transient_bytes_unaliased() const;  ///< the sum of the transient images
     [[nodiscard]] VkDeviceSize buffer_bytes() const;               ///< of all transient buffers
     [[nodiscard]] std::uint32_t memory_type_bits() const;          ///< what all transients accept
+    [[nodiscard]] VkDeviceSize memory_alignment() const;           ///< what suits all of them
     [[nodiscard]] std::uint32_t kept_pass_of(PassId declared) const;  ///< ~0u if culled
     /// The versions that a kept pass makes, one for each of its writes.
     [[nodiscard]] std::span<const Version> made(std::uint32_t pass) const;

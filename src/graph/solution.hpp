@@ -132,6 +132,7 @@ struct Solution {
     VkDeviceSize transient_bytes_unaliased = 0;
     VkDeviceSize buffer_bytes = 0;
     std::uint32_t memory_type_bits = none;
+    VkDeviceSize memory_alignment = 1;
 
     [[nodiscard]] const Image& image_of(std::uint32_t version) const { return images[versions[version].image]; }
 };

@@ -312,21 +312,33 @@ TEST(GpuAdopt, EveryObjectIsMadeAndDestroyedWithTheHostsAllocator) {
 
 /// Device memory that a host hands out.
 struct Pool {
-    static VkResult allocate(void* user, VkDevice device, const VkMemoryAllocateInfo* info, VkDeviceMemory* memory) {
+    static VkResult allocate(void* user, VkDevice device, const DeviceMemoryRequest* request, DeviceMemory* memory) {
         auto& self = *static_cast<Pool*>(user);
+        const Dispatch& vk = gpu::test::context().vk;
         ++self.asked;
         if (self.is_exhausted) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-        const VkResult result = gpu::test::context().vk.AllocateMemory(device, info, nullptr, memory);
-        if (result == VK_SUCCESS) self.live.insert(*memory);
-        return result;
+        const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                        .allocationSize = self.offset + request->size,
+                                        .memoryTypeIndex = request->memory_type};
+        if (const VkResult result = vk.AllocateMemory(device, &info, nullptr, &memory->memory); result != VK_SUCCESS)
+            return result;
+        self.live.insert(memory->memory);
+        memory->offset = self.offset;
+        memory->owner = user;
+        return request->is_mapped && self.maps
+                   ? vk.MapMemory(device, memory->memory, self.offset, request->size, 0, &memory->mapped)
+                   : VK_SUCCESS;
     }
-    static void free(void* user, VkDevice device, VkDeviceMemory memory) {
-        static_cast<Pool*>(user)->live.erase(memory);
-        gpu::test::context().vk.FreeMemory(device, memory, nullptr);
+    static void free(void* user, VkDevice device, const DeviceMemory* memory) {
+        EXPECT_EQ(memory->owner, user);
+        static_cast<Pool*>(user)->live.erase(memory->memory);
+        gpu::test::context().vk.FreeMemory(device, memory->memory, nullptr);
     }
     std::set<VkDeviceMemory> live;
     int asked = 0;
     bool is_exhausted = false;
+    bool maps = true;
+    VkDeviceSize offset = 0;
 };
 
 TEST(GpuAdopt, DeviceMemoryComesFromTheHostsHooksAlone) {
@@ -350,12 +362,26 @@ TEST(GpuAdopt, DeviceMemoryComesFromTheHostsHooksAlone) {
         EXPECT_EQ(pool.live.size(), 2U);
     }
     EXPECT_TRUE(pool.live.empty());
+    const auto refused_upload = [&] {
+        const auto buffer =
+            gpu::Buffer::create(context, 64, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "test");
+        EXPECT_FALSE(buffer);
+        EXPECT_TRUE(pool.live.empty());
+        return buffer ? "" : buffer.error().text;
+    };
+    pool.maps = false;
+    EXPECT_TRUE(has(refused_upload(), "the buffer \"test\": the host's memory.allocate gave memory not mapped"));
+    pool.maps = true;
+    pool.offset = 1;
+    EXPECT_TRUE(has(refused_upload(), "gave memory at 1, which is no multiple of "));
+    pool.offset = 0;
     pool.is_exhausted = true;
     const int asked = pool.asked;
     const Result<gpu::Image> refused = gpu::Image::create(context, info);
     ASSERT_FALSE(refused);
     EXPECT_TRUE(has(refused.error().text, "of memory for the image \"test\" failed: VK_ERROR_OUT_OF_DEVICE_MEMORY"))
         << refused.error().text;
+    EXPECT_EQ(refused.error().code, ErrorCode::OutOfMemory);
     EXPECT_GT(pool.asked, asked);
 }
 

@@ -143,19 +143,42 @@ bool Context::is_filterable(VkFormat format) const {
     return supports(format, VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT);
 }
 
-Result<> Context::allocate_memory(const VkMemoryAllocateInfo& request, std::string_view what,
-                                  VkDeviceMemory& out) const {
-    const VkResult result = memory_hooks.allocate != nullptr
-                                ? memory_hooks.allocate(memory_hooks.user, device, &request, &out)
-                                : vk.AllocateMemory(device, &request, allocator, &out);
-    if (result == VK_SUCCESS) return {};
-    out = VK_NULL_HANDLE;
-    return check(result, fmt::format("allocating {} bytes of memory for {}", request.allocationSize, what));
+Result<> Context::allocate_memory(const DeviceMemoryRequest& request, std::string_view what, DeviceMemory& out) const {
+    const std::string place = fmt::format("allocating {} bytes of memory for {}", request.size, what);
+    if (memory_hooks.allocate == nullptr) return allocate_own(request, place, out);
+    if (auto ok = check(memory_hooks.allocate(memory_hooks.user, device, &request, &out), place); !ok) {
+        out = {};
+        return ok;
+    }
+    const bool is_aligned = out.offset % std::max<VkDeviceSize>(request.alignment, 1) == 0;
+    if (is_aligned && (out.mapped != nullptr || !request.is_mapped)) return {};
+    const std::string given =
+        is_aligned ? "not mapped" : fmt::format("at {}, which is no multiple of {}", out.offset, request.alignment);
+    free_memory(out);
+    out = {};
+    return user_error(fmt::format("{}: the host's memory.allocate gave memory {}", place, given));
 }
 
-void Context::free_memory(VkDeviceMemory handle) const {
-    if (memory_hooks.free != nullptr) return memory_hooks.free(memory_hooks.user, device, handle);
-    vk.FreeMemory(device, handle, allocator);
+Result<> Context::allocate_own(const DeviceMemoryRequest& request, const std::string& what, DeviceMemory& out) const {
+    const VkMemoryDedicatedAllocateInfo dedicated{
+        .sType = VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO, .image = request.image, .buffer = request.buffer};
+    const bool is_dedicated = request.prefers_dedicated || request.requires_dedicated;
+    const VkMemoryAllocateInfo create_info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                           .pNext = is_dedicated ? &dedicated : nullptr,
+                                           .allocationSize = request.size,
+                                           .memoryTypeIndex = request.memory_type};
+    Result<> done = check(vk.AllocateMemory(device, &create_info, allocator, &out.memory), what);
+    if (done && request.is_mapped) {
+        done = check(vk.MapMemory(device, out.memory, 0, VK_WHOLE_SIZE, 0, &out.mapped), what + ", mapping it");
+        if (!done) vk.FreeMemory(device, out.memory, allocator);
+    }
+    if (!done) out = {};
+    return done;
+}
+
+void Context::free_memory(const DeviceMemory& piece) const {
+    if (memory_hooks.free != nullptr) return memory_hooks.free(memory_hooks.user, device, &piece);
+    vk.FreeMemory(device, piece.memory, allocator);
 }
 
 Result<> Context::finish() {

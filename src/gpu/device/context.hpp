@@ -95,8 +95,8 @@ class Context {
     [[nodiscard]] bool is_filterable(VkFormat format) const;
 
     /// From the host's hooks or the driver; `what` is for the error.
-    [[nodiscard]] Result<> allocate_memory(const VkMemoryAllocateInfo&, std::string_view what, VkDeviceMemory&) const;
-    void free_memory(VkDeviceMemory handle) const;
+    [[nodiscard]] Result<> allocate_memory(const DeviceMemoryRequest&, std::string_view what, DeviceMemory&) const;
+    void free_memory(const DeviceMemory& piece) const;
 
     /// Writes the pipeline cache to its file if pipelines have been made since it was read or written: after a compile,
     /// from any thread. Costs a comparison where nothing is new. Of several processes the last one's file stays.
@@ -107,6 +107,7 @@ class Context {
     [[nodiscard]] Result<> finish();
 
   private:
+    [[nodiscard]] Result<> allocate_own(const DeviceMemoryRequest&, const std::string& what, DeviceMemory&) const;
     [[nodiscard]] Result<> create_samplers();
     [[nodiscard]] Result<> create_pipeline_cache();
     [[nodiscard]] std::filesystem::path pipeline_cache_path() const;

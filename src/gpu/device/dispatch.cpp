@@ -64,11 +64,11 @@ void load_device_functions(Dispatch& table, Load& load) {
     load(table.MapMemory, "vkMapMemory");
     load(table.CreateBuffer, "vkCreateBuffer");
     load(table.DestroyBuffer, "vkDestroyBuffer");
-    load(table.GetBufferMemoryRequirements, "vkGetBufferMemoryRequirements");
+    load(table.GetBufferMemoryRequirements2, "vkGetBufferMemoryRequirements2");
     load(table.BindBufferMemory, "vkBindBufferMemory");
     load(table.CreateImage, "vkCreateImage");
     load(table.DestroyImage, "vkDestroyImage");
-    load(table.GetImageMemoryRequirements, "vkGetImageMemoryRequirements");
+    load(table.GetImageMemoryRequirements2, "vkGetImageMemoryRequirements2");
     load(table.BindImageMemory, "vkBindImageMemory");
     load(table.CreateImageView, "vkCreateImageView");
     load(table.DestroyImageView, "vkDestroyImageView");

@@ -54,11 +54,11 @@ struct Dispatch {
     PFN_vkMapMemory MapMemory = nullptr;
     PFN_vkCreateBuffer CreateBuffer = nullptr;
     PFN_vkDestroyBuffer DestroyBuffer = nullptr;
-    PFN_vkGetBufferMemoryRequirements GetBufferMemoryRequirements = nullptr;
+    PFN_vkGetBufferMemoryRequirements2 GetBufferMemoryRequirements2 = nullptr;
     PFN_vkBindBufferMemory BindBufferMemory = nullptr;
     PFN_vkCreateImage CreateImage = nullptr;
     PFN_vkDestroyImage DestroyImage = nullptr;
-    PFN_vkGetImageMemoryRequirements GetImageMemoryRequirements = nullptr;
+    PFN_vkGetImageMemoryRequirements2 GetImageMemoryRequirements2 = nullptr;
     PFN_vkBindImageMemory BindImageMemory = nullptr;
     PFN_vkCreateImageView CreateImageView = nullptr;
     PFN_vkDestroyImageView DestroyImageView = nullptr;

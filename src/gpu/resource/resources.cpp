@@ -46,10 +46,43 @@ Result<VkImage> create_image(Context& context, const ImageInfo& info) {
     return image;
 }
 
-VkMemoryRequirements requirements_of(const Context& context, VkImage image) {
-    VkMemoryRequirements requirements{};
-    context.vk.GetImageMemoryRequirements(context.device, image, &requirements);
-    return requirements;
+/// What an image or a buffer asks of its memory.
+struct Needed {
+    DeviceMemoryRequest request;
+    std::uint32_t type_bits = 0;
+};
+
+struct Requirements {
+    VkMemoryDedicatedRequirements dedicated{.sType = VK_STRUCTURE_TYPE_MEMORY_DEDICATED_REQUIREMENTS};
+    VkMemoryRequirements2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, .pNext = &dedicated};
+    [[nodiscard]] Needed needed() const {
+        const VkMemoryRequirements& plain = all.memoryRequirements;
+        return {.request = {.size = plain.size,
+                            .alignment = plain.alignment,
+                            .prefers_dedicated = dedicated.prefersDedicatedAllocation == VK_TRUE,
+                            .requires_dedicated = dedicated.requiresDedicatedAllocation == VK_TRUE},
+                .type_bits = plain.memoryTypeBits};
+    }
+};
+
+Needed needed_by(const Context& context, VkImage image) {
+    const VkImageMemoryRequirementsInfo2 info{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_REQUIREMENTS_INFO_2,
+                                              .image = image};
+    Requirements asked;
+    context.vk.GetImageMemoryRequirements2(context.device, &info, &asked.all);
+    Needed out = asked.needed();
+    out.request.image = image;
+    return out;
+}
+
+Needed needed_by(const Context& context, VkBuffer buffer) {
+    const VkBufferMemoryRequirementsInfo2 info{.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_REQUIREMENTS_INFO_2,
+                                               .buffer = buffer};
+    Requirements asked;
+    context.vk.GetBufferMemoryRequirements2(context.device, &info, &asked.all);
+    Needed out = asked.needed();
+    out.request.buffer = buffer;
+    return out;
 }
 
 struct ViewPart {
@@ -97,8 +130,9 @@ Result<> create_views(Context& context, Image& image) {
     return {};
 }
 
-Result<Image> bind_image(Context& context, Image image, VkDeviceMemory memory, VkDeviceSize offset) {
-    const VkResult bound = context.vk.BindImageMemory(context.device, image.handle, memory, offset);
+Result<Image> bind_image(Context& context, Image image, const DeviceMemory& piece, VkDeviceSize offset) {
+    const VkResult bound =
+        context.vk.BindImageMemory(context.device, image.handle, piece.memory, piece.offset + offset);
     Result<> result = context.check(bound, fmt::format("binding memory to the image \"{}\"", image.info.name));
     if (result) result = create_views(context, image);
     if (!result) return failure(std::move(result));
@@ -107,39 +141,34 @@ Result<Image> bind_image(Context& context, Image image, VkDeviceMemory memory, V
 
 }  // namespace
 
-Result<Memory> Memory::create(Context& context, VkDeviceSize size, std::uint32_t type_bits, Kind kind,
+Result<Memory> Memory::create(Context& context, DeviceMemoryRequest wanted, std::uint32_t type_bits, Kind kind,
                               std::string_view what) {
     Memory memory;
     Result<> allocated = machine_error(fmt::format("no type of the device's memory will do for {}", what));
+    wanted.is_mapped = kind != Kind::Device;
     // A full heap is no reason to fail while another type would do.
     for (const std::uint32_t type : memory_types_for(context.memory, type_bits, kind)) {
-        const VkMemoryAllocateInfo allocate_info{
-            .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = size, .memoryTypeIndex = type};
-        allocated = context.allocate_memory(allocate_info, what, memory.handle);
+        wanted.memory_type = type;
+        allocated = context.allocate_memory(wanted, what, memory.piece);
         if (allocated) break;
     }
     if (!allocated) return failure(std::move(allocated));
     memory.context = &context;
-    memory.size = size;
-    if (kind == Kind::Device) return memory;
-    void* mapped = nullptr;
-    Result<> checked = context.check(context.vk.MapMemory(context.device, memory.handle, 0, VK_WHOLE_SIZE, 0, &mapped),
-                                     fmt::format("mapping the memory of {}", what));
-    if (!checked) return failure(std::move(checked));
-    memory.mapped = static_cast<std::byte*>(mapped);
+    memory.size = wanted.size;
+    memory.mapped = static_cast<std::byte*>(memory.piece.mapped);
     return memory;
 }
 
 Memory::Memory(Memory&& other) noexcept { *this = std::move(other); }
 Memory& Memory::operator=(Memory&& other) noexcept {
-    std::swap(handle, other.handle);
+    std::swap(piece, other.piece);
     std::swap(mapped, other.mapped);
     std::swap(size, other.size);
     std::swap(context, other.context);
     return *this;
 }
 Memory::~Memory() {
-    if (handle != VK_NULL_HANDLE) context->free_memory(handle);
+    if (piece.memory != VK_NULL_HANDLE) context->free_memory(piece);
 }
 
 Result<Image> Image::create(Context& context, const ImageInfo& info) {
@@ -149,13 +178,13 @@ Result<Image> Image::create(Context& context, const ImageInfo& info) {
     image.context = &context;
     image.handle = *handle;
     image.info = info;
-    const VkMemoryRequirements needed = requirements_of(context, image.handle);
-    Result<Memory> memory = Memory::create(context, needed.size, needed.memoryTypeBits, Memory::Kind::Device,
+    const Needed needed = needed_by(context, image.handle);
+    Result<Memory> memory = Memory::create(context, needed.request, needed.type_bits, Memory::Kind::Device,
                                            fmt::format("the image \"{}\"", info.name));
     if (!memory) return failure(std::move(memory));
     image.memory = std::move(*memory);
-    const VkDeviceMemory bound_memory = image.memory.handle;
-    return bind_image(context, std::move(image), bound_memory, 0);
+    const DeviceMemory piece = image.memory.piece;
+    return bind_image(context, std::move(image), piece, 0);
 }
 
 Result<Image> Image::place(Context& context, const ImageInfo& info, const Memory& memory, VkDeviceSize offset) {
@@ -165,16 +194,48 @@ Result<Image> Image::place(Context& context, const ImageInfo& info, const Memory
     image.context = &context;
     image.handle = *handle;
     image.info = info;
-    return bind_image(context, std::move(image), memory.handle, offset);
+    return bind_image(context, std::move(image), memory.piece, offset);
+}
+
+Result<std::vector<Image>> Image::create_together(Context& context, std::span<const ImageInfo> infos,
+                                                  std::string_view what, Memory& memory) {
+    std::vector<Image> out;
+    std::vector<VkDeviceSize> offsets;
+    DeviceMemoryRequest all;
+    std::uint32_t type_bits = ~0u;
+    for (const ImageInfo& info : infos) {
+        Result<VkImage> handle = create_image(context, info);
+        if (!handle) return failure(std::move(handle));
+        Image& image = out.emplace_back();
+        image.context = &context;
+        image.handle = *handle;
+        image.info = info;
+        const Needed needed = needed_by(context, image.handle);
+        const VkDeviceSize alignment = std::max<VkDeviceSize>(needed.request.alignment, 1);
+        offsets.push_back((all.size + alignment - 1) / alignment * alignment);
+        all.size = offsets.back() + needed.request.size;
+        all.alignment = std::max(all.alignment, alignment);
+        type_bits &= needed.type_bits;
+    }
+    if (out.empty()) return out;
+    Result<Memory> made = Memory::create(context, all, type_bits, Memory::Kind::Device, what);
+    if (!made) return failure(std::move(made));
+    memory = std::move(*made);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        Result<Image> bound = bind_image(context, std::move(out[i]), memory.piece, offsets[i]);
+        if (!bound) return failure(std::move(bound));
+        out[i] = std::move(*bound);
+    }
+    return out;
 }
 
 Result<VkMemoryRequirements> Image::measure(Context& context, const ImageInfo& info) {
     if (context.is_assumed || context.compiles_only) return assumed_requirements(info);
     const Result<VkImage> handle = create_image(context, info);
     if (!handle) return failure(handle.error());
-    const VkMemoryRequirements requirements = requirements_of(context, *handle);
+    const Needed needed = needed_by(context, *handle);
     context.vk.DestroyImage(context.device, *handle, context.allocator);
-    return requirements;
+    return VkMemoryRequirements{needed.request.size, needed.request.alignment, needed.type_bits};
 }
 
 Image::Image(Image&& other) noexcept { *this = std::move(other); }
@@ -213,13 +274,13 @@ Result<Buffer> Buffer::create(Context& context, VkDeviceSize size, VkBufferUsage
     if (!checked) return failure(std::move(checked));
     buffer.context = &context;
     name_object(context, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.handle), std::string(name));
-    VkMemoryRequirements needed{};
-    context.vk.GetBufferMemoryRequirements(context.device, buffer.handle, &needed);
+    const Needed needed = needed_by(context, buffer.handle);
     Result<Memory> memory =
-        Memory::create(context, needed.size, needed.memoryTypeBits, kind, fmt::format("the buffer \"{}\"", name));
+        Memory::create(context, needed.request, needed.type_bits, kind, fmt::format("the buffer \"{}\"", name));
     if (!memory) return failure(std::move(memory));
     buffer.memory = std::move(*memory);
-    const VkResult bound = context.vk.BindBufferMemory(context.device, buffer.handle, buffer.memory.handle, 0);
+    const VkResult bound = context.vk.BindBufferMemory(context.device, buffer.handle, buffer.memory.piece.memory,
+                                                       buffer.memory.piece.offset);
     checked = context.check(bound, fmt::format("binding memory to the buffer \"{}\"", name));
     if (!checked) return failure(std::move(checked));
     return buffer;

@@ -24,12 +24,13 @@ class Memory {
   public:
     using Kind = MemoryKind;
     Memory() = default;
-    [[nodiscard]] static Result<Memory> create(Context&, VkDeviceSize size, std::uint32_t type_bits, Kind,
+    /// One of `type_bits`; size, alignment and what it is for are those of `wanted`.
+    [[nodiscard]] static Result<Memory> create(Context&, DeviceMemoryRequest wanted, std::uint32_t type_bits, Kind,
                                                std::string_view what);
     Memory(Memory&&) noexcept;
     Memory& operator=(Memory&&) noexcept;
     ~Memory();
-    VkDeviceMemory handle = VK_NULL_HANDLE;
+    DeviceMemory piece{};
     std::byte* mapped = nullptr;  ///< all but Kind::Device: persistently mapped, coherent
     VkDeviceSize size = 0;
     Context* context = nullptr;
@@ -54,6 +55,9 @@ class Image {
     [[nodiscard]] static Result<Image> create(Context&, const ImageInfo&);
     /// Placed: the memory must outlive the image.
     [[nodiscard]] static Result<Image> place(Context&, const ImageInfo&, const Memory&, VkDeviceSize offset);
+    /// All of them side by side in one piece, which is then `memory`.
+    [[nodiscard]] static Result<std::vector<Image>> create_together(Context&, std::span<const ImageInfo>,
+                                                                    std::string_view what, Memory& memory);
     [[nodiscard]] static Result<VkMemoryRequirements> measure(Context&, const ImageInfo&);
     Image(Image&&) noexcept;
     Image& operator=(Image&&) noexcept;

@@ -46,14 +46,16 @@ VkResult map_memory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset,
     return state.real.MapMemory(device, memory, offset, size, flags, data);
 }
 
-void get_image_requirements(VkDevice device, VkImage image, VkMemoryRequirements* requirements) {
-    smallest().real.GetImageMemoryRequirements(device, image, requirements);
-    requirements->memoryTypeBits = 1U << smallest_device_type;
+void get_image_requirements(VkDevice device, const VkImageMemoryRequirementsInfo2* image,
+                            VkMemoryRequirements2* requirements) {
+    smallest().real.GetImageMemoryRequirements2(device, image, requirements);
+    requirements->memoryRequirements.memoryTypeBits = 1U << smallest_device_type;
 }
 
-void get_buffer_requirements(VkDevice device, VkBuffer buffer, VkMemoryRequirements* requirements) {
-    smallest().real.GetBufferMemoryRequirements(device, buffer, requirements);
-    requirements->memoryTypeBits = 1U << smallest_device_type | 1U << smallest_host_type;
+void get_buffer_requirements(VkDevice device, const VkBufferMemoryRequirementsInfo2* buffer,
+                             VkMemoryRequirements2* requirements) {
+    smallest().real.GetBufferMemoryRequirements2(device, buffer, requirements);
+    requirements->memoryRequirements.memoryTypeBits = 1U << smallest_device_type | 1U << smallest_host_type;
 }
 
 VkResult bind_image(VkDevice device, VkImage image, VkDeviceMemory memory, VkDeviceSize offset) {
@@ -196,8 +198,8 @@ void replace_resources(Replacements& functions) {
     functions["vkAllocateMemory"] = as_void(allocate_memory);
     functions["vkFreeMemory"] = as_void(forget<&SmallestState::memories, &Dispatch::FreeMemory, VkDeviceMemory>);
     functions["vkMapMemory"] = as_void(map_memory);
-    functions["vkGetImageMemoryRequirements"] = as_void(get_image_requirements);
-    functions["vkGetBufferMemoryRequirements"] = as_void(get_buffer_requirements);
+    functions["vkGetImageMemoryRequirements2"] = as_void(get_image_requirements);
+    functions["vkGetBufferMemoryRequirements2"] = as_void(get_buffer_requirements);
     functions["vkBindImageMemory"] = as_void(bind_image);
     functions["vkBindBufferMemory"] = as_void(bind_buffer);
     functions["vkCreateBuffer"] = as_void(create_buffer);

@@ -235,9 +235,9 @@ TEST_F(GpuSmallestDevice, RefusesMemory) {
                                                            .format = VK_FORMAT_R8G8B8A8_UNORM,
                                                            .extent = {1, 1, 1},
                                                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT}));
-    expect_refused(vk.BindImageMemory(context.device, image.handle, buffer.memory.handle, 0),
+    expect_refused(vk.BindImageMemory(context.device, image.handle, buffer.memory.piece.memory, 0),
                    "an image beside a buffer, within bufferImageGranularity");
-    expect_refused(vk.BindBufferMemory(context.device, buffer.handle, image.memory.handle, 0),
+    expect_refused(vk.BindBufferMemory(context.device, buffer.handle, image.memory.piece.memory, 0),
                    "a buffer beside an image, within bufferImageGranularity");
     info.memoryTypeIndex = test::smallest_host_type;
     VkDeviceMemory host = VK_NULL_HANDLE;

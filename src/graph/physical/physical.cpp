@@ -72,8 +72,9 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
     physical.recorder_ = pool.next_recorder();
     for (std::uint32_t index = 0; index < std::max(views, 1u); ++index) physical.views_.push_back(pool.view(index));
     if (compiled.transient_bytes() > 0) {
-        auto memory = gpu::Memory::create(context, compiled.transient_bytes(), compiled.memory_type_bits(),
-                                          gpu::Memory::Kind::Device, "transient images");
+        auto memory =
+            gpu::Memory::create(context, {.size = compiled.transient_bytes(), .alignment = compiled.memory_alignment()},
+                                compiled.memory_type_bits(), gpu::Memory::Kind::Device, "transient images");
         if (!memory) return failure(std::move(memory));
         physical.memory_ = std::move(*memory);
     }
