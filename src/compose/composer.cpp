@@ -71,7 +71,7 @@ Result<> check_together(const plan::Entry& entry, std::span<const std::uint32_t>
 std::uint32_t next_id() {
     static std::atomic<std::uint32_t> last{0};
     std::uint32_t id = ++last;
-    while (id == 0 || id >= scene_alpha.id) id = ++last;
+    while (id == 0 || id >= ui_layer.id) id = ++last;
     return id;
 }
 

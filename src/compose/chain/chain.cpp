@@ -35,8 +35,12 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     program.most_unfinished = std::max(program.most_unfinished, desc_.slots);
     slot_ = static_cast<std::uint32_t>(recordings_ % desc_.slots);
     has_missing_kernel_ = false;
-    tables_.upload(commands, recordings_);
-    lit_.upload(commands, recordings_);
+    program.tables->upload(commands, program.recordings);
+    program.lit.upload(commands, program.recordings);
+    if (Garbage* const staging = program.tables->take_staging(program.recordings, program.most_unfinished)) {
+        worker_.discard(*staging);
+        worker_.wake();
+    }
     values_.evaluate(program_of(), desc_.compile, entries_, context, frame.target.used_region().extent, watched_);
     note_watch_states();
     write_frame_block(frame);
@@ -75,8 +79,8 @@ bool Chain::abandon() {
     is_abandonable_ = false;
     --recordings_;
     --desc_.program->recordings;
-    tables_.take_back(recordings_);
-    lit_.take_back(recordings_);
+    desc_.program->tables->take_back(desc_.program->recordings);
+    desc_.program->lit.take_back(desc_.program->recordings);
     physical_->histories(before_.view_index) = before_.view;
     for (std::uint32_t i = 0; i < before_.states.size(); ++i)
         if (graph::HistoryImages* const history = physical_->history(i, before_.view_index))
@@ -92,7 +96,7 @@ const ImageRef& Chain::image_of(const Frame& frame, HostImage which) const {
     }
     if (which.kind != HostImage::Kind::Shadow) return host_image(frame, which);
     const Light* const light = shadow_light(frame.lights, which.number);
-    return light != nullptr ? light->cascades : lit_.reference;
+    return light != nullptr ? light->cascades : desc_.program->lit.reference;
 }
 
 void Chain::write_frame_block(const Frame& frame) {
@@ -111,12 +115,13 @@ void Chain::lend_images(const Frame& frame) {
     for (std::size_t i = 0; i < program_of().imports.size(); ++i) {
         if (!program_of().imports[i]) continue;
         const ImageRef& image = image_of(frame, *program_of().imports[i]);
-        import_states_[i] = {.layout = image.layout,
-                             .stages = image.last_stages,
-                             .access = image.last_access,
-                             .final_layout = image.final_layout,
+        import_states_[i] = {
+            .layout = image.layout,
+            .stages = image.last_stages,
+            .access = image.last_access,
+            .final_layout = image.final_layout,
                              .final_stages = image.final_stages,
-                             .final_access = image.final_access};
+            .final_access = image.final_access};
         physical_->bind(static_cast<std::uint32_t>(i), {.handle = image.image,
                                                         .view = image.view,
                                                         .base_mip_level = image.mip_level,
@@ -209,7 +214,7 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
     if (image.kind == graph::Slot::Kind::Constant) {
         const auto& fixed = program_of().fixed_images;
         const auto found = std::ranges::find(fixed, image.import_index, &FixedImage::import_index);
-        return tables_.binding(static_cast<std::size_t>(found - fixed.begin()));
+        return desc_.program->tables->binding(static_cast<std::size_t>(found - fixed.begin()));
     }
     const std::uint32_t mip = std::min(mip_level, image.desc.mip_levels - 1);
     return {.view = physical_->mip_view(slot, mip, frame.view),
@@ -220,7 +225,7 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
 }
 
 gpu::Binding Chain::bind(const PassInput& input, const Frame& frame) const {
-    if (input.table != plan::no_table) return tables_.binding(input.table);
+    if (input.table != plan::no_table) return desc_.program->tables->binding(input.table);
     return bind_slot(schedule_->slot_of(input.version, input.instead), input.mip_level, frame);
 }
 

@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include "compose/chain/tables.hpp"
 #include "compose/stack/stack_program.hpp"
 #include "compose/worker.hpp"
 #include "gpu/resource/resources.hpp"
@@ -94,8 +93,6 @@ class Chain final : public Garbage {
     std::optional<graph::Physical> physical_;
     std::vector<std::uint32_t> declared_pass_;  ///< kept pass -> pass of the program
 
-    Tables tables_;
-    LitShadowMap lit_;
     gpu::Buffer blocks_;  ///< for each slot the frame's block, then one a pass
     VkDeviceSize slot_stride_ = 0;
     std::vector<VkDeviceSize> block_at_;  ///< per pass: of its block, in a slot

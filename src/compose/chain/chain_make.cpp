@@ -51,17 +51,7 @@ Result<std::unique_ptr<Chain>> Chain::create(gpu::Context& context, Worker& work
     if (!compiled) return failure(std::move(compiled));
     chain->compiled_.emplace(std::move(*compiled));
     chain->schedule_.emplace(*chain->compiled_);
-    auto tables = Tables::create(context, program.fixed_images);
-    if (!tables) return failure(std::move(tables));
-    chain->tables_ = std::move(*tables);
-    const auto is_shadow_map = [](const auto& import) {
-        return import && import->kind == plan::HostImage::Kind::Shadow;
-    };
-    if (std::ranges::any_of(program.imports, is_shadow_map)) {
-        auto lit = LitShadowMap::create(context);
-        if (!lit) return failure(std::move(lit));
-        chain->lit_ = std::move(*lit);
-    }
+    if (auto ok = chain->desc_.program->make_tables(context); !ok) return failure(std::move(ok));
     if (auto ok = chain->make_kernels(values); !ok) return failure(std::move(ok));
     if (auto ok = chain->make_resources(histories); !ok) return failure(std::move(ok));
     chain->plan_ = plan::describe_program(program, *chain->compiled_, chain->desc_.compile, pointers_to(values));

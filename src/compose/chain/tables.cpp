@@ -10,33 +10,38 @@ namespace darkroom::compose {
 Result<Tables> Tables::create(gpu::Context& context, std::span<const plan::FixedImage> fixed) {
     Tables out;
     VkDeviceSize size = 0;
+    std::vector<gpu::ImageInfo> infos;
     for (const plan::FixedImage& one : fixed) {
         const TableDesc& desc = one.desc;
         const bool is_neutral = one.import_index != ~0u;
         VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT;
         // A kernel that has too many storage images samples it all the same.
         if (is_neutral || desc.is_load_only) read |= VK_IMAGE_USAGE_STORAGE_BIT;
-        const VkImageLayout layout = (read & VK_IMAGE_USAGE_STORAGE_BIT) != 0
-                                         ? VK_IMAGE_LAYOUT_GENERAL
-                                         : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-        auto image = gpu::Image::create(context, {.name = desc.name,
-                                                  .format = desc.format,
-                                                  .extent = desc.extent,
-                                                  .usage = read | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                                  .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
-        if (!image) return failure(std::move(image));
-        out.tables_.push_back({std::move(*image), size, layout, !gpu::can_filter(context, desc.format)});
+        infos.push_back({.name = desc.name,
+                         .format = desc.format,
+                         .extent = desc.extent,
+                         .usage = read | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                         .type = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D});
+        out.tables_.push_back({.offset = size,
+                               .layout = (read & VK_IMAGE_USAGE_STORAGE_BIT) != 0
+                                             ? VK_IMAGE_LAYOUT_GENERAL
+                                             : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                               .is_nearest = !gpu::can_filter(context, desc.format)});
         // Copies start at multiples of a texel's size; 16 is the largest.
         size += (desc.data.size() + 15) / 16 * 16;
     }
+    auto images = gpu::Image::create_together(context, infos, "tables of effects", out.memory_);
+    if (!images) return failure(std::move(images));
+    for (std::size_t i = 0; i < images->size(); ++i) out.tables_[i].image = std::move((*images)[i]);
     if (size == 0) return out;
     auto staging =
         gpu::Buffer::create(context, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, "tables");
     if (!staging) return failure(std::move(staging));
-    out.staging_ = std::move(*staging);
+    out.staging_ = std::make_unique<Staging>();
+    out.staging_->buffer = std::move(*staging);
     for (std::size_t i = 0; i < fixed.size(); ++i) {
         const auto& data = fixed[i].desc.data;
-        std::memcpy(out.staging_.memory.mapped + out.tables_[i].offset, data.data(), data.size());
+        std::memcpy(out.staging_->buffer.memory.mapped + out.tables_[i].offset, data.data(), data.size());
     }
     return out;
 }
@@ -65,8 +70,8 @@ void Tables::upload(VkCommandBuffer commands, std::uint64_t recording) {
         const VkBufferImageCopy copy{.bufferOffset = table.offset,
                                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                      .imageExtent = table.image.info.extent};
-        vk.CmdCopyBufferToImage(commands, staging_.handle, table.image.handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                                &copy);
+        vk.CmdCopyBufferToImage(commands, staging_->buffer.handle, table.image.handle,
+                                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
         barrier.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
         barrier.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
         barrier.dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
@@ -75,6 +80,11 @@ void Tables::upload(VkCommandBuffer commands, std::uint64_t recording) {
         barrier.newLayout = table.layout;
         vk.CmdPipelineBarrier2(commands, &dependency);
     }
+}
+
+Garbage* Tables::take_staging(std::uint64_t recording, std::uint64_t unfinished) {
+    const bool is_finished = uploaded_by_ && recording >= *uploaded_by_ + 1 + unfinished;
+    return is_finished ? staging_.release() : nullptr;
 }
 
 gpu::Binding Tables::binding(std::size_t index) const {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// The constant images of a chain: tables of effects and 1x1 neutral ones. Made at compile, uploaded by the first
+// The constant images of a program: tables of effects and 1x1 neutral ones. Made at compile, uploaded by the first
 // recording, never written again.
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "compose/atomic_stack.hpp"
 #include "gpu/resource/resources.hpp"
 #include "plan/program.hpp"
 
@@ -17,6 +19,9 @@ class Tables {
     [[nodiscard]] static Result<Tables> create(gpu::Context& context, std::span<const plan::FixedImage> images);
     /// The first time: copies and barriers. Later: nothing. `recording` is the number of the recording it is for.
     void upload(VkCommandBuffer commands, std::uint64_t recording);
+    /// What the upload was copied from, once no recording uses it: `recording` is the next one's number, and the last
+    /// `unfinished` before it may still run. To be freed; null: nothing, or not yet.
+    [[nodiscard]] Garbage* take_staging(std::uint64_t recording, std::uint64_t unfinished);
     /// That recording will not be submitted: what it uploaded is uploaded again.
     void take_back(std::uint64_t recording);
     [[nodiscard]] gpu::Binding binding(std::size_t index) const;
@@ -28,8 +33,12 @@ class Tables {
         VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         bool is_nearest = false;
     };
+    struct Staging : Garbage {
+        gpu::Buffer buffer;
+    };
+    gpu::Memory memory_;  ///< of all images
     std::vector<Table> tables_;
-    gpu::Buffer staging_;
+    std::unique_ptr<Staging> staging_;
     std::optional<std::uint64_t> uploaded_by_;
 };
 

@@ -38,6 +38,22 @@ Result<gpu::Stage> stage_of(const gpu::Context& context, const gpu::KernelSpec& 
 
 }  // namespace
 
+Result<> StackProgram::make_tables(gpu::Context& context) {
+    if (tables) return {};
+    const auto is_shadow_map = [](const auto& import) {
+        return import && import->kind == plan::HostImage::Kind::Shadow;
+    };
+    if (std::ranges::any_of(program.imports, is_shadow_map)) {
+        auto made = LitShadowMap::create(context);
+        if (!made) return failure(std::move(made));
+        lit = std::move(*made);
+    }
+    auto made = Tables::create(context, program.fixed_images);
+    if (!made) return failure(std::move(made));
+    tables.emplace(std::move(*made));
+    return {};
+}
+
 bool StackProgram::serves(std::span<const plan::Entry> other_stack, const CompileDesc& other_desc) const {
     const auto is_same = [&](const plan::Entry& a, const plan::Entry& b) {
         return wiring_of(a) == wiring_of(b) && a.values_at_compile() == b.values_at_compile();

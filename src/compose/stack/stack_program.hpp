@@ -4,10 +4,12 @@
 // the one that is there and make neither text nor graph.
 
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <vector>
 
 #include "compose/chain/pass_kernels.hpp"
+#include "compose/chain/tables.hpp"
 
 namespace darkroom::compose {
 
@@ -23,10 +25,14 @@ struct StackProgram {
     std::vector<std::unique_ptr<PassKernels>> kernels;  ///< per pass
     std::vector<plan::Entry> stack;
     CompileDesc desc;
+    std::optional<Tables> tables;  ///< made with the first chain
+    LitShadowMap lit;              ///< where a kernel reads shadows
     // By all chains that have used it, one after the other: the clock of its kernels. Recording alone touches them.
     std::uint64_t recordings = 0;
     std::uint32_t most_unfinished = 1;
 
+    /// The constant images, unless they are there.
+    [[nodiscard]] Result<> make_tables(gpu::Context& context);
     /// Would planning `other_stack` for `other_desc` give this program again?
     [[nodiscard]] bool serves(std::span<const plan::Entry> other_stack, const CompileDesc& other_desc) const;
 };
