@@ -30,7 +30,8 @@ struct ImageRef {
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< that it is in; UNDEFINED only for a target, whose texels go
     VkPipelineStageFlags2 last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< of the host's last use
     VkAccessFlags2 last_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
-    /// How to leave it, and for which use; UNDEFINED: as Darkroom last used it.
+    /// How to leave it, and for which use; UNDEFINED: as it came, or, of a target whose layout is UNDEFINED, too, as
+    /// Darkroom last used it.
     VkImageLayout final_layout = VK_IMAGE_LAYOUT_UNDEFINED;
     VkPipelineStageFlags2 final_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkAccessFlags2 final_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
@@ -90,6 +91,10 @@ struct Camera {
     std::array<float, 2> jitter{};  ///< how far the projection moves this frame's picture, in pixels, y down
     std::array<float, 2> previous_jitter{};
     bool is_cut = false;  ///< nothing of the last frame is related to this one: histories are reset
+    // A camera that moved or turned by more than this since the view's last frame is taken for a cut. Infinite: never.
+    float jump_distance = 30;  ///< in scene units, of the eye; 30 m a frame are 720 m/s at 24 frames a second
+    float jump_angle =
+        1.0471976f;  ///< radians, about any axis; at 60 degrees two views share little more than a corner
 };
 
 /// One directional light of the frame, with its shadow cascades where it casts.

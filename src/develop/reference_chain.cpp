@@ -82,7 +82,7 @@ class Chain {
         if (input_.histories == nullptr) return;
         ReferenceHistories& kept = *input_.histories;
         const bool goes_on =
-            !input_.camera.is_cut && input_.delta_time > 0 && !compose::is_camera_jump(kept.camera, input_.camera.view);
+            !input_.camera.is_cut && input_.delta_time > 0 && !compose::is_camera_jump(kept.camera, input_.camera);
         if (!goes_on) {
             kept.entries.clear();
             kept.outputs.clear();

@@ -3,18 +3,18 @@
 // A camera that is somewhere else from one frame to the next: a cut that nobody told of. What was drawn from the one
 // place has nothing to do with what is drawn from the other.
 
+#include <algorithm>
+#include <cmath>
 #include <darkroom/frame.hpp>
+#include <limits>
+#include <numbers>
 
 namespace darkroom::compose {
 
-/// Metres: 720 m/s at 24 frames a second.
-inline constexpr double camera_jump_distance = 30;
-/// Of the matrix that turns by 60 degrees, 1 + 2 cos(60 degrees): usual fields of view share little more than a corner.
-inline constexpr double camera_jump_trace = 2;
-
-/// Did a camera move by more than 30 m, or turn by more than 60 degrees about any axis? Matrices from world to camera
-/// that turn and move alone. What is no number is a jump.
-[[nodiscard]] inline bool is_camera_jump(const Matrix& before, const Matrix& now) {
+/// Did the camera move or turn by more than Camera::jump_distance and jump_angle say, since its view was `before`?
+/// Views turn and move alone. What is no number is a jump.
+[[nodiscard]] inline bool is_camera_jump(const Matrix& before, const Camera& camera) {
+    const Matrix& now = camera.view;
     double trace = 0, square = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         double way = 0;  // of the eye, -R^T t
@@ -25,7 +25,12 @@ inline constexpr double camera_jump_trace = 2;
         }
         square += way * way;
     }
-    return !(trace >= camera_jump_trace && square <= camera_jump_distance * camera_jump_distance);
+    // The trace of a matrix that turns by an angle is 1 + 2 cos(angle); below -1 there is none.
+    const double angle = camera.jump_angle;
+    const double least_trace =
+        angle >= std::numbers::pi ? -std::numeric_limits<double>::infinity() : 1 + 2 * std::cos(std::max(angle, 0.0));
+    const double distance = camera.jump_distance;
+    return !(trace >= least_trace && square <= distance * distance);
 }
 
 }  // namespace darkroom::compose

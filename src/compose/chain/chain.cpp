@@ -119,8 +119,8 @@ void Chain::lend_images(const Frame& frame) {
             .layout = image.layout,
             .stages = image.last_stages,
             .access = image.last_access,
-            .final_layout = image.final_layout,
-                             .final_stages = image.final_stages,
+            .final_layout = image.final_layout != VK_IMAGE_LAYOUT_UNDEFINED ? image.final_layout : image.layout,
+            .final_stages = image.final_stages,
             .final_access = image.final_access};
         physical_->bind(static_cast<std::uint32_t>(i), {.handle = image.image,
                                                         .view = image.view,
@@ -177,7 +177,7 @@ void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
     graph::HistoryView& view = physical_->histories(frame.view);
     before_.view_index = frame.view;
     before_.view = view;
-    const bool is_jump = view.recordings > 0 && is_camera_jump(view.camera, frame.camera.view);
+    const bool is_jump = view.recordings > 0 && is_camera_jump(view.camera, frame.camera);
     const bool is_related = !frame.camera.is_cut && !is_jump && frame.delta_time > 0;
     view.camera = frame.camera.view;
     for (std::uint32_t i = 0; i < before_.states.size(); ++i) {

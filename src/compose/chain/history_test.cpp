@@ -134,5 +134,22 @@ TEST(ComposeHistory, ACameraThatMovesByMoreThanThirtyMetresEndsIt) {
     EXPECT_FALSE(goes_on(looking(0), moved(30.1)));
 }
 
+TEST(ComposeHistory, TheCameraSaysWhatAJumpIs) {
+    const auto with = [](Camera camera, float distance, float angle) {
+        camera.jump_distance = distance;
+        camera.jump_angle = angle;
+        return camera;
+    };
+    constexpr float never = std::numeric_limits<float>::infinity();
+    const Camera far = looking(0, {1, 2, 3000}), turned = looking(0.2), behind = looking(180 * degree);
+    EXPECT_TRUE(goes_on(looking(0), with(far, 3000, 1)));
+    EXPECT_FALSE(goes_on(looking(0), with(far, 2000, never)));
+    EXPECT_TRUE(goes_on(looking(0), with(far, never, 1)));
+    EXPECT_FALSE(goes_on(looking(0), with(turned, never, 0.19F)));
+    EXPECT_TRUE(goes_on(looking(0), with(turned, never, 0.21F)));
+    EXPECT_TRUE(goes_on(looking(0), with(behind, never, never)));
+    EXPECT_FALSE(goes_on(looking(0), with(behind, never, 3)));
+}
+
 }  // namespace
 }  // namespace darkroom

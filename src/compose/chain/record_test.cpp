@@ -7,6 +7,7 @@
 #include <map>
 #include <thread>
 
+#include "compose/chain/tables.hpp"
 #include "compose/test_stacks/host.hpp"
 #include "core/test_support_allocations.hpp"
 #include "gpu/shader/shader.hpp"
@@ -23,6 +24,9 @@ thread_local std::uint64_t commands_recorded = 0;
 thread_local std::uint64_t forbidden_calls = 0;
 thread_local std::uint64_t allocations_of_layers = 0;  ///< inside destroying calls, which are allowed
 thread_local VkPipeline last_pipeline = VK_NULL_HANDLE;
+thread_local std::uint64_t uploads = 0;
+thread_local VkImageLayout color_layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< that barriers left the host's colour in
+const auto host_color = reinterpret_cast<VkImage>(std::uintptr_t{16});
 
 template <class Function>
 struct Wrapped;
@@ -65,6 +69,8 @@ void wrap_destroy(Dispatch& vk) {
 }
 
 PFN_vkCmdBindPipeline bind_pipeline = nullptr;
+PFN_vkCmdCopyBufferToImage copy_to_image = nullptr;
+PFN_vkCmdPipelineBarrier2 put_barriers = nullptr;
 
 void wrap_all(Dispatch& vk) {
     const auto for_commands = [&]<auto... Members>() { (wrap<Members, true>(vk), ...); };
@@ -94,6 +100,19 @@ void wrap_all(Dispatch& vk) {
     vk.CmdBindPipeline = [](VkCommandBuffer commands, VkPipelineBindPoint point, VkPipeline pipeline) {
         if (is_in_frame) last_pipeline = pipeline;
         bind_pipeline(commands, point, pipeline);
+    };
+    copy_to_image = vk.CmdCopyBufferToImage;
+    vk.CmdCopyBufferToImage = [](VkCommandBuffer commands, VkBuffer from, VkImage to, VkImageLayout layout,
+                                 std::uint32_t count, const VkBufferImageCopy* regions) {
+        if (is_in_frame) ++uploads;
+        copy_to_image(commands, from, to, layout, count, regions);
+    };
+    put_barriers = vk.CmdPipelineBarrier2;
+    vk.CmdPipelineBarrier2 = [](VkCommandBuffer commands, const VkDependencyInfo* all) {
+        if (is_in_frame)
+            for (const auto& barrier : std::span(all->pImageMemoryBarriers, all->imageMemoryBarrierCount))
+                if (barrier.image == host_color) color_layout = barrier.newLayout;
+        put_barriers(commands, all);
     };
 }
 
@@ -346,6 +365,57 @@ TEST_F(ComposeRecord, ARetiredChainIsNotWaitedForInAFrame) {
     });
     EXPECT_EQ(seen.allocations, 0u);
     EXPECT_EQ(seen.forbidden, 0u);
+}
+
+TEST_F(ComposeRecord, AResizeUploadsNoTableAgain) {
+    Composer composer(*device);
+    add(composer, "dither");
+    const auto uploaded = [&](VkExtent2D extent) {
+        test::must(composer.compile({.max_extent = extent}));
+        uploads = 0;
+        (void)counted([&] { (void)is_recorded(composer, frame(extent)); });
+        return uploads;
+    };
+    EXPECT_GT(uploaded({160, 120}), 0u);
+    EXPECT_EQ(uploaded({200, 90}), 0u);
+    test::must(composer.abandon());
+    EXPECT_EQ(uploaded({160, 120}), 0u);
+}
+
+TEST_F(ComposeRecord, AnUploadThatIsAbandonedIsMadeAgain) {
+    Composer composer(*device);
+    add(composer, "dither");
+    test::must(composer.compile({.max_extent = {160, 120}}));
+    (void)counted([&] { (void)is_recorded(composer, frame()); });
+    test::must(composer.abandon());
+    uploads = 0;
+    (void)counted([&] { (void)is_recorded(composer, frame()); });
+    EXPECT_GT(uploads, 0u);
+}
+
+TEST_F(ComposeRecord, StagingOfTablesGoesOnceNoRecordingUsesIt) {
+    plan::FixedImage table{.desc = {.name = "table", .data = std::vector<std::byte>(1)}};
+    compose::Tables tables = test::must(compose::Tables::create(device->context(), {&table, 1}));
+    EXPECT_EQ(tables.take_staging(9, 2), nullptr) << "nothing was uploaded";
+    (void)counted([&] { tables.upload(VK_NULL_HANDLE, 7); });
+    EXPECT_EQ(tables.take_staging(9, 2), nullptr) << "the recording that uploaded may still run";
+    const std::unique_ptr<compose::Garbage> staging(tables.take_staging(10, 2));
+    EXPECT_NE(staging, nullptr);
+    EXPECT_EQ(tables.take_staging(11, 2), nullptr);
+}
+
+TEST_F(ComposeRecord, AnImageIsLeftAsItCameUnlessTheHostSaysHow) {
+    Composer composer(*device);
+    fill(composer);
+    test::must(composer.compile(desc()));
+    for (const VkImageLayout asked : {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL}) {
+        Frame next = frame();
+        next.color.layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+        next.color.final_layout = asked;
+        color_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        (void)counted([&] { EXPECT_TRUE(is_recorded(composer, next)); });
+        EXPECT_EQ(color_layout, asked == VK_IMAGE_LAYOUT_UNDEFINED ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL : asked);
+    }
 }
 
 }  // namespace
