@@ -12,8 +12,19 @@ namespace {
 // The member cannot be called `operator`, which is a keyword of C++; files may still say it.
 constexpr auto tonemap_rows =
     describe(field<&Tonemap::curve>("The tone mapping operator.").formerly("operator"),
-             field<&Tonemap::white>("Luminance that reinhard_extended maps to white; the other operators ignore it.",
-                                    {0.1, 1024, Scale::Log}));
+             field<&Tonemap::white>("Luminance that reinhard_extended maps to white, and bt2390 to the peak; the other "
+                                    "operators ignore it.",
+                                    {0.1, 1024, Scale::Log}),
+             field<&Tonemap::peak_nits>("Of the display, for bt2390 and bt2390_ictcp, where 1.0 is 203 cd/m2.",
+                                        {100, 10000, Scale::Log}, unit::nits));
+
+ColorState makes(ColorState before, const void* parameters) {
+    const Tonemap& values = *static_cast<const Tonemap*>(parameters);
+    const bool has_peak = values.curve == TonemapOperator::Bt2390 || values.curve == TonemapOperator::Bt2390Ictcp;
+    return {.domain = Domain::DisplayLinear,
+            .white_nits = before.white_nits,
+            .peak_nits = has_peak ? before.white_nits * values.peak_nits / 203 : before.white_nits};
+}
 
 }  // namespace
 
@@ -25,11 +36,7 @@ const EffectInfo& effect_info(const Tonemap&) {
         .files = embedded_files("tonemap"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .makes = [](ColorState before, const void*) {
-            return ColorState{.domain = Domain::DisplayLinear,
-                              .white_nits = before.white_nits,
-                              .peak_nits = before.white_nits};
-        },
+        .makes = makes,
         .flat = {.documented = 70, .scene_linear = 70, .starts_on = true},
         .reference = pointwise_reference<Tonemap, tonemap_reference>,
     };

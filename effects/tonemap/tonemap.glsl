@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
-// scene_linear -> display_linear in [0, 1]. Negative light and NaN count as 0, infinity as tonemap_ceiling.
+// scene_linear -> display_linear in [0, 1]. Negative light and NaN count as 0, infinity as tonemap_ceiling. The curves of
+// BT.2390 end at the peak, and keep negative light: it is colour outside of Rec. 709, which wider primaries show.
+
+#include "shared/color_state.glsl"
+#include "shared/sanitize.glsl"
 
 // Beyond every operator's white, and its square is still far from the largest float.
 const float tonemap_ceiling = 1e6;
@@ -61,6 +65,51 @@ vec3 tonemap_pbr_neutral(vec3 light) {
     return mix(vec3(new_peak), light * (new_peak / peak), saturation);
 }
 
+// ITU-R BT.2390-10, 5.4.1, for a black of 0: a PQ value of up to `most` into one of up to `peak`. The spline leaves the knee
+// with a slope of 1, so what is below stays.
+float tonemap_eetf(float value, float most, float peak) {
+    float part = peak / most, knee = 1.5 * part - 0.5, e = min(value / most, 1.0);
+    if (part >= 1.0 || e <= knee) return min(value, min(most, peak));
+    float t = (e - knee) / (1.0 - knee), tt = t * t, ttt = tt * t;
+    return most * ((2.0 * ttt - 3.0 * tt + 1.0) * knee + (ttt - 2.0 * tt + t) * (1.0 - knee) + (3.0 * tt - 2.0 * ttt) * part);
+}
+
+// PQ of light whose 1.0 is 203 cd/m2, and back.
+vec3 tonemap_pq(vec3 light) { return pq_encode(min(light * (203.0 / 10000.0), 1.0)); }
+vec3 tonemap_from_pq(vec3 code) { return pq_decode(code) * (10000.0 / 203.0); }
+
+vec3 tonemap_bt2390(vec3 light, float most, float peak) {
+    float largest = max(max(light.r, light.g), max(light.b, 1e-9));
+    float code = tonemap_pq(vec3(largest)).x, mapped = tonemap_eetf(code, most, peak);
+    return mapped == code ? light : light * (tonemap_from_pq(vec3(mapped)).x / largest);
+}
+
+// ICtCp of ITU-R BT.2100: chroma follows the intensity, so the hue stays.
+vec3 tonemap_bt2390_ictcp(vec3 light, float most, float peak) {
+    const mat3 to_lms = mat3(1688.0, 683.0, 99.0, 2146.0, 2951.0, 309.0, 262.0, 462.0, 3688.0) / 4096.0;
+    const mat3 from_lms = mat3(3.436606694333079, -0.791329555598929, -0.025949899690593, -2.506452118656270, 1.983600451792291,
+                               -0.098913714711726, 0.069845424323191, -0.192270896193362, 1.124863614402319);
+    const mat3 to_ictcp = mat3(2048.0, 6610.0, 17933.0, 2048.0, -13613.0, -17390.0, 0.0, 7003.0, -543.0) / 4096.0;
+    const mat3 from_ictcp = mat3(1.0, 1.0, 1.0, 0.008609037037933, -0.008609037037933, 0.560031335710679, 0.111029625003026,
+                                 -0.111029625003026, -0.320627174987319);
+    light = min(light, 10000.0 / 203.0);
+    vec3 ictcp = to_ictcp * tonemap_pq(max(to_lms * (color_state_rec2020 * light), 0.0));
+    float intensity = tonemap_eetf(ictcp.x, most, peak);
+    if (intensity == ictcp.x) return light;
+    float ratio = intensity / ictcp.x;
+    vec3 lms = from_ictcp * vec3(intensity, ictcp.yz * min(ratio, 1.0 / ratio));
+    return color_state_from_rec2020 * (from_lms * tonemap_from_pq(lms));
+}
+
+vec3 tonemap_to_peak(vec3 color, Tonemap parameters) {
+    vec3 light = sanitize(vec4(color, 1.0)).rgb;
+    float peak = parameters.peak_nits / 203.0;
+    vec3 codes = tonemap_pq(vec3(parameters.white, peak, 0.0));
+    light = parameters.curve == Tonemap_curve_bt2390 ? tonemap_bt2390(light, codes.x, codes.y)
+                                                     : tonemap_bt2390_ictcp(light, codes.x, codes.y);
+    return clamp(light, -peak, peak);
+}
+
 vec4 tonemap(vec4 color, Pixel pixel, Tonemap parameters) {
     vec3 light = clamp(color.rgb, 0.0, tonemap_ceiling);
     uint curve = parameters.curve;
@@ -78,5 +127,7 @@ vec4 tonemap(vec4 color, Pixel pixel, Tonemap parameters) {
     } else if (curve == Tonemap_curve_khronos_pbr_neutral) {
         light = tonemap_pbr_neutral(light);
     }
-    return vec4(clamp(light, 0.0, 1.0), color.a);
+    light = clamp(light, 0.0, 1.0);
+    if (curve == Tonemap_curve_bt2390 || curve == Tonemap_curve_bt2390_ictcp) light = tonemap_to_peak(color.rgb, parameters);
+    return vec4(light, color.a);
 }

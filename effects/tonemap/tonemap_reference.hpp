@@ -9,6 +9,9 @@
 #include <darkroom/effects/tonemap.hpp>
 #include <darkroom/reference.hpp>
 
+#include "shared/color_state_reference.hpp"
+#include "shared/finite_reference.hpp"
+
 namespace darkroom {
 
 namespace tonemap_detail {
@@ -95,6 +98,50 @@ inline Color khronos_pbr_neutral(const Color& light) {
     return each(color, [=](double v) { return v * new_peak / peak * saturation + new_peak * (1.0 - saturation); });
 }
 
+/// ITU-R BT.2390-10, 5.4.1, for a black of 0, in PQ: up to `most` into up to `peak`.
+inline double eetf(double value, double most, double peak) {
+    const double e1 = std::min(value / most, 1.0), max_lum = std::min(peak / most, 1.0), ks = 1.5 * max_lum - 0.5;
+    if (e1 <= ks) return std::min(value, most);
+    if (ks >= 1) return most;
+    const double t = (e1 - ks) / (1 - ks);
+    return most * ((2 * t * t * t - 3 * t * t + 1) * ks + (t * t * t - 2 * t * t + t) * (1 - ks) +
+                   (3 * t * t - 2 * t * t * t) * max_lum);
+}
+/// PQ of light whose 1.0 is 203 cd/m2, and back.
+inline double pq_of(double light) { return pq_encoded(std::clamp(light * 203 / 10000, 0.0, 1.0)); }
+inline double light_of(double code) { return pq_decoded(code) * 10000 / 203; }
+
+inline Color bt2390(const Color& light, double most, double peak) {
+    const double largest = std::max({light[0], light[1], light[2], 1e-9});
+    const double gain = light_of(eetf(pq_of(largest), pq_of(most), pq_of(peak))) / largest;
+    return each(light, [=](double v) { return v * gain; });
+}
+
+/// The same on the intensity of ICtCp (ITU-R BT.2100), to which the chroma is scaled.
+inline Color bt2390_ictcp(const Color& light, double most, double peak) {
+    constexpr double n = 4096;
+    const Rows to_lms{{{1688 / n, 2146 / n, 262 / n}, {683 / n, 2951 / n, 462 / n}, {99 / n, 309 / n, 3688 / n}}};
+    const Rows to_ictcp{{{0.5, 0.5, 0}, {6610 / n, -13613 / n, 7003 / n}, {17933 / n, -17390 / n, -543 / n}}};
+    using color_state_detail::solved;
+    const Color capped = each(light, [](double v) { return std::min(v, 10000.0 / 203); });
+    const Color lms = multiply(to_lms, multiply(color_state_detail::rec2020, capped));
+    Color ictcp = multiply(to_ictcp, each(lms, pq_of));
+    const double intensity = eetf(ictcp[0], pq_of(most), pq_of(peak)), ratio = intensity / ictcp[0];
+    if (intensity == ictcp[0]) return capped;
+    const double chroma = std::min(ratio, 1 / ratio);
+    ictcp = {intensity, ictcp[1] * chroma, ictcp[2] * chroma};
+    return solved(color_state_detail::rec2020, solved(to_lms, each(solved(to_ictcp, ictcp), light_of)));
+}
+
+/// Negative light stays: it is colour outside of Rec. 709.
+inline Color to_peak(const Color& color, const Tonemap& parameters) {
+    const double most = parameters.white, peak = double{parameters.peak_nits} / 203;
+    const Color light = each(color, finite_reference);
+    const Color out =
+        parameters.curve == TonemapOperator::Bt2390 ? bt2390(light, most, peak) : bt2390_ictcp(light, most, peak);
+    return each(out, [=](double v) { return std::clamp(v, -peak, peak); });
+}
+
 }  // namespace tonemap_detail
 
 inline Rgba tonemap_reference(Rgba color, const ReferencePixel&, const Tonemap& parameters) {
@@ -122,6 +169,10 @@ inline Rgba tonemap_reference(Rgba color, const ReferencePixel&, const Tonemap& 
             break;
         case TonemapOperator::Linear:
             break;
+        case TonemapOperator::Bt2390:
+        case TonemapOperator::Bt2390Ictcp:
+            light = to_peak({color.r, color.g, color.b}, parameters);
+            return {light[0], light[1], light[2], color.a};
     }
     light = each(light, [](double v) { return std::clamp(v, 0.0, 1.0); });
     return {light[0], light[1], light[2], color.a};

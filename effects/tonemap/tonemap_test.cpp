@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <darkroom/effects/tonemap.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "compose/test_stacks/support.hpp"
@@ -14,7 +16,7 @@ namespace {
 constexpr std::array all_operators{
     TonemapOperator::AcesNarkowicz, TonemapOperator::AcesHill, TonemapOperator::ReinhardExtended,
     TonemapOperator::Hable,         TonemapOperator::Agx,      TonemapOperator::KhronosPbrNeutral,
-    TonemapOperator::Linear,
+    TonemapOperator::Linear,        TonemapOperator::Bt2390,
 };
 
 Rgba mapped(TonemapOperator curve, const Rgba& color, float white = 4.0f) {
@@ -39,12 +41,14 @@ ReferenceImage hostile_picture() {
     return picture;
 }
 
-void expect_in_unit_range(const ReferenceImage& picture) {
+/// Of BT.2390, light below 0 is colour outside of Rec. 709.
+void expect_in_unit_range(const ReferenceImage& picture, TonemapOperator curve) {
     ASSERT_FALSE(picture.pixels.empty());
+    const double lowest = curve == TonemapOperator::Bt2390 ? -1.0 : 0.0;
     for (const Rgba& color : picture.pixels) {
         for (const double value : {color.r, color.g, color.b}) {
             // Fails for NaN, too.
-            EXPECT_TRUE(value >= 0.0 && value <= 1.0) << value;
+            EXPECT_TRUE(value >= lowest && value <= 1.0) << value;
         }
     }
 }
@@ -102,8 +106,8 @@ TEST(EffectTonemap, GreyNeverFalls) {
 TEST(EffectTonemap, BlackIsBlackAndNothingLeavesTheRange) {
     for (const TonemapOperator curve : all_operators) {
         EXPECT_EQ(mapped_grey(curve, 0.0), 0.0) << static_cast<int>(curve);
-        expect_in_unit_range(test::reference_of(Tonemap{.curve = curve}, hostile_picture()));
-        expect_in_unit_range(test::reference_of(Tonemap{.curve = curve}, test::random_hdr(64, 64, 3)));
+        expect_in_unit_range(test::reference_of(Tonemap{.curve = curve}, hostile_picture()), curve);
+        expect_in_unit_range(test::reference_of(Tonemap{.curve = curve}, test::random_hdr(64, 64, 3)), curve);
     }
 }
 
@@ -124,7 +128,7 @@ TEST(EffectTonemap, GpuKeepsBrokenInputInRange) {
     for (const TonemapOperator curve : all_operators) {
         const ReferenceImage out =
             test::develop([&](Composer& composer) { composer.add(Tonemap{.curve = curve}); }, hostile_picture());
-        expect_in_unit_range(out);
+        expect_in_unit_range(out, curve);
         EXPECT_LE(test::worst_half_ulps(out, test::reference_of(Tonemap{.curve = curve}, hostile_picture())), 2.0)
             << static_cast<int>(curve);
     }
@@ -137,6 +141,96 @@ TEST(EffectTonemap, GpuMatchesReference) {
         test::expect_gpu_matches_reference(Tonemap{.curve = curve}, picture);
     }
     test::expect_gpu_matches_reference(Tonemap{.curve = TonemapOperator::ReinhardExtended, .white = 0.5f}, picture);
+}
+
+// ITU-R BT.2390, 5.4.1: 812 cd/m2, which is 4 times white, into displays of less.
+TEST(EffectTonemap, Bt2390KeepsWhatIsBelowItsKneeAndEndsAtThePeak) {
+    for (const TonemapOperator curve : {TonemapOperator::Bt2390, TonemapOperator::Bt2390Ictcp}) {
+        for (const float peak : {100.0f, 203.0f, 400.0f, 1000.0f, 4000.0f}) {
+            SCOPED_TRACE(testing::Message() << static_cast<int>(curve) << " " << peak);
+            const float white = peak < 800 ? 4.0f : 49.0f;
+            const Tonemap values{.curve = curve, .white = white, .peak_nits = peak};
+            const auto grey = [&](double light) { return tonemap_reference({light, light, light}, {}, values).g; };
+            const double most = pq_encoded(white * 203.0 / 10000), end = peak / 203.0;
+            const double knee = pq_decoded(1.5 * pq_encoded(peak / 10000.0) - 0.5 * most) * 10000 / 203;
+            EXPECT_NEAR(grey(knee * 0.5), knee * 0.5, 1e-5);
+            EXPECT_NEAR(grey(white), end, 2e-5 * end);
+            EXPECT_LE(grey(4 * white), end);
+            double before = 0, slope = 1;
+            for (double light = 1e-3; light < white; light *= 1.002) {
+                const double value = grey(light), now = (value - before) / (light * (1 - 1 / 1.002));
+                EXPECT_GT(value, before);
+                if (light > 2e-3) {
+                    EXPECT_NEAR(now, slope, 0.05) << light;
+                }
+                slope = now;
+                before = value;
+            }
+        }
+    }
+}
+
+// Up to where nothing is clipped.
+TEST(EffectTonemap, Bt2390KeepsTheHue) {
+    const Tonemap largest{.curve = TonemapOperator::Bt2390, .white = 16, .peak_nits = 400};
+    const Rgba color = tonemap_reference({8, 4, 1}, {}, largest);
+    EXPECT_NEAR(color.r / color.g, 2, 1e-9);
+    EXPECT_NEAR(color.g / color.b, 4, 1e-9);
+    Tonemap ictcp = largest;
+    ictcp.curve = TonemapOperator::Bt2390Ictcp;
+    const auto chroma = [](const Rgba& c) {
+        const tonemap_detail::Rows to_lms{{{1688, 2146, 262}, {683, 2951, 462}, {99, 309, 3688}}};
+        auto lms =
+            tonemap_detail::multiply(to_lms, tonemap_detail::multiply(color_state_detail::rec2020, {c.r, c.g, c.b}));
+        for (double& v : lms) v = pq_encoded(v / 4096 * 203 / 10000);
+        return std::array{6610 * lms[0] - 13613 * lms[1] + 7003 * lms[2],
+                          17933 * lms[0] - 17390 * lms[1] - 543 * lms[2]};
+    };
+    const Rgba light{2.4, 1.6, 1.2}, shown = tonemap_reference(light, {}, ictcp);
+    EXPECT_NEAR(chroma(shown)[0] / chroma(shown)[1], chroma(light)[0] / chroma(light)[1], 1e-4);
+    EXPECT_LT(std::abs(chroma(shown)[0]), std::abs(chroma(light)[0]));
+}
+
+// A green of Rec. 2020 stays one, below the knee and above it.
+TEST(EffectTonemap, Bt2390KeepsColoursOutsideOfRec709) {
+    for (const TonemapOperator curve : {TonemapOperator::Bt2390, TonemapOperator::Bt2390Ictcp}) {
+        for (const double light : {0.5, 3.0}) {
+            const auto [r, g, b] =
+                color_state_detail::solved(color_state_detail::rec2020, {0.2 * light, light, 0.2 * light});
+            const Rgba out = tonemap_reference({r, g, b}, {}, {.curve = curve, .white = 8, .peak_nits = 600});
+            EXPECT_LT(out.r, 0);
+            const auto wide = color_state_detail::multiplied(color_state_detail::rec2020, {out.r, out.g, out.b});
+            for (const double v : wide) EXPECT_GT(v, 0);
+            EXPECT_GT(wide[1], 3 * wide[0]);
+        }
+    }
+}
+
+TEST(EffectTonemap, GpuMatchesReferenceUpToAPeakBeyondWhite) {
+    const ReferenceImage picture = test::round_to_float(test::random_hdr(67, 41, 1));
+    for (const float peak : {203.0f, 1000.0f, 4000.0f})
+        test::expect_gpu_matches_reference(Tonemap{.curve = TonemapOperator::Bt2390, .white = 30, .peak_nits = peak},
+                                           picture);
+}
+
+// A dark channel beside bright ones is a difference of large numbers: the bound is of the pixel's brightest.
+TEST(EffectTonemap, GpuMatchesReferenceInIctcp) {
+    for (const ReferenceImage& picture : {test::round_to_float(test::random_hdr(67, 41, 1)), hostile_picture()}) {
+        for (const float peak : {203.0f, 1000.0f, 4000.0f}) {
+            const Tonemap values{.curve = TonemapOperator::Bt2390Ictcp, .white = 30, .peak_nits = peak};
+            const ReferenceImage out = test::develop([&](Composer& composer) { composer.add(values); }, picture);
+            const ReferenceImage expected = test::reference_of(values, picture);
+            ASSERT_EQ(out.pixels.size(), expected.pixels.size());
+            for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+                const Rgba &a = out.pixels[i], &b = expected.pixels[i];
+                const double bound = 5e-4 * std::max({b.r, b.g, b.b, 1e-3});
+                EXPECT_NEAR(a.r, b.r, bound) << i;
+                EXPECT_NEAR(a.g, b.g, bound) << i;
+                EXPECT_NEAR(a.b, b.b, bound) << i;
+                EXPECT_LE(std::max({a.r, a.g, a.b}), peak / 203 * 1.000001);
+            }
+        }
+    }
 }
 
 }  // namespace
