@@ -22,6 +22,7 @@ bool is_none(const void* parameters) {
 ColorState makes(ColorState before, const void* parameters) {
     const Encode& encode = *static_cast<const Encode*>(parameters);
     ColorState out = srgb_color;
+    out.white_nits = out.peak_nits = before.white_nits;
     const auto high_range = [&](Transfer transfer, Primaries primaries) {
         return ColorState{Domain::Encoded, primaries, transfer, encode.white_nits, encode.peak_nits};
     };

@@ -4,6 +4,7 @@
 #ifndef SHARED_COLOR_STATE
 #define SHARED_COLOR_STATE
 #include "shared/pq.glsl"
+#include "shared/sanitize.glsl"
 #include "shared/srgb_unbounded.glsl"
 
 // ITU-R BT.2087, and its inverse; P3 with a white of D65 from the chromaticities of SMPTE RP 431-2.
@@ -31,7 +32,8 @@ vec3 hlg_decode(vec3 code, float ootf) {
     return scene * pow(max(dot(scene, color_state_luminance), 1e-9), ootf - 1.0);
 }
 
-vec3 color_state_to_srgb(vec3 color, uint word, float scale, float ootf) {
+// Linear numbers in Rec. 709, and back.
+vec3 color_state_to_light(vec3 color, uint word, float ootf) {
     uint transfer = word >> 1 & 7u, primaries = word >> 4;
     if (transfer == 1u) color = srgb_decode_unbounded(color);
     if (transfer == 2u) color = pow(max(color, vec3(0.0)), vec3(2.2));
@@ -39,11 +41,10 @@ vec3 color_state_to_srgb(vec3 color, uint word, float scale, float ootf) {
     if (transfer == 4u) color = hlg_decode(color, ootf);
     if (primaries == 1u) color = color_state_from_rec2020 * color;
     if (primaries == 2u) color = color_state_from_p3 * color;
-    return srgb_encode_unbounded(color * scale);
+    return color;
 }
-vec3 color_state_from_srgb(vec3 color, uint word, float scale, float limit, float ootf) {
+vec3 color_state_from_light(vec3 color, uint word, float limit, float ootf) {
     uint transfer = word >> 1 & 7u, primaries = word >> 4;
-    color = srgb_decode_unbounded(color) / scale;
     if (primaries == 1u) color = color_state_rec2020 * color;
     if (primaries == 2u) color = color_state_p3 * color;
     if (transfer == 1u) return srgb_encode_unbounded(color);
@@ -51,5 +52,20 @@ vec3 color_state_from_srgb(vec3 color, uint word, float scale, float limit, floa
     if (transfer == 3u) return pq_encode(clamp(color, 0.0, limit));
     if (transfer == 4u) return hlg_encode(color, ootf);
     return transfer == 5u ? clamp(color, -limit, limit) : color;
+}
+
+vec3 color_state_to_srgb(vec3 color, uint word, float scale, float ootf) {
+    return srgb_encode_unbounded(color_state_to_light(color, word, ootf) * scale);
+}
+vec3 color_state_from_srgb(vec3 color, uint word, float scale, float limit, float ootf) {
+    return color_state_from_light(srgb_decode_unbounded(color) / scale, word, limit, ootf);
+}
+
+// The picture for the target: the states' words stand at bits 2 and 8. NaN becomes 0, and codes of sRGB end at 0 and 1.
+vec3 color_state_convert(vec3 color, uint words, float scale, float limit, float ootf, float target_ootf) {
+    vec3 light = color_state_to_light(sanitize(vec4(color, 1.0)).rgb, words >> 2 & 63u, ootf) * scale;
+    uint target = words >> 8 & 63u;
+    color = color_state_from_light(light, target, limit, target_ootf);
+    return (target >> 1 & 7u) == 1u ? clamp(color, 0.0, 1.0) : color;
 }
 #endif

@@ -54,5 +54,10 @@ struct ColorState {
 /// What an sRGB display or file takes, and what a UI image is.
 inline constexpr ColorState srgb_color{
     .domain = Domain::Encoded, .transfer = Transfer::Srgb, .white_nits = 203, .peak_nits = 203};
+inline constexpr ColorState p3_color{Domain::Encoded, Primaries::P3, Transfer::Srgb, 203, 203};
+/// HDR10, BT.2100 HLG and scRGB, for a display of 1000 cd/m2.
+inline constexpr ColorState pq_color{Domain::Encoded, Primaries::Rec2020, Transfer::Pq, 203, 1000};
+inline constexpr ColorState hlg_color{Domain::Encoded, Primaries::Rec2020, Transfer::Hlg, 203, 1000};
+inline constexpr ColorState scrgb_color{Domain::Encoded, Primaries::Rec709, Transfer::Scrgb, 203, 1000};
 
 }  // namespace darkroom

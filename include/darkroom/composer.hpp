@@ -96,11 +96,12 @@ struct CompileDesc {
     /// (0, 0): the target is as large as the picture at the end of the stack. Else the largest extent of a target with
     /// an extent of its own, into which the last kernel samples the picture, bilinearly.
     VkExtent2D target_extent{};
-    /// What the target takes: Encoded for pictures that are shown, SceneLinear for float files (encode and dither are
-    /// then skipped). Unset: Encoded for UNORM and SRGB formats, SceneLinear for float formats.
+    /// What the target (of an SRGB format, its image) takes: the last kernel makes it of a picture in any other state.
+    std::optional<ColorState> target_color;
+    /// Encoded for pictures that are shown, SceneLinear for float files (encode and dither are then skipped). Unset:
+    /// Encoded for UNORM and SRGB formats, SceneLinear for float formats.
     std::optional<Domain> target_domain;
-    /// Whether a picture that the stack leaves unencoded is sRGB-encoded for an Encoded target. Unset: for UNORM
-    /// formats; an SRGB one does it itself, and who chooses Encoded for floats encodes in the stack.
+    /// Whether light that the stack leaves is then sRGB-encoded for an Encoded target. Unset: for UNORM formats.
     std::optional<bool> encodes_target;
     std::uint32_t views = 1;
     KernelStage kernels = KernelStage::Auto;

@@ -30,6 +30,7 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopDesc& desc) {
     const bool is_bytes = desc.target == DevelopTarget::Encoded8;
     const VkFormat target = is_bytes ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
     return {.target = {target, target_usage(context, target)},
+            .target_color = desc.color,
             .target_domain = desc.target == DevelopTarget::SceneLinear ? Domain::SceneLinear : Domain::Encoded,
             .encodes_target = desc.target != DevelopTarget::SceneLinear,
             .kernels = desc.kernels,

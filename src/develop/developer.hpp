@@ -8,6 +8,7 @@
 #include <darkroom/composer.hpp>
 #include <darkroom/reference.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,6 +50,8 @@ enum class DevelopTarget : std::uint32_t { Encoded8, EncodedFloat, SceneLinear }
 
 struct DevelopDesc {
     DevelopTarget target = DevelopTarget::Encoded8;
+    /// What the picture is to be, in place of sRGB or linear Rec. 709.
+    std::optional<ColorState> color{};
     KernelStage kernels = KernelStage::Auto;
     bool fuse = true;
     /// Of DevelopInput: how many may be submitted before the first is finished. The Composer has as many.

@@ -15,6 +15,7 @@
 #include "plan/frame_inputs.hpp"
 #include "shared/blend_modes_reference.hpp"
 #include "shared/color_state_reference.hpp"
+#include "shared/finite_reference.hpp"
 #include "shared/reading_reference.hpp"
 #include "shared/srgb_reference.hpp"
 
@@ -55,7 +56,7 @@ class Chain {
             const double grey = std::clamp(pixel.a, 0.0, 1.0);
             pixel = {grey, grey, grey, 1};
         }
-        states_.assign(2, {});
+        states_.assign(2, scene_state());
         pictures_.push_back(ui_ != nullptr ? *ui_ : ReferenceImage());
         states_.push_back(srgb_color);
         sizes_ = {{}, {}, frame_output()};
@@ -69,14 +70,35 @@ class Chain {
         std::size_t last = value_of({}, composer_.size());
         if (input_.target_extent.width != 0) last = at_size(last, frame_output());
         ReferenceChainOutput out{.picture = pictures_[last], .left_out = std::move(left_out_)};
-        const Domain domain = states_[last].domain;
-        if (input_.target_domain == Domain::Encoded && domain != Domain::Encoded && input_.encodes_target)
-            for (Rgba& pixel : out.picture.pixels)
-                pixel = {srgb_curve(pixel.r), srgb_curve(pixel.g), srgb_curve(pixel.b), pixel.a};
+        finish(out.picture, states_[last]);
         return out;
     }
 
   private:
+    ColorState scene_state() const {
+        return {.white_nits = input_.target_color ? input_.target_color->white_nits : ColorState{}.white_nits};
+    }
+    Domain target_domain() const { return input_.target_color ? input_.target_color->domain : input_.target_domain; }
+    void finish(ReferenceImage& picture, const ColorState& state) const {
+        if (!input_.target_color) {
+            if (target_domain() == Domain::Encoded && state.domain != Domain::Encoded && input_.encodes_target)
+                for (Rgba& pixel : picture.pixels)
+                    pixel = {srgb_curve(pixel.r), srgb_curve(pixel.g), srgb_curve(pixel.b), pixel.a};
+            return;
+        }
+        const ColorState& target = *input_.target_color;
+        const bool is_same = state.transfer == target.transfer && state.primaries == target.primaries &&
+                             state.unit_nits() == target.unit_nits();
+        if (is_same) return;
+        for (Rgba& p : picture.pixels) {
+            const std::array light{finite_reference(p.r), finite_reference(p.g), finite_reference(p.b)};
+            std::array<double, 3> v = numbers_of(nits_of(light, state), target);
+            if (target.transfer == Transfer::Srgb)
+                for (double& x : v) x = std::clamp(x, 0.0, 1.0);
+            p = {v[0], v[1], v[2], p.a};
+        }
+    }
+
     /// What is left of the frame before is nothing after a cut, as on the GPU.
     void begin_histories() {
         if (input_.histories == nullptr) return;
@@ -173,7 +195,7 @@ class Chain {
 
     std::size_t keep(ReferenceImage image) {
         pictures_.push_back(std::move(image));
-        states_.emplace_back();
+        states_.push_back(scene_state());
         const ReferenceImage& kept = pictures_.back();
         sizes_.push_back({.width = kept.width, .height = kept.height});
         return pictures_.size() - 1;
@@ -239,7 +261,7 @@ class Chain {
             if (is_missing(wire, index)) needs.add(FrameImage::Ui);
         std::string why = plan::missing_needs(needs, [&](FrameImage image) { return is_there(input_, image); });
         if (!why.empty()) why = fmt::format("needs {}, which the frame does not have", why);
-        if (why.empty() && info.is_last_step && input_.target_domain == Domain::SceneLinear)
+        if (why.empty() && info.is_last_step && target_domain() == Domain::SceneLinear)
             why = "the target takes scene-linear floats";
         if (!why.empty()) {
             left_out_.push_back(fmt::format("{}: {}", desc.name, why));

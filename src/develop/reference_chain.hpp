@@ -49,8 +49,9 @@ struct ReferenceChainInput {
     double time = 0;
     double delta_time = 1.0 / 60;
     std::uint64_t frame_index = 0;
-    ReferenceHistories* histories = nullptr;  ///< null: a frame by itself
-    Domain target_domain = Domain::Encoded;   ///< SceneLinear: encode and dither are skipped
+    ReferenceHistories* histories = nullptr;   ///< null: a frame by itself
+    std::optional<ColorState> target_color{};  ///< as CompileDesc has it; unset: what the two members below say
+    Domain target_domain = Domain::Encoded;    ///< SceneLinear: encode and dither are skipped
     /// Whether a picture that the stack leaves unencoded is sRGB-encoded for an Encoded target: by a kernel or, for an
     /// SRGB format, by the format. The output is what such a target holds.
     bool encodes_target = true;

@@ -37,8 +37,8 @@ std::string accepted_domains(Domains accepts) {
 }
 
 /// About colour domains, with the present values.
-void remark_domains(const Program& program, const FrameValues& values, std::span<const Entry* const> entries,
-                    std::vector<std::string>& remarks) {
+void remark_domains(const Program& program, const FrameValues& values, const CompileDesc& desc,
+                    std::span<const Entry* const> entries, std::vector<std::string>& remarks) {
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         const Domain domain = values.state_before(program, i).domain;
         const Domains accepts = entries[i]->info->accepts;
@@ -46,10 +46,34 @@ void remark_domains(const Program& program, const FrameValues& values, std::span
         remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", entries[i]->desc.name,
                                       accepted_domains(accepts), name_of(domain)));
     }
-    if (values.finish() == Finish::EncodeSrgb)
+    if (!desc.target_color && values.finish().kind == Finish::EncodeSrgb)
         remarks.push_back(fmt::format(
             "the picture is {} at the end of the stack: the target gets it sRGB-encoded; add encode to choose.",
             name_of(values.last_state(program).domain)));
+}
+
+/// About a target that says what it takes, and a picture that does not fit it.
+void remark_target(const Program& program, const FrameValues& values, const ColorState& target,
+                   std::span<const Entry* const> entries, std::vector<std::string>& remarks) {
+    if (target.domain != Domain::Encoded) return;
+    const ColorState last = values.last_state(program);
+    const auto by = [&](auto member) -> std::string_view {
+        for (std::uint32_t i = program.last_entry; i < entries.size(); i = program.entry_inputs[i])
+            if (values.state_after(i).*member != values.state_before(program, i).*member) return entries[i]->desc.name;
+        return "the scene";
+    };
+    if (last.peak_nits > 0 && last.peak_nits < 0.99f * target.peak_nits)
+        remarks.push_back(fmt::format("{} ends the picture at {:g} cd/m2; the target shows up to {:g} cd/m2.",
+                                      by(&ColorState::peak_nits), last.peak_nits, target.peak_nits));
+    if (last.peak_nits > 1.01f * target.peak_nits)
+        remarks.push_back(fmt::format("{} ends the picture at {:g} cd/m2; the target clips it at {:g} cd/m2.",
+                                      by(&ColorState::peak_nits), last.peak_nits, target.peak_nits));
+    if (last.peak_nits == 0)
+        remarks.push_back(fmt::format(
+            "the picture is the scene's light, without an end; the target clips it at {:g} cd/m2.", target.peak_nits));
+    if (last.domain == Domain::Encoded && (last.transfer != target.transfer || last.primaries != target.primaries))
+        remarks.push_back(fmt::format("{} makes {}; the target takes {}: the last kernel turns one into the other.",
+                                      by(&ColorState::domain), text_of(last), text_of(target)));
 }
 
 }  // namespace
@@ -134,7 +158,8 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
               .transient_bytes_unaliased = compiled.transient_bytes_unaliased()};
     const graph::Extents largest = largest_extents(desc);
     const FrameValues values = example_values(program, desc, entries);
-    remark_domains(program, values, entries, plan.remarks);
+    remark_domains(program, values, desc, entries, plan.remarks);
+    if (desc.target_color) remark_target(program, values, *desc.target_color, entries, plan.remarks);
     for (std::uint32_t i = 0; i < entries.size(); ++i)
         if (!program.is_left_out[i]) plan.states.push_back({entries[i]->desc.name, text_of(values.state_after(i))});
     graph::Schedule schedule(compiled);

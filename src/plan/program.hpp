@@ -25,8 +25,8 @@ inline constexpr std::uint32_t most_fused_vectors = 96;
 /// Entries in one fused kernel, and entries of a plan that join a kernel begun by another. A compiler's time grows
 /// faster than its kernel, and a kernel of one entry serves all entries of that effect.
 inline constexpr std::size_t most_fused_entries = 16, most_joined_entries = 96;
-/// Kernels of a plan that do not run where their entries are off. A picture behind such a kernel may be any of those before
-/// it, so all of them keep their memory; behind the kernels that always run two pictures are enough.
+/// Kernels of a plan that do not run where their entries are off. A picture behind such a kernel may be any of those
+/// before it, so all of them keep their memory; behind the kernels that always run two pictures are enough.
 inline constexpr std::size_t most_gated_kernels = 32;
 
 /// A stack entry as the Composer keeps it.
@@ -140,10 +140,10 @@ struct ProgramPass {
         const CopyPass* const copy = as<CopyPass>();
         return copy == nullptr ? std::nullopt : copy->watch;
     }
-    /// Finish::OfFrame: the frame's values say what the target needs.
+    /// The frame's values say what the target needs.
     [[nodiscard]] bool finishes_by_frame() const {
         const FusedPass* const fused = as<FusedPass>();
-        return fused != nullptr && fused->finish == Finish::OfFrame;
+        return fused != nullptr && is_by_frame(fused->finish);
     }
 };
 
@@ -229,10 +229,6 @@ struct PlannerTraits {
     const Touch touch = entry.info->touch;
     return touch == Touch::Pointwise || touch == Touch::Warp || !entry.is_plain();
 }
-
-/// What the target needs of a picture in this domain: it is encoded exactly once, by a kernel or by the format.
-[[nodiscard]] Finish finish_of(Domain domain, const CompileDesc& desc);
-[[nodiscard]] Domain target_domain(const CompileDesc& desc);
 
 /// The program as users read it: the passes that run with the entries' present values, in a frame of
 /// example_values().

@@ -233,7 +233,13 @@ gpu::Binding Chain::bind(const PassInput& input, const Frame& frame) const {
 std::span<const std::uint32_t> Chain::write_words(const ProgramPass& pass) {
     std::size_t count = 0;
     const bool is_fused = pass.as<plan::FusedPass>() != nullptr;
-    if (pass.finishes_by_frame()) words_[count++] = static_cast<std::uint32_t>(values_.finish());
+    if (pass.finishes_by_frame()) {
+        const plan::Conversion& finish = values_.finish();
+        words_[count++] = finish.word();
+        if (pass.as<plan::FusedPass>()->finish == plan::Finish::OfFrameOrConvert)
+            for (const float value : {finish.scale, finish.limit, finish.ootf, finish.target_ootf})
+                words_[count++] = std::bit_cast<std::uint32_t>(value);
+    }
     for (const plan::FusedStep& step : pass.steps()) {
         const plan::Entry& entry = *entries_[step.entry];
         if (is_fused) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <darkroom/effects/contrast_gamma.hpp>
 #include <darkroom/effects/encode.hpp>
+#include <darkroom/effects/tonemap.hpp>
 #include <darkroom/effects/ui_composite.hpp>
 #include <darkroom/effects/vignette.hpp>
 
@@ -11,7 +12,9 @@
 #include <array>
 #include <cmath>
 
+#include "compose/test_stacks/host.hpp"
 #include "compose/test_stacks/support.hpp"
+#include "develop/reference_chain.hpp"
 #include "shared/color_state_reference.hpp"
 
 namespace darkroom {
@@ -98,6 +101,185 @@ TEST(ComposeColorState, DisplayControlsTakeTheSameLightOnEveryTarget) {
             }
         }
     }
+}
+
+constexpr ColorState light_709{};
+constexpr ColorState light_2020{.primaries = Primaries::Rec2020};
+
+const std::array<ColorState, 7> targets{srgb_color, p3_color, pq_color, hlg_color, scrgb_color, light_709, light_2020};
+
+/// What a stack may hand to the target: 0 is light, 1 an encode that is off, the others code values.
+constexpr std::uint32_t encoders = 8;
+void add_encoder(Composer& composer, std::uint32_t which) {
+    constexpr std::array<TransferFunction, 6> transfers{TransferFunction::Srgb, TransferFunction::Gamma22,
+                                                        TransferFunction::Pq,   TransferFunction::Scrgb,
+                                                        TransferFunction::Hlg,  TransferFunction::P3};
+    if (which == 1) composer.add(Encode{}, {.enabled = false});
+    if (which >= 2) composer.add(Encode{.transfer = transfers[which - 2]});
+}
+bool ends_at_white(std::uint32_t encoder) { return encoder == 2 || encoder == 3 || encoder == 7; }
+
+/// A grey patch a column, in cd/m2.
+constexpr std::array<double, 8> patches{0.5, 5, 20, 50, 100, 203, 406, 900};
+ReferenceImage picture_of_patches() {
+    ReferenceImage out(8, 4);
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const double light = patches[x] / 203;
+            out.at(x, y) = {light, light, light, 1};
+        }
+    return out;
+}
+
+TEST(ComposeColorState, PatchesHaveTheirLuminanceOnEveryTargetWhateverTheStackMakes) {
+    const ReferenceImage picture = picture_of_patches();
+    for (const ColorState& target : targets) {
+        const bool takes_light = target.domain != Domain::Encoded;
+        for (std::uint32_t encoder = 0; encoder < encoders; ++encoder) {
+            for (const bool is_fused : {true, false}) {
+                SCOPED_TRACE(testing::Message() << static_cast<int>(target.transfer) << " of primaries "
+                                                << static_cast<int>(target.primaries) << ", encoder " << encoder
+                                                << ", fused " << is_fused);
+                const ReferenceImage out = test::develop([&](Composer& composer) { add_encoder(composer, encoder); },
+                                                         picture, {.fuse = is_fused, .target_color = target});
+                ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+                for (std::uint32_t x = 0; x < patches.size(); ++x) {
+                    double wanted = patches[x];
+                    if (!takes_light && (target.peak_nits == 203 || ends_at_white(encoder)))
+                        wanted = std::min(wanted, 203.0);
+                    const Rgba& p = out.at(x, 2);
+                    const std::array<double, 3> light = nits_of({p.r, p.g, p.b}, target);
+                    for (const double nits : light) EXPECT_NEAR(nits, wanted, 0.005 * wanted) << wanted;
+                }
+            }
+        }
+    }
+}
+
+TEST(ComposeColorState, ColoursAreThoseOfTheReferenceOnEveryTarget) {
+    ReferenceImage picture = test::round_to_float(test::random_hdr(16, 16, 4));
+    for (Rgba& p : picture.pixels) p = {std::min(p.r, 40.0), std::min(p.g, 40.0), std::min(p.b, 40.0), p.a};
+    for (const ColorState& target : targets) {
+        for (std::uint32_t encoder = 0; encoder < encoders; ++encoder) {
+            SCOPED_TRACE(testing::Message() << static_cast<int>(target.transfer) << " of primaries "
+                                            << static_cast<int>(target.primaries) << ", encoder " << encoder);
+            const auto fill = [&](Composer& composer) { add_encoder(composer, encoder); };
+            const ReferenceImage out = test::develop(fill, picture, {.target_color = target});
+            Composer composer(test::Host(picture).device);
+            fill(composer);
+            const auto expected = run_reference(composer, {.color = &picture, .target_color = target});
+            ASSERT_TRUE(expected) << expected.error().text;
+            // Of a code of 12 bits, or of the light; near black a code of PQ is less than what anybody sees.
+            for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+                const std::array a{out.pixels[i].r, out.pixels[i].g, out.pixels[i].b};
+                const std::array b{expected->picture.pixels[i].r, expected->picture.pixels[i].g,
+                                   expected->picture.pixels[i].b};
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const bool is_black = target.transfer == Transfer::Pq && 10000 * pq_decoded(a[c]) < 1e-3 &&
+                                          10000 * pq_decoded(b[c]) < 1e-3;
+                    if (!is_black) {
+                        EXPECT_NEAR(a[c], b[c], std::max(1.0 / 4095, 1e-3 * std::abs(b[c]))) << i;
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(ComposeColorState, TheInterfaceHasItsLuminanceWhateverTheTargetsWhite) {
+    const ReferenceImage ui = half_covered(1), picture = test::uniform(16, 8, {0.5, 0.5, 0.5, 1});
+    for (const ColorState& told : {pq_color, hlg_color, scrgb_color}) {
+        for (std::uint32_t encoder = 0; encoder < 2; ++encoder) {
+            for (const bool is_fused : {true, false}) {
+                ColorState target = told;
+                target.white_nits = 300;
+                SCOPED_TRACE(testing::Message() << static_cast<int>(target.transfer) << " " << encoder << is_fused);
+                const ReferenceImage out = test::develop(
+                    [&](Composer& composer) {
+                        add_encoder(composer, encoder);
+                        composer.add(UiComposite{});
+                    },
+                    picture, {.fuse = is_fused, .target_color = target, .ui = &ui});
+                const auto green = [&](std::uint32_t x) {
+                    const Rgba& p = out.at(x, 4);
+                    return nits_of({p.r, p.g, p.b}, target)[1];
+                };
+                EXPECT_NEAR(green(2), 203, 0.005 * 203);
+                EXPECT_NEAR(green(12), 150, 0.005 * 150);
+            }
+        }
+    }
+}
+
+TEST(ComposeColorState, AnSrgbTargetGetsTheSameBitsWhetherItIsToldOrNot) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(64, 64, 3));
+    for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB}) {
+        for (const std::uint32_t encoder : {0u, 1u, 2u}) {
+            for (const bool is_fused : {true, false}) {
+                const auto fill = [&](Composer& composer) { add_encoder(composer, encoder); };
+                test::RunOptions options{.fuse = is_fused, .target = format};
+                const ReferenceImage before = test::develop(fill, picture, options);
+                options.target_color = srgb_color;
+                const ReferenceImage told = test::develop(fill, picture, options);
+                EXPECT_EQ(test::worst_difference(before, told), 0) << format << " " << encoder << is_fused;
+            }
+        }
+    }
+}
+
+TEST(ComposeColorState, ATargetThatCannotHoldWhatItSaysIsRefused) {
+    test::Host host(test::uniform(4, 4, {1, 1, 1, 1}));
+    Composer composer(host.device);
+    const auto error = [&](ColorState color, VkFormat format) {
+        CompileDesc desc = host.compile_desc();
+        desc.target.format = format;
+        desc.target_color = color;
+        const auto plan = composer.plan(desc);
+        return plan ? std::string() : plan.error().text;
+    };
+    EXPECT_EQ(error(pq_color, VK_FORMAT_A2B10G10R10_UNORM_PACK32), "");
+    EXPECT_EQ(error(p3_color, VK_FORMAT_R8G8B8A8_SRGB), "");
+    EXPECT_EQ(error(pq_color, VK_FORMAT_R8G8B8A8_SRGB),
+              "target_color.transfer: an SRGB format has the curve of sRGB: allowed is Srgb");
+    ColorState dark = pq_color;
+    dark.peak_nits = 0;
+    EXPECT_EQ(error(dark, VK_FORMAT_R16G16B16A16_SFLOAT), "target_color.peak_nits = 0: allowed are 1 to 10000");
+    EXPECT_EQ(error({.transfer = Transfer::Pq}, VK_FORMAT_R16G16B16A16_SFLOAT),
+              "target_color.transfer: light has none: allowed is Linear");
+}
+
+TEST(ComposeColorState, ThePlanRemarksWhatDoesNotFitTheTarget) {
+    test::Host host(test::uniform(4, 4, {1, 1, 1, 1}));
+    const auto remarks = [&](ColorState target, auto fill) {
+        Composer composer(host.device);
+        fill(composer);
+        CompileDesc desc = host.compile_desc();
+        desc.target_color = target;
+        const auto plan = composer.plan(desc);
+        std::string out;
+        for (const std::string& remark : plan->remarks) out += remark + "\n";
+        return out;
+    };
+    const auto curve = [](Tonemap tonemap) { return [tonemap](Composer& composer) { composer.add(tonemap); }; };
+    constexpr auto bt2390 = TonemapOperator::Bt2390;
+    EXPECT_EQ(remarks(pq_color, curve({})),
+              "tonemap ends the picture at 203 cd/m2; the target shows up to 1000 cd/m2.\n");
+    EXPECT_EQ(remarks(pq_color, curve({.curve = bt2390, .peak_nits = 1000})), "");
+    EXPECT_EQ(remarks(pq_color, curve({.curve = bt2390, .peak_nits = 4000})),
+              "tonemap ends the picture at 4000 cd/m2; the target clips it at 1000 cd/m2.\n");
+    EXPECT_EQ(remarks(srgb_color, curve({})), "");
+    EXPECT_EQ(remarks(pq_color, [](Composer&) {}),
+              "the picture is the scene's light, without an end; the target clips it at 1000 cd/m2.\n");
+    const std::string turned = remarks(pq_color, [](Composer& composer) {
+        composer.add(Tonemap{});
+        composer.add(Encode{});
+    });
+    EXPECT_NE(
+        turned.find("encode makes code values, Rec. 709, sRGB, white 203 cd/m2, up to 203 cd/m2; the target takes "
+                    "code values, Rec. 2020, PQ, white 203 cd/m2, up to 1000 cd/m2: the last kernel turns one "
+                    "into the other.\n"),
+        std::string::npos)
+        << turned;
 }
 
 }  // namespace

@@ -174,6 +174,7 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
                                         .ui = {ui ? options.ui_format : VK_FORMAT_UNDEFINED},
                                         .has_shadows = !shadow_maps.empty(),
                                         .target = {options.target, gpu::test::all_usage(context, options.target)},
+                                        .target_color = options.target_color,
                                         .target_domain = options.target_domain,
                                         .kernels = options.kernels,
                                         .fuse = options.fuse,

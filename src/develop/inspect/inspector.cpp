@@ -15,6 +15,7 @@
 #include "gpu/device/context.hpp"
 #include "gpu/resource/formats.hpp"
 #include "gpu/resource/resources.hpp"
+#include "plan/frame/color.hpp"
 
 namespace darkroom {
 

@@ -31,7 +31,7 @@ Shape shape_of(const ProgramPass& pass, std::span<const Entry* const> entries, c
     const bool is_fused = pass.as<FusedPass>() != nullptr;
     const std::span<const FusedStep> steps = pass.steps();
     if (is_fused) {
-        if (pass.finishes_by_frame()) shape.flags |= static_cast<std::uint64_t>(values.finish()) << Shape::finish_bit;
+        if (pass.finishes_by_frame()) shape.flags |= std::uint64_t{values.finish().word()} << Shape::finish_bit;
         for (std::size_t i = 0; i < steps.size(); ++i) {
             const std::uint32_t entry = steps[i].entry;
             if (!values.is_on(entry)) continue;

@@ -59,6 +59,7 @@ FrameValues::FrameValues(const Program& program, std::span<const Entry* const> e
 void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std::span<const Entry* const> entries,
                            const PassContext& context, VkExtent2D target, std::span<const Watched* const> watched) {
     extents_ = extents_of(desc, context.scene_extent, target);
+    scene_ = scene_state(desc);
     const Moment moment = moment_of(context.time, context.camera == nullptr ? Camera{} : *context.camera);
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         const Entry& entry = *entries[i];
@@ -70,7 +71,7 @@ void FrameValues::evaluate(const Program& program, const CompileDesc& desc, std:
         works_[i] = work_of(*entry.info, before, words);
         states_[i] = entry.state_after(before, words, is_on(i));
     }
-    finish_ = finish_of(last_state(program).domain, desc);
+    finish_ = finish_of(last_state(program), desc);
     rays_meet_ = context.camera != nullptr && plan::rays_meet(*context.camera);
     for (std::size_t i = 0; i < gate_count_; ++i) gates_[i] = is_open(program, program.gates[i], context, watched);
 }

@@ -33,7 +33,7 @@ class FrameValues {
     [[nodiscard]] ColorState last_state(const Program& program) const { return state_behind(program.last_entry); }
     /// How a step of this entry that may need it gets the picture.
     [[nodiscard]] const Work& work(std::uint32_t entry) const { return works_[entry]; }
-    [[nodiscard]] Finish finish() const { return finish_; }
+    [[nodiscard]] const Conversion& finish() const { return finish_; }
     /// Of the frame's camera, see glsl.hpp.
     [[nodiscard]] bool rays_meet() const { return rays_meet_; }
     [[nodiscard]] const graph::Extents& extents() const { return extents_; }
@@ -41,7 +41,7 @@ class FrameValues {
 
   private:
     [[nodiscard]] ColorState state_behind(std::uint32_t entry) const {
-        return entry == no_entry ? ColorState{} : entry == ui_entry ? srgb_color : states_[entry];
+        return entry == no_entry ? scene_ : entry == ui_entry ? srgb_color : states_[entry];
     }
     [[nodiscard]] bool is_open(const Program& program, const Gate& gate, const PassContext& context,
                                std::span<const Watched* const> watched) const;
@@ -51,7 +51,8 @@ class FrameValues {
     std::vector<float> opacities_;
     std::vector<ColorState> states_;  ///< behind each entry
     std::vector<Work> works_;
-    Finish finish_ = Finish::None;
+    ColorState scene_;
+    Conversion finish_;
     bool rays_meet_ = false;
     graph::Extents extents_;
     std::unique_ptr<bool[]> gates_;

@@ -18,21 +18,25 @@ std::uint32_t bits_of(const ParamInfo& row) {
     return std::max(1U, static_cast<std::uint32_t>(std::bit_width(row.choices.size() - 1)));
 }
 
-Result<std::string> body_of(const FusedPass& pass, std::span<const FusedStep> steps, Finish finish) {
-    return fused_body(steps, finish, pass.resampling, pass.is_alpha);
+Result<std::string> body_of(const FusedPass& pass, std::span<const FusedStep> steps, Finish finish,
+                            std::uint32_t word) {
+    return fused_body(steps, finish, pass.resampling, pass.is_alpha, word);
 }
-Result<std::string> body_of(const KernelPass&, std::span<const FusedStep> steps, Finish) {
+Result<std::string> body_of(const KernelPass&, std::span<const FusedStep> steps, Finish, std::uint32_t) {
     return pass_body(steps.front());
 }
-Result<std::string> body_of(const CopyPass& pass, std::span<const FusedStep>, Finish finish) {
+Result<std::string> body_of(const CopyPass& pass, std::span<const FusedStep>, Finish finish, std::uint32_t) {
     return fused_body({}, finish, pass.resampling);
 }
 
-/// `of_frame`: in place of Finish::OfFrame.
-Result<gpu::KernelSpec> spec_of(const ProgramPass& pass, std::span<const FusedStep> steps, Finish of_frame) {
+/// `word`: of the frame's conversion, where the target's kernel finishes by that; none: it reads it.
+Result<gpu::KernelSpec> spec_of(const ProgramPass& pass, std::span<const FusedStep> steps,
+                                std::optional<std::uint32_t> word) {
     const FusedPass* const fused = pass.as<FusedPass>();
-    const Finish finish = fused == nullptr ? Finish::None : pass.finishes_by_frame() ? of_frame : fused->finish;
-    auto body = std::visit([&](const auto& kind) { return body_of(kind, steps, finish); }, pass.kind);
+    const Finish finish = fused == nullptr                   ? Finish::None
+                          : word && pass.finishes_by_frame() ? static_cast<Finish>(*word & 3)
+                                                             : fused->finish;
+    auto body = std::visit([&](const auto& kind) { return body_of(kind, steps, finish, word.value_or(0)); }, pass.kind);
     if (!body) return failure(std::move(body));
     gpu::KernelSpec spec = pass.spec;
     spec.body = std::move(*body);
@@ -66,7 +70,7 @@ void lay_out_literals(ProgramPass& pass) {
     }
 }
 
-Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass) { return spec_of(pass, pass.steps(), Finish::OfFrame); }
+Result<gpu::KernelSpec> complete_spec(const ProgramPass& pass) { return spec_of(pass, pass.steps(), std::nullopt); }
 
 Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
     const std::span<const FusedStep> all = pass.steps();
@@ -87,7 +91,8 @@ Result<gpu::KernelSpec> lean_spec(const ProgramPass& pass, const Shape& shape) {
         const auto end = steps.begin() + static_cast<std::ptrdiff_t>(known);
         steps.erase(std::remove_if(steps.begin(), end, [](const FusedStep& step) { return !step.is_certain; }), end);
     }
-    auto spec = spec_of(pass, steps, static_cast<Finish>(shape.flags >> Shape::finish_bit & 3));
+    const auto finish = static_cast<std::uint32_t>(shape.flags >> Shape::finish_bit & ((1u << conversion_bits) - 1));
+    auto spec = spec_of(pass, steps, finish);
     if (!spec) return spec;
     spec->is_whole = (shape.flags & Shape::is_whole) != 0;
     spec->input_is_twice = (shape.flags & Shape::input_is_twice) != 0;

@@ -26,6 +26,7 @@ Planner::Planner(std::span<const Entry> stack, const CompileDesc& desc, const Pl
     : stack_(stack), desc_(desc), traits_(traits), target_domain_(target_domain(desc)) {}
 
 Result<Program> Planner::run() {
+    if (auto ok = check_target_color(desc_); !ok) return failure(std::move(ok));
     if (auto ok = check_handles(); !ok) return failure(std::move(ok));
     program_.is_left_out.assign(stack_.size(), false);
     program_.is_mixable.assign(stack_.size(), true);
@@ -258,10 +259,12 @@ Result<> Planner::finish() {
     const std::uint32_t last_entry = last_of_picture();
     const std::size_t last = last_entry == no_entry ? 0 : entry_values_[last_entry];
     // Values change after compile, and with them the domain.
-    Finish finish = finish_of(Domain::SceneLinear, desc_);
-    const bool is_open = finish_of(Domain::Encoded, desc_) != finish_of(Domain::SceneLinear, desc_);
+    Finish finish = finish_of(scene_state(desc_), desc_).kind;
+    const Finish by_frame = desc_.target_color ? Finish::OfFrameOrConvert : Finish::OfFrame;
+    if (finish == Finish::Convert) finish = by_frame;
+    const bool is_open = desc_.target_color || finish_of(srgb_color, desc_).kind != finish;
     for (std::uint32_t i = program_.last_entry; is_open && i < stack_.size(); i = program_.entry_inputs[i])
-        if (stack_[i].info->makes != nullptr) finish = Finish::OfFrame;
+        if (stack_[i].info->makes != nullptr) finish = by_frame;
     const VkExtent2D own = desc_.target_extent;
     std::size_t kernel = values_[last].kernel;
     const graph::Size target_size = frame_output();
@@ -297,6 +300,7 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     const bool is_moved_here = is_moved(kernel.steps);
 
     Gate toggle;
+    append_finish_members(finish, pass.spec.members);
     for (const FusedStep& step : kernel.steps) {
         const std::string& name = stack_[step.entry].desc.name;
         pass.name += (pass.name.empty() ? "" : "+") + name;
@@ -308,7 +312,6 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     if (pass.name.empty()) pass.name = kernel.is_alpha ? "scene alpha" : "copy";
     pass.spec.name = pass.name;
     if (kernel.constants != nullptr) pass.spec.custom_vectors = 1;
-    if (finish == Finish::OfFrame) pass.spec.members.insert(pass.spec.members.begin(), finish_member());
     pass.spec.frame = frame_members();
     pass.spec.outputs = {format};
     // imageLoad needs GENERAL, sampling the other layout: one image can be in one of them.
@@ -380,20 +383,6 @@ std::int32_t Planner::toggle_index(Gate toggle) {
     }
     program_.gates.push_back(std::move(toggle));
     return index;
-}
-
-Domain target_domain(const CompileDesc& desc) {
-    return desc.target_domain.value_or(gpu::format_traits(desc.target.format).is_float ? Domain::SceneLinear
-                                                                                       : Domain::Encoded);
-}
-
-Finish finish_of(Domain domain, const CompileDesc& desc) {
-    if (target_domain(desc) != Domain::Encoded) return Finish::None;
-    if (domain == Domain::Encoded)
-        return gpu::format_traits(desc.target.format).is_srgb ? Finish::DecodeSrgb : Finish::None;
-    const bool is_encoded_here = !gpu::format_traits(desc.target.format).is_srgb &&
-                                 desc.encodes_target.value_or(!gpu::format_traits(desc.target.format).is_float);
-    return is_encoded_here ? Finish::EncodeSrgb : Finish::None;
 }
 
 Result<std::shared_ptr<const EffectText>> Planner::text_of(const EffectInfo& info, const std::string& file,

@@ -218,7 +218,14 @@ bool rays_meet(const Camera& camera) {
     return p[11] != 0 && p[15] == 0 && p[12] == 0 && p[13] == 0;
 }
 
-gpu::BlockMember finish_member() { return {gpu::BlockMember::Type::Uint, "finish_"}; }
+void append_finish_members(Finish finish, std::vector<gpu::BlockMember>& out) {
+    using enum gpu::BlockMember::Type;
+    if (!is_by_frame(finish)) return;
+    out.push_back({Uint, "finish_"});
+    if (finish == Finish::OfFrame) return;
+    for (const char* const name : {"finish_scale_", "finish_limit_", "finish_ootf_", "finish_target_ootf_"})
+        out.push_back({Float, name});
+}
 
 void append_header_members(const FusedStep& step, std::vector<gpu::BlockMember>& out) {
     using enum gpu::BlockMember::Type;
@@ -366,7 +373,33 @@ constexpr std::string_view closest_function = R"(vec4 closest_texel(Pixel pixel)
 
 }  // namespace
 
-Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha) {
+namespace {
+
+/// The lines that finish for the target.
+std::string finish_code(Finish finish, std::uint32_t word) {
+    const std::string by = finish == Finish::Convert ? fmt::format("{}u", word) : "finish_";
+    const std::string conversion = fmt::format(
+        "color.rgb = color_state_convert(color.rgb, {}, finish_scale_, finish_limit_, finish_ootf_, "
+        "finish_target_ootf_);",
+        by);
+    std::string out;
+    for (const auto& [kind, call] :
+         {std::pair<Finish, std::string_view>{Finish::EncodeSrgb, "color.rgb = srgb_encode(color.rgb);"},
+          {Finish::DecodeSrgb, "color.rgb = srgb_decode(color.rgb);"},
+          {Finish::Convert, conversion}}) {
+        if (finish == kind) return fmt::format("    {}\n", call);
+        const bool is_whole_word = finish == Finish::OfFrameOrConvert;
+        if (!is_by_frame(finish) || (kind == Finish::Convert && !is_whole_word)) continue;
+        out += fmt::format("    if ({} == {}u) {}\n", is_whole_word ? "(finish_ & 3u)" : "finish_",
+                           static_cast<unsigned>(kind), call);
+    }
+    return out;
+}
+
+}  // namespace
+
+Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha,
+                               std::uint32_t finish_word) {
     std::string declarations, code;
     bool has_merge = false, has_reading = false, reads_picture = false, has_wrap = false;
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -431,13 +464,10 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
         if (auto ok = include("shared/color_state.glsl"); !ok) return failure(std::move(ok));
     if (finish != Finish::None) {
         if (auto ok = include("shared/srgb.glsl"); !ok) return failure(std::move(ok));
-        for (const auto& [kind, call] : {std::pair{Finish::EncodeSrgb, "color.rgb = srgb_encode(color.rgb);"},
-                                         std::pair{Finish::DecodeSrgb, "color.rgb = srgb_decode(color.rgb);"}}) {
-            if (finish == Finish::OfFrame)
-                code += fmt::format("    if (finish_ == {}u) {}\n", static_cast<unsigned>(kind), call);
-            else if (finish == kind)
-                code += fmt::format("    {}\n", call);
-        }
+        const bool may_convert = finish == Finish::Convert || finish == Finish::OfFrameOrConvert;
+        if (may_convert && !has_wrap)
+            if (auto ok = include("shared/color_state.glsl"); !ok) return failure(std::move(ok));
+        code += finish_code(finish, finish_word);
     }
     std::string_view read = is_moved(steps) ? "load_clamped(picture, pixel.texel)" : "load(picture, pixel.texel)";
     if (resampling == Resampling::Linear) read = "sample_linear(picture, pixel.uv)";

@@ -84,10 +84,18 @@ struct FusedStep {
 };
 /// Of an entry: enabled_, opacity_ and blend_, and those of Work where the step may need it.
 void append_header_members(const FusedStep& step, std::vector<gpu::BlockMember>& out);
-/// What the target's kernel does last. OfFrame: the block's member finish_ says which of the others.
-enum class Finish : std::uint8_t { None, EncodeSrgb, DecodeSrgb, OfFrame };
-/// The member of the block that Finish::OfFrame reads.
-[[nodiscard]] gpu::BlockMember finish_member();
+/// What the target's kernel does last.
+enum class Finish : std::uint8_t {
+    None,
+    EncodeSrgb,
+    DecodeSrgb,
+    Convert,           ///< from any state of a picture to any other: see Conversion in frame/color.hpp
+    OfFrame,           ///< the block's member finish_ says which of the first three
+    OfFrameOrConvert,  ///< or which of all
+};
+[[nodiscard]] constexpr bool is_by_frame(Finish finish) { return finish >= Finish::OfFrame; }
+/// The members of the block that a finish by the frame reads.
+void append_finish_members(Finish finish, std::vector<gpu::BlockMember>& out);
 /// How a fused kernel reads a picture that may have another extent than its output.
 enum class Resampling : std::uint8_t {
     None,
@@ -104,9 +112,9 @@ inline constexpr std::string_view picture_name = "picture";
 [[nodiscard]] std::string reading_function(std::string_view name, std::string_view image,
                                            std::span<const FusedStep> steps);
 /// The body of a fused kernel: reads image `picture` (or only its alpha, as a grey picture), applies the steps in
-/// order, finishes for the target.
+/// order, finishes for the target. `finish_word`: Conversion::word() of a lean kernel.
 [[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling,
-                                             bool is_alpha = false);
+                                             bool is_alpha = false, std::uint32_t finish_word = 0);
 /// The body of an effect's pass.
 [[nodiscard]] std::string pass_body(const FusedStep& step);
 
