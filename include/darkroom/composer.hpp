@@ -29,6 +29,7 @@
 #include <darkroom/kernel_statistics.hpp>
 #include <darkroom/modulation.hpp>
 #include <darkroom/plan.hpp>
+#include <darkroom/recording.hpp>
 #include <darkroom/resource.hpp>
 #include <darkroom/result.hpp>
 #include <darkroom/watch.hpp>
@@ -108,22 +109,6 @@ struct CompileDesc {
     bool fuse = true;  ///< false: every effect a pass of its own (tests, benchmarks)
     VkFormat intermediate = VK_FORMAT_R16G16B16A16_SFLOAT;  ///< of pictures between kernels
     std::vector<Watch> watches;                             ///< what frames may look at; see darkroom/watch.hpp
-};
-
-struct PassTime {
-    std::string_view name;
-    double milliseconds = 0;
-};
-/// Times of one finished recording: those of its own passes. Valid until the Composer records or compiles again.
-struct RecordingTimes {
-    std::uint64_t frame_index = 0;  ///< Frame::frame_index of that recording
-    std::span<const PassTime> passes;
-};
-
-/// What became of compile_later().
-struct PendingCompile {
-    bool is_pending = false;     ///< under way, or ready for the next record to take
-    std::optional<Error> error;  ///< why the last one failed; the plan before it goes on
 };
 
 class UiChain;
@@ -266,6 +251,9 @@ class Composer {
     void wait_for_kernels();
     /// Times of the last recording that has finished; no passes without timers. Never waits.
     [[nodiscard]] RecordingTimes times();
+    /// A value that effects of the plan make (PassBuilder::value), as the newest recording of the view left it of which
+    /// frames_in_flight says that it has finished. Never waits.
+    [[nodiscard]] ValueReading value(std::string_view name, std::uint32_t view = 0) const;
     /// CPU time of the last record, in microseconds.
     [[nodiscard]] double record_microseconds() const;
     /// After device loss: keeps the stack, compiles it on another device with the last CompileDesc.

@@ -44,7 +44,7 @@ struct PlanPass {
     std::uint64_t bytes_read = 0;  ///< each input texel counted once
     std::uint64_t bytes_written = 0;
     std::vector<PlanUse> reads;
-    PlanUse writes;
+    PlanUse writes;                      ///< its image is PlanImage::never where a pass writes buffers alone
     std::vector<PlanUse> more_writes{};  ///< of a pass with several outputs
 };
 

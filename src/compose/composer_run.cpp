@@ -321,6 +321,9 @@ void Composer::wait_for_kernels() try {
 }
 
 RecordingTimes Composer::times() { return state_->chain ? state_->chain->times() : RecordingTimes{}; }
+ValueReading Composer::value(std::string_view name, std::uint32_t view) const {
+    return state_->chain ? state_->chain->value(name, view) : ValueReading{};
+}
 WatchState Composer::watch_state(std::uint32_t id) const {
     return state_->chain ? state_->chain->watch_state(id) : WatchState::NotInPlan;
 }

@@ -138,7 +138,7 @@ void add_lifetimes(Plan& plan) {
     };
     for (std::uint32_t i = 0; i < plan.passes.size(); ++i) {
         for (const PlanUse& read : plan.passes[i].reads) note(read, i);
-        note(plan.passes[i].writes, i);
+        if (plan.passes[i].writes.image != PlanImage::never) note(plan.passes[i].writes, i);
         for (const PlanUse& write : plan.passes[i].more_writes) note(write, i);
     }
 }
@@ -175,21 +175,28 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
         const std::uint32_t kept = compiled.kept_pass_of({i});
         if (kept == ~0u || !schedule.runs(kept)) continue;
         const ProgramPass& pass = program.passes[i];
-        const std::uint32_t output_slot = schedule.slot_of(pass.output);
-        const graph::Slot& output = compiled.slots()[output_slot];
         PlanPass out{.name = pass.name,
                      .stage = pass.stage == gpu::Stage::Compute ? "compute" : "raster",
                      .entries = {},
                      .boundary = pass.boundary,
-                     .extent = graph::mip_extent(output.desc.size.of(largest), pass.output_mip_level),
-                     .bytes_written = bytes_of(output, largest, pass.output_mip_level),
                      .reads = {},
-                     .writes = use_of(output_slot, pass.output_mip_level)};
-        for (const graph::Version more : pass.more_outputs) {
-            const std::uint32_t slot = schedule.slot_of(more);
-            out.bytes_written += bytes_of(compiled.slots()[slot], desc.max_extent, pass.output_mip_level);
-            out.more_writes.push_back(use_of(slot, pass.output_mip_level));
-        }
+                     .writes = {.image = PlanImage::never}};
+        const auto extent_of = [&](std::uint32_t slot, std::uint32_t mip_level) {
+            return graph::mip_extent(compiled.slots()[slot].desc.size.of(largest), mip_level);
+        };
+        pass.for_each_output([&](graph::Version version, std::uint32_t mip_level) {
+            const std::uint32_t slot = schedule.slot_of(version);
+            out.bytes_written += bytes_of(compiled.slots()[slot], largest, mip_level);
+            const bool is_first = out.writes.image == PlanImage::never;
+            if (is_first) out.extent = extent_of(slot, mip_level);
+            if (is_first)
+                out.writes = use_of(slot, mip_level);
+            else
+                out.more_writes.push_back(use_of(slot, mip_level));
+        });
+        if (!pass.output.is_valid() && !pass.inputs.empty())
+            out.extent =
+                extent_of(schedule.slot_of(pass.inputs[0].version, pass.inputs[0].instead), pass.inputs[0].mip_level);
         for (std::size_t k = 0; k < pass.inputs.size(); ++k) {
             const PassInput& input = pass.inputs[k];
             // An image that is both loaded and sampled stands there twice.

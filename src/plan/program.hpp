@@ -108,6 +108,16 @@ struct KernelPass {
     FusedStep step;
     ConstantsFunction constants = nullptr;
 };
+/// The same with a body of its own, which writes what it likes of its outputs and buffers.
+struct ComputePass {
+    KernelPass own;
+    struct Output {
+        graph::Version version;
+        std::uint32_t mip_level = 0;
+    };
+    std::vector<Output> outputs;
+    std::array<std::uint32_t, 2> groups{};  ///< (0, 0): from the extent of the first output or input
+};
 /// An image as it is, or brought to another size.
 struct CopyPass {
     Resampling resampling = Resampling::None;
@@ -115,13 +125,20 @@ struct CopyPass {
     ConstantsFunction constants = nullptr;  ///< of the resampling
 };
 
+struct PassBufferUse {
+    graph::Version version;  ///< of a buffer that is written, the one that the pass makes
+    ComputePassDesc::Access access = ComputePassDesc::Access::Read;
+    std::uint32_t number = 0;  ///< of Planner's buffers
+};
+
 struct ProgramPass {
     std::string name;
-    std::variant<FusedPass, KernelPass, CopyPass> kind;
+    std::variant<FusedPass, KernelPass, CopyPass, ComputePass> kind;
     gpu::KernelSpec spec;  ///< without its body: see plan/frame/shape.hpp
     gpu::Stage stage = gpu::Stage::Compute;
-    std::vector<PassInput> inputs;               ///< one per spec.images
-    graph::Version output;                       ///< the version that this pass makes
+    std::vector<PassInput> inputs;         ///< one per spec.images
+    std::vector<PassBufferUse> buffers{};  ///< one per spec.buffers
+    graph::Version output;                 ///< the version that this pass makes; none of one that writes buffers alone
     std::vector<graph::Version> more_outputs{};  ///< of the same extent
     std::uint32_t output_mip_level = 0;
     std::int32_t toggle = -1;
@@ -133,6 +150,21 @@ struct ProgramPass {
     template <class Kind>
     [[nodiscard]] const Kind* as() const {
         return std::get_if<Kind>(&kind);
+    }
+    /// Of a pass of an effect's build; else null.
+    [[nodiscard]] const KernelPass* of_effect() const {
+        const ComputePass* const compute = as<ComputePass>();
+        return compute != nullptr ? &compute->own : as<KernelPass>();
+    }
+    /// Calls visit(version, mip level) for each image that it writes.
+    template <class Visit>
+    void for_each_output(const Visit& visit) const {
+        if (const ComputePass* const compute = as<ComputePass>()) {
+            for (const ComputePass::Output& out : compute->outputs) visit(out.version, out.mip_level);
+            return;
+        }
+        visit(output, output_mip_level);
+        for (const graph::Version more : more_outputs) visit(more, output_mip_level);
     }
     /// What of the entries is in it: of an effect's pass one step, of a copy none.
     [[nodiscard]] std::span<const FusedStep> steps() const;
@@ -185,7 +217,15 @@ struct Program {
     /// Per watch: the gate of the pass that copies; -1: the plan has nothing that it names.
     std::vector<std::int32_t> watch_gates;
     std::vector<bool> is_left_out;  ///< per entry
-    std::vector<bool> is_mixable;   ///< per entry: opacity and blending may change while recording
+    /// What entries make under a name, the last of each, for the host to read. A pass of the graph behind all of
+    /// `passes` copies them, if there are any.
+    struct NamedValue {
+        std::string name;
+        graph::Version version;
+        std::uint32_t numbers = 0;
+    };
+    std::vector<NamedValue> values;
+    std::vector<bool> is_mixable;  ///< per entry: opacity and blending may change while recording
     std::vector<std::string> left_out, remarks;
     /// What effects asked of the largest extent: the program serves every extent with the same answers.
     struct ExtentAnswer {
@@ -217,6 +257,7 @@ struct PlannerTraits {
     std::uint32_t max_image_side = 16384;
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
     std::array<std::uint32_t, 2> workgroup{16, 8};
+    ComputeLimits compute{};
 };
 
 /// Turns a stack into a program. Errors: a handle that names no earlier entry, a shader that is missing.

@@ -19,6 +19,16 @@ using plan::PassInput;
 using plan::ProgramPass;
 using plan::Shape;
 
+namespace {
+
+std::array<std::uint32_t, 2> groups_of(const plan::ComputePass& pass, const gpu::KernelSpec& spec, VkExtent2D extent) {
+    if (pass.groups[0] != 0) return pass.groups;
+    const auto [width, height] = spec.workgroup;
+    return {(extent.width + width - 1) / width, (extent.height + height - 1) / height};
+}
+
+}  // namespace
+
 Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
     find_watched(frame);
@@ -41,6 +51,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
         worker_.discard(*staging);
         worker_.wake();
     }
+    value_copies_.begin(slot_);
     values_.evaluate(program_of(), desc_.compile, entries_, context, frame.target.used_region().extent, watched_);
     note_watch_states();
     write_frame_block(frame);
@@ -59,6 +70,10 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     for (const graph::Schedule::Step& step : schedule_->steps()) {
         physical_->record_barriers(commands, context_.vk, barriers.subspan(step.first_barrier, step.barrier_count),
                                    frame.view);
+        if (declared_pass_[step.pass] == program_of().passes.size()) {
+            record_value_copies(commands, frame);
+            continue;
+        }
         record_pass(commands, declared_pass_[step.pass], frame, context);
         if (is_timed) {
             timed_[slot_].passes.push_back(declared_pass_[step.pass]);
@@ -81,6 +96,7 @@ bool Chain::abandon() {
     --desc_.program->recordings;
     desc_.program->tables->take_back(desc_.program->recordings);
     desc_.program->lit.take_back(desc_.program->recordings);
+    value_copies_.take_back(slot_);
     physical_->histories(before_.view_index) = before_.view;
     for (std::uint32_t i = 0; i < before_.states.size(); ++i)
         if (graph::HistoryImages* const history = physical_->history(i, before_.view_index))
@@ -279,11 +295,11 @@ const gpu::Kernel& Chain::kernel_of(std::uint32_t pass, const gpu::Region& outpu
 /// The pass's set of this slot, written anew where a view changed. A host's view is always written: handles are given
 /// again, and one that is known may be another image now.
 VkDescriptorSet Chain::updated_set(std::uint32_t pass, const gpu::Kernel& kernel, std::span<const gpu::Binding> inputs,
-                                   std::span<const gpu::Binding> outputs) {
+                                   std::span<const gpu::Binding> outputs, std::span<const gpu::Kernel::Block> buffers) {
     const Sets& sets = pass_sets_[pass];
     const VkDescriptorSet set = sets_.sets[sets.first + slot_];
     Written* const written = written_.data() + sets.first_written + std::size_t{slot_} * sets.images;
-    bool is_changed = false;
+    bool is_changed = !buffers.empty();  // each view has its own
     const auto note = [&](std::size_t at, const gpu::Binding& binding) {
         const Written now{binding.view, binding.layout, binding.is_nearest};
         is_changed |= binding.is_lent || written[at] != now;
@@ -297,8 +313,26 @@ VkDescriptorSet Chain::updated_set(std::uint32_t pass, const gpu::Kernel& kernel
                       .frame = {blocks_.handle, start, plan::frame_words * 4},
                       .own = {blocks_.handle, start + block_at_[pass], gpu::own_block_size(kernel.spec())},
                       .images = inputs,
-                      .outputs = outputs});
+                      .outputs = outputs,
+                      .buffers = buffers});
     return set;
+}
+
+void Chain::fill_custom(const ProgramPass& pass, const PassContext& context, VkExtent2D output) {
+    const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
+    PassContext own = context;
+    own.output_extent = output;
+    const auto fill = [&](ConstantsFunction constants, std::uint32_t entry, std::span<PassVector> out) {
+        if (constants == nullptr) return;
+        own.frame_extent = program_of().entry_sizes[entry].of(values_.extents());
+        own.has_history = has_history_[entry] != 0;
+        constants(values_.words(entry), own, out);
+    };
+    if (const auto* const kernel = pass.of_effect()) fill(kernel->constants, kernel->step.entry, custom);
+    if (const auto* const copy = pass.as<plan::CopyPass>(); copy != nullptr && copy->constants != nullptr)
+        copy->constants(nullptr, own, custom);
+    for (const plan::FusedStep& step : pass.steps())
+        fill(step.constants, step.entry, custom.subspan(step.first_vector, step.custom_vectors));
 }
 
 void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Frame& frame, const PassContext& context) {
@@ -312,36 +346,48 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
         images[0].region = watched_region(images[0].region, *watched_[*watch], context.frame_extent);
     const std::span<const gpu::Binding> inputs(images.data(), pass.inputs.size());
     std::array<gpu::Binding, gpu::most_outputs> written;
-    const auto bind_output = [&](graph::Version version) {
-        return bind_slot(schedule_->slot_of(version), pass.output_mip_level, frame);
-    };
-    written[0] = bind_output(pass.output);
-    std::ranges::transform(pass.more_outputs, written.begin() + 1, bind_output);
-    const std::span<const gpu::Binding> outputs(written.data(), 1 + pass.more_outputs.size());
-    const gpu::Binding& output = outputs.front();
-
-    const std::span<PassVector> custom(custom_.data(), pass.spec.custom_vectors);
-    PassContext own = context;
-    own.output_extent = output.region.extent;
-    const auto fill = [&](ConstantsFunction constants, std::uint32_t entry, std::span<PassVector> out) {
-        if (constants == nullptr) return;
-        own.frame_extent = program_of().entry_sizes[entry].of(values_.extents());
-        own.has_history = has_history_[entry] != 0;
-        constants(values_.words(entry), own, out);
-    };
-    if (const auto* const kernel = pass.as<plan::KernelPass>()) fill(kernel->constants, kernel->step.entry, custom);
-    if (const auto* const copy = pass.as<plan::CopyPass>(); copy != nullptr && copy->constants != nullptr)
-        copy->constants(nullptr, own, custom);
-    for (const plan::FusedStep& step : pass.steps())
-        fill(step.constants, step.entry, custom.subspan(step.first_vector, step.custom_vectors));
+    std::size_t output_count = 0;
+    pass.for_each_output([&](graph::Version version, std::uint32_t mip_level) {
+        written[output_count++] = bind_slot(schedule_->slot_of(version), mip_level, frame);
+    });
+    const std::span<const gpu::Binding> outputs(written.data(), output_count);
+    std::array<gpu::Kernel::Block, gpu::most_buffers> blocks;
+    for (std::size_t i = 0; i < pass.buffers.size(); ++i) {
+        const auto range = physical_->buffer(schedule_->slot_of(pass.buffers[i].version), frame.view);
+        blocks[i] = {range.handle, range.offset, range.size};
+    }
+    const gpu::Region region = !outputs.empty()  ? outputs[0].region
+                               : !inputs.empty() ? inputs[0].region
+                                                 : gpu::Region{};
+    fill_custom(pass, context, region.extent);
+    const std::span<const PassVector> custom(custom_.data(), pass.spec.custom_vectors);
     gpu::write_own_block(
-        pass.spec, output.region, inputs, custom, write_words(pass),
-        {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index], gpu::own_block_size(pass.spec)});
-    const gpu::Kernel& kernel = kernel_of(index, output.region, inputs);
-    const VkDescriptorSet set = updated_set(index, kernel, inputs, outputs);
+        pass.spec, region, inputs, custom, write_words(pass),
+        {blocks_.memory.mapped + slot_stride_ * slot_ + block_at_[index], gpu::own_block_size(pass.spec)}, outputs);
+    const gpu::Kernel& kernel = kernel_of(index, region, inputs);
+    const VkDescriptorSet set = updated_set(index, kernel, inputs, outputs, {blocks.data(), pass.buffers.size()});
     gpu::begin_label(context_, commands, pass.name.c_str());
-    kernel.record(commands, set, outputs);
+    if (const auto* const compute = pass.as<plan::ComputePass>())
+        kernel.record_groups(commands, set, groups_of(*compute, pass.spec, region.extent));
+    else
+        kernel.record(commands, set, outputs);
     gpu::end_label(context_, commands);
+}
+
+void Chain::record_value_copies(VkCommandBuffer commands, const Frame& frame) {
+    const auto& values = program_of().values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const auto range = physical_->buffer(schedule_->slot_of(values[i].version), frame.view);
+        value_copies_.record(commands, slot_, i, range.handle, range.offset);
+    }
+    value_copies_.end(commands, slot_, {recordings_ + 1, frame.frame_index, frame.view});
+}
+
+ValueReading Chain::value(std::string_view name, std::uint32_t view) const {
+    const auto& values = program_of().values;
+    const auto found = std::ranges::find(values, name, &plan::Program::NamedValue::name);
+    if (found == values.end()) return {};
+    return value_copies_.find(static_cast<std::size_t>(found - values.begin()), view);
 }
 
 RecordingTimes Chain::times() {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "compose/chain/value_copies.hpp"
 #include "compose/stack/stack_program.hpp"
 #include "compose/worker.hpp"
 #include "gpu/resource/resources.hpp"
@@ -47,6 +48,7 @@ class Chain final : public Garbage {
     /// Where the plan has the entry of this id.
     [[nodiscard]] std::optional<std::uint32_t> index_of(std::uint32_t entry_id) const;
     [[nodiscard]] RecordingTimes times();
+    [[nodiscard]] ValueReading value(std::string_view name, std::uint32_t view) const;
     /// Of the last recording.
     [[nodiscard]] WatchState watch_state(std::uint32_t id) const;
 
@@ -77,8 +79,12 @@ class Chain final : public Garbage {
                                                std::span<const gpu::Binding> inputs);
     [[nodiscard]] VkDescriptorSet updated_set(std::uint32_t pass, const gpu::Kernel& kernel,
                                               std::span<const gpu::Binding> inputs,
-                                              std::span<const gpu::Binding> outputs);
+                                              std::span<const gpu::Binding> outputs,
+                                              std::span<const gpu::Kernel::Block> buffers);
+    /// Fills the custom vectors of a pass, for one that writes an image of this extent.
+    void fill_custom(const plan::ProgramPass& pass, const PassContext& context, VkExtent2D output);
     void record_pass(VkCommandBuffer commands, std::uint32_t pass, const Frame& frame, const PassContext& context);
+    void record_value_copies(VkCommandBuffer commands, const Frame& frame);
 
     gpu::Context& context_;
     Worker& worker_;
@@ -91,8 +97,9 @@ class Chain final : public Garbage {
     std::optional<graph::Compiled> compiled_;
     std::optional<graph::Schedule> schedule_;
     std::optional<graph::Physical> physical_;
-    std::vector<std::uint32_t> declared_pass_;  ///< kept pass -> pass of the program
+    std::vector<std::uint32_t> declared_pass_;  ///< kept pass -> pass of the program; their number: copies values
 
+    ValueCopies value_copies_;
     gpu::Buffer blocks_;  ///< for each slot the frame's block, then one a pass
     VkDeviceSize slot_stride_ = 0;
     std::vector<VkDeviceSize> block_at_;  ///< per pass: of its block, in a slot

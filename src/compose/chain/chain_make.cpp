@@ -66,7 +66,7 @@ void Chain::derive(const PassContext& context, std::span<const plan::Entry* cons
 Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     const plan::Program& program = program_of();
     const std::vector<const plan::Entry*> entries = pointers_to(values);
-    declared_pass_.assign(compiled_->passes().size(), 0);
+    declared_pass_.assign(compiled_->passes().size(), static_cast<std::uint32_t>(program.passes.size()));
     std::vector<std::uint32_t> kept;
     for (std::uint32_t i = 0; i < program.passes.size(); ++i) {
         const std::uint32_t pass = compiled_->kept_pass_of({i});
@@ -151,6 +151,9 @@ Result<> Chain::make_resources(graph::HistoryPool& histories) {
                                       gpu::Memory::Kind::Constants, "blocks");
     if (!blocks) return failure(std::move(blocks));
     blocks_ = std::move(*blocks);
+    auto copies = ValueCopies::create(context_, program_of().values, desc_.slots);
+    if (!copies) return failure(std::move(copies));
+    value_copies_ = std::move(*copies);
     if (auto ok = make_sets(); !ok) return ok;
     return make_timers();
 }
@@ -160,6 +163,7 @@ Result<> Chain::make_sets() {
     pass_sets_.resize(program_of().passes.size());
     std::uint32_t written = 0;
     for (const std::uint32_t i : declared_pass_) {
+        if (i == program_of().passes.size()) continue;
         const plan::ProgramPass& pass = program_of().passes[i];
         Sets& sets = pass_sets_[i];
         sets = {.first = static_cast<std::uint32_t>(layouts.size()),

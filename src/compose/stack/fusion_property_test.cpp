@@ -3,6 +3,9 @@
 // wires to any entry before, entries left out, every kind and domain of target, and edits after compile. Fused in both
 // stages, unfused, compiled again and, where the stack has one, the reference give one picture.
 
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
+
 #include "compose/test_stacks/effects.hpp"
 #include "compose/test_stacks/random_scene.hpp"
 #include "develop/reference_chain.hpp"
@@ -14,6 +17,176 @@ namespace {
 using test::below;
 using test::one_in;
 
+// Effects whose passes write several images, compute in shared memory, and make and read values.
+struct Gauge {
+    float amount = 1;
+};
+struct Heed {
+    float amount = 1;
+};
+struct Parted {
+    float amount = 1;
+};
+struct Tile {
+    float amount = 1;
+};
+
+constexpr std::array<EffectFile, 6> pass_effect_files{{
+    // Always in the same order, so that nothing but the picture decides over the sum.
+    {"gauge_sum.glsl",
+     "shared float gauge_parts[64];\n"
+     "void run() {\n"
+     "    uint own = gl_LocalInvocationIndex;\n"
+     "    ivec2 extent = size(gauge_in);\n"
+     "    float sum = 0.0;\n"
+     "    for (int i = int(own); i < extent.x * extent.y; i += 64)\n"
+     "        sum += clamp(load(gauge_in, ivec2(i % extent.x, i / extent.x)).r, 0.0, 1.0);\n"
+     "    gauge_parts[own] = sum;\n"
+     "    barrier();\n"
+     "    if (own != 0u) return;\n"
+     "    for (int i = 1; i < 64; ++i) sum += gauge_parts[i];\n"
+     "    gauge_mean[0] = sum / float(extent.x * extent.y);\n}\n"},
+    {"gauge.glsl",
+     "vec4 gauge(vec4 color, Pixel pixel, Gauge parameters) {\n"
+     "    return vec4(color.rgb * (1.0 - parameters.amount * gauge_mean[0]), color.a);\n}\n"},
+    {"heed.glsl",
+     "vec4 heed(vec4 color, Pixel pixel, Heed parameters) {\n"
+     "    return vec4(color.rgb * (1.0 - parameters.amount * heed_mean[0]), color.a);\n}\n"},
+    {"parted_parts.glsl",
+     "void shade(Pixel pixel, out vec4 result[2]) {\n"
+     "    vec4 color = load(parted_in, pixel.texel);\n"
+     "    result[0] = 0.5 * color;\n"
+     "    result[1] = 0.25 * color.bgra;\n}\n"},
+    {"parted.glsl",
+     "vec4 parted(vec4 color, Pixel pixel, Parted parameters) {\n"
+     "    vec3 apart = sample_linear(parted_half, pixel.uv).rgb - sample_linear(parted_turned, pixel.uv).rgb;\n"
+     "    return vec4(color.rgb + parameters.amount * apart, color.a);\n}\n"},
+    {"tile_rows.glsl",
+     "shared vec4 tile_texels[4][18];\n"
+     "void run() {\n"
+     "    ivec2 texel = ivec2(gl_GlobalInvocationID.xy), place = ivec2(gl_LocalInvocationID.xy);\n"
+     "    vec4 own = load_clamped(tile_in, texel);\n"
+     "    tile_texels[place.y][place.x + 1] = own;\n"
+     "    if (place.x == 0) tile_texels[place.y][0] = load_clamped(tile_in, texel - ivec2(1, 0));\n"
+     "    if (place.x == 15) tile_texels[place.y][17] = load_clamped(tile_in, texel + ivec2(1, 0));\n"
+     "    barrier();\n"
+     "    if (any(greaterThanEqual(texel, size(tile_out)))) return;\n"
+     "    vec3 beside = 0.5 * (tile_texels[place.y][place.x].rgb + tile_texels[place.y][place.x + 2].rgb);\n"
+     "    store(tile_out, texel, vec4(own.rgb + tile_parameters().amount * (beside - own.rgb), own.a));\n}\n"},
+}};
+
+ReferenceImage gauge_reference(const void* parameters, const ReferenceInput& input) {
+    double sum = 0;
+    for (const Rgba& pixel : input.source->pixels) sum += std::clamp(pixel.r, 0.0, 1.0);
+    const double mean = sum / static_cast<double>(input.source->pixels.size());
+    const double factor = 1 - mean * double{static_cast<const Gauge*>(parameters)->amount};
+    ReferenceImage out = *input.picture;
+    for (Rgba& p : out.pixels) p = {p.r * factor, p.g * factor, p.b * factor, p.a};
+    return out;
+}
+
+ReferenceImage parted_reference(const void* parameters, const ReferenceInput& input) {
+    ReferenceImage out = *input.picture;
+    const double amount{static_cast<const Parted*>(parameters)->amount};
+    for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+        const Rgba& from = input.source->pixels[i];
+        Rgba& p = out.pixels[i];
+        p = {p.r + amount * (0.5 * from.r - 0.25 * from.b), p.g + amount * 0.25 * from.g,
+             p.b + amount * (0.5 * from.b - 0.25 * from.r), p.a};
+    }
+    return out;
+}
+
+ReferenceImage tile_reference(const void* parameters, const ReferenceInput& input) {
+    const ReferenceImage& picture = *input.picture;
+    const double amount{static_cast<const Tile*>(parameters)->amount};
+    ReferenceImage out = picture;
+    for (std::uint32_t y = 0; y < out.height; ++y) {
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const Rgba &left = picture.at(x == 0 ? 0 : x - 1, y),
+                       &right = picture.at(std::min(x + 1, out.width - 1), y);
+            Rgba& pixel = out.at(x, y);
+            for (double Rgba::*const channel : {&Rgba::r, &Rgba::g, &Rgba::b})
+                pixel.*channel += amount * (0.5 * (left.*channel + right.*channel) - pixel.*channel);
+        }
+    }
+    return out;
+}
+
+constexpr auto gauge_rows = describe(field<&Gauge::amount>("How much darker a bright picture gets.", {0, 1}));
+constexpr auto heed_rows = describe(field<&Heed::amount>("The same, of an earlier entry.", {0, 1}));
+constexpr auto parted_rows = describe(field<&Parted::amount>("How far the parts are apart.", {0, 1}));
+constexpr auto tile_rows = describe(field<&Tile::amount>("How much of the neighbours is seen.", {0, 1}));
+
+/// A value of the entry's own, for its end and for entries behind.
+const EffectInfo gauge_effect{
+    .name = "gauge",
+    .doc = "Darkens by the mean of red.",
+    .parameters = gauge_rows.table(),
+    .files = pass_effect_files,
+    .build =
+        [](PassBuilder& builder) {
+            const PassBuffer mean = builder.value("mean", 1);
+            builder.add_compute({.name = "sum",
+                                 .shader = "gauge_sum.glsl",
+                                 .inputs = {{.name = "gauge_in", .image = builder.source()}},
+                                 .buffers = {{"gauge_mean", mean, ComputePassDesc::Access::Write, "float"}},
+                                 .workgroup = {64, 1},
+                                 .shared_bytes = 256,
+                                 .groups = {1, 1}});
+            builder.value_side("gauge_mean", mean);
+        },
+    .reference = gauge_reference};
+/// Reads the value of an entry before it, or one that nobody writes.
+const EffectInfo heed_effect{.name = "heed",
+                             .doc = "Darkens by what an entry before it measured.",
+                             .parameters = heed_rows.table(),
+                             .files = pass_effect_files,
+                             .build = [](PassBuilder& builder) {
+                                 const PassBuffer mean = builder.find_value("mean");
+                                 builder.value_side("heed_mean", mean.is_given() ? mean : builder.value("nothing", 1));
+                             }};
+/// Two images of one pass.
+const EffectInfo parted_effect{
+    .name = "parted",
+    .doc = "Adds what two images differ by.",
+    .parameters = parted_rows.table(),
+    .files = pass_effect_files,
+    .build =
+        [](PassBuilder& builder) {
+            const auto image = [&](const char* name) {
+                return builder.create({.name = name, .format = VK_FORMAT_R32G32B32A32_SFLOAT});
+            };
+            const auto made = builder.add_all({.name = "parts",
+                                               .shader = "parted_parts.glsl",
+                                               .inputs = {{.name = "parted_in", .image = builder.source()}},
+                                               .output = image("half"),
+                                               .more_outputs = {image("turned")}});
+            if (made.size() < 2) return;
+            builder.side("parted_half", made[0], {});
+            builder.side("parted_turned", made[1], {});
+        },
+    .reference = parted_reference};
+/// A result that a compute pass makes in shared memory.
+const EffectInfo tile_effect{
+    .name = "tile",
+    .doc = "Averages the neighbours in the row.",
+    .parameters = tile_rows.table(),
+    .files = pass_effect_files,
+    .touch = Touch::Neighbourhood,
+    .build =
+        [](PassBuilder& builder) {
+            const PassImage out = builder.create({.name = "rows", .format = VK_FORMAT_R32G32B32A32_SFLOAT});
+            const auto made = builder.add_compute({.name = "rows",
+                                                   .shader = "tile_rows.glsl",
+                                                   .inputs = {{.name = "tile_in", .image = builder.picture()}},
+                                                   .outputs = {{"tile_out", out}},
+                                                   .workgroup = {16, 4},
+                                                   .shared_bytes = 16 * 18 * 4});
+            if (!made.empty()) builder.result(made[0]);
+        },
+    .reference = tile_reference};
+
 class ComposeFusionProperty : public test::StackTest {};
 class SoakFusionProperty : public test::StackTest {};
 
@@ -21,9 +194,10 @@ constexpr VkFormat float_format = VK_FORMAT_R32G32B32A32_SFLOAT;
 /// What takes long are kernels: effects of many come into few of the graphs that every change is tried with.
 enum class Effort : std::uint8_t { Small, Thorough };
 
-constexpr std::array<const EffectInfo*, 7> test_effects{&test::shift_effect,  &test::cross_effect,  &test::glow_effect,
-                                                        &test::recode_effect, &test::absent_effect, &test::halve_effect,
-                                                        &test::absent_effect};
+constexpr std::array<const EffectInfo*, 11> test_effects{
+    &test::shift_effect,  &test::cross_effect, &test::glow_effect,   &test::recode_effect,
+    &test::absent_effect, &test::halve_effect, &test::absent_effect, &gauge_effect,
+    &heed_effect,         &parted_effect,      &tile_effect};
 bool is_test_effect(const EffectInfo& info) { return std::ranges::find(test_effects, &info) != test_effects.end(); }
 
 std::vector<const EffectInfo*> effects_for(Effort effort) {

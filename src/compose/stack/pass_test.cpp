@@ -49,8 +49,11 @@ void build_split(PassBuilder& builder) {
 }
 
 EffectInfo split_with(void (*build)(PassBuilder&)) {
-    return {
-        .name = "split", .doc = "Parts the picture.", .parameters = split_rows.table(), .files = split_files, .build = build};
+    return {.name = "split",
+            .doc = "Parts the picture.",
+            .parameters = split_rows.table(),
+            .files = split_files,
+            .build = build};
 }
 
 class ComposePasses : public test::StackTest {};

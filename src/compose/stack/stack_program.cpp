@@ -74,7 +74,9 @@ plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kern
             .packing_pays = !context.traits.is_software,
             .max_image_side = context.traits.max_image_dimension,
             .max_storage_images = context.traits.max_storage_images,
-            .workgroup = gpu::usual_workgroup(context)};
+            .workgroup = gpu::usual_workgroup(context),
+            .compute = {.workgroup_invocations = context.traits.max_workgroup_invocations,
+                        .shared_bytes = context.traits.max_shared_bytes}};
 }
 
 Result<std::shared_ptr<StackProgram>> plan_stack(const gpu::Context& context, std::span<const plan::Entry> stack,

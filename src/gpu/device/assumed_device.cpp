@@ -19,6 +19,7 @@ std::shared_ptr<Context> assumed_context() {
     traits.max_image_dimension = 16384;
     traits.max_workgroup_invocations = 1024;
     traits.max_workgroup_size = {1024, 1024, 64};
+    traits.max_shared_bytes = 32768;
     traits.max_storage_images = 16;
     return context;
 }

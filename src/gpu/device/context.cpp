@@ -196,6 +196,7 @@ Result<> Context::finish() {
     traits.max_storage_range = limits.maxStorageBufferRange;
     traits.max_workgroup_invocations = limits.maxComputeWorkGroupInvocations;
     std::ranges::copy(limits.maxComputeWorkGroupSize, traits.max_workgroup_size.begin());
+    traits.max_shared_bytes = limits.maxComputeSharedMemorySize;
     traits.max_storage_images =
         std::min(limits.maxPerStageDescriptorStorageImages, limits.maxFragmentCombinedOutputResources);
     traits.max_sampled_images =

@@ -43,6 +43,7 @@ struct Traits {
     VkDeviceSize max_storage_range = VkDeviceSize{1} << 27U;  ///< the same of a storage buffer
     std::uint32_t max_workgroup_invocations = 128;
     std::array<std::uint32_t, 3> max_workgroup_size{128, 128, 64};
+    std::uint32_t max_shared_bytes = 16384;  ///< of a workgroup
     std::uint32_t max_storage_images = 4;    ///< a stage; of a fragment shader with its outputs
     std::uint32_t max_sampled_images = 16;   ///< a stage, each with a sampler
     double timestamp_period_ns = 0;          ///< 0: this queue family has no timestamps

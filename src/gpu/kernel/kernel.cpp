@@ -41,10 +41,10 @@ std::vector<VkDescriptorSetLayoutBinding> layout_bindings(const KernelSpec& spec
         const bool is_sampled = image.storage_format == VK_FORMAT_UNDEFINED;
         add(binding++, is_sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     }
-    if (stage == Stage::Raster) return bindings;
-    for (std::size_t index = 0; index < spec.outputs.size(); ++index) {
+    for (std::size_t index = 0; stage == Stage::Compute && index < spec.outputs.size(); ++index) {
         add(binding++, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     }
+    for (std::size_t index = 0; index < spec.buffers.size(); ++index) add(binding++, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     return bindings;
 }
 
@@ -65,7 +65,7 @@ struct Kernel::State {
     }
     Result<> create_layouts();
     void update_set(const Invocation& invocation) const;
-    void dispatch(VkCommandBuffer commands, const Region& region) const;
+    void bind(VkCommandBuffer commands, VkDescriptorSet set) const;
     void draw(VkCommandBuffer commands, std::span<const Binding> outputs) const;
 
     Context& context;
@@ -95,7 +95,8 @@ Result<> Kernel::State::create_layouts() {
 }
 
 void Kernel::State::update_set(const Invocation& invocation) const {
-    std::array<VkWriteDescriptorSet, 2 + most_images + most_outputs> writes;
+    std::array<VkWriteDescriptorSet, 2 + most_images + most_outputs + most_buffers> writes;
+    std::array<VkDescriptorBufferInfo, most_buffers> buffers;
     std::array<VkDescriptorImageInfo, most_images + most_outputs> images;
     std::uint32_t write_count = 0;
     const auto add_write = [&](std::uint32_t binding, VkDescriptorType type) -> VkWriteDescriptorSet& {
@@ -138,12 +139,19 @@ void Kernel::State::update_set(const Invocation& invocation) const {
         ++image_count;
     }
     if (stage == Stage::Compute) std::ranges::for_each(invocation.outputs, add_storage);
+    for (std::uint32_t index = 0; index < invocation.buffers.size(); ++index) {
+        buffers[index] = info(invocation.buffers[index]);
+        add_write(first_buffer_binding(spec, stage) + index, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER).pBufferInfo =
+            &buffers[index];
+    }
     context.vk.UpdateDescriptorSets(context.device, write_count, writes.data(), 0, nullptr);
 }
 
-void Kernel::State::dispatch(VkCommandBuffer commands, const Region& region) const {
-    context.vk.CmdDispatch(commands, group_count(region.extent.width, spec.workgroup[0]),
-                           group_count(region.extent.height, spec.workgroup[1]), 1);
+void Kernel::State::bind(VkCommandBuffer commands, VkDescriptorSet set) const {
+    const bool is_compute = stage == Stage::Compute;
+    const VkPipelineBindPoint point = is_compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
+    context.vk.CmdBindPipeline(commands, point, pipeline);
+    context.vk.CmdBindDescriptorSets(commands, point, pipeline_layout, 0, 1, &set, 0, nullptr);
 }
 
 void Kernel::State::draw(VkCommandBuffer commands, std::span<const Binding> outputs) const {
@@ -190,7 +198,8 @@ Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpe
 
 Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpec& spec, Stage stage,
                                                std::string source) {
-    DARKROOM_ASSERT(!spec.outputs.empty() && spec.outputs.size() <= most_outputs && spec.images.size() <= most_images);
+    DARKROOM_ASSERT((spec.compute || !spec.outputs.empty()) && spec.buffers.size() <= most_buffers);
+    DARKROOM_ASSERT(spec.outputs.size() <= most_outputs && spec.images.size() <= most_images);
     if (Result<> checked = usable(context, spec, stage); !checked) return failure(std::move(checked));
     std::unique_ptr<Kernel> kernel(new Kernel);
     kernel->state_ = std::make_unique<State>(context);
@@ -221,21 +230,23 @@ Result<KernelStatistics> Kernel::statistics() const {
 void Kernel::write_set(const Invocation& invocation) const {
     DARKROOM_ASSERT(invocation.images.size() == state_->spec.images.size());
     DARKROOM_ASSERT(invocation.outputs.size() == state_->spec.outputs.size());
+    DARKROOM_ASSERT(invocation.buffers.size() == state_->spec.buffers.size());
     state_->update_set(invocation);
 }
 
 void Kernel::record(VkCommandBuffer commands, VkDescriptorSet set, std::span<const Binding> outputs) const {
     const State& state = *state_;
-    const Dispatch& vk = state.context.vk;
-    const bool is_compute = state.stage == Stage::Compute;
-    const VkPipelineBindPoint point = is_compute ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
-    vk.CmdBindPipeline(commands, point, state.pipeline);
-    vk.CmdBindDescriptorSets(commands, point, state.pipeline_layout, 0, 1, &set, 0, nullptr);
-    if (is_compute) {
-        state.dispatch(commands, outputs.front().region);
-    } else {
-        state.draw(commands, outputs);
-    }
+    const VkExtent2D extent = outputs.front().region.extent;
+    const auto [width, height] = state.spec.workgroup;
+    if (state.stage == Stage::Compute)
+        return record_groups(commands, set, {group_count(extent.width, width), group_count(extent.height, height)});
+    state.bind(commands, set);
+    state.draw(commands, outputs);
+}
+
+void Kernel::record_groups(VkCommandBuffer commands, VkDescriptorSet set, std::array<std::uint32_t, 2> groups) const {
+    state_->bind(commands, set);
+    state_->context.vk.CmdDispatch(commands, groups[0], groups[1], 1);
 }
 
 }  // namespace darkroom::gpu

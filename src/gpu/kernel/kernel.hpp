@@ -23,12 +23,18 @@
 //     vec3 from_below(vec3), vec4 from_below(vec4)     the same of the one below or above; finite numbers only, and
 //                                                      rounded as their difference is
 // Pixel is { ivec2 texel; vec2 uv; ivec2 size; }: texel (0,0) is the top left of the output's region.
+// A compute pass has a body of its own instead (KernelSpec::compute): it defines
+//     void run()                             with GLSL's own invocation numbers, `shared` variables and barrier()
+// reads its images as above, writes its outputs, which have names and may be mip levels of several extents, by
+//     void store(OUTPUT, ivec2 texel, vec4 value)   and asks ivec2 size(OUTPUT)
+// and its buffers are arrays, NAME[i], that any kernel may read and a compute pass may write, by atomics, too.
+// output_size() is the extent that its groups are counted from.
 // The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where
 // a region ends inside its image, a gather does not leave it either, but gives the last whole 2x2 block there.
 // kernel_source() writes the rest: preamble, bindings, region arithmetic, and main() of the stage.
 //
 // Set 0: binding 0 the block of the frame, binding 1 the kernel's own block, both uniform buffers, then the images in
-// order, then, in compute, the outputs.
+// order, then, in compute, the outputs, then the buffers.
 //
 // The text depends on what the kernel does and on nothing else: names of passes and entries stay out of it, so that
 // equal kernels are one kernel (gpu/kernel/kernel_store.hpp).
@@ -40,6 +46,7 @@
 #include <darkroom/kernel_statistics.hpp>
 #include <darkroom/result.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,6 +65,7 @@ inline constexpr VkBufferUsageFlags block_usage = VK_BUFFER_USAGE_UNIFORM_BUFFER
 /// 4 attachments.
 inline constexpr std::uint32_t most_images = 16;
 inline constexpr std::uint32_t most_outputs = 4;
+inline constexpr std::uint32_t most_buffers = 4;
 
 enum class Stage : std::uint8_t { Compute, Raster };
 
@@ -78,12 +86,27 @@ struct KernelImage {
     bool is_single = false;  ///< one texel, which load() gives everywhere
 };
 
+/// A storage buffer: an array of elements of a type, as many as are bound.
+struct KernelBuffer {
+    std::string name;
+    std::string type = "uint";
+    bool is_written = false;  ///< by compute passes alone
+};
+
+/// What a compute pass asks of a device beside images and buffers.
+struct ComputeBody {
+    std::vector<std::string> outputs;  ///< names, one for each of KernelSpec::outputs
+    std::uint32_t shared_bytes = 0;    ///< that its `shared` variables take
+};
+
 struct KernelSpec {
     std::string name;  ///< of the pipeline, and in errors; not part of the text
     std::vector<KernelImage> images;
     std::vector<VkFormat> outputs;
-    bool is_whole = false;        ///< all regions are whole images: no region arithmetic
-    bool input_is_twice = false;  ///< constants that the body may ask for, see the top of this file
+    std::vector<KernelBuffer> buffers{};
+    std::optional<ComputeBody> compute{};  ///< its body is run(), not shade()
+    bool is_whole = false;                 ///< all regions are whole images: no region arithmetic
+    bool input_is_twice = false;           ///< constants that the body may ask for, see the top of this file
     bool output_is_twice = false;
     bool rays_meet = false;
     bool is_software = false;
@@ -116,12 +139,12 @@ struct Binding {
         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;  ///< of a sampled image; storage images are GENERAL
 };
 
-/// Bytes of the own block of a spec, and its content for one invocation: output region, one region an input, custom
-/// vectors, and the words of the members.
+/// Bytes of the own block of a spec, and its content for one invocation: output region, one region an input, of a
+/// compute pass one an output, custom vectors, and the words of the members.
 [[nodiscard]] std::size_t own_block_size(const KernelSpec& spec);
 void write_own_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
                      std::span<const std::array<float, 4>> custom, std::span<const std::uint32_t> words,
-                     std::span<std::byte> out);
+                     std::span<std::byte> out, std::span<const Binding> outputs = {});
 
 /// Compiled for one stage: pipeline, layouts. Made when a stack is compiled or on a worker, never while recording.
 class Kernel {
@@ -147,12 +170,15 @@ class Kernel {
         VkDescriptorSet set = VK_NULL_HANDLE;  ///< of set_layout(), not in use by an unfinished frame
         Block frame, own;                      ///< own: the caller wrote it with write_own_block
         std::span<const Binding> images;
-        std::span<const Binding> outputs;  ///< all with the same region
+        std::span<const Binding> outputs;  ///< all with the same region, but those of a compute pass
+        std::span<const Block> buffers{};
     };
     /// Writes all of the set.
     void write_set(const Invocation& invocation) const;
     /// Binds and dispatches (or begins rendering, draws, ends), with a set that was written. No allocation, no wait.
     void record(VkCommandBuffer commands, VkDescriptorSet set, std::span<const Binding> outputs) const;
+    /// Dispatches so many groups of a compute pass.
+    void record_groups(VkCommandBuffer commands, VkDescriptorSet set, std::array<std::uint32_t, 2> groups) const;
 
   private:
     Kernel();

@@ -10,6 +10,11 @@ namespace darkroom::gpu {
 
 /// Behind the blocks of the frame and of the kernel.
 inline constexpr std::uint32_t first_image_binding = 2;
+/// Behind the images and, in compute, the outputs.
+[[nodiscard]] inline std::uint32_t first_buffer_binding(const KernelSpec& spec, Stage stage) {
+    const std::size_t outputs = stage == Stage::Compute ? spec.outputs.size() : 0;
+    return first_image_binding + static_cast<std::uint32_t>(spec.images.size() + outputs);
+}
 
 [[nodiscard]] Result<VkPipeline> create_kernel_pipeline(Context& context, const KernelSpec& spec, Stage stage,
                                                         std::string source, VkPipelineLayout layout);

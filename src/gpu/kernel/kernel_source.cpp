@@ -15,8 +15,8 @@ namespace darkroom::gpu {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> image_functions{"sample_linear", "load",         "load_clamped",
-                                                          "gather_red",    "gather_green", "size"};
+constexpr std::array<std::string_view, 7> image_functions{"sample_linear", "load", "load_clamped", "gather_red",
+                                                          "gather_green",  "size", "store"};
 
 /// Words of the own block before its members.
 std::uint32_t first_member_word(const KernelSpec& spec) { return 4 * first_member_vector(spec); }
@@ -89,6 +89,9 @@ void write_blocks(Text text, const KernelSpec& spec, Stage stage, const BlockSou
                        "    vec4 darkroom_uv_{0};\n    vec4 darkroom_bounds_{0};\n    ivec4 darkroom_region_{0};\n",
                        image.name);
     }
+    if (spec.compute)
+        for (const std::string& output : spec.compute->outputs)
+            fmt::format_to(text, "    ivec4 darkroom_region_{};\n", output);
     if (spec.custom_vectors > 0) fmt::format_to(text, "    vec4 custom[{}];\n", spec.custom_vectors);
     fmt::format_to(text, "{}}};\n", own.members);
     // Two blocks on one binding: Vulkan lets resources alias.
@@ -204,13 +207,17 @@ void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index
                    traits.glsl_qualifier, access, prefix_of(traits.numeric), index);
     const std::string_view old = is_read ? " + imageLoad(result_0, place)" : "";
     const bool is_packed = spec.outputs[index] == packed_format;
+    const std::string name = spec.compute ? spec.compute->outputs[index] : fmt::format("{}", index);
+    const std::string offset = spec.is_whole  ? ""
+                               : spec.compute ? fmt::format(" + darkroom_region_{}.xy", name)
+                                              : " + darkroom_output.xy";
     fmt::format_to(text,
-                   "void store_{0}(ivec2 texel, vec4 value) {{\n"
+                   "void store_{5}(ivec2 texel, vec4 value) {{\n"
                    "    ivec2 place = texel{3};\n"
                    "    imageStore(result_{0}, place, {4}({1}vec4(value){2}));\n"
                    "}}\n",
-                   index, prefix_of(traits.numeric), old, spec.is_whole ? "" : " + darkroom_output.xy",
-                   is_packed ? "darkroom_rounded" : "");
+                   index, prefix_of(traits.numeric), old, offset, is_packed ? "darkroom_rounded" : "", name);
+    if (spec.compute) fmt::format_to(text, "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n", name);
 }
 
 void write_outputs(Text text, const KernelSpec& spec, Stage stage) {
@@ -224,6 +231,13 @@ void write_outputs(Text text, const KernelSpec& spec, Stage stage) {
                            prefix_of(format_traits(spec.outputs[index]).numeric));
         }
     }
+}
+
+void write_buffers(Text text, const KernelSpec& spec, Stage stage) {
+    std::uint32_t binding = first_buffer_binding(spec, stage);
+    for (const KernelBuffer& buffer : spec.buffers)
+        fmt::format_to(text, "layout(std430, set = 0, binding = {0}) {1}buffer Darkroom_{2} {{ {3} {2}[]; }};\n",
+                       binding++, buffer.is_written ? "" : "readonly ", buffer.name, buffer.type);
 }
 
 void write_quads(Text text, bool has_quads) {
@@ -242,6 +256,10 @@ void write_shade_call(Text text, std::size_t output_count) {
 }
 
 void write_main(Text text, const KernelSpec& spec, Stage stage) {
+    if (spec.compute) {
+        fmt::format_to(text, "void main() {{ run(); }}\n");
+        return;
+    }
     const bool is_compute = stage == Stage::Compute;
     const std::string place =
         is_compute ? "ivec2(gl_GlobalInvocationID.xy)"
@@ -332,6 +350,8 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
         names.emplace_back(image.name);
     }
     write_outputs(text, spec, stage);
+    write_buffers(text, spec, stage);
+    if (spec.compute) names.insert(names.end(), spec.compute->outputs.begin(), spec.compute->outputs.end());
     const std::string body = rewrite_indexing(rewrite_image_calls(spec.body, image_functions, names), own.arrays);
     fmt::format_to(text, "#line 1 \"kernel\"\n{}\n#line 1 \"kernel: main\"\n", body);
     write_main(text, spec, stage);
@@ -346,7 +366,7 @@ std::size_t own_block_size(const KernelSpec& spec) {
 
 void write_own_block(const KernelSpec& spec, const Region& output, std::span<const Binding> images,
                      std::span<const std::array<float, 4>> custom, std::span<const std::uint32_t> words,
-                     std::span<std::byte> out) {
+                     std::span<std::byte> out, std::span<const Binding> outputs) {
     DARKROOM_ASSERT(images.size() == spec.images.size());
     DARKROOM_ASSERT(custom.size() == spec.custom_vectors);
     DARKROOM_ASSERT(out.size() >= own_block_size(spec));
@@ -360,6 +380,10 @@ void write_own_block(const KernelSpec& spec, const Region& output, std::span<con
         append(out, std::array{x.scale, y.scale, x.offset, y.offset});
         append(out, std::array{x.lowest, y.lowest, x.highest, y.highest});
         append(out, rectangle(region));
+    }
+    if (spec.compute) {
+        DARKROOM_ASSERT(outputs.size() == spec.outputs.size());
+        for (const Binding& binding : outputs) append(out, rectangle(binding.region));
     }
     for (const std::array<float, 4>& vector : custom) append(out, vector);
     if (!words.empty()) std::memcpy(out.data(), words.data(), words.size_bytes());

@@ -2,6 +2,8 @@
 // Which stage can run a kernel on a device, and which does best.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "gpu/device/context.hpp"
 #include "gpu/kernel/kernel.hpp"
 #include "gpu/resource/formats.hpp"
@@ -65,6 +67,26 @@ Result<> can_render(const Context& context, const KernelSpec& spec, std::size_t 
     return {};
 }
 
+Result<> can_compute(const Context& context, const KernelSpec& spec, Stage stage) {
+    const auto refuse = [&](const std::string& why) -> Result<> {
+        return user_error(fmt::format("kernel \"{}\" ({}): {}", spec.name, stage_name(stage), why));
+    };
+    const bool is_written = std::ranges::any_of(spec.buffers, &KernelBuffer::is_written);
+    if (stage == Stage::Raster && (spec.compute || is_written)) return refuse("a compute pass runs in compute alone");
+    if (!spec.compute) return {};
+    const Traits& traits = context.traits;
+    const auto [width, height] = spec.workgroup;
+    if (width * height > traits.max_workgroup_invocations || width > traits.max_workgroup_size[0] ||
+        height > traits.max_workgroup_size[1])
+        return refuse(fmt::format("a workgroup of {} x {}; the device has at most {} x {}, {} together", width, height,
+                                  traits.max_workgroup_size[0], traits.max_workgroup_size[1],
+                                  traits.max_workgroup_invocations));
+    if (spec.compute->shared_bytes > traits.max_shared_bytes)
+        return refuse(fmt::format("{} bytes of shared memory; the device has {}", spec.compute->shared_bytes,
+                                  traits.max_shared_bytes));
+    return {};
+}
+
 }  // namespace
 
 Result<> usable(const Context& context, const KernelSpec& spec, Stage stage) {
@@ -72,6 +94,7 @@ Result<> usable(const Context& context, const KernelSpec& spec, Stage stage) {
         return user_error(
             fmt::format("kernel \"{}\": {} outputs, but an additive kernel has 1", spec.name, spec.outputs.size()));
     }
+    if (auto checked = can_compute(context, spec, stage); !checked) return checked;
     for (const KernelImage& image : spec.images) {
         if (image.storage_format == VK_FORMAT_UNDEFINED) continue;
         if (Result<> checked = can_load(context, spec, stage, image); !checked) return checked;

@@ -304,7 +304,7 @@ Result<DescriptorSets> DescriptorSets::create(Context& context, std::span<const 
     const auto count = static_cast<std::uint32_t>(layouts.size());
     // Layouts cannot be asked for their sizes, so each set counts as the largest that a kernel may have.
     const std::array sizes{
-        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * count},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 4 * count},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2 * count},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 16 * count},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 16 * count},

@@ -109,7 +109,8 @@ bool writes_flat_values(const Context& context) {
 }
 
 std::uint32_t first_custom_vector(const KernelSpec& spec) {
-    return vectors_of_output + vectors_per_image * static_cast<std::uint32_t>(spec.images.size());
+    return vectors_of_output + vectors_per_image * static_cast<std::uint32_t>(spec.images.size()) +
+           (spec.compute ? static_cast<std::uint32_t>(spec.outputs.size()) : 0);
 }
 
 std::uint32_t first_member_vector(const KernelSpec& spec) { return first_custom_vector(spec) + spec.custom_vectors; }

@@ -25,6 +25,9 @@ Result<std::string> body_of(const FusedPass& pass, std::span<const FusedStep> st
 Result<std::string> body_of(const KernelPass&, std::span<const FusedStep> steps, Finish, std::uint32_t) {
     return pass_body(steps.front());
 }
+Result<std::string> body_of(const ComputePass&, std::span<const FusedStep> steps, Finish, std::uint32_t) {
+    return pass_body(steps.front());
+}
 Result<std::string> body_of(const CopyPass& pass, std::span<const FusedStep>, Finish finish, std::uint32_t) {
     return fused_body({}, finish, pass.resampling);
 }
@@ -47,7 +50,7 @@ Result<gpu::KernelSpec> spec_of(const ProgramPass& pass, std::span<const FusedSt
 
 std::span<const FusedStep> ProgramPass::steps() const {
     if (const FusedPass* const fused = as<FusedPass>()) return fused->steps;
-    if (const KernelPass* const kernel = as<KernelPass>()) return {&kernel->step, 1};
+    if (const KernelPass* const kernel = of_effect()) return {&kernel->step, 1};
     return {};
 }
 

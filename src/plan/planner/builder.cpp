@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/assert.hpp"
-#include "plan/planner/planner_state.hpp"
+#include "plan/planner/builder.hpp"
 
 namespace darkroom::plan {
 
@@ -188,36 +188,52 @@ bool Builder::check_outputs(const KernelPassDesc& desc) {
     return error.empty();
 }
 
+void Builder::add_input(ProgramPass& pass, FusedStep& step, const KernelPassDesc::Input& input) {
+    if (input.image.index >= images_.size()) return;
+    step.images.push_back(input.name);
+    const PassInput from = input_of(images_[input.image.index], input.mip_level);
+    gpu::KernelImage image = planner_.kernel_image(input.name + place_suffix(0), from);
+    const VkFormat format = from.table == no_table ? planner_.storage_format(from.version) : VK_FORMAT_UNDEFINED;
+    if (input.is_loaded && planner_.traits_.is_software && format != VK_FORMAT_UNDEFINED) {
+        image.loads_by = image.name + "_texels";
+        pass.inputs.push_back(from);
+        pass.spec.images.push_back({.name = image.loads_by, .storage_format = format, .is_single = image.is_single});
+    }
+    pass.inputs.push_back(from);
+    pass.spec.images.push_back(std::move(image));
+}
+
+bool Builder::finish_pass(ProgramPass& pass, FusedStep& step, std::string_view shader, const Gate& gate,
+                          std::span<const KernelPassDesc::Input> inputs) {
+    for (const KernelPassDesc::Input& input : inputs)
+        if (input.image.index >= images_.size()) return false;
+    auto text = planner_.text_of(*step.info, std::string(shader), 0, step.images);
+    if (!text) {
+        error = text.error().text;
+        return false;
+    }
+    step.text = std::move(*text);
+    if (step.text->asks_parameters) append_parameter_members(*step.info, 0, pass.spec.members);
+    pass.boundary = fmt::format("{} has passes of its own", step.name);
+    pass.spec.name = pass.name;
+    pass.spec.frame = frame_members();
+    pass.toggle = shared_toggle_ < 0 ? planner_.toggle_index(gate) : shared_toggle_;
+    for (const KernelPassDesc::Input& input : inputs)
+        if (const std::int32_t shared = images_[input.image.index].shared_toggle; shared >= 0)
+            planner_.program_.graph.imply(pass.toggle, shared);
+    return true;
+}
+
 std::vector<PassImage> Builder::add_all(const KernelPassDesc& desc) {
     const Entry& entry = planner_.stack_[entry_];
     if (!check_outputs(desc)) return {};
-    ProgramPass pass{.name = fmt::format("{}.{}", entry.desc.name, desc.name),
-                     .boundary = fmt::format("{} has passes of its own", entry.desc.name)};
+    ProgramPass pass{.name = fmt::format("{}.{}", entry.desc.name, desc.name)};
     FusedStep step{.info = entry.info, .entry = entry_, .name = entry.desc.name};
-    for (const KernelPassDesc::Input& input : desc.inputs) {
-        if (input.image.index >= images_.size()) return {};
-        step.images.push_back(input.name);
-        const PassInput from = input_of(images_[input.image.index], input.mip_level);
-        gpu::KernelImage image = planner_.kernel_image(input.name + place_suffix(0), from);
-        const VkFormat format = from.table == no_table ? planner_.storage_format(from.version) : VK_FORMAT_UNDEFINED;
-        if (input.is_loaded && planner_.traits_.is_software && format != VK_FORMAT_UNDEFINED) {
-            image.loads_by = image.name + "_texels";
-            pass.inputs.push_back(from);
-            pass.spec.images.push_back(
-                {.name = image.loads_by, .storage_format = format, .is_single = image.is_single});
-        }
-        pass.inputs.push_back(from);
-        pass.spec.images.push_back(std::move(image));
-    }
-    auto text = planner_.text_of(*entry.info, std::string(desc.shader), 0, step.images);
-    if (!text) {
-        error = text.error().text;
-        return {};
-    }
-    step.text = std::move(*text);
-    if (step.text->asks_parameters) append_parameter_members(*entry.info, 0, pass.spec.members);
+    for (const KernelPassDesc::Input& input : desc.inputs) add_input(pass, step, input);
+    if (!add_values(pass, step, desc)) return {};
+    const Gate gate{.entries = {entry_}, .condition = desc.condition, .argument = desc.argument};
+    if (!finish_pass(pass, step, desc.shader, gate, desc.inputs)) return {};
     pass.kind = KernelPass{.step = std::move(step), .constants = desc.constants};
-    pass.spec.name = pass.name;
     pass.spec.outputs = {images_[desc.output.index].format};
     std::vector<graph::Version> more_targets;
     for (const PassImage more : desc.more_outputs) {
@@ -226,15 +242,6 @@ std::vector<PassImage> Builder::add_all(const KernelPassDesc& desc) {
     }
     pass.spec.is_additive = desc.is_additive;
     pass.spec.custom_vectors = desc.custom_vectors;
-    pass.spec.frame = frame_members();
-    pass.toggle = shared_toggle_;
-    if (pass.toggle < 0) {
-        pass.toggle =
-            planner_.toggle_index({.entries = {entry_}, .condition = desc.condition, .argument = desc.argument});
-    }
-    for (const KernelPassDesc::Input& input : desc.inputs)
-        if (const std::int32_t shared = images_[input.image.index].shared_toggle; shared >= 0)
-            planner_.program_.graph.imply(pass.toggle, shared);
     const auto version =
         planner_.add_pass(std::move(pass), images_[desc.output.index].version, desc.output_mip_level, more_targets);
     if (!version) {

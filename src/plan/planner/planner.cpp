@@ -8,7 +8,7 @@
 
 #include "gpu/resource/formats.hpp"
 #include "plan/frame/color.hpp"
-#include "plan/planner/planner_state.hpp"
+#include "plan/planner/builder.hpp"
 
 namespace darkroom::plan {
 
@@ -60,6 +60,7 @@ Result<Program> Planner::run() {
     if (auto ok = finish(); !ok) return failure(std::move(ok));
     if (auto ok = add_watches(no_entry); !ok) return failure(std::move(ok));
     remark_watches();
+    keep_values();
     return std::move(program_);
 }
 
@@ -111,7 +112,8 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
                    .custom_vectors = builder.end_vectors};
     step.is_wrapped = may_need_work(info, may_be_encoded(entry), is_of_ui(entry));
     if (is_reading(info.touch)) {
-        if (!builder.sides.empty()) return user_error(fmt::format("effect '{}': a map reads no images", info.name));
+        if (!builder.sides.empty() || entry_values_read_.contains(entry))
+            return user_error(fmt::format("effect '{}': a map reads no images and no values", info.name));
         return append_reading(entry, input, std::move(step));
     }
     std::vector<PassInput> side_inputs;
@@ -173,6 +175,8 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
             why = fmt::format("{} reads the picture before it, too", from.reader);
         else if (kernels_[kernel].images.size() + side_count >= gpu::most_images)
             why = fmt::format("a kernel reads at most {} images", gpu::most_images);
+        else if (kernels_[kernel].values.size() + entry_values_read_[entry].size() > gpu::most_buffers)
+            why = fmt::format("a kernel reads at most {} values", gpu::most_buffers);
         else if (vectors_of(kernels_[kernel].steps) + step.custom_vectors +
                      (second == nullptr ? 0 : vectors_of(second->steps)) >
                  most_fused_vectors)
@@ -212,6 +216,10 @@ Result<std::size_t> Planner::append(std::uint32_t entry, std::size_t input, Fuse
         }
         const std::string shown = step.is_merge ? "layer" : step.images[i];
         kernels_[kernel].images.push_back({shown + suffix, sides[i]});
+    }
+    for (const auto& [value, number] : entry_values_read_[entry]) {
+        step.images.push_back(value);
+        kernels_[kernel].values.emplace_back(value + suffix, number);
     }
     if (auto ok = add_step(kernel, std::move(step)); !ok) return failure(std::move(ok));
     values_.push_back({.kernel = kernel, .size = from.size, .reader = image_reader_[entry]});
@@ -343,6 +351,10 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
         }
         pass.spec.images.push_back(std::move(image));
         pass.inputs.push_back(input);
+    }
+    for (const auto& [name, number] : kernel.values) {
+        pass.spec.buffers.push_back({.name = name, .type = "float"});
+        pass.buffers.push_back({.version = buffers_[number].version, .number = number});
     }
     // Unfused, a kernel whose entry is off copies: else every picture would live as long as those it may stand in for.
     // So does one that gives the picture another size.

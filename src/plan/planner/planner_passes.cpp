@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Kernels as passes of the graph, within what devices allow.
+// From a pass that the planner or an effect made to one of the graph: how it reads each image, which stage runs it, and
+// what it writes.
 
 #include <fmt/format.h>
 
@@ -49,8 +50,7 @@ bool Planner::can_filter(const PassInput& input) const {
             }));
 }
 
-Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level,
-                                         std::span<const graph::Version> more_targets) {
+Result<> Planner::settle_inputs(ProgramPass& pass) {
     limit_storage_images(pass);
     if (pass.spec.images.size() > gpu::most_images || pass.spec.custom_vectors > most_custom_vectors)
         return user_error(fmt::format("pass '{}': {} images and {} custom vectors; at most {} and {} are allowed",
@@ -65,12 +65,40 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     }
     pass.spec.is_software = traits_.is_software;
     pass.spec.has_robust_images = traits_.has_robust_images;
-    pass.spec.workgroup = traits_.workgroup;
     lay_out_literals(pass);
     for (const FusedStep& step : pass.steps()) {
         pass.asks_sizes |= step.text && step.text->asks_sizes;
         pass.asks_rays_meet |= step.text && step.text->asks_rays_meet;
     }
+    return {};
+}
+
+void Planner::add_reads(const ProgramPass& pass, graph::PassDesc& desc) const {
+    using graph::Use;
+    const bool is_raster = pass.stage == gpu::Stage::Raster;
+    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
+        if (pass.inputs[i].table != no_table) continue;
+        const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
+        const bool is_general = !pass.spec.images[i].loads_by.empty();
+        const Use use = is_storage   ? (is_raster ? Use::StorageReadFragment : Use::StorageRead)
+                        : is_general ? (is_raster ? Use::SampledGeneralFragment : Use::SampledGeneralCompute)
+                                     : (is_raster ? Use::SampledFragment : Use::SampledCompute);
+        desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}, pass.inputs[i].instead});
+    }
+    for (const PassBufferUse& buffer : pass.buffers)
+        if (buffer.access == ComputePassDesc::Access::Read)
+            desc.reads.push_back({buffer.version, is_raster ? Use::BufferReadFragment : Use::BufferRead});
+}
+
+void Planner::take_facts(graph::Version made, graph::Version from) {
+    facts_[made.index] = facts_[from.index];
+    facts_[made.index].fall_backs.clear();
+}
+
+Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level,
+                                         std::span<const graph::Version> more_targets) {
+    pass.spec.workgroup = traits_.workgroup;
+    if (auto ok = settle_inputs(pass); !ok) return failure(std::move(ok));
     const auto stage = traits_.stage_of(pass.spec);
     if (!stage) return failure(stage.error());
     pass.stage = *stage;
@@ -80,16 +108,7 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) == 0) pass.stage = gpu::Stage::Compute;
     const bool is_raster = pass.stage == gpu::Stage::Raster;
     graph::PassDesc desc{.name = pass.name, .has_side_effect = pass.watch().has_value(), .gate = pass.toggle};
-    for (std::size_t i = 0; i < pass.inputs.size(); ++i) {
-        if (pass.inputs[i].table != no_table) continue;
-        const bool is_storage = pass.spec.images[i].storage_format != VK_FORMAT_UNDEFINED;
-        const bool is_general = !pass.spec.images[i].loads_by.empty();
-        const graph::Use use =
-            is_storage   ? (is_raster ? graph::Use::StorageReadFragment : graph::Use::StorageRead)
-            : is_general ? (is_raster ? graph::Use::SampledGeneralFragment : graph::Use::SampledGeneralCompute)
-                         : (is_raster ? graph::Use::SampledFragment : graph::Use::SampledCompute);
-        desc.reads.push_back({pass.inputs[i].version, use, {pass.inputs[i].mip_level, 1}, pass.inputs[i].instead});
-    }
+    add_reads(pass, desc);
     const graph::Use use = pass.spec.is_additive ? (is_raster ? graph::Use::ColorBlend : graph::Use::StorageReadWrite)
                                                  : (is_raster ? graph::Use::ColorWrite : graph::Use::StorageWrite);
     desc.writes.push_back({target, use, {mip_level, 1}});
@@ -98,14 +117,47 @@ Result<graph::Version> Planner::add_pass(ProgramPass pass, graph::Version target
     pass.more_outputs = program_.graph.add(std::move(desc));
     pass.output = pass.more_outputs.front();
     pass.more_outputs.erase(pass.more_outputs.begin());
-    const auto take_facts = [&](graph::Version made, graph::Version from) {
-        facts_[made.index] = facts_[from.index];
-        facts_[made.index].fall_backs.clear();
-    };
     take_facts(pass.output, target);
     for (std::size_t i = 0; i < more_targets.size(); ++i) take_facts(pass.more_outputs[i], more_targets[i]);
     program_.passes.push_back(std::move(pass));
     return program_.passes.back().output;
+}
+
+Result<> Planner::add_compute(ProgramPass pass) {
+    if (auto ok = settle_inputs(pass); !ok) return ok;
+    pass.stage = gpu::Stage::Compute;
+    graph::PassDesc desc{.name = pass.name, .gate = pass.toggle};
+    add_reads(pass, desc);
+    auto& compute = std::get<ComputePass>(pass.kind);
+    std::vector<std::size_t> write_of;  // of each output: levels of one image are one write
+    for (const ComputePass::Output& output : compute.outputs) {
+        if (!desc.writes.empty() && desc.writes.back().version == output.version)
+            ++desc.writes.back().mips.count;
+        else
+            desc.writes.push_back({output.version, graph::Use::StorageWrite, {output.mip_level, 1}});
+        write_of.push_back(desc.writes.size() - 1);
+    }
+    for (const PassBufferUse& buffer : pass.buffers) {
+        if (buffer.access == ComputePassDesc::Access::Read) continue;
+        // A value that its pass does not write stays as it was.
+        const bool keeps = buffer.access == ComputePassDesc::Access::ReadWrite || buffers_[buffer.number].numbers > 0;
+        desc.writes.push_back({buffer.version, keeps ? graph::Use::BufferReadWrite : graph::Use::BufferWrite});
+    }
+    const std::vector<graph::Version> made = program_.graph.add(std::move(desc));
+    for (std::size_t i = 0; i < compute.outputs.size(); ++i) {
+        take_facts(made[write_of[i]], compute.outputs[i].version);
+        compute.outputs[i].version = made[write_of[i]];
+    }
+    std::size_t write = write_of.empty() ? 0 : write_of.back() + 1;
+    for (PassBufferUse& buffer : pass.buffers)
+        if (buffer.access != ComputePassDesc::Access::Read)
+            buffers_[buffer.number].version = buffer.version = made[write++];
+    if (!compute.outputs.empty()) {
+        pass.output = compute.outputs.front().version;
+        pass.output_mip_level = compute.outputs.front().mip_level;
+    }
+    program_.passes.push_back(std::move(pass));
+    return {};
 }
 
 }  // namespace darkroom::plan

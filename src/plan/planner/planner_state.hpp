@@ -61,6 +61,11 @@ class Planner {
         bool is_alpha = false;                       ///< makes a grey picture of the alpha before anything else
         std::vector<FusedStep> steps;
         std::vector<std::pair<std::string, PassInput>> images;
+        std::vector<std::pair<std::string, std::uint32_t>> values;  ///< buffers, by name
+    };
+    struct BufferRecord {
+        graph::Version version;     ///< behind the passes so far
+        std::uint32_t numbers = 0;  ///< of a value; 0: it is of this frame alone
     };
     struct Facts {
         std::uint32_t root = 0;  ///< the version that the image began as
@@ -136,6 +141,12 @@ class Planner {
     /// Reads images by sampling where the device has no more storage images for a kernel. Tables that are only loaded
     /// stay.
     void limit_storage_images(ProgramPass& pass) const;
+    /// What filters and depth need of each image, literals, and what else holds of a pass of any kind.
+    [[nodiscard]] Result<> settle_inputs(ProgramPass& pass);
+    void add_reads(const ProgramPass& pass, graph::PassDesc& desc) const;
+    void take_facts(graph::Version made, graph::Version from);
+    /// Adds a compute pass, whose outputs are what they are before it.
+    [[nodiscard]] Result<> add_compute(ProgramPass pass);
     /// Whether a linear sampler reads whatever may stand behind the input.
     [[nodiscard]] bool can_filter(const PassInput& input) const;
     [[nodiscard]] Result<graph::Version> add_pass(ProgramPass pass, graph::Version target, std::uint32_t mip_level,
@@ -163,6 +174,8 @@ class Planner {
     [[nodiscard]] bool may_share(graph::Version a, graph::Version b) const;
     [[nodiscard]] VkFormat storage_format(graph::Version version) const;
     [[nodiscard]] Result<> finish();
+    /// Adds the pass that copies them.
+    void keep_values();
     /// Adds the passes that copy what is watched, as far as it has been made: outputs of entries up to this one, and
     /// images.
     [[nodiscard]] Result<> add_watches(std::uint32_t entry);
@@ -201,6 +214,9 @@ class Planner {
              std::shared_ptr<const EffectText>>
         texts_;
 
+    std::vector<BufferRecord> buffers_;
+    std::map<std::string, std::uint32_t, std::less<>> named_values_;
+    std::map<std::uint32_t, std::vector<std::pair<std::string, std::uint32_t>>> entry_values_read_;  ///< by entry
     std::map<std::pair<FrameImage, graph::Size>, graph::Version> resampled_;
 
     /// What several effects share, by name and the size of the picture at their place; its passes run while any of
@@ -212,88 +228,6 @@ class Planner {
         std::vector<std::int32_t> needs{};  ///< toggles of the shared images that it is made from
     };
     std::map<std::string, Shared, std::less<>> shared_;
-};
-
-/// What an effect's build() sees.
-class Builder final : public PassBuilder {
-  public:
-    struct Side {
-        std::string name;
-        PassInput input;
-    };
-
-    Builder(Planner& planner, std::uint32_t entry, std::size_t input)
-        : planner_(planner), entry_(entry), input_(input), values_(planner.stack_[entry].values_at_compile()) {}
-
-    [[nodiscard]] PassImage picture() override;
-    [[nodiscard]] PassImage source() override;
-    [[nodiscard]] std::uint32_t from_max_extent(std::uint32_t (*question)(VkExtent2D)) override;
-    [[nodiscard]] const void* parameters() const override { return values_.data(); }
-    [[nodiscard]] const ResourceData* resource(Resource resource) const override {
-        return find_resource(planner_.stack_[entry_].resources.get(), resource);
-    }
-    [[nodiscard]] PassImage create(const PassImageDesc& desc) override;
-    [[nodiscard]] bool is_stored(VkFormat format) const override;
-    [[nodiscard]] History history(const PassImageDesc& desc) override;
-    [[nodiscard]] PassImage frame_image(FrameImage which) override;
-    [[nodiscard]] bool has_frame_image(FrameImage which) const override;
-    [[nodiscard]] bool is_depth_planar() const override { return planner_.desc_.is_depth_planar; }
-    [[nodiscard]] bool is_velocity_plain() const override { return planner_.desc_.is_velocity_plain; }
-    [[nodiscard]] PassImage shadow_map(std::uint32_t number) override;
-    [[nodiscard]] PassImage shared(std::string_view name, PassImage (*make)(PassBuilder&),
-                                   ConditionFunction condition) override;
-    [[nodiscard]] PassImage table(const TableDesc& desc) override;
-    PassImage add(const KernelPassDesc& desc) override {
-        const std::vector<PassImage> all = add_all(desc);
-        return all.empty() ? PassImage{} : all.front();
-    }
-    std::vector<PassImage> add_all(const KernelPassDesc& desc) override;
-    void side(std::string name, PassImage image, PassVector neutral) override {
-        add_side(std::move(name), image, neutral, false);
-    }
-    void loaded_side(std::string name, PassImage image, PassVector neutral) override {
-        add_side(std::move(name), image, neutral, true);
-    }
-    void end_constants(std::uint32_t vectors, ConstantsFunction constants) override {
-        end_vectors = vectors;
-        end_function = constants;
-    }
-    void result(PassImage image) override;
-
-    std::uint32_t end_vectors = 0;
-    ConstantsFunction end_function = nullptr;
-    std::vector<Side> sides;
-    graph::Version output;
-    std::string error;
-
-  private:
-    struct Image {
-        graph::Version version;
-        graph::Version first_written;  ///< falls back to the neutral image, if it has one
-        VkFormat format = VK_FORMAT_UNDEFINED;
-        std::uint32_t table = no_table;
-        bool is_shadow_map = false;
-        std::int32_t shared_toggle = -1;
-    };
-    void add_side(std::string name, PassImage image, const PassVector& neutral, bool is_loaded);
-    [[nodiscard]] graph::ImageDesc image_desc(const PassImageDesc& desc) const;
-    [[nodiscard]] PassImage remember_new(graph::Version version, const graph::ImageDesc& desc);
-    [[nodiscard]] PassInput input_of(const Image& image, std::uint32_t mip_level) const;
-    [[nodiscard]] PassImage remember(Image image);
-    /// What the image is behind a pass that made this version of it.
-    [[nodiscard]] PassImage remember_written(PassImage image, graph::Version version);
-    /// Says so in `error`, and returns false, if the outputs cannot be written by one pass.
-    [[nodiscard]] bool check_outputs(const KernelPassDesc& desc);
-    [[nodiscard]] PassImage image_of(std::size_t value);
-    [[nodiscard]] PassImage at_own_size(Result<graph::Version> version);
-
-    Planner& planner_;
-    std::uint32_t entry_ = 0;
-    std::size_t input_ = 0;
-    std::vector<std::uint32_t> values_;
-    std::vector<Image> images_;
-    std::int32_t shared_toggle_ = -1;         ///< of the passes that `shared` is declaring
-    std::vector<std::int32_t> shared_needs_;  ///< asked for since the innermost `shared` began
 };
 
 }  // namespace darkroom::plan

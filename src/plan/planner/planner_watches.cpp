@@ -32,7 +32,9 @@ Result<std::optional<Planner::WatchedImage>> Planner::watched_output(std::uint32
 }
 
 std::optional<Planner::WatchedImage> Planner::watched_image(const Watch& watch) {
-    const auto has_name = [&](graph::Version version) { return facts_.at(version.index).name == watch.image; };
+    const auto has_name = [&](graph::Version version) {
+        return version.is_valid() && facts_.at(version.index).name == watch.image;
+    };
     const auto can_read = [&](graph::Version version) {
         return (facts_.at(version.index).usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0;
     };
