@@ -33,12 +33,23 @@
 //     @pre_roll FRAMES            with a history: how many frames before must have been developed for a right picture
 //     @table NAME: WIDTHxHEIGHT FORMAT = VALUE, VALUE ...   r32f, rgba32f, and in [0, 1] r8, rgba8; a line that ends in
 //                                 a comma goes on in the next comment
+//     @buffer NAME: COUNT TYPE    an array of one frame for compute passes, of uint, int, float, vec2, vec4, ivec2,
+//                                 ivec4 or uvec4
+//     @value NAME: COUNT          floats that outlast the frame, which compute passes write and all functions read, as
+//                                 NAME[i]; zero after a cut. Composer::value("duotone.NAME") tells the host
 //     @result IMAGE               the effect's picture, where it has no end
 // and above functions:
 //     @pass NAME: IMAGE ... -> IMAGE    below it, to the next such line, is the pass's code: vec4 duotone_NAME(Pixel
 //                                 pixel, Duotone parameters) makes the image behind the arrow of those before it, which
 //                                 are `picture`, `source` (what the entry's wire of that name says, else the picture),
-//                                 and images of the file. Each is written once, before it is read
+//                                 and images of the file. Each is written once, before it is read. With several
+//                                 images behind the arrow, four at most and of one size, void duotone_NAME(Pixel
+//                                 pixel, Duotone parameters, out vec4 result[COUNT])
+//     @compute NAME WORKGROUP GROUPS: IMAGE, BUFFER or VALUE ... -> IMAGE, BUFFER or VALUE ...
+//                                 below it is void duotone_NAME(Duotone parameters), a compute shader with `shared`
+//                                 variables, barrier() and atomics, that writes images (rgba16f, rgba32f, rgba8, r32f)
+//                                 by store(image, texel, color). WORKGROUP as 16x8, 128 together; GROUPS as 4x1, or
+//                                 without as many as cover the first image that it writes, or else reads
 //     @end IMAGE ...              below it is the end, with the images that it reads: vec4 duotone(vec4 color, Pixel
 //                                 pixel, Duotone parameters). In a file without passes all code is the end's
 // Code above the first @pass and @end is everyone's. What a function may call: GLSL, `#include "shared/NAME.glsl"`

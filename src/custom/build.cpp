@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // From a description to passes.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -17,20 +19,11 @@ class Build {
   public:
     Build(PassBuilder& builder, const Description& from) : builder_(builder), from_(from) {
         for (const FileImage& image : from.images) declare(image);
+        for (const FileBuffer& buffer : from.buffers) declare(buffer);
     }
 
     void run() {
-        for (const FileFunction& pass : from_.passes) {
-            KernelPassDesc desc{.name = std::string(pass.name), .shader = pass.shader, .output = images_[pass.output]};
-            for (const FileInput& input : pass.inputs)
-                desc.inputs.push_back(
-                    {.name = std::string(input.name), .image = image(input.name), .is_loaded = input.is_loaded});
-            if (pass.reads_light) {
-                desc.custom_vectors = light_vectors;
-                desc.constants = write_light;
-            }
-            images_[pass.output] = builder_.add(desc);
-        }
+        for (const FileFunction& pass : from_.passes) pass.is_compute ? add_compute(pass) : add(pass);
         if (!from_.result.empty()) builder_.result(images_[from_.result]);
         if (!from_.end) return;
         if (from_.end->reads_light) builder_.end_constants(light_vectors, write_light);
@@ -42,6 +35,8 @@ class Build {
             else
                 builder_.side(std::string(input.name), image(input.name), neutral);
         }
+        for (const FileBufferUse& use : from_.end->buffers)
+            builder_.value_side(std::string(use.name), buffers_[use.name]);
     }
 
   private:
@@ -64,6 +59,52 @@ class Build {
                 return;
         }
     }
+    void declare(const FileBuffer& buffer) {
+        buffers_[buffer.name] = buffer.is_value
+                                    ? builder_.value(fmt::format("{}.{}", from_.info.name, buffer.name), buffer.count)
+                                    : builder_.create_buffer(buffer.name, buffer.element_bytes * buffer.count);
+    }
+
+    /// What passes of both kinds have.
+    template <class Desc>
+    Desc begin(const FileFunction& pass) {
+        Desc desc{.name = std::string(pass.name), .shader = pass.shader};
+        for (const FileInput& input : pass.inputs)
+            desc.inputs.push_back(
+                {.name = std::string(input.name), .image = image(input.name), .is_loaded = input.is_loaded});
+        if (pass.reads_light) {
+            desc.custom_vectors = light_vectors;
+            desc.constants = write_light;
+        }
+        return desc;
+    }
+
+    void take(const FileFunction& pass, const std::vector<PassImage>& made) {
+        for (std::size_t i = 0; i < made.size(); ++i) images_[pass.outputs[i]] = made[i];
+    }
+
+    void add(const FileFunction& pass) {
+        auto desc = begin<KernelPassDesc>(pass);
+        desc.output = images_[pass.outputs[0]];
+        for (std::size_t i = 1; i < pass.outputs.size(); ++i) desc.more_outputs.push_back(images_[pass.outputs[i]]);
+        for (const FileBufferUse& use : pass.buffers)
+            desc.values.push_back({std::string(use.name), buffers_[use.name]});
+        take(pass, builder_.add_all(desc));
+    }
+
+    void add_compute(const FileFunction& pass) {
+        auto desc = begin<ComputePassDesc>(pass);
+        for (const std::string_view output : pass.outputs)
+            desc.outputs.push_back({.name = std::string(output), .image = images_[output]});
+        for (const FileBufferUse& use : pass.buffers) {
+            const auto buffer = std::ranges::find(from_.buffers, use.name, &FileBuffer::name);
+            desc.buffers.push_back({std::string(use.name), buffers_[use.name], use.access, std::string(buffer->type)});
+        }
+        desc.workgroup = pass.workgroup;
+        desc.groups = pass.groups;
+        desc.shared_bytes = pass.shared_bytes;
+        take(pass, builder_.add_compute(desc));
+    }
 
     static const plan::FrameInput* frame_row(std::string_view name) {
         const auto found = std::ranges::find(plan::frame_inputs, name, &plan::FrameInput::shader_name);
@@ -82,6 +123,7 @@ class Build {
     const Description& from_;
     std::map<std::string_view, PassImage> images_;    ///< as they are behind the passes so far
     std::map<std::string_view, PassImage> previous_;  ///< of histories, by their names
+    std::map<std::string_view, PassBuffer> buffers_;
 };
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST(CustomEffect, ErrorsNameThePlaceTheThingAndWhatIsAllowed) {
     EXPECT_EQ(
         error_of_line("@parm float a = 1"),
         "my.glsl:3: @parm: allowed is @effect, @param, @touch, @accepts, @makes, @needs, @image, @history, @table, "
-        "@result, @pre_roll, @pass, @end");
+        "@buffer, @value, @result, @pre_roll, @pass, @compute, @end");
     EXPECT_EQ(error_of_line("@touch history"), "my.glsl:3: @touch history: allowed is pointwise, warp");
     EXPECT_EQ(error_of_line("@accepts linear"),
               "my.glsl:3: @accepts linear: allowed is scene_linear, display_linear, encoded");

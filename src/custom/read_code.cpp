@@ -145,7 +145,9 @@ Result<std::string> expand_code(std::string_view text, std::size_t& line) {
         // A line that goes on in the next would part what is read here from what is compiled.
         if (token.text == "\\" || (token.text.ends_with('\\') && token.kind != Token::Kind::Blank))
             return user_error("a backslash: GLSL has no use for one here");
-        if (token.kind == Token::Kind::Word && is_refused(token.text)) return failure(refuse_word(token.text));
+        // What is shared belongs to a compute pass: read_shared() looks at that.
+        if (token.kind == Token::Kind::Word && token.text != "shared" && is_refused(token.text))
+            return failure(refuse_word(token.text));
         const auto value = token.kind == Token::Kind::Word || token.kind == Token::Kind::Member
                                ? values.find(token.text)
                                : values.end();

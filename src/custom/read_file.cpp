@@ -103,7 +103,7 @@ template <FileImage::Kind kind>
 Result<> read_image_of(Description& out, std::string_view text) {
     return read_image(out, kind, text);
 }
-constexpr Names<Reader, 11> head_readers{{{"@effect", read_effect},
+constexpr Names<Reader, 13> head_readers{{{"@effect", read_effect},
                                           {"@param", read_parameter},
                                           {"@touch", read_touch},
                                           {"@accepts", read_accepts},
@@ -112,9 +112,11 @@ constexpr Names<Reader, 11> head_readers{{{"@effect", read_effect},
                                           {"@image", read_image_of<FileImage::Kind::Image>},
                                           {"@history", read_image_of<FileImage::Kind::History>},
                                           {"@table", read_image_of<FileImage::Kind::Table>},
+                                          {"@buffer", declare_buffer},
+                                          {"@value", declare_value},
                                           {"@result", read_result},
                                           {"@pre_roll", read_pre_roll}}};
-constexpr std::string_view pass_word = "@pass", end_word = "@end", table_word = "@table";
+constexpr std::string_view pass_word = "@pass", compute_word = "@compute", end_word = "@end", table_word = "@table";
 
 /// What a comment line says; empty: the line is code, or none of ours.
 std::string_view comment_of(std::string_view line) { return line.starts_with("//") ? trimmed(line.substr(2)) : ""; }
@@ -180,7 +182,7 @@ class FileReader {
             std::string_view comment = comment_of(content);
             if (comment.starts_with('@')) {
                 const std::string_view word = next_word(comment);
-                if (word == pass_word || word == end_word) {
+                if (word == pass_word || word == compute_word || word == end_word) {
                     is_head = false;
                     if (auto ok = begin_function(word, comment); !ok) return ok;
                     owner = word == end_word ? end_owner : out_.passes.size();
@@ -203,7 +205,7 @@ class FileReader {
             out_.end = std::move(*end);
             return {};
         }
-        auto pass = read_pass(out_, text);
+        auto pass = word == compute_word ? read_compute(out_, text) : read_pass(out_, text);
         if (!pass) return failure(std::move(pass));
         pass->line = line_;
         out_.passes.push_back(std::move(*pass));
@@ -213,8 +215,8 @@ class FileReader {
     Result<> read_head(std::string_view word, std::string_view text, bool is_head) {
         const auto reader = named(head_readers, word);
         if (!reader)
-            return user_error(
-                fmt::format("{}: allowed is {}, {}, {}", printable(word), listed(head_readers), pass_word, end_word));
+            return user_error(fmt::format("{}: allowed is {}, {}, {}, {}", printable(word), listed(head_readers),
+                                          pass_word, compute_word, end_word));
         if (!is_head) return user_error(fmt::format("{}: stands above the code, the passes and the end", word));
         if (word != table_word) return (*reader)(out_, text);
         // The values of a table go on in the next line as long as one ends in a comma.
@@ -239,12 +241,11 @@ class FileReader {
         return out;
     }
 
-    Result<> add_text(FileFunction& function, const std::string& name, std::string_view first_argument,
-                      std::string code) {
+    /// `form`: how its function is declared.
+    Result<> add_text(FileFunction& function, const std::string& name, const std::string& form, std::string code) {
+        if (auto ok = read_shared(function, code, line_); !ok) return ok;
         line_ = function.line;
-        if (!plan::calls_name(code, name))
-            return user_error(fmt::format("no function {}: expected `vec4 {}({}Pixel pixel, {} parameters)`", name,
-                                          name, first_argument, struct_name_));
+        if (!plan::calls_name(code, name)) return user_error(fmt::format("no function {}: expected `{}`", name, form));
         function.reads_light = out_.info.needs.contains(FrameImage::Shadows) && reads_light(code, out_.info.name);
         if (function.reads_light)
             code = fmt::format("{}#line 1 \"{}\"\n{}", light_code(out_.info.name, !function.name.empty()), shown_name_,
@@ -252,17 +253,35 @@ class FileReader {
         if (auto ok = read_uses(out_, function, code); !ok) return ok;
         function.shader = out_.keep(name + ".glsl");
         if (!function.name.empty())
-            code += fmt::format("#line {} \"{}\"\nvec4 shade(Pixel pixel) {{ return {}(pixel, {}_parameters()); }}\n",
-                                function.line, shown_name_, name, out_.info.name);
+            code += fmt::format("#line {} \"{}\"\n{}\n", function.line, shown_name_, main_of(function, name));
         out_.files.push_back({function.shader, out_.keep(code), out_.keep(shown_name_)});
         return {};
     }
 
+    /// What the kernel calls, from the function of the file.
+    [[nodiscard]] std::string main_of(const FileFunction& function, const std::string& name) const {
+        if (function.is_compute) return fmt::format("void run() {{ {}({}_parameters()); }}", name, out_.info.name);
+        if (function.outputs.size() == 1)
+            return fmt::format("vec4 shade(Pixel pixel) {{ return {}(pixel, {}_parameters()); }}", name,
+                               out_.info.name);
+        return fmt::format("void shade(Pixel pixel, out vec4 result[{}]) {{ {}(pixel, {}_parameters(), result); }}",
+                           function.outputs.size(), name, out_.info.name);
+    }
+
     Result<> add_pass_text(FileFunction& pass, std::size_t owner) {
-        return add_text(pass, fmt::format("{}_{}", out_.info.name, pass.name), "", text_of(owner));
+        const std::string name = fmt::format("{}_{}", out_.info.name, pass.name);
+        const std::string form = pass.is_compute ? fmt::format("void {}({} parameters)", name, struct_name_)
+                                 : pass.outputs.size() == 1
+                                     ? fmt::format("vec4 {}(Pixel pixel, {} parameters)", name, struct_name_)
+                                     : fmt::format("void {}(Pixel pixel, {} parameters, out vec4 result[{}])", name,
+                                                   struct_name_, pass.outputs.size());
+        return add_text(pass, name, form, text_of(owner));
     }
     Result<> add_end_text(FileFunction& end) {
-        return add_text(end, std::string(out_.info.name), out_.info.touch == Touch::Warp ? "" : "vec4 color, ",
+        const std::string name(out_.info.name);
+        return add_text(end, name,
+                        fmt::format("vec4 {}({}Pixel pixel, {} parameters)", name,
+                                    out_.info.touch == Touch::Warp ? "" : "vec4 color, ", struct_name_),
                         text_of(end_owner));
     }
 

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -40,13 +39,6 @@ constexpr Names<TableFormat, 4> table_formats{{{"r32f", {VK_FORMAT_R32_SFLOAT}},
                                                {"rgba8", {VK_FORMAT_R8G8B8A8_UNORM, 4, false}}}};
 
 constexpr std::string_view previous_end = "_previous";
-
-std::optional<std::uint32_t> parse_count(std::string_view text, std::uint32_t most) {
-    std::uint32_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || value == 0 || value > most) return std::nullopt;
-    return value;
-}
 
 /// "1/2" or "1".
 std::optional<OutputScale> parse_ratio(std::string_view text) {
@@ -107,12 +99,9 @@ Result<> read_table(FileImage& image, std::string_view text) {
 }
 
 Result<> check_image_name(Description& out, FileImage::Kind kind, std::string_view name) {
-    if (auto ok = check_name(name); !ok) return ok;
-    const bool is_reserved = name == "source" || name == "second" || name.ends_with(previous_end) ||
-                             name.starts_with("frame_") || name.starts_with("shared_") || name.starts_with("darkroom_");
-    if (is_reserved || plan::is_function_name(name)) return user_error(fmt::format("{}: has a meaning already", name));
+    if (auto ok = check_own_name(out, name); !ok) return ok;
     const std::string previous = std::string(name) + std::string(previous_end);
-    if (out.find_image(name) != nullptr || (kind == FileImage::Kind::History && out.find_image(previous) != nullptr))
+    if (kind == FileImage::Kind::History && out.find_image(previous) != nullptr)
         return user_error(fmt::format("{}: declared twice", name));
     if (out.images.size() == most_images)
         return user_error(fmt::format("{}: a file has at most {} images", name, most_images));
@@ -125,6 +114,7 @@ std::string readable(const Description& from) {
         names.emplace_back(image.name);
         if (image.kind == FileImage::Kind::History) names.push_back(names.back() + std::string(previous_end));
     }
+    for (const FileBuffer& buffer : from.buffers) names.emplace_back(buffer.name);
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -147,8 +137,18 @@ Result<> check_input(Description& from, const std::string& reader, std::string_v
 Result<> read_inputs(Description& from, FileFunction& out, const std::string& reader, std::string_view text) {
     while (!text.empty()) {
         const std::string_view name = next_word(text);
-        if (std::ranges::find(out.inputs, name, &FileInput::name) != out.inputs.end())
+        if (std::ranges::find(out.inputs, name, &FileInput::name) != out.inputs.end() ||
+            std::ranges::find(out.buffers, name, &FileBufferUse::name) != out.buffers.end())
             return user_error(fmt::format("{} reads '{}' twice", reader, printable(name)));
+        if (const FileBuffer* const buffer = from.find_buffer(name)) {
+            if (!buffer->is_value && !out.is_compute)
+                return user_error(
+                    fmt::format("{} reads '{}': a buffer is for @compute passes, a @value for all", reader, name));
+            if (!buffer->is_written)
+                return user_error(fmt::format("{} reads '{}', which no pass before it writes", reader, name));
+            out.buffers.push_back({.name = buffer->name});
+            continue;
+        }
         if (auto ok = check_input(from, reader, name); !ok) return ok;
         out.inputs.push_back({.name = from.keep(name)});
         if (out.inputs.size() > most_inputs)
@@ -158,6 +158,16 @@ Result<> read_inputs(Description& from, FileFunction& out, const std::string& re
 }
 
 }  // namespace
+
+Result<> check_own_name(Description& out, std::string_view name) {
+    if (auto ok = check_name(name); !ok) return ok;
+    const bool is_reserved = name == "source" || name == "second" || name.ends_with(previous_end) ||
+                             name.starts_with("frame_") || name.starts_with("shared_") || name.starts_with("darkroom_");
+    if (is_reserved || plan::is_function_name(name)) return user_error(fmt::format("{}: has a meaning already", name));
+    if (out.find_image(name) != nullptr || out.find_buffer(name) != nullptr)
+        return user_error(fmt::format("{}: declared twice", name));
+    return {};
+}
 
 FileImage* Description::find_image(std::string_view name) {
     const auto found = std::ranges::find(images, name, &FileImage::name);
@@ -209,30 +219,57 @@ Result<> read_pre_roll(Description& out, std::string_view text) {
     return {};
 }
 
-Result<FileFunction> read_pass(Description& out, std::string_view text) {
-    const std::size_t colon = text.find(':'), arrow = text.find("->");
-    const std::string_view name = trimmed(text.substr(0, colon));
+Result<FileFunction> read_arrow(Description& out, FileFunction pass, std::string_view text, std::string_view usage) {
+    const std::string_view name = pass.name;
     if (auto ok = check_name(name); !ok) return failure(std::move(ok));
     if (name == "parameters" || name == "custom") return user_error(fmt::format("{}: has a meaning already", name));
     if (std::ranges::find(out.passes, name, &FileFunction::name) != out.passes.end())
         return user_error(fmt::format("pass {}: declared twice", name));
     if (out.passes.size() == most_passes)
         return user_error(fmt::format("pass {}: a file has at most {} passes", name, most_passes));
+    const std::size_t colon = text.find(':'), arrow = text.find("->");
     if (colon == std::string_view::npos || arrow == std::string_view::npos || arrow < colon)
-        return user_error(fmt::format("pass {}: expected `@pass {}: IMAGE IMAGE -> IMAGE`", name, name));
-    const std::string reader = fmt::format("pass {}", name);
-    FileFunction pass{.name = out.keep(name)};
-    if (auto ok = read_inputs(out, pass, reader, trimmed(text.substr(colon + 1, arrow - colon - 1))); !ok)
+        return user_error(fmt::format("pass {}: expected `{}`", name, usage));
+    pass.name = out.keep(name);
+    if (auto ok =
+            read_inputs(out, pass, fmt::format("pass {}", name), trimmed(text.substr(colon + 1, arrow - colon - 1)));
+        !ok)
         return failure(std::move(ok));
-    const std::string_view output = trimmed(text.substr(arrow + 2));
-    FileImage* const image = out.find_image(output);
+    for (std::string_view rest = trimmed(text.substr(arrow + 2)); !rest.empty();)
+        pass.outputs.push_back(next_word(rest));
+    if (pass.outputs.size() > most_outputs)
+        return user_error(
+            fmt::format("pass {} writes {} images; at most {} are allowed", name, pass.outputs.size(), most_outputs));
+    return pass;
+}
+
+Result<FileImage*> take_output(Description& out, std::string_view pass, std::string_view name) {
+    FileImage* const image = out.find_image(name);
     if (image == nullptr || image->kind == FileImage::Kind::Table)
         return user_error(
-            fmt::format("{} writes '{}': expected an image or a history of the file", reader, printable(output)));
+            fmt::format("pass {} writes '{}': expected an image or a history of the file", pass, printable(name)));
     if (image->is_written)
-        return user_error(fmt::format("{} writes '{}', which a pass before it writes", reader, output));
+        return user_error(fmt::format("pass {} writes '{}', which a pass before it writes", pass, name));
     image->is_written = true;
-    pass.output = image->name;
+    return image;
+}
+
+Result<FileFunction> read_pass(Description& out, std::string_view text) {
+    const std::string_view name = trimmed(text.substr(0, text.find(':')));
+    auto pass = read_arrow(out, {.name = name}, text, fmt::format("@pass {}: IMAGE IMAGE -> IMAGE", name));
+    if (!pass) return pass;
+    if (pass->outputs.empty()) pass->outputs.emplace_back();
+    const FileImage* first = nullptr;
+    for (std::string_view& output : pass->outputs) {
+        const auto image = take_output(out, pass->name, output);
+        if (!image) return failure(image.error());
+        output = (*image)->name;
+        if (first == nullptr) first = *image;
+        const OutputScale &a = first->ratio, &b = (*image)->ratio;
+        if (a.numerator * b.denominator != b.numerator * a.denominator)
+            return user_error(
+                fmt::format("pass {} writes '{}' and '{}', which differ in size", pass->name, first->name, output));
+    }
     return pass;
 }
 
@@ -256,6 +293,13 @@ Result<> check_passes(Description& out) {
                 fmt::format("image {}: names that begin with the effect's are those of functions", image.name));
         if (image.kind != FileImage::Kind::Table && !image.is_written)
             return user_error(fmt::format("image {}: no pass writes it", image.name));
+    }
+    for (const FileBuffer& buffer : out.buffers) {
+        const std::string_view kind = buffer.is_value ? "value" : "buffer";
+        if (buffer.name == out.info.name || buffer.name.starts_with(prefix))
+            return user_error(
+                fmt::format("{} {}: names that begin with the effect's are those of functions", kind, buffer.name));
+        if (!buffer.is_written) return user_error(fmt::format("{} {}: no pass writes it", kind, buffer.name));
     }
     if (has_history && !out.pre_roll)
         return user_error(

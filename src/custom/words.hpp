@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,6 +39,14 @@ inline std::string_view next_word(std::string_view& text) {
         if (end == std::string_view::npos) return out;
         text.remove_prefix(end + 1);
     }
+}
+
+/// In [1, most].
+[[nodiscard]] inline std::optional<std::uint32_t> parse_count(std::string_view text, std::uint32_t most) {
+    std::uint32_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || value == 0 || value > most) return std::nullopt;
+    return value;
 }
 
 template <class T, std::size_t Count>

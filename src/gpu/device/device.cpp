@@ -239,7 +239,9 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
     const VkPhysicalDeviceFeatures2 features{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
         .pNext = first,
-        .features = {.fullDrawIndexUint32 = available.fullDrawIndexUint32,
+        // Users' effects write into buffers, and must not reach beyond them. Every device has it.
+        .features = {.robustBufferAccess = VK_TRUE,
+                     .fullDrawIndexUint32 = available.fullDrawIndexUint32,
                      .imageCubeArray = available.imageCubeArray,
                      .independentBlend = available.independentBlend,
                      .depthClamp = available.depthClamp,

@@ -30,12 +30,13 @@ constexpr auto keywords = std::to_array<std::string_view>(
      "uvec3",    "uvec4",     "varying",     "vec2",      "vec3",      "vec4",     "void",          "volatile",
      "while",    "writeonly"});
 constexpr auto functions = std::to_array<std::string_view>(
-    {"abs",     "acos",  "all",    "any",        "asin",        "atan",    "ceil",      "clamp",         "color",
-     "cos",     "cross", "custom", "degrees",    "distance",    "dot",     "equal",     "exp",           "exp2",
-     "floor",   "fma",   "fract",  "gather_red", "inversesqrt", "length",  "load",      "load_clamped",  "log",
-     "log2",    "max",   "min",    "mix",        "mod",         "modf",    "normalize", "not",           "parameters",
-     "picture", "pixel", "pow",    "radians",    "reflect",     "refract", "round",     "sample_linear", "shade",
-     "sign",    "sin",   "size",   "sqrt",       "step",        "tan",     "transpose", "trunc"});
+    {"abs",     "acos",    "all",          "any",   "asin",       "atan",          "barrier",    "ceil",
+     "clamp",   "color",   "cos",          "cross", "custom",     "degrees",       "distance",   "dot",
+     "equal",   "exp",     "exp2",         "floor", "fma",        "fract",         "gather_red", "inversesqrt",
+     "length",  "load",    "load_clamped", "log",   "log2",       "max",           "min",        "mix",
+     "mod",     "modf",    "normalize",    "not",   "parameters", "picture",       "pixel",      "pow",
+     "radians", "reflect", "refract",      "round", "run",        "sample_linear", "shade",      "sign",
+     "sin",     "size",    "sqrt",         "step",  "store",      "tan",           "transpose",  "trunc"});
 static_assert(std::ranges::is_sorted(keywords) && std::ranges::is_sorted(functions));
 
 bool is_letter(char c) { return c >= 'a' && c <= 'z'; }
