@@ -57,6 +57,8 @@ Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::files
         if (options_.load_resource) return options_.load_resource(path, use);
         if (use != FileUse::Table)
             return user_error(fmt::format("{}: this program reads no pictures for looks", printable(path.string())));
+        if (!options_.reads_tables)
+            return user_error(fmt::format("{}: this program reads no tables for looks", printable(path.string())));
         Result<TableFile> file = read_cube(path);
         if (!file) return failure(std::move(file));
         return ResourceData(std::move(file->table));

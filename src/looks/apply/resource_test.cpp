@@ -89,6 +89,19 @@ TEST_F(LookResources, AreReadOnceAndGivenToTheComposer) {
     EXPECT_EQ(write_look(*read(write_look(*look), options)), write_look(*look));
 }
 
+TEST_F(LookResources, AHostMayReadNoneAndBringAll) {
+    const Result<Look> refused = read(stack_of_two, {.reads_tables = false});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().text.find("a.cube: this program reads no tables for looks"), std::string::npos)
+        << refused.error().text;
+    const Result<Look> brought =
+        read(stack_of_two, {.load_resource = [](const std::filesystem::path&, FileUse) -> Result<ResourceData> {
+                                return ResourceData(ColorTable{.shaper_size = 2, .shaper = {0, 0, 0, 1, 1, 1}});
+                            },
+                            .reads_tables = false});
+    EXPECT_TRUE(brought) << brought.error().text;
+}
+
 TEST_F(LookResources, WiresNameFilesOfPictures) {
     std::vector<std::pair<std::string, FileUse>> asked;
     const LookOptions options{
