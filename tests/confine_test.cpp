@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 // What a process can still do once it is confined, tried in a process of its own.
-#include "svg/confine.hpp"
+#include "confined/inside/confine.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
+#include <optional>
 #include <thread>
 
+#include "confined/inside/serve.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom::test {
@@ -17,12 +22,12 @@ namespace {
 
 class Confined : public WithFolder {
   protected:
-    /// Whether the work says yes in a process that may read this test's folder.
+    /// Whether the work says yes in a process that may read these folders, this test's unless told otherwise.
     template <class Work>
-    [[nodiscard]] bool can(const Work& work) const {
+    [[nodiscard]] bool can(const Work& work, std::optional<std::vector<std::string>> folders = {}) const {
         const pid_t child = ::fork();
         if (child == 0) {
-            const Confinement done = confine({folder_.string()});
+            const Confinement done = confine(folders.value_or(std::vector{folder_.string()}));
             ::_exit(!done.has_seccomp ? 3 : work() ? 0 : 1);
         }
         int status = 0;
@@ -57,6 +62,61 @@ TEST_F(Confined, ReadsItsFoldersAlone) {
     EXPECT_FALSE(reads("/etc/passwd"));
     EXPECT_FALSE(reads("/proc/self/maps"));
     EXPECT_FALSE(reads(file("folder/../../../etc/passwd")));
+}
+
+TEST_F(Confined, WithoutFoldersItOpensNothing) {
+    put(file("a"), "text");
+    const auto can_here = [&](const auto& work) { return can(work, std::vector<std::string>{}); };
+    for (const int flags : {O_RDONLY, O_PATH, O_RDONLY | O_DIRECTORY, O_WRONLY})
+        for (const std::string& path : {file("a").string(), folder_.string(), std::string("/proc/self/maps")})
+            EXPECT_FALSE(can_here([&] { return ::open(path.c_str(), flags) >= 0; })) << path << flags;
+    EXPECT_FALSE(can_here([&] { return ::access(file("a").c_str(), F_OK) == 0; }));
+    EXPECT_FALSE(can_here([&] {
+        std::error_code ignored;
+        return std::filesystem::exists(folder_, ignored);
+    }));
+    EXPECT_FALSE(can_here([] { return ::socket(AF_UNIX, SOCK_STREAM, 0) >= 0; }));
+    EXPECT_FALSE(can_here([] {
+        const pid_t child = ::fork();
+        if (child == 0) ::_exit(0);
+        return child > 0;
+    }));
+    EXPECT_FALSE(can_here([parent = ::getppid()] { return ::syscall(SYS_tgkill, parent, parent, 0) == 0; }));
+    EXPECT_FALSE(can_here([] {
+        const rlimit more{RLIM_INFINITY, RLIM_INFINITY};
+        return ::setrlimit(RLIMIT_AS, &more) == 0;
+    }));
+}
+
+TEST(ConfinedProgram, AProcessAtWorkEndsWithIt) {
+    int ends[2];
+    ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::dup2(ends[1], socket_of_program);
+        for (const int end : ends) ::close(end);
+        confine({});
+        if (!greet()) ::_exit(1);
+        for (volatile bool is_at_work = true; is_at_work;) {
+        }
+    }
+    ::close(ends[1]);
+    std::uint32_t greeting = 1;
+    EXPECT_TRUE(::read(ends[0], &greeting, sizeof greeting) == sizeof greeting && greeting == 0);
+    int status = 0;
+    EXPECT_EQ(::waitpid(child, &status, WNOHANG), 0) << "it works";
+    ::close(ends[0]);
+    pid_t ended = 0;
+    for (int i = 0; i < 10'000 && ended == 0; ++i) {
+        ::usleep(1000);
+        ended = ::waitpid(child, &status, WNOHANG);
+    }
+    EXPECT_EQ(ended, child);
+    if (ended == 0) {
+        ::kill(child, SIGKILL);
+        ::waitpid(child, &status, 0);
+    }
+    EXPECT_TRUE(WIFEXITED(status)) << status;
 }
 
 TEST_F(Confined, WritesNothing) {

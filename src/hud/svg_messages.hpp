@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // What a program and its darkroom_svg say to each other, over the socket that is the latter's standard input: a request
-// and the document's bytes; a reply and the bytes of an error's text. The pixels lie in shared memory.
+// with memory for the picture, and the document's bytes; a reply and the bytes of an error's text. The picture is RGBA
+// of 8 bits, premultiplied, rows from the top.
 
 #include <cstdint>
 
@@ -15,7 +16,5 @@ struct SvgRequest {
 struct SvgReply {
     std::uint32_t error_size = 0;  ///< bytes; 0: the pixels are there
 };
-/// Where darkroom_svg finds the memory: RGBA of 8 bits, premultiplied, rows from the top.
-inline constexpr int svg_memory_descriptor = 3;
 
 }  // namespace darkroom

@@ -6,9 +6,10 @@
 
 #include <cstdint>
 #include <darkroom/result.hpp>
-#include <mutex>
 #include <string_view>
 #include <vector>
+
+#include "confined/process.hpp"
 
 namespace darkroom {
 
@@ -30,24 +31,16 @@ struct HudLimits {
 class SvgProcess {
   public:
     explicit SvgProcess(const HudLimits& limits = {}) : limits_(limits) {}
-    SvgProcess(const SvgProcess&) = delete;
-    SvgProcess& operator=(const SvgProcess&) = delete;
-    ~SvgProcess() { stop(); }
 
     /// The document fitted to the picture, as its preserveAspectRatio says. The user's errors are one line: librsvg's
     /// own words, with "line N" in them where it names one. The document must have been checked (check_svg).
     [[nodiscard]] Result<HudPicture> draw(std::string_view document, std::uint32_t width, std::uint32_t height);
     /// From any thread, at the end: a drawing that runs fails soon, and so does any other.
-    void cancel();
+    void cancel() { process_.cancel(); }
 
   private:
-    [[nodiscard]] Result<> start();
-    void stop();
-
     HudLimits limits_;
-    std::mutex mutex_;  // of the socket's number and of is_cancelled_
-    bool is_cancelled_ = false;
-    int process_ = -1, socket_ = -1, memory_ = -1;
+    ConfinedProcess process_{"darkroom_svg"};
 };
 
 }  // namespace darkroom

@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: MIT
 // darkroom_svg: draws SVG documents for the program that started it (hud/svg_process.hpp), by librsvg. A process of its
 // own, so that no document can hold up that program, take its memory or read files: it has no base for references, and
-// the process is confined before it reads a document (svg/confine.hpp). Fonts are what it may read.
+// the process is confined before it reads a document (confined/inside/confine.hpp). Fonts are what it may read.
 #include <fontconfig/fontconfig.h>
 #include <librsvg/rsvg.h>
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "confined/exchange.hpp"
+#include "confined/inside/confine.hpp"
+#include "confined/inside/serve.hpp"
+#include "confined/shared_memory.hpp"
 #include "hud/svg_messages.hpp"
-#include "svg/confine.hpp"
 
 namespace darkroom {
 namespace {
-
-/// The layers of a document as large as budgets allow; beyond it librsvg ends the process.
-constexpr rlim_t most_memory = rlim_t{4} << 30;
 
 struct Free {
     void operator()(GError* error) const { g_error_free(error); }
@@ -31,26 +27,6 @@ struct Free {
 };
 template <class T>
 using Owned = std::unique_ptr<T, Free>;
-
-bool receive(void* data, std::size_t size) {
-    for (auto* at = static_cast<char*>(data); size > 0;) {
-        const ssize_t got = recv(STDIN_FILENO, at, size, 0);
-        if (got <= 0) return false;
-        at += got;
-        size -= static_cast<std::size_t>(got);
-    }
-    return true;
-}
-
-bool send_all(const void* data, std::size_t size) {
-    for (const auto* at = static_cast<const char*>(data); size > 0;) {
-        const ssize_t sent = send(STDIN_FILENO, at, size, MSG_NOSIGNAL);
-        if (sent <= 0) return false;
-        at += sent;
-        size -= static_cast<std::size_t>(sent);
-    }
-    return true;
-}
 
 std::string text_of(GError* error) {
     const Owned<GError> owned(error);
@@ -75,7 +51,7 @@ void write_pixels(const cairo_surface_t* surface, const SvgRequest& request, std
 }
 
 /// Empty: drawn.
-std::string draw(const std::string& document, const SvgRequest& request) {
+std::string draw(const std::string& document, const SvgRequest& request, int memory) {
     GError* error = nullptr;
     const Owned<RsvgHandle> handle(
         rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(document.data()), document.size(), &error));
@@ -90,10 +66,9 @@ std::string draw(const std::string& document, const SvgRequest& request) {
     if (cairo_status(context.get()) != CAIRO_STATUS_SUCCESS) return cairo_status_to_string(cairo_status(context.get()));
 
     const std::size_t size = std::size_t{4} * request.width * request.height;
-    void* const memory = mmap(nullptr, size, PROT_WRITE, MAP_SHARED, svg_memory_descriptor, 0);
-    if (memory == MAP_FAILED) return "the memory of its picture cannot be reached";
-    write_pixels(surface.get(), request, static_cast<std::uint8_t*>(memory));
-    munmap(memory, size);
+    const Mapping out(memory, size, true);
+    if (out.bytes().empty()) return "the memory of its picture cannot be reached";
+    write_pixels(surface.get(), request, reinterpret_cast<std::uint8_t*>(out.bytes().data()));
     return {};
 }
 
@@ -110,14 +85,18 @@ std::vector<std::string> folders_of_fonts() {
 
 void serve() {
     SvgRequest request;
-    while (receive(&request, sizeof request)) {
+    for (;;) {
+        std::vector<Descriptor> memory;
+        if (!receive_all(socket_of_program, &request, sizeof request, &memory) || memory.size() != 1) return;
         std::string document(request.document_size, '\0');
-        if (!receive(document.data(), document.size())) return;
+        if (!receive_all(socket_of_program, document.data(), document.size())) return;
         alarm(request.most_seconds);
-        const std::string error = draw(document, request);
+        const std::string error = draw(document, request, memory[0].number());
         alarm(0);
         const SvgReply reply{.error_size = static_cast<std::uint32_t>(error.size())};
-        if (!send_all(&reply, sizeof reply) || !send_all(error.data(), error.size())) return;
+        if (!send_all(socket_of_program, &reply, sizeof reply) ||
+            !send_all(socket_of_program, error.data(), error.size()))
+            return;
     }
 }
 
@@ -125,12 +104,7 @@ void serve() {
 }  // namespace darkroom
 
 int main() {
-    const rlimit memory{darkroom::most_memory, darkroom::most_memory}, nothing{0, 0};
-#ifndef __SANITIZE_ADDRESS__  // whose shadow alone is terabytes
-    setrlimit(RLIMIT_AS, &memory);
-#endif
-    setrlimit(RLIMIT_CORE, &nothing);
     darkroom::confine(darkroom::folders_of_fonts());
-    darkroom::serve();
-    return 0;
+    if (darkroom::greet()) darkroom::serve();
+    _exit(0);  // libraries have nothing to write at the end, and could not
 }

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "confined/inside/serve.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <thread>
+
+#include "confined/exchange.hpp"
+#include "confined/messages.hpp"
+
+namespace darkroom {
+
+namespace {
+
+/// A program that is gone, by whatever end, leaves no process at work behind.
+void end_with_program() {
+    pollfd program{.fd = socket_of_program, .events = POLLRDHUP, .revents = 0};
+    while (poll(&program, 1, -1) < 0 && errno == EINTR) {
+    }
+    _exit(0);
+}
+
+}  // namespace
+
+bool greet(std::string_view error) {
+    std::thread(end_with_program).detach();
+    error = error.substr(0, most_error_bytes);
+    const ConfinedGreeting greeting{.error_size = static_cast<std::uint32_t>(error.size())};
+    return send_all(socket_of_program, &greeting, sizeof greeting) &&
+           send_all(socket_of_program, error.data(), error.size());
+}
+
+}  // namespace darkroom
