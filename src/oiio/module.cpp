@@ -194,11 +194,8 @@ class OiioSource final : public PictureSource {
         return {};
     }
 
-    // What the reader says is wrong, without who says it.
     std::string reason() const {
-        std::string message = one_printable_line(input_->geterror());
-        for (const std::string_view who : {"PNG read error: ", "JPEG error: "})
-            if (const std::size_t at = message.find(who); at != std::string::npos) message.erase(at, who.size());
+        const std::string message = one_printable_line(input_->geterror());
         return message.empty() ? "they cannot be decoded" : message;
     }
 
@@ -264,6 +261,11 @@ T guarded(T (*work)(Arguments...), std::string_view doing, std::type_identity_t<
 extern "C" DARKROOM_MODULE_EXPORT const darkroom::Codecs* darkroom_oiio_codecs() {
     using namespace darkroom;
     static const Codecs codecs{
+        .prepare =
+            [] {
+                for (const FileKind kind : {FileKind::Tiff, FileKind::Radiance})
+                    static_cast<void>(OIIO::ImageInput::create(format_of(kind)));
+            },
         .open =
             [](FileKind kind, std::span<const std::byte> bytes) {
                 return guarded(OiioSource::open, "cannot be decoded", kind, bytes);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What OpenImageIO does here: PNG, JPEG, TIFF and Radiance files are read by it, JPEG, TIFF and Radiance written,
-// pictures resampled. It brings some 250 shared libraries, which take five times as long to load as the program; so it
-// is a module of its own, loaded when it is first needed, and this is all that both sides know of each other.
+// What OpenImageIO does here: TIFF and Radiance files are read by it, JPEG, TIFF and Radiance written, pictures
+// resampled. It brings some 250 shared libraries, which take five times as long to load as the program; so it is a
+// module of its own, loaded when it is first needed, and this is all that both sides know of each other.
 
 #include <cstdint>
 #include <darkroom/result.hpp>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "image/picture/picture_source.hpp"
+#include "decoders/picture_source.hpp"
 
 namespace darkroom {
 
@@ -33,6 +33,8 @@ struct FloatPixels {
 };
 
 struct Codecs {
+    /// Looks for all that is looked for once, before a process gives up files.
+    void (*prepare)();
     Result<std::unique_ptr<PictureSource>> (*open)(FileKind kind, std::span<const std::byte> bytes);
     Result<std::vector<std::byte>> (*encode)(const EncodeDesc& desc);
     /// By a triangle filter.

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/files.hpp"
-#include "image/exr/source.hpp"
+#include "decoders/exr_source.hpp"
 #include "image/picture/oriented_source.hpp"
 
 namespace darkroom {
@@ -26,13 +26,13 @@ Decoder::Decoder(Decoder&&) noexcept = default;
 Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 Decoder::~Decoder() = default;
 
-Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max_threads) {
+Result<Decoder> Decoder::open(const std::filesystem::path& path, std::size_t max_threads, DecodingPlace place) {
     auto state = std::make_unique<State>();
     state->path = path.string();
     auto bytes = read_image_file(path);
     if (!bytes) return failure(std::move(bytes));
     state->bytes = std::move(*bytes);
-    auto opened = open_upright(state->bytes, max_threads);
+    auto opened = open_upright(state->bytes, max_threads, place);
     if (!opened) return state->error(opened.error());
     state->opened = std::move(*opened);
     return Decoder(std::move(state));

@@ -25,7 +25,8 @@ class Decoder {
   public:
     /// Reads the file (read_image_file) and checks its structure. The error text begins with the path. `max_threads`:
     /// see open_source.
-    [[nodiscard]] static Result<Decoder> open(const std::filesystem::path& path, std::size_t max_threads = 0);
+    [[nodiscard]] static Result<Decoder> open(const std::filesystem::path& path, std::size_t max_threads = 0,
+                                              DecodingPlace place = DecodingPlace::Confined);
 
     Decoder(Decoder&&) noexcept;
     Decoder& operator=(Decoder&&) noexcept;

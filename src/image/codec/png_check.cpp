@@ -11,7 +11,8 @@
 #include <memory>
 #include <string_view>
 
-#include "image/codec/file_kind.hpp"
+#include "decoders/exif.hpp"
+#include "decoders/file_kind.hpp"
 #include "image/codec/png_palette.hpp"
 #include "image/exr/check.hpp"
 
@@ -103,29 +104,6 @@ Result<> check_profile(std::span<const std::byte> data) {
     return {};
 }
 
-// EXIF 2.32: the first directory of a TIFF file, tag 274. 1 (upright) where there is none.
-std::uint8_t orientation_of(std::span<const std::byte> exif) {
-    if (exif.size() < 14) return 1;
-    const bool is_little = exif[0] == std::byte{'I'};
-    const auto number = [&](std::size_t at, std::size_t size) {
-        std::size_t value = 0;
-        for (std::size_t i = 0; i < size; ++i)
-            value = value << 8 | std::to_integer<std::size_t>(exif[at + (is_little ? size - 1 - i : i)]);
-        return value;
-    };
-    const std::size_t directory = number(4, 4);
-    if (directory > exif.size() - 2) return 1;
-    const std::size_t count = number(directory, 2);
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t at = directory + 2 + i * 12;
-        if (exif.size() - 12 < at) return 1;
-        const std::size_t value = number(at + 8, 2);
-        if (number(at, 2) == 274 && number(at + 2, 2) == 3 && value >= 1 && value <= 8)
-            return static_cast<std::uint8_t>(value);
-    }
-    return 1;
-}
-
 std::vector<std::byte> exif_of(std::uint8_t orientation) {
     std::array<char, 26> text{'M', 'M', 0, 42, 0, 0, 0, 8, 0, 1, 1, 18, 0, 3, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0};
     text[19] = static_cast<char>(orientation);
@@ -204,7 +182,7 @@ class PngChecker {
             if (auto checked = check_profile(chunk.data); !checked) return checked;
         is_as_it_was_ = is_as_it_was_ && chunk.type != "eXIf";
         if (chunk.type == "eXIf")
-            append(out_, exif_of(orientation_of(chunk.data)));
+            append(out_, exif_of(orientation_of_exif(chunk.data)));
         else
             append(out_, chunk.whole);
         return {};

@@ -3,7 +3,7 @@
 // The numbers of a picture, as a file has them, to light, and the light to linear Rec. 709. Alpha stays.
 
 #include "core/primaries.hpp"
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
 #include "image/color/color_coding.hpp"
 #include "image/picture/picture.hpp"
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
 #include "image/color/color_coding.hpp"
 
 namespace darkroom {

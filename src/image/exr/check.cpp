@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
 
 namespace darkroom {
 namespace {

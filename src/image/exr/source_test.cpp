@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // OpenEXR files of all layouts, held against what OpenEXR itself makes of them.
 
-#include "image/exr/source.hpp"
+#include "decoders/exr_source.hpp"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>

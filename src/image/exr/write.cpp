@@ -21,7 +21,7 @@
 #include <limits>
 
 #include "core/files.hpp"
-#include "image/exr/source.hpp"
+#include "decoders/exr_source.hpp"
 
 namespace darkroom {
 namespace {

@@ -3,7 +3,6 @@
 // Internal to src/image: planes of floats made into an OpenEXR file in memory, by OpenEXR.
 
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfPixelType.h>
 
 #include <array>
 #include <cstddef>
@@ -15,13 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
 
 namespace darkroom {
-
-[[nodiscard]] inline Imf::PixelType type_of(SampleKind kind) {
-    return kind == SampleKind::Half ? Imf::HALF : Imf::FLOAT;
-}
 
 /// A channel of a plane whose pixels are `stride` floats apart.
 struct ExrChannel {

@@ -467,7 +467,7 @@ Result<FrameFile> FrameReader::read() {
 }  // namespace
 
 Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptions& options) {
-    auto decoder = Decoder::open(path, options.max_threads);
+    auto decoder = Decoder::open(path, options.max_threads, DecodingPlace::FramesHere);
     if (!decoder) return failure(std::move(decoder));
     auto frame = FrameReader(*decoder, options).read();
     const std::string place = path.string() + ": ";

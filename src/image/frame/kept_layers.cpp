@@ -100,7 +100,7 @@ class Reader {
 
 Result<KeptLayers> read_kept_layers(const std::filesystem::path& path, const LayerNames& names,
                                     std::size_t max_threads) {
-    Result<Decoder> decoder = Decoder::open(path, max_threads);
+    Result<Decoder> decoder = Decoder::open(path, max_threads, DecodingPlace::FramesHere);
     if (!decoder) return failure(std::move(decoder));
     const auto refuse = [&](const Error& error) {
         return failure(Error{error.fault, fmt::format("{}: {}", printable(path.string()), error.text)});

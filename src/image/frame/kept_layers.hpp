@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
 #include "image/frame/channels.hpp"
 
 namespace darkroom {

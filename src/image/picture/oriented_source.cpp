@@ -151,8 +151,8 @@ Result<int> orientation_of(FileKind kind, std::span<const std::byte> bytes, cons
     return found.size() == 1 && found[0] >= 1 && found[0] <= 8 ? static_cast<int>(found[0]) : 1;
 }
 
-Result<OpenedSource> open_upright(std::span<const std::byte> bytes, std::size_t max_threads) {
-    Result<OpenedSource> opened = open_source(bytes, max_threads);
+Result<OpenedSource> open_upright(std::span<const std::byte> bytes, std::size_t max_threads, DecodingPlace place) {
+    Result<OpenedSource> opened = open_source(bytes, max_threads, place);
     if (!opened) return opened;
     const Result<int> orientation = orientation_of(opened->kind, bytes, *opened->source);
     if (!orientation) return failure(orientation.error());

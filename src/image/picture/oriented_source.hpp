@@ -12,6 +12,7 @@ namespace darkroom {
 [[nodiscard]] Result<int> orientation_of(FileKind kind, std::span<const std::byte> bytes, const PictureSource& source);
 
 /// open_source, upright.
-[[nodiscard]] Result<OpenedSource> open_upright(std::span<const std::byte> bytes, std::size_t max_threads = 0);
+[[nodiscard]] Result<OpenedSource> open_upright(std::span<const std::byte> bytes, std::size_t max_threads = 0,
+                                                DecodingPlace place = DecodingPlace::Confined);
 
 }  // namespace darkroom

@@ -6,7 +6,7 @@
 #include <darkroom/result.hpp>
 #include <filesystem>
 
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
 
 namespace darkroom {
 

@@ -8,14 +8,14 @@
 #include <string_view>
 
 #include "core/files.hpp"
-#include "image/codec/codecs.hpp"
+#include "decoders/exr_source.hpp"
 #include "image/codec/jpeg_check.hpp"
 #include "image/codec/png_check.hpp"
 #include "image/codec/tiff_check.hpp"
+#include "image/confined/confined_source.hpp"
+#include "image/confined/decoder_pool.hpp"
 #include "image/exr/check.hpp"
-#include "image/exr/source.hpp"
 #include "image/webp/check.hpp"
-#include "image/webp/source.hpp"
 
 namespace darkroom {
 namespace {
@@ -73,38 +73,19 @@ Result<> check_size(FileKind kind, const FilePart& part, std::size_t file_size) 
     return check_decoded_size(static_cast<std::uint64_t>(row_bytes * part.height), file_size);
 }
 
-Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads) {
-    if (kind == FileKind::WebP) return open_webp(bytes);
-    if (kind != FileKind::OpenExr) {
-        const Result<const Codecs*> others = codecs();
-        if (!others) return failure(others.error());
-        return (*others)->open(kind, bytes);
-    }
+/// Of frames of OpenEXR the header is read here, and samples that are packed by ZIP or not at all; see ExrSource.
+Result<std::unique_ptr<PictureSource>> open_frame(std::span<const std::byte> bytes, std::size_t max_threads) {
     try {
-        return ExrSource::open(bytes, max_threads);
+        return ExrSource::open(bytes, max_threads, [bytes, max_threads] {
+            return ConfinedSource::open(FileKind::OpenExr, bytes, max_threads);
+        });
     } catch (const std::exception& exception) {
-        return user_error(fmt::format("cannot be read as {}: {}", name_of(kind), one_printable_line(exception.what())));
+        return user_error(
+            fmt::format("cannot be read as {}: {}", name_of(FileKind::OpenExr), one_printable_line(exception.what())));
     }
 }
 
 }  // namespace
-
-void PictureSource::set_display_window(const PixelWindow& window) {
-    for (FilePart& part : parts_) {
-        part.x -= window.x, part.y -= window.y;
-        part.display_width = window.width, part.display_height = window.height;
-    }
-}
-
-Result<> PictureSource::read_rows(std::size_t part, std::uint32_t row, std::uint32_t rows,
-                                  std::span<const SamplePlace> places) {
-    if (places.empty() || rows == 0) return {};
-    try {
-        return read(part, row, rows, places);
-    } catch (const std::exception& exception) {
-        return user_error(fmt::format("damaged or truncated: {}", one_printable_line(exception.what())));
-    }
-}
 
 Result<FileKind> kind_of_file(std::span<const std::byte> start) {
     if (start.empty()) return user_error("is empty");
@@ -131,12 +112,16 @@ Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path
     return read_file(path, options);
 }
 
-Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads) {
+Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads, DecodingPlace place) {
+    if (!is_decoding_allowed()) return user_error("pictures are not decoded here: that is switched off");
     const Result<FileKind> kind = kind_of_file(bytes);
     if (!kind) return failure(kind.error());
     auto cleaned = check_structure(*kind, bytes);
     if (!cleaned) return failure(std::move(cleaned));
-    auto source = open(*kind, cleaned->empty() ? bytes : std::span<const std::byte>(*cleaned), max_threads);
+    const std::span<const std::byte> seen = cleaned->empty() ? bytes : std::span<const std::byte>(*cleaned);
+    auto source = *kind == FileKind::OpenExr && place == DecodingPlace::FramesHere
+                      ? open_frame(seen, max_threads)
+                      : ConfinedSource::open(*kind, seen, max_threads);
     if (!source) return failure(std::move(source));
     (*source)->keep(std::move(*cleaned));
     for (const FilePart& part : (*source)->parts())

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// An image file in memory whose structure has been read and whose samples have not. OpenEXR files come through OpenEXR,
-// WebP through libwebp, the others through OpenImageIO, which is loaded when the first of them is opened
-// (image/codec/codecs.hpp).
+// An image file in memory whose structure has been read and whose samples have not. Third-party decoders read it in a
+// confined process (image/confined).
 
 #include <cstddef>
 #include <darkroom/result.hpp>
@@ -14,52 +13,10 @@
 #include <vector>
 
 #include "core/files.hpp"
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
+#include "decoders/picture_source.hpp"
 
 namespace darkroom {
-
-/// Where the samples of one channel go. Integers of a file become 0..1 as floats, as encoded; OpenEXR files give halves
-/// and floats alone.
-struct SamplePlace {
-    std::size_t channel = 0;  ///< of FilePart::channels
-    SampleKind kind = SampleKind::Float;
-    std::byte* first = nullptr;      ///< of the leftmost sample of the first row that is read
-    std::ptrdiff_t pixel_bytes = 0;  ///< from one sample to the next
-    std::ptrdiff_t row_bytes = 0;    ///< from one row to the next
-};
-
-class PictureSource {
-  public:
-    PictureSource() = default;
-    PictureSource(const PictureSource&) = delete;
-    PictureSource& operator=(const PictureSource&) = delete;
-    virtual ~PictureSource() = default;
-
-    [[nodiscard]] std::span<const FilePart> parts() const { return parts_; }
-    /// The numbers of an attribute (one number, a point, a matrix by rows), empty if the part has none of that name.
-    /// Names are compared without regard to case.
-    [[nodiscard]] virtual std::vector<double> numbers(std::size_t part, std::string_view attribute) const = 0;
-    [[nodiscard]] virtual std::vector<std::string> attributes(std::size_t part) const = 0;
-    /// Rows of the data window, 0 at its top. What lies between the samples of a place is not touched. Errors name no
-    /// file; some rows may have been written then.
-    [[nodiscard]] Result<> read_rows(std::size_t part, std::uint32_t row, std::uint32_t rows,
-                                     std::span<const SamplePlace> places);
-    /// Rows that are read together without decoding anything twice: a multiple of this many.
-    [[nodiscard]] virtual std::uint32_t row_unit(std::size_t part) const = 0;
-    /// Makes this the display window of all parts, in pixels of the one that they had.
-    void set_display_window(const PixelWindow& window);
-    /// Holds the bytes that it reads for as long as it lives, where they are not its caller's.
-    void keep(std::vector<std::byte> bytes) { bytes_ = std::move(bytes); }
-
-  protected:
-    std::vector<FilePart> parts_;
-
-  private:
-    std::vector<std::byte> bytes_;
-    /// May throw what the library under it throws. `places` is not empty.
-    [[nodiscard]] virtual Result<> read(std::size_t part, std::uint32_t row, std::uint32_t rows,
-                                        std::span<const SamplePlace> places) = 0;
-};
 
 struct OpenedSource {
     FileKind kind = FileKind::OpenExr;
@@ -76,8 +33,14 @@ inline constexpr std::uintmax_t max_image_file = std::uintmax_t{4} << 30;
 [[nodiscard]] Result<std::vector<std::byte>> read_image_file(const std::filesystem::path& path,
                                                              ReadFileOptions options = {});
 
+enum class DecodingPlace {
+    Confined,    ///< all of it in a confined process
+    FramesHere,  ///< of OpenEXR the header here, and samples that are packed by ZIP or not at all: sequences are fast
+};
+
 /// Tells the kind of file by its content, checks its structure and its sizes, and opens it. The bytes outlive the
 /// source. `max_threads` decode one picture, 0: as many as there are processors. Errors name no file.
-[[nodiscard]] Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads = 0);
+[[nodiscard]] Result<OpenedSource> open_source(std::span<const std::byte> bytes, std::size_t max_threads = 0,
+                                               DecodingPlace place = DecodingPlace::Confined);
 
 }  // namespace darkroom

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
 #include "image/exr/check.hpp"
 
 namespace darkroom {

@@ -4,10 +4,10 @@
 
 #include <random>
 
+#include "decoders/webp_source.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/test_files.hpp"
 #include "image/webp/check.hpp"
-#include "image/webp/source.hpp"
 
 namespace darkroom {
 namespace {

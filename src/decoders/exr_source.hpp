@@ -1,23 +1,35 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to src/image: an OpenEXR file in memory, read by OpenEXR.
+// An OpenEXR file in memory, read by OpenEXR.
 
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfPixelType.h>
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "image/picture/picture_source.hpp"
+#include "decoders/picture_source.hpp"
 
 namespace darkroom {
 
+/// Of samples in memory.
+[[nodiscard]] inline Imf::PixelType type_of(SampleKind kind) {
+    return kind == SampleKind::Half ? Imf::HALF : Imf::FLOAT;
+}
+
 class ExrSource final : public PictureSource {
   public:
-    /// `bytes` have passed check_exr, and outlive it. Throws what OpenEXR throws.
+    /// Opens the same file elsewhere.
+    using OpenElsewhere = std::function<Result<std::unique_ptr<PictureSource>>()>;
+
+    /// `bytes` have passed check_exr, and outlive it. Throws what OpenEXR throws. With `elsewhere`, samples that
+    /// OpenEXR itself would unpack are read there.
     [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(std::span<const std::byte> bytes,
-                                                                     std::size_t max_threads);
+                                                                     std::size_t max_threads,
+                                                                     OpenElsewhere elsewhere = {});
     ~ExrSource() override;
 
     [[nodiscard]] const Imf::Header& header(std::size_t part) const;
@@ -32,6 +44,8 @@ class ExrSource final : public PictureSource {
                   std::span<const SamplePlace> places) override;
 
     std::unique_ptr<State> state_;
+    OpenElsewhere open_elsewhere_;
+    std::unique_ptr<PictureSource> elsewhere_;
 };
 
 /// Gives OpenEXR the threads that files may ask for.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "image/codec/file_kind.hpp"
+#include "decoders/file_kind.hpp"
 
 #include <algorithm>
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "image/webp/source.hpp"
+#include "decoders/webp_source.hpp"
 
 #include <fmt/format.h>
 #include <webp/decode.h>
 
 #include <cstring>
-
-#include "image/webp/check.hpp"
 
 namespace darkroom {
 namespace {
@@ -78,14 +76,12 @@ class WebpSource final : public PictureSource {
 }  // namespace
 
 Result<std::unique_ptr<PictureSource>> open_webp(std::span<const std::byte> bytes) {
-    const auto picture = check_webp(bytes);
-    if (!picture) return failure(picture.error());
     WebPBitstreamFeatures features;
-    const std::span<const std::byte> file = picture->file;
-    if (WebPGetFeatures(reinterpret_cast<const std::uint8_t*>(file.data()), file.size(), &features) != VP8_STATUS_OK ||
-        features.width != static_cast<int>(picture->width) || features.height != static_cast<int>(picture->height))
+    if (WebPGetFeatures(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), &features) !=
+            VP8_STATUS_OK ||
+        features.width < 1 || features.height < 1)
         return user_error("damaged: cannot be read as WebP");
-    return std::make_unique<WebpSource>(file, features);
+    return std::make_unique<WebpSource>(bytes, features);
 }
 
 }  // namespace darkroom

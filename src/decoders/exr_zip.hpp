@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to src/image: chunks of scan lines that OpenEXR packed by ZIP or ZIPS, unpacked by libdeflate in a third of
+// Chunks of scan lines that OpenEXR packed by ZIP or ZIPS, unpacked by libdeflate in a third of
 // the time that the zlib under OpenEXR 3.1 takes. The layout is that of "OpenEXR File Layout" and of ImfZip.cpp.
 
 #include <OpenEXR/ImfInputPart.h>
@@ -10,7 +10,7 @@
 #include <darkroom/result.hpp>
 #include <span>
 
-#include "image/picture/picture_source.hpp"
+#include "decoders/picture_source.hpp"
 
 namespace darkroom {
 

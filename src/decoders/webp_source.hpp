@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "image/picture/picture_source.hpp"
+#include "decoders/picture_source.hpp"
 
 namespace darkroom {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "image/exr/source.hpp"
+#include "decoders/exr_source.hpp"
 
 #include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -30,8 +30,7 @@
 #include <tuple>
 
 #include "core/text/lower.hpp"
-#include "image/exr/write.hpp"
-#include "image/exr/zip.hpp"
+#include "decoders/exr_zip.hpp"
 
 namespace darkroom {
 namespace {
@@ -86,7 +85,9 @@ struct OpenPart {
     [[nodiscard]] const Imath::Box2i& window() const { return header().dataWindow(); }
     [[nodiscard]] bool is_zip() const {
         const Imf::Compression compression = header().compression();
-        return !is_tiled && (compression == Imf::ZIP_COMPRESSION || compression == Imf::ZIPS_COMPRESSION) &&
+        return !is_tiled &&
+               (compression == Imf::NO_COMPRESSION || compression == Imf::ZIP_COMPRESSION ||
+                compression == Imf::ZIPS_COMPRESSION) &&
                std::none_of(channels.begin(), channels.end(), [](const Channel& c) { return c.is_subsampled(); });
     }
 };
@@ -253,11 +254,13 @@ void start_exr_threads() {
     std::call_once(once, [] { Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency())); });
 }
 
-Result<std::unique_ptr<PictureSource>> ExrSource::open(std::span<const std::byte> bytes, std::size_t max_threads) {
+Result<std::unique_ptr<PictureSource>> ExrSource::open(std::span<const std::byte> bytes, std::size_t max_threads,
+                                                       OpenElsewhere elsewhere) {
     if (max_threads != 1) start_exr_threads();
     auto state = std::make_unique<State>(bytes, max_threads);
     state->file = std::make_unique<Imf::MultiPartInputFile>(state->stream, state->thread_count());
     std::unique_ptr<ExrSource> out(new ExrSource(std::move(state)));
+    out->open_elsewhere_ = std::move(elsewhere);
     State& made = *out->state_;
     for (int number = 0; number < made.file->parts(); ++number) {
         OpenPart& part = made.parts.emplace_back(*made.file, number);
@@ -303,6 +306,19 @@ Result<> ExrSource::read(std::size_t number, std::uint32_t row, std::uint32_t ro
         for (const Channel& channel : part.channels) channels[channel.place].kind = kind_of(channel.stored.type);
         for (const SamplePlace& place : places) channels[part.channels[place.channel].place].place = &place;
         return read_zip_rows(part.input, channels, row, rows, state_->max_threads);
+    }
+    if (open_elsewhere_) {
+        if (elsewhere_ == nullptr) {
+            auto opened = open_elsewhere_();
+            if (!opened) return failure(std::move(opened));
+            const auto is_same = [](const FilePart& a, const FilePart& b) {
+                return a.width == b.width && a.height == b.height && a.channels == b.channels;
+            };
+            if (!std::ranges::equal((*opened)->parts(), parts_, is_same))
+                return user_error("cannot be read as OpenEXR: its decoder fails");
+            elsewhere_ = std::move(*opened);
+        }
+        return elsewhere_->read_rows(number, row, rows, places);
     }
     std::vector<SamplePlace> plain, color;
     for (const SamplePlace& place : places) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "image/exr/zip.hpp"
+#include "decoders/exr_zip.hpp"
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfCompression.h>
@@ -155,7 +155,7 @@ Result<> read_zip_rows(const Imf::InputPart& part, std::span<const ZipChannel> c
     const Imath::Box2i& window = part.header().dataWindow();
     const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
     const auto height = static_cast<std::uint32_t>(window.max.y - window.min.y + 1);
-    const std::uint32_t lines = part.header().compression() == Imf::ZIPS_COMPRESSION ? 1 : 16;
+    const std::uint32_t lines = part.header().compression() == Imf::ZIP_COMPRESSION ? 16 : 1;
     std::size_t row_bytes = 0;
     for (const ZipChannel& channel : channels) row_bytes += width * size_of(channel.kind);
     const std::uint32_t first = row / lines, end = (row + rows + lines - 1) / lines;
