@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // darkroom_decode [MODULE]: decodes pictures for the program that started it (image/confined/decoder_pool.hpp), by
-// OpenEXR, libjpeg, libpng and libwebp, and where it names the module, by OpenImageIO. A process of its own, which
-// opens no file, no connection and no process, whatever a picture makes of a decoder: pictures and their samples are in
-// memory that the program shares with it.
+// OpenEXR, libjpeg, libpng, libtiff and libwebp, and where it names the module, by OpenImageIO. A process of its own,
+// which opens no file, no connection and no process, whatever a picture makes of a decoder: pictures and their samples
+// are in memory that the program shares with it.
 #include <dlfcn.h>
 #include <unistd.h>
 
@@ -22,6 +22,7 @@
 #include "decoders/jpeg_source.hpp"
 #include "decoders/messages.hpp"
 #include "decoders/png_source.hpp"
+#include "decoders/tiff_source.hpp"
 #include "decoders/webp_source.hpp"
 #include "image/codec/codecs.hpp"
 
@@ -43,13 +44,15 @@ std::string load(const char* module) {
     return {};
 }
 
+/// Nothing: by OpenImageIO alone, which is not here.
 Result<std::unique_ptr<PictureSource>> open(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads) {
     if (kind == FileKind::OpenExr) return ExrSource::open(bytes, max_threads);
     if (kind == FileKind::Png) return open_png(bytes);
     if (kind == FileKind::Jpeg) return open_jpeg(bytes);
     if (kind == FileKind::WebP) return open_webp(bytes);
-    if (module_codecs == nullptr) return machine_error("this process has no decoder for it");
-    return module_codecs->open(kind, bytes);
+    if (module_codecs != nullptr) return module_codecs->open(kind, bytes);
+    if (kind == FileKind::Tiff) return open_tiff(bytes);
+    return std::unique_ptr<PictureSource>();
 }
 
 /// The picture that was asked for last: most are read in several requests.
@@ -106,7 +109,9 @@ class Server {
         if (!done) picture_ = {};
         alarm(0);
         const std::string error = done ? std::string() : done.error().text.substr(0, most_error_bytes);
-        const DecodeReply reply{.is_error = done ? 0U : 1U,
+        const DecodeReply reply{.outcome = !done                        ? DecodeOutcome::Error
+                                           : picture_.source == nullptr ? DecodeOutcome::NeedsOpenImageIo
+                                                                        : DecodeOutcome::Done,
                                 .size = static_cast<std::uint32_t>(done ? description.size() : error.size())};
         return send_all(socket_of_program, &reply, sizeof reply) &&
                send_all(socket_of_program, description.data(), done ? description.size() : 0) &&
@@ -131,6 +136,7 @@ class Server {
             memory_ = Mapping(files[next++].number(), request.memory_size, true);
             if (memory_.bytes().empty()) throw std::bad_alloc();
         }
+        if (picture_.source == nullptr) return {};
         if (request.rows > 0) return read(*picture_.source, request, places, memory_.bytes());
         description = packed(describe(*picture_.source));
         return {};

@@ -1,19 +1,24 @@
 // SPDX-License-Identifier: MIT
-// PNG and JPEG by their own libraries, against what OpenImageIO makes of the same files.
+// PNG, JPEG and TIFF by their own libraries, against what OpenImageIO makes of the same files.
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
 
 // After <cstdio>, which it needs.
 #include <jpeglib.h>
+#include <tiffio.h>
 
+#include "core/files.hpp"
 #include "decoders/exif.hpp"
 #include "decoders/jpeg_source.hpp"
 #include "decoders/png_source.hpp"
+#include "decoders/tiff_source.hpp"
 #include "image/codec/codecs.hpp"
 #include "image/codec/jpeg_check.hpp"
 #include "image/codec/png_check.hpp"
+#include "image/codec/tiff_check.hpp"
 #include "image/test_bytes.hpp"
+#include "image/test_files.hpp"
 
 namespace darkroom {
 namespace {
@@ -227,6 +232,126 @@ TEST(DecodersJpeg, DamageIsAnError) {
         }
         EXPECT_GE(refused + 3, whole.size() / 61) << "but for what is cut at the last bytes";
     }
+}
+
+struct TestLayout {
+    std::uint16_t samples = 3, bits = 8, format = SAMPLEFORMAT_UINT, alpha = 0;
+    std::uint16_t planar = PLANARCONFIG_CONTIG, compression = COMPRESSION_NONE, orientation = 1;
+    std::uint32_t tile = 0, rows = 7;
+    bool is_big_endian = false;
+};
+
+void write_tiff(const std::filesystem::path& path, const TestLayout& layout, std::uint32_t width,
+                std::uint32_t height) {
+    const std::unique_ptr<TIFF, decltype(&TIFFClose)> file(TIFFOpen(path.c_str(), layout.is_big_endian ? "wb" : "wl"),
+                                                           TIFFClose);
+    ASSERT_NE(file, nullptr);
+    TIFFSetField(file.get(), TIFFTAG_IMAGEWIDTH, width);
+    TIFFSetField(file.get(), TIFFTAG_IMAGELENGTH, height);
+    TIFFSetField(file.get(), TIFFTAG_SAMPLESPERPIXEL, layout.samples);
+    TIFFSetField(file.get(), TIFFTAG_BITSPERSAMPLE, layout.bits);
+    TIFFSetField(file.get(), TIFFTAG_SAMPLEFORMAT, layout.format);
+    TIFFSetField(file.get(), TIFFTAG_PHOTOMETRIC, layout.samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
+    TIFFSetField(file.get(), TIFFTAG_PLANARCONFIG, layout.planar);
+    TIFFSetField(file.get(), TIFFTAG_COMPRESSION, layout.compression);
+    TIFFSetField(file.get(), TIFFTAG_ORIENTATION, layout.orientation);
+    TIFFSetField(file.get(), TIFFTAG_XRESOLUTION, 72.0);
+    TIFFSetField(file.get(), TIFFTAG_YRESOLUTION, 36.0);
+    if (layout.alpha != 0) TIFFSetField(file.get(), TIFFTAG_EXTRASAMPLES, 1, &layout.alpha);
+    if (layout.tile != 0) {
+        TIFFSetField(file.get(), TIFFTAG_TILEWIDTH, layout.tile);
+        TIFFSetField(file.get(), TIFFTAG_TILELENGTH, layout.tile);
+    } else {
+        TIFFSetField(file.get(), TIFFTAG_ROWSPERSTRIP, layout.rows);
+    }
+    std::mt19937 random(6);
+    const bool is_tiled = layout.tile != 0;
+    const auto count = is_tiled ? TIFFNumberOfTiles(file.get()) : TIFFNumberOfStrips(file.get());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        std::vector<float> values(
+            static_cast<std::size_t>(is_tiled ? TIFFTileSize(file.get()) : TIFFVStripSize(file.get(), layout.rows)) /
+                4 +
+            1);
+        for (float& value : values) value = static_cast<float>(random() % 64) / 32;
+        const std::uint32_t band = i % ((height + layout.rows - 1) / layout.rows);
+        const tmsize_t size = is_tiled ? TIFFTileSize(file.get())
+                                       : TIFFVStripSize(file.get(), std::min(layout.rows, height - band * layout.rows));
+        ASSERT_EQ(is_tiled ? TIFFWriteEncodedTile(file.get(), i, values.data(), size)
+                           : TIFFWriteEncodedStrip(file.get(), i, values.data(), size),
+                  size);
+    }
+}
+
+class DecodersTiff : public WithFolder {};
+
+TEST_F(DecodersTiff, PlainOnesAreAsOpenImageIoHasThem) {
+    std::vector<TestLayout> layouts;
+    for (std::uint16_t samples = 1; samples <= 4; ++samples)
+        for (const auto& [bits, format] : {std::pair(8, SAMPLEFORMAT_UINT), std::pair(16, SAMPLEFORMAT_UINT),
+                                           std::pair(16, SAMPLEFORMAT_IEEEFP), std::pair(32, SAMPLEFORMAT_IEEEFP)})
+            for (const auto planar : std::array<std::uint16_t, 2>{PLANARCONFIG_CONTIG, PLANARCONFIG_SEPARATE})
+                for (const std::uint32_t tile : {0U, 16U})
+                    layouts.push_back({.samples = samples,
+                                       .bits = static_cast<std::uint16_t>(bits),
+                                       .format = static_cast<std::uint16_t>(format),
+                                       .alpha = static_cast<std::uint16_t>(samples % 2 == 1 ? 0
+                                                                           : bits == 8      ? EXTRASAMPLE_ASSOCALPHA
+                                                                                            : EXTRASAMPLE_UNASSALPHA),
+                                       .planar = planar,
+                                       .tile = tile});
+    for (const auto compression :
+         std::array<std::uint16_t, 3>{COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS})
+        layouts.push_back({.bits = 16, .compression = compression, .is_big_endian = true});
+    layouts.push_back({.rows = 1});
+    layouts.push_back({.orientation = 6, .rows = 100});
+    for (const TestLayout& layout : layouts) {
+        const std::string what =
+            fmt::format("{} of {} bits, format {}, {}, tiles {}, compression {}: ", layout.samples, layout.bits,
+                        layout.format, layout.planar, layout.tile, layout.compression);
+        write_tiff(file("a.tif"), layout, 37, 45);
+        const auto bytes = read_file(file("a.tif"));
+        ASSERT_TRUE(bytes) << what;
+        const auto checked = check_tiff(*bytes);
+        ASSERT_TRUE(checked) << what << checked.error().text;
+        const Source ours = open_tiff(*checked);
+        ASSERT_TRUE(ours) << what << ours.error().text;
+        ASSERT_NE(*ours, nullptr) << what;
+        expect_same(**ours, FileKind::Tiff, *checked, what);
+    }
+}
+
+TEST_F(DecodersTiff, OthersAreLeftToOpenImageIo) {
+    for (const TestLayout& layout :
+         std::vector<TestLayout>{{.samples = 5}, {.bits = 32}, {.samples = 4}, {.bits = 4}}) {
+        write_tiff(file("a.tif"), layout, 37, 45);
+        const auto bytes = read_file(file("a.tif"));
+        const Source ours = open_tiff(*bytes);
+        ASSERT_TRUE(ours) << ours.error().text;
+        EXPECT_EQ(*ours, nullptr) << layout.samples << layout.bits;
+    }
+}
+
+TEST_F(DecodersTiff, DamageIsAnError) {
+    write_tiff(file("a.tif"), {.bits = 16, .compression = COMPRESSION_LZW}, 37, 45);
+    const auto whole = read_file(file("a.tif"));
+    ASSERT_TRUE(whole);
+    std::mt19937 random(7);
+    std::size_t refused = 0;
+    for (int round = 0; round < 2000; ++round) {
+        std::vector<std::byte> damaged = *whole;
+        for (int i = 0; i < 3; ++i) damaged[8 + random() % (damaged.size() - 8)] = static_cast<std::byte>(random());
+        const auto checked = check_tiff(damaged);
+        const Source source = checked ? open_tiff(*checked) : Source(failure(checked.error()));
+        if (source && *source == nullptr) continue;
+        if (source) {
+            const FilePart& part = (*source)->parts()[0];
+            std::vector<std::byte> row(std::size_t{2} * part.width);
+            const SamplePlace place{.kind = part.kinds[0], .first = row.data(), .pixel_bytes = 2, .row_bytes = 0};
+            if (size_of(place.kind) > 2 || (*source)->read_rows(0, 0, part.height, std::span(&place, 1))) continue;
+        }
+        ++refused;
+    }
+    EXPECT_GT(refused, 100U);
 }
 
 TEST(DecodersExif, WhatIsDamagedIsUpright) {

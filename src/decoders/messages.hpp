@@ -30,8 +30,13 @@ struct DecodePlace {
     std::uint32_t channel = 0;
     std::uint32_t kind = 0;  ///< SampleKind
 };
+enum class DecodeOutcome : std::uint32_t {
+    Done,
+    Error,
+    NeedsOpenImageIo,  ///< a process that has it may read the picture
+};
 struct DecodeReply {
-    std::uint32_t is_error = 0;
+    DecodeOutcome outcome = DecodeOutcome::Done;
     std::uint32_t size = 0;  ///< bytes behind it
 };
 

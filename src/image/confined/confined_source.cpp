@@ -20,8 +20,6 @@ constexpr std::size_t usual_memory = std::size_t{16} << 20;
 /// A picture is decoded in a second for each of so many bytes of samples, on a machine with much else to do.
 constexpr std::uint64_t bytes_of_a_second = std::uint64_t{4} << 20;
 
-bool needs_openimageio(FileKind kind) { return kind == FileKind::Tiff || kind == FileKind::Radiance; }
-
 std::size_t widest_of(std::span<const SamplePlace> places) {
     std::size_t out = 1;
     for (const SamplePlace& place : places) out = std::max(out, size_of(place.kind));
@@ -80,13 +78,20 @@ std::uint64_t next_number() {
 }  // namespace
 
 ConfinedSource::ConfinedSource(FileKind kind, std::span<const std::byte> bytes, std::size_t max_threads)
-    : kind_(kind), file_(bytes), max_threads_(static_cast<std::uint32_t>(max_threads)), number_(next_number()) {}
+    : kind_(kind),
+      needs_openimageio_(kind == FileKind::Radiance),
+      file_(bytes),
+      max_threads_(static_cast<std::uint32_t>(max_threads)),
+      number_(next_number()) {}
 
 Result<std::unique_ptr<PictureSource>> ConfinedSource::open(FileKind kind, std::span<const std::byte> bytes,
                                                             std::size_t max_threads) {
     std::unique_ptr<ConfinedSource> out(new ConfinedSource(kind, bytes, max_threads));
     std::vector<std::byte> answer;
-    if (auto asked = out->ask(0, 0, 0, {}, answer); !asked) return failure(std::move(asked));
+    const bool is_sure = out->needs_openimageio_;
+    auto asked = out->ask(0, 0, 0, {}, answer);
+    if (asked && out->needs_openimageio_ != is_sure) asked = out->ask(0, 0, 0, {}, answer);
+    if (!asked) return failure(std::move(asked));
     auto description = unpacked(answer);
     if (!description) return user_error(fmt::format("cannot be read as {}: its decoder fails", name_of(kind)));
     out->description_ = std::move(*description);
@@ -136,7 +141,7 @@ Result<> ConfinedSource::read(std::size_t part, std::uint32_t row, std::uint32_t
 
 Result<> ConfinedSource::ask(std::size_t part, std::uint32_t row, std::uint32_t rows,
                              std::span<const SamplePlace> places, std::vector<std::byte>& answer) {
-    const auto taken = DecoderPool::shared().take(number_, needs_openimageio(kind_));
+    const auto taken = DecoderPool::shared().take(number_, needs_openimageio_);
     if (!taken) return failure(taken.error());
     DecoderProcess& decoder = **taken;
     const Lease lease(decoder);
@@ -187,14 +192,20 @@ Result<> ConfinedSource::ask(std::size_t part, std::uint32_t row, std::uint32_t 
     DecodeReply reply;
     bool is_answered = process.send(&request, sizeof request, descriptors) &&
                        process.send(wanted.data(), wanted.size() * sizeof(DecodePlace)) &&
-                       process.receive(&reply, sizeof reply) && reply.is_error <= 1 &&
-                       reply.size <= (reply.is_error == 1 ? most_error_bytes : most_reply_bytes);
+                       process.receive(&reply, sizeof reply) && reply.outcome <= DecodeOutcome::NeedsOpenImageIo &&
+                       reply.size <= (reply.outcome == DecodeOutcome::Error ? most_error_bytes : most_reply_bytes);
     if (is_answered) {
         answer.resize(reply.size);
         is_answered = process.receive(answer.data(), answer.size());
     }
     if (!is_answered) return user_error(fmt::format("cannot be decoded: its decoder {}", process.stop()));
-    if (reply.is_error == 1) {
+    if (reply.outcome == DecodeOutcome::NeedsOpenImageIo) {
+        decoder.source = 0;
+        if (needs_openimageio_ || rows > 0) return user_error("cannot be decoded: its decoder fails");
+        needs_openimageio_ = true;
+        return {};
+    }
+    if (reply.outcome == DecodeOutcome::Error) {
         decoder.source = 0;
         return user_error(one_printable_line({reinterpret_cast<const char*>(answer.data()), answer.size()}));
     }

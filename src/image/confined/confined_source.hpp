@@ -33,6 +33,7 @@ class ConfinedSource final : public PictureSource {
     [[nodiscard]] std::uint64_t decoded_size() const;
 
     FileKind kind_;
+    bool needs_openimageio_;
     std::span<const std::byte> file_;
     std::uint32_t max_threads_;
     std::uint64_t number_;

@@ -21,6 +21,7 @@
 #include "image/frame/frame_file.hpp"
 #include "image/picture/picture_source.hpp"
 #include "image/picture/write.hpp"
+#include "image/test_bytes.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {
@@ -134,6 +135,14 @@ TEST_F(ImageConfined, SamplesAreThoseOfThisProcess) {
         }
     // Rows that are more than is handed over at a time.
     expect_same(picture("large.png", 3000, 2000));
+}
+
+// Of TIFF a process without OpenImageIO hands on what it does not read.
+TEST_F(ImageConfined, RareTiffIsReadByOpenImageIo) {
+    TestTiff tiff = TestTiff::gray(16, 9);
+    tiff.tags[258] = {4}, tiff.tags[279] = {8 * 9};
+    put(file("a.tif"), tiff.text());
+    expect_same(file("a.tif"));
 }
 
 class ImageConfinedData : public WithData {};
