@@ -267,6 +267,24 @@ TEST_F(ComposeCompute, AValueIsReadByKernelsOfPasses) {
     EXPECT_EQ(plan.error().text, "effect 'show': pass 'pass' reads 'show_metered', which is no value");
 }
 
+TEST_F(ComposeCompute, AValueGoesOnAcrossEditsThatKeepItsEntry) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(20, 11, 13));
+    const test::Host host(picture);
+    Composer composer(host.device);
+    const Handle meter = composer.add(meter_effect, nullptr);
+    composer.add(lift_effect, nullptr);
+    test::must(composer.compile(host.compile_desc()));
+    Frame frame = host.frame();
+    frame.delta_time = 0.1;
+    test::must(host.record(composer, frame));
+    // In front of it one with values of its own, and a kernel of many steps between.
+    test::must(composer.insert(meter, meter_effect, nullptr));
+    for (int i = 0; i < 3; ++i) test::must(composer.insert(meter, *find_effect("exposure"), nullptr));
+    test::must(composer.compile(host.compile_desc()));
+    test::must(host.record(composer, frame));
+    EXPECT_EQ(host.read_target().at(2, 3).g, 2) << "of the entry that stayed";
+}
+
 TEST_F(ComposeCompute, SaysWhatItMayNotAsk) {
     const test::Host host(test::uniform(16, 8, {}));
     static const EffectInfo greedy{.name = "meter",
