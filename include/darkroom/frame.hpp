@@ -28,11 +28,13 @@ struct ImageRef {
     std::uint32_t array_layer = 0;  ///< first layer that the view shows
     std::uint32_t layer_count = 1;  ///< that the view shows: of pictures 1, of cascades at least their count
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< that it is in; UNDEFINED only for a target, whose texels go
-    VkPipelineStageFlags2 last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< of the host's last use
+    /// Of the host's last use. NONE, with NONE for the access: the host has placed a barrier for what PlanImage tells.
+    VkPipelineStageFlags2 last_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkAccessFlags2 last_access = VK_ACCESS_2_MEMORY_WRITE_BIT;
     /// How to leave it, and for which use; UNDEFINED: as it came, or, of a target whose layout is UNDEFINED, too, as
     /// Darkroom last used it.
     VkImageLayout final_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    /// NONE: the host places a barrier after the uses that PlanImage tells.
     VkPipelineStageFlags2 final_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkAccessFlags2 final_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 

@@ -25,6 +25,11 @@ struct PlanImage {
     std::uint64_t bytes = 0;                              ///< of one of the two, where it is a history
     std::uint64_t offset = 0;                             ///< in the transient memory; of other kinds 0
     std::uint32_t first_pass = never, last_pass = never;  ///< of Plan::passes, those that use it
+    // Of the host's: how a recording uses it, whichever effects are on. A host that places its own barriers brings it
+    // into `layout` for these, says so (ImageRef::last_stages NONE), and finds it in `final_layout`, used by them.
+    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_NONE;
+    VkAccessFlags2 access = VK_ACCESS_2_NONE;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED, final_layout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
 
 /// One mip level of an image, as a pass uses it.

@@ -215,6 +215,21 @@ class Compiler {
         }
     }
 
+    static void note(ImageUses& uses, Use use) {
+        const VkImageLayout layout = layout_of(use);
+        const bool is_first = uses.stages == 0, was_written = (uses.access & all_writes) != 0;
+        uses.stages |= stages_of(use);
+        uses.access |= access_of(use);
+        if (is_first) {
+            uses.first_layout = uses.last_layout = layout;
+        } else if (was_written || is_write(use)) {
+            uses.last_layout = layout;
+        } else if (layout != uses.first_layout) {
+            // What is loaded is in GENERAL, where it can be sampled as well.
+            uses.first_layout = uses.last_layout = VK_IMAGE_LAYOUT_GENERAL;
+        }
+    }
+
     /// Usage flags, lifetimes, and what passes do to each slot.
     Result<> use_slots() {
         own_past_.resize(solution_->slots.size());
@@ -227,6 +242,7 @@ class Compiler {
                 own_past_[index].stages |= stages_of(use);
                 own_past_[index].access |= access_of(use);
                 if (!is_write(use)) own_past_[index].reads |= sight_of(use);
+                note(slot.uses, use);
             }
         });
         extend_kept();

@@ -194,6 +194,14 @@ class Graph {
     std::unique_ptr<Declaration> declaration_;
 };
 
+/// How a plan uses an image, whichever gates are on: stages and access of all passes, the layout of the first use and
+/// of the last. An image that is only read is in one layout from the first to the last.
+struct ImageUses {
+    VkPipelineStageFlags2 stages = 0;
+    VkAccessFlags2 access = 0;
+    VkImageLayout first_layout = VK_IMAGE_LAYOUT_UNDEFINED, last_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+};
+
 /// A physical image: an import, a transient, or one of the two images of a history; or a buffer, transient or lasting.
 struct Slot {
     enum class Kind : std::uint8_t { Import, Constant, Transient, History, Lasting };
@@ -210,14 +218,17 @@ struct Slot {
     VkExtent2D extent{};                          ///< at the largest frame
     /// Histories: the layout between frames. A reset leaves both images in it.
     VkImageLayout rest_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    ImageUses uses{};
 };
 
 /// Where the host's image is when the frame starts, and where it shall be left.
 struct ImportState {
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< of the host's last use
+    /// Of the host's last use; NONE: the host has waited for it, so that Slot::uses see it.
+    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkAccessFlags2 access = VK_ACCESS_2_MEMORY_WRITE_BIT;
     VkImageLayout final_layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< UNDEFINED: leave it where it is
+    /// NONE: the host waits for Slot::uses itself.
     VkPipelineStageFlags2 final_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkAccessFlags2 final_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 };

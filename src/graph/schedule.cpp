@@ -390,7 +390,8 @@ void Schedule::State::finish(std::span<const ImportState> imports) {
             const MipState& state = mips[solution->first_mip[index] + level];
             const bool is_elsewhere = state.layout != barrier.new_layout;
             const bool is_unseen = (solution->past[index].reads & ~state.seen_by) != 0;
-            const bool is_needed = slot.kind == Slot::Kind::Import ? state.is_touched || is_elsewhere
+            const bool is_waited_for = state.is_touched && barrier.target_stages != VK_PIPELINE_STAGE_2_NONE;
+            const bool is_needed = slot.kind == Slot::Kind::Import ? is_waited_for || is_elsewhere
                                                                    : state.is_touched && (is_elsewhere || is_unseen);
             if (!is_needed) continue;
             barrier.mips = {level, 1};

@@ -122,6 +122,12 @@ std::vector<std::uint32_t> add_images(const Program& program, const graph::Compi
             if (slot.kind != Kind::Transient && image.extent.width != 0)
                 for (std::uint32_t level = 0; level < slot.desc.mip_levels; ++level)
                     image.bytes += bytes_of(slot, frame, level);
+            if (slot.kind == Kind::Import) {
+                image.stages = slot.uses.stages;
+                image.access = slot.uses.access;
+                image.layout = slot.uses.first_layout;
+                image.final_layout = slot.uses.last_layout;
+            }
             images.push_back(std::move(image));
         }
         out.push_back(static_cast<std::uint32_t>(images.size() - 1));
