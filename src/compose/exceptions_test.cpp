@@ -2,11 +2,13 @@
 // No exception leaves a public function, and none ends a thread of the library's: it becomes an error, and the Composer
 // goes on with what it had.
 
+#include <darkroom/custom_effect.hpp>
 #include <darkroom/describe.hpp>
 #include <new>
 #include <stdexcept>
 
 #include "compose/test_stacks/host.hpp"
+#include "core/test_support_allocations.hpp"
 
 namespace darkroom {
 namespace {
@@ -88,6 +90,108 @@ TEST_F(ComposeExceptions, OneOnTheWorkerIsAnErrorOfPendingAndThePlanGoesOn) {
         EXPECT_FALSE(composer.pending().error);
         EXPECT_GT(test::worst_difference(host.run(composer), expected), 0.01);
     }
+}
+
+/// Calls `call` with the first, the second, ... allocation of its thread failing, until none does. `call` says whether
+/// it reported an error.
+template <class Call>
+void with_each_allocation_failing(const char* name, const Call& call) {
+    constexpr std::uint64_t most = 100000;
+    for (std::uint64_t number = 0; number < most; ++number) {
+        bool has_failed = false, is_error = false;
+        {
+            const test::FailingAllocation failing(number);
+            try {
+                is_error = call();
+            } catch (...) {
+                ADD_FAILURE() << name << ": an exception left it as allocation " << number << " failed";
+            }
+            has_failed = failing.has_failed();
+        }
+        if (!has_failed) return;
+        // An allocation that fails may be one that nothing depends on.
+        static_cast<void>(is_error);
+    }
+    ADD_FAILURE() << name << " never got by without allocations";
+}
+
+// On a device that only plans, so that no driver and no compiler of others is in the way.
+TEST_F(ComposeExceptions, EveryAllocationOfEveryFunctionMayFail) {
+    if (!test::counts_allocations()) GTEST_SKIP() << "this build has its own operator new";
+    const Device device = Device::assumed();
+    const CompileDesc desc{.max_extent = {64, 48}, .depth = {VK_FORMAT_D32_SFLOAT}};
+    const std::string long_name(100, 'n');
+    Composer composer(device);
+    add(composer, "exposure");
+    add(composer, "bloom");
+    const Handle first = composer.entry(0);
+    const std::string expected = test::must(composer.plan(desc)).text();
+    const EffectInfo& negative = *find_effect("negative");
+    // Arguments are the caller's own matter.
+    const EntryDesc named{.name = long_name}, rewired{.name = "exposure", .output = long_name};
+    const std::uint32_t word = std::bit_cast<std::uint32_t>(1.5f);
+    const LayerDesc layer{.name = long_name, .values = {{.entry = first, .parameter = "exposure", .words = {word}}}};
+    const PulseDesc pulse{.event = long_name, .entry = first, .parameter = "exposure"};
+
+    with_each_allocation_failing("plan", [&] { return !composer.plan(desc); });
+    EXPECT_EQ(test::must(composer.plan(desc)).text(), expected);
+    with_each_allocation_failing("compile", [&] { return !composer.compile(desc); });
+    with_each_allocation_failing("compile_later", [&] { return !composer.compile_later(desc); });
+    with_each_allocation_failing("statistics", [&] { return !composer.statistics(desc); });
+    with_each_allocation_failing("record", [&] { return !composer.record(VK_NULL_HANDLE, {}); });
+    with_each_allocation_failing("abandon", [&] { return !composer.abandon(); });
+    with_each_allocation_failing("rebind", [&] { return !composer.rebind(device); });
+    const auto count = composer.size();
+    with_each_allocation_failing("add and remove", [&] {
+        const Handle added = composer.add(negative, nullptr, named);
+        return !added.is_given() || !composer.remove(added);
+    });
+    const auto drop_others = [&] {
+        while (composer.size() > count) test::must(composer.remove(composer.entry(composer.size() - 1)));
+    };
+    drop_others();
+    with_each_allocation_failing("insert", [&] {
+        const auto inserted = composer.insert(first, negative, nullptr, named);
+        if (inserted) static_cast<void>(composer.remove(*inserted));
+        return !inserted;
+    });
+    for (std::size_t i = composer.size(); i-- > 0;)
+        if (composer.info(composer.entry(i)) == &negative) test::must(composer.remove(composer.entry(i)));
+    with_each_allocation_failing("rewire", [&] { return !composer.rewire(first, rewired); });
+    with_each_allocation_failing("replace", [&] { return !composer.replace(first, *composer.info(first), nullptr); });
+    with_each_allocation_failing("set_override", [&] {
+        const auto set = composer.set_override(first, "exposure", long_name, {&word, 1});
+        composer.drop_overrides(long_name);
+        return !set;
+    });
+    with_each_allocation_failing("set, refused", [&] { return !composer.set(first, "exposuer", 1.0); });
+    with_each_allocation_failing("check", [&] { return !composer.check({}); });
+    with_each_allocation_failing("add_layer", [&] {
+        const auto set = composer.add_layer(layer);
+        static_cast<void>(composer.layer_names());
+        composer.remove_layer(long_name);
+        return !set;
+    });
+    with_each_allocation_failing("add_pulse", [&] {
+        const auto set = composer.add_pulse(pulse);
+        composer.remove_pulses();
+        return !set;
+    });
+    with_each_allocation_failing("values", [&] {
+        static_cast<void>(composer.values_at(first, 0, {}));
+        return composer.current(first).empty() || composer.pre_roll() > 1000;
+    });
+    with_each_allocation_failing("CustomEffect::parse", [&] {
+        return !CustomEffect::parse(
+            "// @effect mine: Mine.\n// @param float a = 1 in [0, 1]: One.\n"
+            "vec4 mine(vec4 color, Pixel pixel, Mine parameters) { return color; }\n",
+            "mine.glsl");
+    });
+    const std::string nowhere = "/nowhere/at/all.glsl";
+    with_each_allocation_failing("CustomEffect::load", [&] { return !CustomEffect::load(nowhere); });
+    with_each_allocation_failing("Device::adopt", [&] { return !Device::adopt({}); });
+    drop_others();
+    EXPECT_EQ(test::must(composer.plan(desc)).text(), expected) << "a call that failed left something behind";
 }
 
 }  // namespace

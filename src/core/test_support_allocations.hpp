@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Counts heap allocations, so that a test or benchmark can say that a function makes none. The implementation replaces
-// the global operator new and is linked into those programs alone.
+// Counts heap allocations, so that a test or benchmark can say that a function makes none, and lets one fail. The
+// implementation replaces the global operator new and is linked into those programs alone.
 
 #include <cstdint>
 
@@ -11,5 +11,16 @@ namespace darkroom::test {
 [[nodiscard]] std::uint64_t allocation_count();
 /// False under AddressSanitizer: the count then stays 0.
 [[nodiscard]] bool counts_allocations();
+
+/// While it lives, one allocation of the calling thread throws std::bad_alloc: the first one that comes after `others`.
+/// One at a time.
+class FailingAllocation {
+  public:
+    explicit FailingAllocation(std::uint64_t others);
+    FailingAllocation(const FailingAllocation&) = delete;
+    FailingAllocation& operator=(const FailingAllocation&) = delete;
+    ~FailingAllocation();
+    [[nodiscard]] bool has_failed() const;
+};
 
 }  // namespace darkroom::test
