@@ -251,9 +251,10 @@ struct PlannerTraits {
     std::function<bool(VkFormat)> can_load{};
     /// Whether a linear sampler reads this format; null: every one. Else the kernels filter by loads.
     std::function<bool(VkFormat)> can_filter{};
-    bool is_software = false;        ///< see gpu/kernel/kernel.hpp
-    bool has_robust_images = false;  ///< likewise
-    bool packing_pays = true;        ///< smaller pixels take less time, which no software driver shows
+    bool is_software = false;          ///< see gpu/kernel/kernel.hpp
+    bool has_robust_images = false;    ///< likewise
+    std::uint32_t sub_texel_bits = 4;  ///< likewise
+    bool packing_pays = true;          ///< smaller pixels take less time, which no software driver shows
     std::uint32_t max_image_side = 16384;
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
     std::array<std::uint32_t, 2> workgroup{16, 8};

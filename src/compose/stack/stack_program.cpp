@@ -71,6 +71,7 @@ plan::PlannerTraits planner_traits(const gpu::Context& context, KernelStage kern
             .can_filter = [&context](VkFormat format) { return gpu::can_filter(context, format); },
             .is_software = context.traits.is_software && gpu::writes_flat_values(context),
             .has_robust_images = context.traits.has_robust_images,
+            .sub_texel_bits = context.traits.sub_texel_bits,
             .packing_pays = !context.traits.is_software,
             .max_image_side = context.traits.max_image_dimension,
             .max_storage_images = context.traits.max_storage_images,

@@ -21,6 +21,7 @@ std::shared_ptr<Context> assumed_context() {
     traits.max_workgroup_size = {1024, 1024, 64};
     traits.max_shared_bytes = 32768;
     traits.max_storage_images = 16;
+    traits.sub_texel_bits = 8;
     return context;
 }
 

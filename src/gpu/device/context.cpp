@@ -187,6 +187,7 @@ Result<> Context::finish() {
     vk.GetPhysicalDeviceProperties(physical_device, &properties);
     const VkPhysicalDeviceLimits& limits = properties.limits;
     traits.is_software = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    traits.sub_texel_bits = limits.subTexelPrecisionBits;
     traits.max_image_dimension = limits.maxImageDimension2D;
     traits.sample_counts = limits.framebufferColorSampleCounts & limits.framebufferDepthSampleCounts &
                            limits.sampledImageColorSampleCounts & limits.sampledImageDepthSampleCounts;

@@ -46,6 +46,7 @@ struct Traits {
     std::uint32_t max_shared_bytes = 16384;  ///< of a workgroup
     std::uint32_t max_storage_images = 4;    ///< a stage; of a fragment shader with its outputs
     std::uint32_t max_sampled_images = 16;   ///< a stage, each with a sampler
+    std::uint32_t sub_texel_bits = 4;        ///< a linear sampler's steps from texel to texel are 2 to this power
     double timestamp_period_ns = 0;          ///< 0: this queue family has no timestamps
     std::uint32_t timestamp_valid_bits = 0;  ///< the counter goes round after them
 };

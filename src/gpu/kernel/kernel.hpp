@@ -110,8 +110,9 @@ struct KernelSpec {
     bool output_is_twice = false;
     bool rays_meet = false;
     bool is_software = false;
-    bool has_robust_images = false;  ///< robustImageAccess: with whole images, loads outside are zero
-    bool is_additive = false;        ///< output 0 += result instead of = result
+    bool has_robust_images = false;    ///< robustImageAccess: with whole images, loads outside are zero
+    std::uint32_t sub_texel_bits = 4;  ///< VkPhysicalDeviceLimits::subTexelPrecisionBits; 4 is what all promise
+    bool is_additive = false;          ///< output 0 += result instead of = result
     /// What all kernels of a frame read: laid out by its owner, who outlives the spec. Empty: no such block.
     std::span<const BlockMember> frame;
     std::vector<BlockMember> members;  ///< of the kernel's own block, behind what kernel_source() puts there

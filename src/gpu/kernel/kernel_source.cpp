@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 
@@ -293,13 +294,13 @@ struct Axis {
     float scale = 1.0F, offset = 0.0F, lowest = 0.0F, highest = 1.0F;
 };
 
-Axis axis_of(std::int32_t offset, std::uint32_t extent, std::uint32_t image) {
+Axis axis_of(std::int32_t offset, std::uint32_t extent, std::uint32_t image, std::uint32_t sub_texel_bits) {
     if (image == 0) return {};
     // Where the region ends inside the image, its edge texel must not be mixed with its neighbour, not even with a
-    // weight of zero: that may be an infinity. So the bound stays this far inside the texel's centre; less, and the
-    // rounding of the coordinate in the sampler could step over it.
-    constexpr double guard = 1.0 / (1U << 22U);
-    const double size = image;
+    // weight of zero: that may be an infinity. Samplers snap coordinates to 2^-subTexelPrecisionBits of a texel (Vulkan
+    // specification, "Limits"), so the bound stays one such step inside the texel's centre: nearer, and it could snap
+    // to the centre itself, or single precision could step over it.
+    const double size = image, guard = std::ldexp(1.0, -static_cast<int>(sub_texel_bits)) / size;
     const double last = offset + static_cast<double>(extent) - 1.0;
     const bool ends_inside = offset + static_cast<double>(extent) < size;
     return {
@@ -375,8 +376,8 @@ void write_own_block(const KernelSpec& spec, const Region& output, std::span<con
     append(out, std::array{columns.step, rows.step, columns.first, rows.first});
     for (const Binding& image : images) {
         const Region& region = image.region;
-        const Axis x = axis_of(region.offset.x, region.extent.width, region.image.width);
-        const Axis y = axis_of(region.offset.y, region.extent.height, region.image.height);
+        const Axis x = axis_of(region.offset.x, region.extent.width, region.image.width, spec.sub_texel_bits);
+        const Axis y = axis_of(region.offset.y, region.extent.height, region.image.height, spec.sub_texel_bits);
         append(out, std::array{x.scale, y.scale, x.offset, y.offset});
         append(out, std::array{x.lowest, y.lowest, x.highest, y.highest});
         append(out, rectangle(region));

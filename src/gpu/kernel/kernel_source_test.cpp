@@ -120,10 +120,10 @@ TEST(GpuOwnBlock, DescribesRegionsAndHoldsMembers) {
     EXPECT_TRUE(
         std::ranges::equal(std::span(floats).subspan(4, 4), std::array{1.0F / 3, 0.25F, 0.5F - 1.0F / 3, 0.125F}));
     EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(8, 4), std::array{0.5F, 1.0F, 0.25F, 0.0F}));
-    EXPECT_NEAR(floats[12], 16.5 / 64, 1e-6);
+    // A step inside the edge texels' centres: 1/16 of a texel unless the device says more.
+    EXPECT_EQ(floats[12], (16.5F + 0x1p-4F) / 64);
     EXPECT_EQ(floats[13], 0.0F) << "the region touches the image's top, where the sampler clamps";
-    EXPECT_NEAR(floats[14], 47.5 / 64, 1e-6);
-    EXPECT_LT(floats[14], 47.5F / 64);
+    EXPECT_EQ(floats[14], (47.5F - 0x1p-4F) / 64);
     EXPECT_EQ(floats[15], 1.0F);
     EXPECT_TRUE(std::ranges::equal(std::span(integers).subspan(16, 4), std::array{16, 0, 32, 64}));
     EXPECT_TRUE(std::ranges::equal(std::span(floats).subspan(20, 4), custom));

@@ -65,6 +65,7 @@ Result<> Planner::settle_inputs(ProgramPass& pass) {
     }
     pass.spec.is_software = traits_.is_software;
     pass.spec.has_robust_images = traits_.has_robust_images;
+    pass.spec.sub_texel_bits = traits_.sub_texel_bits;
     lay_out_literals(pass);
     for (const FusedStep& step : pass.steps()) {
         pass.asks_sizes |= step.text && step.text->asks_sizes;
