@@ -41,16 +41,17 @@ float gain(const Bloom& bloom) { return bloom.mode == BloomMode::Additive ? 1.0f
 
 void prefilter_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Bloom& bloom = bloom_of(parameters);
-    const std::uint32_t levels = used_levels(bloom, context.frame_extent);
+    const std::uint32_t levels = std::max(used_levels(bloom, context.frame_extent), 1U);
+    // The sum of all levels must stay finite in half precision. Of the 2 N - 1 writes on the longest way through the
+    // pyramid all but the last may round up by 2^-11, and past 65504 a driver may write an infinity.
+    const float most = half_max * (1.0f - static_cast<float>(levels - 1) * 0x1p-10f);
     if (bloom.mode == BloomMode::Additive) {
-        // A sum of all levels must stay finite in half precision.
-        const float limit = half_max / static_cast<float>(std::max(levels, 1u));
-        out[0] = {bloom.threshold, bloom.threshold * bloom.soft_threshold, limit, 1.0f};
+        out[0] = {bloom.threshold, bloom.threshold * bloom.soft_threshold, most / static_cast<float>(levels), 1.0f};
     } else {
         // Everything after this pass is linear, so the sum of the weights 1, s, s^2 ... is divided out here, once.
         float sum = 0.0f, weight = 1.0f;
-        for (std::uint32_t level = 0; level < std::max(levels, 1u); ++level, weight *= bloom.scatter) sum += weight;
-        out[0] = {0.0f, 0.0f, half_max, 1.0f / sum};
+        for (std::uint32_t level = 0; level < levels; ++level, weight *= bloom.scatter) sum += weight;
+        out[0] = {0.0f, 0.0f, most, 1.0f / sum};
     }
     out[1] = {bloom.firefly_filter ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
 }

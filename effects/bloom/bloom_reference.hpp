@@ -94,14 +94,19 @@ inline void bloom_reference_add_up(ReferenceImage& fine, const ReferenceImage& c
 /// Level 0 when all is added up: what the picture is given. `levels` is at least 1.
 inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, const Bloom& bloom, std::uint32_t levels) {
     const bool is_additive = bloom.mode == BloomMode::Additive;
+    // Whatever halves are rounded to, the sum of all levels stays below 65504.
+    const double most = 65504 * (1 - (levels - 1) / 1024.0);
     std::vector<ReferenceImage> pyramid{bloom_reference_down(source, static_cast<bool>(bloom.firefly_filter))};
     if (is_additive)
         for (Rgba& color : pyramid[0].pixels) {
             const double factor =
                 bloom_reference_threshold(std::max({color.r, color.g, color.b}), bloom.threshold, bloom.soft_threshold);
-            const auto limited = [&](double value) { return std::min(value * factor, 65504.0 / levels); };
+            const auto limited = [&](double value) { return std::min(value * factor, most / levels); };
             color = {limited(color.r), limited(color.g), limited(color.b), 1};
         }
+    else
+        for (Rgba& color : pyramid[0].pixels)
+            color = {std::min(color.r, most), std::min(color.g, most), std::min(color.b, most), 1};
     while (pyramid.size() < levels) pyramid.push_back(bloom_reference_down(pyramid.back(), false));
     if (is_additive) {
         for (std::size_t level = levels - 1; level-- > 0;)

@@ -163,13 +163,21 @@ TEST(Bloom, SmallerFramesAndFewerLevelsSkipPasses) {
 
 TEST(Bloom, AddedLevelsStayFiniteInHalfPrecision) {
     const RecordingBuilder builder = passes_of({1920, 1080});
-    for (const std::int32_t levels : {1, 3, 5}) {
-        const Bloom bloom{.levels = levels};
-        std::array<PassVector, 2> vectors{};
-        builder.passes[0].constants(&bloom, {.frame_extent = {1920, 1080}}, vectors);
-        EXPECT_LE(vectors[0][2] * static_cast<float>(levels), 65504.0f);
-        EXPECT_GE(vectors[0][2] * static_cast<float>(levels), 65500.0f);
-    }
+    for (const BloomMode mode : {BloomMode::Additive, BloomMode::EnergyConserving})
+        for (const std::int32_t levels : {1, 2, 3, 4, 5}) {
+            const Bloom bloom{.mode = mode, .scatter = 1, .levels = levels};
+            std::array<PassVector, 2> vectors{};
+            builder.passes[0].constants(&bloom, {.frame_extent = {1920, 1080}}, vectors);
+            // A flat field: what a level holds is rounded, and so is each sum; up, where a driver may choose.
+            const auto written = [](double value) {
+                return std::ldexp(std::ceil(std::ldexp(value, 10 - std::ilogb(value))), std::ilogb(value) - 10);
+            };
+            const double level = double{vectors[0][2]} * double{vectors[0][3]};
+            double sum = 0;
+            for (std::int32_t added = 0; added < levels; ++added) sum = written(written(level) + sum);
+            EXPECT_LE(sum, 65504) << levels;
+            EXPECT_GE(level * levels, 65504 * (1 - 0x1p-8)) << levels;
+        }
 }
 
 TEST(Bloom, DownsampleHasTheCanonicalImpulseResponse) {
