@@ -49,18 +49,17 @@ vec4 fxaa(Pixel pixel, Fxaa parameters) {
     bvec2 is_open = lessThan(abs(found), vec2(enough));
     ivec2 seen = ivec2(is_open), at = 1 + 2 * seen;
     int round = 1;
-    bool goes_on;
-    // Every driver ends this loop early. Some run it once, and all of the above, for pixels that have returned.
-    do {
+    // Not do ... while: SwiftShader goes on computing for a pixel that has left the loop while others beside it have not,
+    // and keeps what it was left with where the loop is tested at its top alone.
+    while (any(is_open) && round < last) {
         ivec2 reach = min(at, room), a = texel - (along & reach.x), b = texel + (along & reach.y);
         found = vec2(fxaa_luma(load(picture, a).rgb + load(picture, a + across).rgb),
                      fxaa_luma(load(picture, b).rgb + load(picture, b + across).rgb)) - edge;
         is_open = lessThan(abs(found), vec2(enough));
         seen = mix(seen, at, is_open);
         ++round;
-        goes_on = any(is_open) && round < last;
-        if (goes_on) at = mix(at, at + fxaa_step(round, last), is_open);
-    } while (goes_on);
+        if (round < last) at = mix(at, at + fxaa_step(round, last), is_open);
+    }
 
     // The end is one of the pixels behind the last that is none: it is taken from their middle, here twice as far.
     vec2 away = vec2(seen + 1 + at);
