@@ -230,7 +230,7 @@ TEST(EffectLut, GpuStagesAgree) {
     const Lut values{.strength = 0.75f, .space = LutSpace::Logc3};
     const ReferenceImage compute = on_gpu(values, table, picture, nullptr, {.kernels = KernelStage::Compute}),
                          raster = on_gpu(values, table, picture, nullptr, {.kernels = KernelStage::Raster});
-    EXPECT_LE(test::worst_difference(compute, raster), gpu::test::device().info().is_software ? 0 : 1 / 255.0);
+    EXPECT_LE(test::worst_difference(compute, raster), gpu::test::code_between_kernels());
 }
 
 TEST(EffectLut, GpuFadesAndBlends) {

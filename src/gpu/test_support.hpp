@@ -92,20 +92,37 @@ inline VkPhysicalDeviceLimits limits() {
     return properties.limits;
 }
 
+/// Is it Mesa's software driver, the one that everything is first tested on? It filters, blends and places vertices in
+/// single precision, and gives both stages the same operations: its tests are the strictest. What Vulkan leaves open is
+/// allowed to all others, which another software driver is one of.
+inline bool is_lavapipe() {
+    VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+    context().vk.GetPhysicalDeviceProperties2(context().physical_device, &properties);
+    return driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
+}
+
 /// The part of the difference between two neighbouring texels that a filtered fetch may be wrong by, for each axis it
-/// filters along. 0 on the software driver, which filters in single precision: bounds are there what they are without.
+/// filters along. 0 on lavapipe, which filters in single precision: bounds are there what they are without.
 /// Elsewhere one division of a texel. Vulkan specification, "Limits", subTexelPrecisionBits: "the number of bits of
 /// precision in the division along an axis of an image used for minification and magnification filters. [...] Sub-texel
 /// values calculated during image sampling will snap to these locations when generating the filtered results."
 inline double filter_step() {
-    if (context().traits.is_software) return 0;
+    if (is_lavapipe()) return 0;
     return std::ldexp(1.0, -static_cast<int>(limits().subTexelPrecisionBits));
 }
 
-/// What two kernels of one picture may differ by, for values in [0,1]: nothing on the software driver. Elsewhere a code
+/// How far in pixels, along either axis, a vertex may be from where it was put, and what a pixel shows from its centre:
+/// half a step of the grid that vertices are moved to (Vulkan specification, "Limits", subPixelPrecisionBits). 0 on
+/// lavapipe, whose grid of 1/256 stays within the bounds that tests have without it.
+inline double vertex_shift() {
+    return is_lavapipe() ? 0 : std::ldexp(0.5, -static_cast<int>(limits().subPixelPrecisionBits));
+}
+
+/// What two kernels of one picture may differ by, for values in [0,1]: nothing on lavapipe. Elsewhere a code
 /// of 8 bits: kernels of other forms or stages may be contracted differently, and Vulkan lets an implementation take
 /// either neighbour where a value is rounded to half precision or to a code.
-inline double code_between_kernels() { return context().traits.is_software ? 0 : 1 / 255.0; }
+inline double code_between_kernels() { return is_lavapipe() ? 0 : 1 / 255.0; }
 
 inline float half_to_float(std::uint16_t half) {
     const std::uint32_t sign = (half & 0x8000U) << 16U;

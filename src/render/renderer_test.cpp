@@ -80,10 +80,8 @@ TEST(RenderGpuRenderer, DepthIsPlanarDistanceOfASlantedFloor) {
     scene::Snapshot snapshot = snapshot_of(small_frame);
     add_box(snapshot, {-100, -3, -99}, {100, -2, -0.2F}, plain(vec4(1)));
     const Shot shot = shoot(renderer, snapshot);
-    // Rasterisers of hardware put vertices on a grid (VkPhysicalDeviceLimits::subPixelPrecisionBits): half a step of it
-    // moves the floor that far up or down the picture.
-    const int grid = static_cast<int>(gpu::test::limits().subPixelPrecisionBits);
-    const float snapped = gpu::test::context().traits.is_software ? 0 : std::ldexp(0.5F, -grid) / 24;
+    // A shifted vertex moves the floor up or down the picture.
+    const float snapped = static_cast<float>(gpu::test::vertex_shift()) / 24;
     for (std::uint32_t y = 26; y < small_frame.height; ++y) {
         // The ray through a pixel's centre meets y = -2 where -2 = -distance * slope.
         const float slope = (static_cast<float>(y) + 0.5F) / 24 - 1;

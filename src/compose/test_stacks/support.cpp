@@ -240,9 +240,9 @@ double worst_difference(const ReferenceImage& a, const ReferenceImage& b, const 
     return worst;
 }
 
-ReferenceImage filter_loss(const ReferenceImage& picture) {
+ReferenceImage filter_loss(const ReferenceImage& picture, double pixels_beside) {
     ReferenceImage out(picture.width, picture.height);
-    const double step = gpu::test::filter_step();
+    const double step = gpu::test::filter_step() + pixels_beside;
     if (step == 0) return out;
     for (std::uint32_t y = 0; y < picture.height; ++y)
         for (std::uint32_t x = 0; x < picture.width; ++x) {

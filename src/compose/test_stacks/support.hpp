@@ -83,10 +83,10 @@ template <class Effect>
 [[nodiscard]] double worst_difference(const ReferenceImage& a, const ReferenceImage& b,
                                       const ReferenceImage& allowance);
 /// What a fetch that is filtered along both axes may be wrong by on the test device, for each texel of `picture` that
-/// it mixes: filter_step (gpu/test_support.hpp) of the span of the texels around, per axis; black on the software
-/// driver. The reference of an effect that is linear in its picture makes of this what the effect's result may be wrong
-/// by.
-[[nodiscard]] ReferenceImage filter_loss(const ReferenceImage& picture);
+/// it mixes: filter_step (gpu/test_support.hpp) of the span of the texels around, per axis; black on lavapipe. The
+/// reference of an effect that is linear in its picture makes of this what the effect's result may be wrong by. With
+/// `pixels_beside` the fetch may also be so far beside its place.
+[[nodiscard]] ReferenceImage filter_loss(const ReferenceImage& picture, double pixels_beside = 0);
 
 /// GPU against reference on random HDR input, both stages, and both stages against each other bit for bit (software
 /// driver; one 8-bit code elsewhere). What every pointwise effect's test calls, for several parameter sets.

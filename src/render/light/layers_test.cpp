@@ -42,21 +42,22 @@ void expect_lit(const scene::SnapshotMaterial& material) {
     snapshot.lights = three_lights();
     const Shot shot = shoot(renderer, snapshot);
     const LayeredSurface surface = reference_of(material.surface);
-    for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit& hit) {
+    const auto truth = [&](const Hit& hit) {
         // The hemisphere has no mirror images: base colour stands for all that leaves, and the coat is white.
         const double part = reference::coat_part(surface, hit.normal, hit.to_camera);
         const dvec3 base = reference::with_white_sheen(surface, surface.base_color, hit.facing);
-        dvec3 truth =
+        dvec3 light =
             glm::mix(base, dvec3(1), part) * reference::hemisphere(hit.normal, {0.12, 0.13, 0.18}, {0.06, 0.05, 0.04}) +
             dvec3(material.surface.emissive) * (1 - part);
-        for (const scene::LightState& light : snapshot.lights) {
-            const Arriving arrives = arriving_light(light, hit.position);
-            truth +=
+        for (const scene::LightState& lamp : snapshot.lights) {
+            const Arriving arrives = arriving_light(lamp, hit.position);
+            light +=
                 arrives.color * reference::reflected(surface, hit.normal, hit.normal, hit.to_camera, arrives.direction);
         }
-        // As in RenderGpuShadingScene.SphereAndFloorInPerspectiveHaveTheirClosedForms.
-        expect_color(shot.color, x, y, truth, hit.is_sphere ? 0.01 : 0.002, 1e-3);
-    });
+        return light;
+    };
+    // As in RenderGpuShadingScene.SphereAndFloorInPerspectiveHaveTheirClosedForms.
+    expect_hits(shot.color, truth, 0.01, 0.002, 1e-3);
 }
 
 dvec2 scale_and_bias_at(const Picture& table, double n_dot_v, double roughness) {
@@ -77,12 +78,12 @@ void expect_in_white_sky(const scene::SnapshotMaterial& material) {
     const Shot shot = shoot(renderer, sphere_and_floor(material, material));
     const LayeredSurface surface = reference_of(material.surface);
     const Picture table = split_sum_table(64);
-    for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit& hit) {
-        // The table has half floats and 64 steps, over which it bends most at grazing angles.
+    const auto truth = [&](const Hit& hit) {
         const dvec2 scale_and_bias = scale_and_bias_at(table, hit.facing, surface.roughness);
-        expect_color(shot.color, x, y, reference::reflected_white(surface, hit.normal, hit.to_camera, scale_and_bias),
-                     0.005, 3e-3);
-    });
+        return reference::reflected_white(surface, hit.normal, hit.to_camera, scale_and_bias);
+    };
+    // The table has half floats and 64 steps, over which it bends most at grazing angles.
+    expect_hits(shot.color, truth, 0.005, 0.005, 3e-3);
 }
 
 scene::SnapshotMaterial with_specular(scene::SnapshotMaterial material, const scene::SpecularLayer& layer) {

@@ -17,20 +17,21 @@ TEST(RenderGpuShadingScene, SphereAndFloorInPerspectiveHaveTheirClosedForms) {
     scene::Snapshot snapshot = sphere_and_floor(metal, stone);
     snapshot.lights = three_lights();
     const Shot shot = shoot(renderer, snapshot);
-    for_each_hit([&](std::uint32_t x, std::uint32_t y, const Hit& hit) {
+    const auto truth = [&](const Hit& hit) {
         const scene::ModelMaterial& material = hit.is_sphere ? metal.surface : stone.surface;
         const dvec3 color(material.base_color);
         const reference::Reflectance surface = reference::reflectance(color, material.metallic, material.roughness);
-        dvec3 truth = color * 0.5 * reference::hemisphere(hit.normal, {0.12, 0.13, 0.18}, {0.06, 0.05, 0.04}) +
+        dvec3 light = color * 0.5 * reference::hemisphere(hit.normal, {0.12, 0.13, 0.18}, {0.06, 0.05, 0.04}) +
                       dvec3(material.emissive);
-        for (const scene::LightState& light : snapshot.lights) {
-            const Arriving arrives = arriving_light(light, hit.position);
-            truth += arrives.color * reference::reflected(surface, hit.normal, hit.to_camera, arrives.direction);
+        for (const scene::LightState& lamp : snapshot.lights) {
+            const Arriving arrives = arriving_light(lamp, hit.position);
+            light += arrives.color * reference::reflected(surface, hit.normal, hit.to_camera, arrives.direction);
         }
-        // Facets shift what is seen by (pi / 96)^2 / 8 over the cosine to the camera, the more the steeper the lobe is;
-        // half floats are truncated to 1e-3.
-        expect_color(shot.color, x, y, truth, hit.is_sphere ? 0.01 : 0.002, 1e-3);
-    });
+        return light;
+    };
+    // Facets shift what is seen by (pi / 96)^2 / 8 over the cosine to the camera, the more the steeper the lobe is;
+    // half floats are truncated to 1e-3.
+    expect_hits(shot.color, truth, 0.01, 0.002, 1e-3);
 }
 
 TEST(RenderGpuShadingScene, WhiteSurfacesInAWhiteSkyAreWhite) {

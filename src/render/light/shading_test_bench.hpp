@@ -119,8 +119,9 @@ class FragmentBench {
     [[nodiscard]] Targets draw(const Switches& switches);
 
     /// Where a pixel's centre is on the plane or on the sphere.
-    [[nodiscard]] dvec3 position(std::uint32_t x, std::uint32_t y) const {
-        const double right = (x + 0.5) / size * 2 - 1, down = (y + 0.5) / size * 2 - 1;
+    [[nodiscard]] dvec3 position(std::uint32_t x, std::uint32_t y) const { return position_at(x + 0.5, y + 0.5); }
+    [[nodiscard]] dvec3 position_at(double x, double y) const {
+        const double right = x / size * 2 - 1, down = y / size * 2 - 1;
         if (shape_ != Shape::Sphere) return {right, 0, down};
         return {right, -down, std::sqrt(std::max(1 - right * right - down * down, 0.0))};
     }

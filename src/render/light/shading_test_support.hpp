@@ -7,7 +7,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <string_view>
@@ -72,6 +74,28 @@ inline std::vector<vec4> evaluate(const std::string& name, const std::string& bo
         values[i] = {pixels.rgba[4 * i], pixels.rgba[4 * i + 1], pixels.rgba[4 * i + 2], pixels.rgba[4 * i + 3]};
     }
     return values;
+}
+
+/// The least and the most of what a pixel may show.
+struct Range {
+    dvec3 low{0}, high{0};
+};
+
+/// Of `truth(x, y)` at the pixel's centre and at places as far beside it as vertices may be shifted; where it says
+/// nothing such a place is passed over.
+inline Range around_center(std::uint32_t x, std::uint32_t y,
+                           const std::function<std::optional<dvec3>(double, double)>& truth) {
+    const double shift = gpu::test::vertex_shift();
+    const dvec3 center = truth(x + 0.5, y + 0.5).value();
+    Range range{center, center};
+    if (shift == 0) return range;
+    for (const double down : {-shift, 0.0, shift})
+        for (const double right : {-shift, 0.0, shift})
+            if (const std::optional<dvec3> there = truth(x + 0.5 + right, y + 0.5 + down)) {
+                range.low = glm::min(range.low, *there);
+                range.high = glm::max(range.high, *there);
+            }
+    return range;
 }
 
 /// Compares red, green and blue, and reports the largest excess.
