@@ -9,8 +9,8 @@ die() {
     exit 2
 }
 
-# What packages.txt names, and what the caller has in `extra_packages`.
-extra_packages=()
+# What packages.txt names, and what the caller has in `extra_packages`, or in the environment.
+extra_packages=(${DARKROOM_EXTRA_PACKAGES:-})
 wanted_packages() {
     sed 's/#.*//; s/[[:space:]]//g; /^$/d' "$root/packages.txt"
     [[ ${#extra_packages[@]} == 0 ]] || printf '%s\n' "${extra_packages[@]}"
