@@ -96,6 +96,41 @@ TEST_F(CliColor, SpacesOfAConfigurationAreRead) {
     EXPECT_EQ(std::ranges::count(bad.err, '\n'), 1) << bad.err;
 }
 
+// The stack leaves light; a look's table encodes and dithers no more.
+TEST_F(CliColor, PicturesAreWrittenForAnotherSpaceAndComeBack) {
+    const auto light_after = [&](std::vector<std::string> flags, const std::string& out) {
+        const Outcome outcome = develop(std::move(flags), out);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        const Result<FrameFile> frame = read_frame(path(out));
+        EXPECT_TRUE(frame && frame->warnings.empty());
+        return frame ? frame->color.at(16, 9)[1] : -1;
+    };
+    for (const char* const space : {"srgb", "p3", "pq"}) {
+        EXPECT_NEAR(light_after({"--output-space", space, "--bits", "16"}, "s.png"), grey, 2e-4) << space;
+        EXPECT_NEAR(light_after({"--output-space", space, "--bits", "16", "--reference"}, "r.png"), grey, 2e-4);
+    }
+    EXPECT_NE(content(path("s.png")).find("cICP"), std::string::npos);
+    for (const char* const space : {"p3", "rec2020"})
+        EXPECT_NEAR(light_after({"--output-space", space}, "s.exr"), grey, 2e-4) << space;
+    const std::vector<std::string> bright{"--exposure", "16", "--output-space", "pq"};
+    EXPECT_NEAR(light_after(bright, "b.png"), 4, 0.01) << "812 cd/m2";
+    std::vector<std::string> dim = bright;
+    dim.insert(dim.end(), {"--output-peak", "406"});
+    EXPECT_NEAR(light_after(dim, "d.png"), 2, 0.005);
+    const Outcome table = run({"develop", path("frame.exr"), "-o", path("t.png"), "--output-space", "pq",
+                               "--tonemap-curve", "bt2390", "--tonemap-peak-nits", "1000", "--exposure", "1"});
+    EXPECT_EQ(table.code, 0) << table.err;
+    const Result<FrameFile> made = read_frame(path("t.png"));
+    ASSERT_TRUE(made);
+    EXPECT_NEAR(made->color.at(16, 9)[1], grey, 2e-3) << "neither encoded twice nor dithered";
+    expect_error(
+        {"--output-space", "pq2"},
+        "--output-space: 'pq2' is no color space of pictures, did you mean 'pq'? allowed is srgb, p3, rec2020, "
+        "pq or hlg");
+    expect_error({"--output-peak", "500"}, "--output-peak: is of --output-space pq or hlg");
+    expect_error({"--output-space", "p3", "--output-peak", "500"}, "--output-peak: is of pq and hlg, and not of p3");
+}
+
 TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
     const std::string config = path("config.ocio");
     for (const char* const out : {"a.png", "a.tif", "a.jpg"})

@@ -109,6 +109,7 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
         if (options.keeps_layers && *darkroom::file_kind(output) != darkroom::FileKind::OpenExr)
             return no_place_for_layers(output);
         job.develop.target = target_for(*samples, job.write);
+        job.develop.color = darkroom::color_of(job.write, *samples);
     }
     suit(job.look, job.develop.target, job.write);
     std::size_t next_written = inputs.size();
@@ -324,7 +325,7 @@ class Develop {
         if (options_.is_reference) {
             std::vector<std::string> left_out;
             Result<darkroom::DevelopedPicture> picture =
-                develop_by_reference(*composer_, item.input, job_.develop.target, histories_, left_out);
+                develop_by_reference(*composer_, item.input, job_.develop, histories_, left_out);
             if (!picture) return failure(std::move(picture));
             item.picture = std::move(*picture);
             tell_of_what_is_left_out(i, left_out);

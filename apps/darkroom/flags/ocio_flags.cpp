@@ -15,8 +15,7 @@ void OcioFlags::add_to(CommandFlags command, bool has_view) {
         .group(group);
     if (!has_view) return;
     command
-        .add_option("--display", display_,
-                    "Makes the picture for this display of it: instead of the look's tone mapping and encoding")
+        .add_option("--display", display_, "For this display of it, in place of the look's tone mapping and encoding")
         .type_name("NAME")
         .group(group);
     command.add_option("--view", view_, "A view of that display; default: its usual one")

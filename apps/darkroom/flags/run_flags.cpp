@@ -25,9 +25,34 @@ constexpr std::array<std::string_view, 3> format_names{"y4m", "rgb24", "rgba64le
 
 }  // namespace
 
+void SpaceFlags::add_to(CommandFlags command, const std::string& group) {
+    const Flag name =
+        command.add_option("--output-space", name_, "What the picture is for: " + darkroom::output_space_names(", "))
+            .type_name("SPACE");
+    const Flag peak = peak_.add_to(command, "Of pq and hlg, the display's").type_name("CD/M2").default_str("1000");
+    if (group.empty()) return;
+    for (Flag flag : {name, peak}) flag.group(group);
+}
+
+Result<std::optional<darkroom::OutputSpace>> SpaceFlags::space() const {
+    if (!name_) {
+        if (peak_.is_given()) return user_error("--output-peak: is of --output-space pq or hlg");
+        return std::optional<darkroom::OutputSpace>();
+    }
+    Result<darkroom::OutputSpace> space = darkroom::find_output_space(*name_);
+    if (!space) return user_error("--output-space: " + space.error().text);
+    const bool has_peak = space->integers && space->integers->peak_nits > space->integers->white_nits;
+    if (peak_.is_given() && !has_peak)
+        return user_error(fmt::format("--output-peak: is of pq and hlg, and not of {}", space->name));
+    if (has_peak)
+        if (Result<> done = peak_.read_to(space->integers->peak_nits); !done) return failure(std::move(done));
+    return std::optional(std::move(*space));
+}
+
 void WriteFlags::add_to(CommandFlags command) {
     const std::string group = "The files";
     command.add_option("--bits", bits_, "Samples of the file").type_name("8|16|half|float").group(group);
+    space_.add_to(command, group);
     command.add_flag("--alpha", has_alpha_, "Keeps alpha; without it pictures are opaque").group(group);
     command
         .add_option("--compression", compression_,
@@ -35,10 +60,7 @@ void WriteFlags::add_to(CommandFlags command) {
                     "PNG: [0, 12]")
         .type_name("NAME")
         .group(group);
-    command
-        .add_option(
-            "--format", format_,
-            "Of -o -, which sends the pictures to another program: 8 bits, BT.709 in limited range; 8 bits; 16 bits")
+    command.add_option("--format", format_, "Of -o -, to another program: 8 bits, BT.709 limited; 8 bits; 16 bits")
         .type_name(fmt::format("{}", fmt::join(format_names, "|")))
         .group(group);
     quality_.add_to(command, "Of JPEG files").type_name("N").default_str("95").group(group);
@@ -52,6 +74,9 @@ Result<darkroom::WriteOptions> WriteFlags::options() const {
         if (!bits) return failure(bits.error());
         out.samples = *bits;
     }
+    Result<std::optional<darkroom::OutputSpace>> space = space_.space();
+    if (!space) return failure(std::move(space));
+    out.space = std::move(*space);
     if (Result<> done = quality_.read_to(out.quality); !done) return failure(std::move(done));
     Result<std::shared_ptr<const darkroom::ColorChain>> view = ocio.view();
     if (!view) return failure(std::move(view));
@@ -73,8 +98,9 @@ Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, dou
                           .rate = darkroom::frame_rate(frames_per_second),
                           .has_alpha = has_alpha_};
     for (const auto& [is_given, flag] :
-         {std::pair(bits_.has_value(), "--bits"), std::pair(!compression_.empty(), "--compression"),
-          std::pair(quality_.is_given(), "--quality"), std::pair(ocio.has_display(), "--display")})
+         {std::pair(bits_.has_value(), "--bits"), std::pair(space_.is_given(), "--output-space"),
+          std::pair(!compression_.empty(), "--compression"), std::pair(quality_.is_given(), "--quality"),
+          std::pair(ocio.has_display(), "--display")})
         if (is_given) return user_error(fmt::format("{}: is of files, and not of --format {}", flag, *format_));
     if (has_alpha_ && desc.format != darkroom::VideoFormat::Rgba64le)
         return user_error(fmt::format("--alpha: --format {} has none; rgba64le has", *format_));

@@ -19,7 +19,19 @@
 
 namespace app {
 
-/// --bits, --alpha, --compression, --quality, --format, and those of OcioFlags.
+/// --output-space and --output-peak.
+class SpaceFlags {
+  public:
+    void add_to(CommandFlags command, const std::string& group);
+    [[nodiscard]] darkroom::Result<std::optional<darkroom::OutputSpace>> space() const;
+    [[nodiscard]] bool is_given() const { return name_.has_value(); }
+
+  private:
+    std::optional<std::string> name_;
+    NumberFlag peak_{"--output-peak", {.least = 100, .most = 10000, .unit = "cd/m2"}};
+};
+
+/// --bits, --alpha, --output-space, --output-peak, --compression, --quality, --format, and those of OcioFlags.
 class WriteFlags {
   public:
     void add_to(CommandFlags command);
@@ -33,6 +45,7 @@ class WriteFlags {
 
   private:
     std::optional<std::string> bits_, format_;
+    SpaceFlags space_;
     std::string compression_;
     NumberFlag quality_{"--quality", {.least = 1, .most = 100, .is_whole = true}};
     bool has_alpha_ = false;

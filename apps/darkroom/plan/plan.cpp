@@ -8,6 +8,7 @@
 #include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/flags/device_flags.hpp"
 #include "apps/darkroom/flags/look_flags.hpp"
+#include "apps/darkroom/flags/run_flags.hpp"
 #include "apps/darkroom/run/frames.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "develop/developer.hpp"
@@ -23,7 +24,9 @@ using darkroom::Result;
 struct Options {
     LookFlags look;
     DeviceFlags device;
-    std::string size, frame, bits = "8", chip;
+    SpaceFlags space;
+    std::string size, frame, chip;
+    std::optional<std::string> bits;
     std::vector<std::string> loops;
     bool is_json = false, wants_statistics = false, wants_stack = false;
 };
@@ -46,6 +49,24 @@ Result<std::string> statistics_of(const Options& options, const darkroom::Device
     return options.is_json ? json_of(report) : text_of(report);
 }
 
+/// What --bits and --output-space ask for.
+Result<darkroom::WriteOptions> target_of(const Options& options) {
+    Result<std::optional<darkroom::OutputSpace>> space = options.space.space();
+    if (!space) return failure(std::move(space));
+    darkroom::WriteOptions out{.samples = darkroom::SampleKind::Integer8, .space = *space};
+    if (out.space && out.space->integers != darkroom::srgb_color)
+        out.samples = out.space->integers ? darkroom::SampleKind::Integer16 : darkroom::SampleKind::Half;
+    if (options.bits) {
+        const Result<darkroom::SampleKind> samples = parse_bits(*options.bits);
+        if (!samples) return failure(samples.error());
+        out.samples = *samples;
+    }
+    if (out.space && !darkroom::color_of(out, *out.samples))
+        return darkroom::user_error(
+            fmt::format("--output-space {}: not of {} samples", out.space->name, darkroom::name_of(*out.samples)));
+    return out;
+}
+
 /// As the renderer of scenes hands its frames over (render/targets.hpp).
 void add_layers_of_scenes(darkroom::CompileDesc& compile) {
     const VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
@@ -64,8 +85,10 @@ Result<std::string> text_of(const Options& options) {
         if (look->is_flat) darkroom::make_stack(*look);
         return darkroom::write_look(*look);
     }
-    const Result<darkroom::SampleKind> samples = parse_bits(options.bits);
-    if (!samples) return failure(samples.error());
+    const Result<darkroom::WriteOptions> write = target_of(options);
+    if (!write) return failure(write.error());
+    const darkroom::DevelopTarget target = target_for(*write->samples);
+    if (write->space) suit(*look, target, *write);
     const Result<darkroom::KernelStage> stage = options.device.stage();
     if (!stage) return failure(stage.error());
     darkroom::FrameFile frame;
@@ -87,8 +110,10 @@ Result<std::string> text_of(const Options& options) {
     if (Result<> done = darkroom::check_extent(*device, input.extent); !done) return failure(std::move(done));
     darkroom::Composer composer(*device);
     if (Result<> done = darkroom::apply(*look, composer); !done) return failure(std::move(done));
-    const darkroom::DevelopDesc desc{
-        .target = target_for(*samples), .kernels = *stage, .fuse = options.device.is_fused()};
+    const darkroom::DevelopDesc desc{.target = target,
+                                     .color = darkroom::color_of(*write, *write->samples),
+                                     .kernels = *stage,
+                                     .fuse = options.device.is_fused()};
     darkroom::CompileDesc compile = darkroom::compile_desc_for(*device, input, desc);
     if (options.frame.empty()) compile.color.format = VK_FORMAT_R16G16B16A16_SFLOAT;  // what engines hand over
     if (look->ui) compile.ui = {VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT};
@@ -129,6 +154,7 @@ Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> name
     command.add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")
         .type_name("FRAME");
     command.add_option("--bits", options->bits, "Samples of the target").type_name("8|16|half|float");
+    options->space.add_to(command, "");
     const Flag statistics =
         command.add_flag("--statistics", options->wants_statistics,
                          "What the device's compiler makes of each kernel: registers, waves, instructions, cycles");

@@ -103,7 +103,7 @@ class Render {
         if (job_.stream) stream_.emplace(*job_.stream);
         const Result<darkroom::KernelStage> stage = flags_.device.stage();
         if (!stage) return failure(stage.error());
-        develop_ = {.target = job_.target, .kernels = *stage, .fuse = flags_.device.is_fused()};
+        develop_ = {.target = job_.target, .color = job_.color, .kernels = *stage, .fuse = flags_.device.is_fused()};
         return {};
     }
 
@@ -123,6 +123,8 @@ class Render {
         choose_way();
         if (flags_.run.has_timings && way_ != Way::Developed)
             return darkroom::user_error("--timings: nothing is post-processed");
+        if (job_.color && way_ != Way::Developed)
+            return darkroom::user_error("--output-space: nothing is post-processed");
         return {};
     }
 

@@ -129,6 +129,7 @@ Result<> RenderFlags::set_target(RenderJob& job) const {
     const Result<darkroom::SampleKind> samples = darkroom::sample_kind(out_, job.write);
     if (!samples) return failure(samples.error());
     job.target = target_for(*samples, job.write);
+    job.color = darkroom::color_of(job.write, *samples);
     return {};
 }
 

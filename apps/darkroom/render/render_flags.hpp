@@ -38,6 +38,7 @@ struct RenderJob {
     darkroom::WriteOptions write;
     std::size_t jobs = 0;
     darkroom::DevelopTarget target = darkroom::DevelopTarget::Encoded8;
+    std::optional<darkroom::ColorState> color;  ///< in place of that of the target
     std::optional<StreamDesc> stream;
     std::uint64_t seed = 0;
     double frames_per_second = 24;

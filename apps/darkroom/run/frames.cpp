@@ -185,9 +185,12 @@ void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::
         if (options.view && entry.effect->makes != nullptr &&
             entry.effect->makes({}, entry.words.data()).domain == Domain::DisplayLinear)
             entry.state.enabled = false;
-    if (target == darkroom::DevelopTarget::Encoded8) return;
+    // Into another space light is turned by the last kernel, behind all entries.
+    const bool is_other_space = options.space && options.space->integers != darkroom::srgb_color;
+    if (target == darkroom::DevelopTarget::Encoded8 && !is_other_space) return;
     for (darkroom::LookEntry& entry : look.entries)
-        if (entry.effect->is_last_step && entry.effect->makes == nullptr && look.is_flat && !entry.is_asked_for)
+        if (entry.effect->is_last_step && (entry.effect->makes == nullptr || is_other_space) && look.is_flat &&
+            !entry.is_asked_for)
             entry.state.enabled = false;
 }
 
@@ -219,7 +222,8 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
 }
 
 Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer, const DevelopInput& input,
-                                              DevelopTarget target, darkroom::ReferenceHistories& histories,
+                                              const darkroom::DevelopDesc& desc,
+                                              darkroom::ReferenceHistories& histories,
                                               std::vector<std::string>& left_out) {
     const ReferenceImage color = reference_image(input.color, input.extent, 4);
     const auto layer = [&](std::span<const float> values, std::size_t channels) {
@@ -238,7 +242,7 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
                                            {FrameImage::Velocity, given(velocity)},
                                            {FrameImage::Ui, given(ui)}};
     const darkroom::Domain domain =
-        target == DevelopTarget::SceneLinear ? darkroom::Domain::SceneLinear : darkroom::Domain::Encoded;
+        desc.target == DevelopTarget::SceneLinear ? darkroom::Domain::SceneLinear : darkroom::Domain::Encoded;
     Result<darkroom::ReferenceChainOutput> made = darkroom::run_reference(composer, {.color = &color,
                                                                                      .images = images,
                                                                                      .lights = input.lights,
@@ -247,11 +251,12 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
                                                                                      .delta_time = input.delta_time,
                                                                                      .frame_index = input.frame_index,
                                                                                      .histories = &histories,
+                                                                                     .target_color = desc.color,
                                                                                      .target_domain = domain});
     if (!made) return failure(made.error());
     left_out = std::move(made->left_out);
     DevelopedPicture out{.extent = {made->picture.width, made->picture.height}};
-    if (target == DevelopTarget::Encoded8) {
+    if (desc.target == DevelopTarget::Encoded8) {
         out.bytes = darkroom::round_to_bytes(made->picture);
         return out;
     }

@@ -32,8 +32,8 @@ void tell_of_assumed_view(const darkroom::FrameFile& frame, std::string_view sho
 /// frames are `delta_time` seconds apart, at the worst of the moments of a timeline.
 [[nodiscard]] darkroom::Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time,
                                                         Timeline timeline, darkroom::FrameOptions& frame);
-/// Switches off noise that nobody asked for where the picture has more than 8 bits, whose steps it hides, and tone
-/// mapping where a view of a display has its own.
+/// Switches off noise that nobody asked for where the picture has more than 8 bits, whose steps it hides, what encodes
+/// for sRGB where the picture is for another space, and tone mapping where a view of a display has its own.
 void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::WriteOptions& options);
 /// One warning, `frame` first, for each entry that is on and has no place in the plan, but for those that are on by
 /// default. Gives how many that were.
@@ -43,7 +43,7 @@ std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom:
 /// one. `left_out`: as in Plan.
 [[nodiscard]] darkroom::Result<darkroom::DevelopedPicture> develop_by_reference(const darkroom::Composer& composer,
                                                                                 const darkroom::DevelopInput& input,
-                                                                                darkroom::DevelopTarget target,
+                                                                                const darkroom::DevelopDesc& desc,
                                                                                 darkroom::ReferenceHistories& histories,
                                                                                 std::vector<std::string>& left_out);
 [[nodiscard]] darkroom::Result<> write(const std::filesystem::path& path, darkroom::DevelopedPicture picture,

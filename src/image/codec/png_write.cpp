@@ -114,7 +114,11 @@ Result<std::vector<std::byte>> encode_png(const PngDesc& desc) {
     for (const std::uint32_t value : {8 * desc.bytes, std::uint32_t{color_type}, 0u, 0u, 0u})
         header.push_back(static_cast<std::byte>(value));
     put_chunk(out, "IHDR", header);
-    if (desc.is_srgb) put_chunk(out, "sRGB", std::array{std::byte{0}});  // rendering intent: perceptual
+    // PNG, third edition, 11.3.2.6; no matrix, and the full range.
+    if (const auto& codes = desc.video_codes)
+        put_chunk(out, "cICP", std::array{std::byte{(*codes)[0]}, std::byte{(*codes)[1]}, std::byte{0}, std::byte{1}});
+    else if (desc.is_srgb)
+        put_chunk(out, "sRGB", std::array{std::byte{0}});  // rendering intent: perceptual
     const Bytes data = compressed(desc);
     // A chunk has at most 2^31 - 1 bytes.
     constexpr std::size_t longest = std::size_t{1} << 30;

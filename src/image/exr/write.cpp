@@ -97,6 +97,13 @@ Imf::Header exr_header(std::uint32_t width, std::uint32_t height, std::string_vi
     return header;
 }
 
+void add_chromaticities(Imf::Header& header, const Chromaticities& of) {
+    const auto point = [](const Chromaticity& c) {
+        return Imath::V2f(static_cast<float>(c.x), static_cast<float>(c.y));
+    };
+    Imf::addChromaticities(header, {point(of.red), point(of.green), point(of.blue), point(of.white)});
+}
+
 void add_rec709(Imf::Header& header) { Imf::addChromaticities(header, Imf::Chromaticities()); }
 
 Result<std::vector<std::byte>> encode_exr(std::span<const ExrPart> parts, std::size_t max_threads) {

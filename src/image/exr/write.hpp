@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/primaries.hpp"
 #include "decoders/file_kind.hpp"
 
 namespace darkroom {
@@ -35,6 +36,7 @@ struct ExrPart {
 /// A header of a picture of this size, with Rec. 709 as its chromaticities where it is a picture in colour.
 /// Compression: as OpenEXR calls it, empty: zip.
 [[nodiscard]] Imf::Header exr_header(std::uint32_t width, std::uint32_t height, std::string_view compression = {});
+void add_chromaticities(Imf::Header& header, const Chromaticities& of);
 void add_rec709(Imf::Header& header);
 
 inline constexpr std::array<std::string_view, 10> exr_compressions{"none",  "rle", "zips", "zip",  "piz",

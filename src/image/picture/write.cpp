@@ -111,7 +111,28 @@ Result<> check_coding(const std::filesystem::path& path, FileKind kind, const Wr
                                   known.empty() ? "none can be chosen" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
+bool is_integer(SampleKind samples) { return samples == SampleKind::Integer8 || samples == SampleKind::Integer16; }
+
+Result<> check_space(const std::filesystem::path& path, FileKind kind, SampleKind samples,
+                     const WriteOptions& options) {
+    if (!options.space) return {};
+    const std::string_view name = options.space->name;
+    if (options.view)
+        return user_error(fmt::format("{}: {} of a view of a display; it has its own", path.string(), name));
+    if (kind != FileKind::Png && kind != FileKind::OpenExr && name != "srgb")
+        return user_error(
+            fmt::format("{}: {} cannot say that it is {}; .png .exr can", path.string(), name_of(kind), name));
+    if (color_of(options, samples)) return {};
+    return user_error(fmt::format("{}: {} in {} samples; allowed: {}", path.string(), name, name_of(samples),
+                                  output_space_names_of(is_integer(samples))));
+}
+
 }  // namespace
+
+std::optional<ColorState> color_of(const WriteOptions& options, SampleKind samples) {
+    if (!options.space) return std::nullopt;
+    return is_integer(samples) ? options.space->integers : options.space->floats;
+}
 
 Result<FileKind> file_kind(const std::filesystem::path& path) {
     const std::string extension = lower(path.extension().string());
@@ -128,8 +149,12 @@ Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOpt
     if (options.alpha && !format.has_alpha)
         return user_error(fmt::format("{}: {} has no alpha; .png .tif .exr have", path.string(), name_of(*kind)));
     if (auto checked = check_coding(path, *kind, options); !checked) return failure(std::move(checked));
-    const SampleKind samples = options.samples.value_or(format.samples.front());
-    if (options.view && samples != SampleKind::Integer8 && samples != SampleKind::Integer16)
+    SampleKind samples = options.samples.value_or(format.samples.front());
+    // Eight bits show steps where the codes reach further than sRGB's.
+    if (!options.samples && *kind == FileKind::Png && options.space && options.space->integers != srgb_color)
+        samples = SampleKind::Integer16;
+    if (Result<> done = check_space(path, *kind, samples, options); !done) return failure(std::move(done));
+    if (options.view && !is_integer(samples))
         return user_error(fmt::format("{}: {} samples hold light, and no view of a display; .png .jpg .tif hold one",
                                       path.string(), name_of(samples)));
     if (std::find(format.samples.begin(), format.samples.end(), samples) != format.samples.end()) return samples;
@@ -152,6 +177,8 @@ Result<> write_samples(const std::filesystem::path& path, const EncodeDesc& desc
                         .bytes = static_cast<std::uint32_t>(size_of(desc.kind)),
                         .samples = desc.samples,
                         .is_srgb = options.view == nullptr};
+            if (const auto color = color_of(options, desc.kind); color && *color != srgb_color)
+                png.video_codes = video_codes_of(*color);
             if (!options.compression.empty()) png.level = std::stoi(options.compression);
             return encode_png(png);
         }
@@ -185,7 +212,11 @@ Result<> write_floats(const std::filesystem::path& path, const Picture& picture,
         part.header.dataWindow() = {first, first + part.header.dataWindow().max};
         part.header.displayWindow() = {{0, 0}, size - Imath::V2i(1)};
     }
-    add_rec709(part.header);
+    const std::optional<ColorState> color = color_of(options, samples);
+    if (color && color->primaries != Primaries::Rec709)
+        add_chromaticities(part.header, chromaticities_of(color->primaries));
+    else
+        add_rec709(part.header);
     if (options.attributes) options.attributes->add_to(part.header);
     constexpr std::array names{"R", "G", "B", "A"};
     for (std::size_t c = 0; c < (options.alpha ? 4 : 3); ++c)
@@ -231,7 +262,7 @@ Result<> write_picture(const std::filesystem::path& path, const Picture& picture
         apply(*options.view, viewed);
         return write_integers(viewed);
     }
-    if (desc->kind == SampleKind::Integer8 || desc->kind == SampleKind::Integer16) return write_integers(picture);
+    if (is_integer(desc->kind)) return write_integers(picture);
     // Radiance: no negative values, and a shared exponent of at most 2^127.
     constexpr float largest_radiance = 1.7e38f;
     constexpr float largest_float = std::numeric_limits<float>::max();

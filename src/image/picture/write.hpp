@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Pictures into image files. The extension decides the kind of file; the numbers are written as they are given: encoded
-// values for integer files, which say that they are sRGB, linear Rec. 709 ones for float files. Nothing is tone-mapped
-// or encoded here. A file appears whole or not at all.
+// values for integer files, which say that they are sRGB, linear Rec. 709 ones for float files, or those of another
+// space. Nothing is tone-mapped or encoded here. A file appears whole or not at all.
 
 #include <cstdint>
 #include <darkroom/result.hpp>
@@ -13,6 +13,7 @@
 #include <string>
 
 #include "image/codec/decoder.hpp"
+#include "image/color/output_space.hpp"
 #include "image/frame/kept_layers.hpp"
 #include "image/picture/picture.hpp"
 #include "image/table/color_chain.hpp"
@@ -20,7 +21,8 @@
 namespace darkroom {
 
 struct WriteOptions {
-    /// Not given: 8-bit for PNG, JPEG and TIFF, half for OpenEXR, float for Radiance HDR.
+    /// Not given: 8-bit for PNG, JPEG and TIFF, 16-bit where another space than sRGB is, half for OpenEXR, float for
+    /// Radiance HDR.
     std::optional<SampleKind> samples;
     bool alpha = false;          ///< false: the file has no alpha channel, which is opaque everywhere
     std::optional<int> quality;  ///< JPEG: 1 to 100, not given: 95
@@ -34,6 +36,8 @@ struct WriteOptions {
     std::shared_ptr<const KeptLayers> layers;  ///< of that frame, into OpenEXR files of its size; null: none
     /// For pictures of linear Rec. 709: integer files get what this makes of it, and do not say that they are sRGB.
     std::shared_ptr<const ColorChain> view;
+    /// What the numbers are; not given: sRGB, and linear Rec. 709 in files of floats. PNG and OpenEXR alone say it.
+    std::optional<OutputSpace> space;
     std::size_t max_threads = 0;  ///< that compress, 0: as many as there are processors
 };
 
@@ -43,6 +47,9 @@ struct WriteOptions {
 /// The kind of samples that would be written; an error if the format cannot hold what the options ask for, or knows no
 /// such quality or compression. Lets a program refuse before it has computed the picture.
 [[nodiscard]] Result<SampleKind> sample_kind(const std::filesystem::path& path, const WriteOptions& options);
+
+/// What files of such samples hold, where the options name a space.
+[[nodiscard]] std::optional<ColorState> color_of(const WriteOptions& options, SampleKind samples);
 
 /// Integer files clamp to 0..1 and round to nearest; half and Radiance clamp to what they can hold; NaN is written as
 /// 0.

@@ -9,6 +9,7 @@
 #include "core/srgb.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/test_files.hpp"
+#include "shared/color_state_reference.hpp"
 
 namespace darkroom {
 namespace {
@@ -105,6 +106,73 @@ TEST_F(ImageWrite, BytesAreWrittenUnchanged) {
     EXPECT_TRUE(write_bytes(file("a.jpg"), 16, 16, rgba));
     EXPECT_TRUE(read_frame(file("a.jpg")));
     EXPECT_FALSE(write_bytes(file("a.exr"), 16, 16, rgba)) << "bytes have no place in OpenEXR";
+}
+
+/// The numbers that a picture of this light has in a state; light 1 is 203 cd/m2.
+Picture numbers_in(const Picture& light, const ColorState& state) {
+    Picture out = light;
+    for (std::size_t i = 0; i < out.pixels.size(); i += 4) {
+        std::array<double, 3> nits{};
+        for (std::size_t c = 0; c < 3; ++c) nits[c] = 203.0 * light.pixels[i + c];
+        const auto numbers = numbers_of(nits, state);
+        for (std::size_t c = 0; c < 3; ++c) out.pixels[i + c] = static_cast<float>(numbers[c]);
+    }
+    return out;
+}
+/// Light that every space holds, but for HLG, whose white alone is read as it was: files of it are taken as a camera's,
+/// and BT.2408 rounds the luminance of its white, code 0.75, to 203 cd/m2 from 203.2.
+Picture light_of_all(bool is_grey) {
+    Picture picture = codes();
+    if (is_grey) std::ranges::fill(picture.pixels, 1.0f);
+    return picture;
+}
+
+TEST_F(ImageWrite, EverySpaceIsSaidByTheFileAndReadAgain) {
+    for (const char* const name : {"srgb", "p3", "pq", "hlg"}) {
+        const Result<OutputSpace> space = find_output_space(name);
+        ASSERT_TRUE(space);
+        const bool is_hlg = name == std::string_view("hlg");
+        const Picture light = light_of_all(is_hlg);
+        const auto path = file(std::string(name) + ".png");
+        ASSERT_TRUE(write_picture(path, numbers_in(light, *space->integers),
+                                  {.samples = SampleKind::Integer16, .space = *space}));
+        const auto back = read_frame(path);
+        ASSERT_TRUE(back) << back.error().text;
+        EXPECT_EQ(back->samples, SampleKind::Integer16);
+        EXPECT_TRUE(back->warnings.empty()) << name;
+        for (std::size_t i = 0; i < light.pixels.size(); ++i)
+            if (i % 4 != 3) {
+                ASSERT_NEAR(back->color.pixels[i], light.pixels[i], is_hlg ? 1e-3 : 4e-4) << name << " " << i;
+            }
+        EXPECT_EQ(content(path).find("cICP") != std::string::npos, name != std::string_view("srgb")) << name;
+    }
+    for (const char* const name : {"srgb", "p3", "rec2020"}) {
+        const Result<OutputSpace> space = find_output_space(name);
+        ASSERT_TRUE(space);
+        const Picture light = light_of_all(false);
+        const auto path = file(std::string(name) + ".exr");
+        ASSERT_TRUE(
+            write_picture(path, numbers_in(light, *space->floats), {.samples = SampleKind::Float, .space = *space}));
+        const auto back = read_frame(path);
+        ASSERT_TRUE(back) << back.error().text;
+        for (std::size_t i = 0; i < light.pixels.size(); ++i)
+            if (i % 4 != 3) {
+                ASSERT_NEAR(back->color.pixels[i], light.pixels[i], 1e-5) << name << " " << i;
+            }
+    }
+}
+
+TEST_F(ImageWrite, SpacesThatAFileCannotHoldAreRefused) {
+    const auto error = [&](const char* name, const char* space, std::optional<SampleKind> samples = std::nullopt) {
+        const auto kind = sample_kind(name, {.samples = samples, .space = *find_output_space(space)});
+        return kind ? std::string(name_of(*kind)) : kind.error().text;
+    };
+    EXPECT_EQ(error("a.png", "pq"), name_of(SampleKind::Integer16)) << "eight bits are not enough";
+    EXPECT_EQ(error("a.png", "pq", SampleKind::Integer8), name_of(SampleKind::Integer8)) << "but who wants them";
+    EXPECT_EQ(error("a.png", "srgb"), name_of(SampleKind::Integer8));
+    EXPECT_EQ(error("a.jpg", "p3"), "a.jpg: JPEG cannot say that it is p3; .png .exr can");
+    EXPECT_EQ(error("a.png", "rec2020"), "a.png: rec2020 in 16-bit integer samples; allowed: srgb, p3, pq, hlg");
+    EXPECT_EQ(error("a.exr", "pq"), "a.exr: pq in half samples; allowed: srgb, p3, rec2020");
 }
 
 TEST_F(ImageWrite, WhatCannotBeIsRefusedInOneLine) {
