@@ -12,7 +12,7 @@ namespace app {
 using darkroom::Result;
 
 Result<std::unique_ptr<Gui>> Gui::create(darkroom::gpu::Context& context, darkroom::window::Window& window,
-                                         VkFormat format, std::uint32_t slots) {
+                                         const darkroom::window::GuiPass::Desc& desc) {
     std::unique_ptr<Gui> out(new Gui(context, window));
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
@@ -21,8 +21,7 @@ Result<std::unique_ptr<Gui>> Gui::create(darkroom::gpu::Context& context, darkro
     out->is_attached_ = ImGui_ImplGlfw_InitForOther(window.handle(), true);
     out->scale_ = window.scale();
     darkroom::panels::apply_theme(out->scale_);
-    Result<darkroom::window::GuiPass> pass =
-        darkroom::window::GuiPass::create(context, {.format = format, .slots = slots}, *io.Fonts);
+    Result<darkroom::window::GuiPass> pass = darkroom::window::GuiPass::create(context, desc, *io.Fonts);
     if (!pass) return failure(std::move(pass));
     out->pass_.emplace(std::move(*pass));
     return out;

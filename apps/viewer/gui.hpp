@@ -17,7 +17,7 @@ class Gui {
     /// The window's callbacks are taken over; those it had are still called.
     [[nodiscard]] static darkroom::Result<std::unique_ptr<Gui>> create(darkroom::gpu::Context& context,
                                                                        darkroom::window::Window& window,
-                                                                       VkFormat format, std::uint32_t slots);
+                                                                       const darkroom::window::GuiPass::Desc& desc);
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
     ~Gui();

@@ -81,9 +81,11 @@ void Screen::draw(const Input& input) {
 }
 
 void Screen::draw_picture(const Input& input, const VkRect2D& area) {
-    PictureView::Shown shown{
-        .first = {.image = input.picture}, .extent = input.extent, .can_zoom = input.source.extent().has_value()};
-    if (input.compared.is_given()) shown.second = darkroom::window::PaneView{.image = input.compared};
+    PictureView::Shown shown{.first = {.image = input.picture, .transfer = input.transfer},
+                             .extent = input.extent,
+                             .can_zoom = input.source.extent().has_value()};
+    if (input.compared.is_given())
+        shown.second = darkroom::window::PaneView{.image = input.compared, .transfer = input.compared_transfer};
     EditPanels* const edit = panels();
     if (edit != nullptr) shown.marked = edit->pixel();
     if (input.watched.is_given() && edit != nullptr) {

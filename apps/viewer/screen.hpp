@@ -23,7 +23,8 @@ class Screen {
         LiveSource& source;
         LookView& view;
         darkroom::ImageRef picture, compared, watched;  ///< those that are to be shown
-        VkExtent2D extent{};                            ///< of the picture
+        darkroom::window::PaneTransfer transfer{}, compared_transfer{};
+        VkExtent2D extent{};  ///< of the picture
         VkExtent2D window{};
         float scale = 1;
         double passed = 0;  ///< seconds since the last frame

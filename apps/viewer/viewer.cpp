@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "apps/darkroom/flags/device_flags.hpp"
 #include "apps/darkroom/flags/look_flags.hpp"
@@ -51,16 +52,12 @@ Result<> Viewer::open() {
     Result<darkroom::window::Window> window = darkroom::window::Window::create(job_.window);
     if (!window) return failure(std::move(window));
     window_.emplace(std::move(*window));
-    constexpr std::array extensions{darkroom::window::Presenter::device_extension};
-    Result<darkroom::Device> device = darkroom::Device::create({.select = job_.device,
-                                                                .log = log_sink(),
-                                                                .instance_extensions = window_->instance_extensions(),
-                                                                .device_extensions = extensions});
-    if (!device) return failure(std::move(device));
-    device_ = std::make_unique<darkroom::Device>(std::move(*device));
+    if (Result<> done = make_device(); !done) return done;
     Result<darkroom::window::Presenter> presenter = darkroom::window::Presenter::create(
         *device_, {.presentation = job_.presentation,
                    .frames_in_flight = frames_in_flight,
+                   .range = job_.range,
+                   .peak_nits = job_.peak_nits,
                    .make_surface = [this](VkInstance instance) { return window_->make_surface(instance); }});
     if (!presenter) return failure(std::move(presenter));
     presenter_.emplace(std::move(*presenter));
@@ -80,12 +77,40 @@ Result<> Viewer::open() {
     if (!look) return failure(look.error());
     if (Result<> done = start_interface(); !done) return done;
     Result<std::unique_ptr<Gui>> gui =
-        Gui::create(device_->context(), *window_, presenter_->format(), frames_in_flight);
+        Gui::create(device_->context(), *window_,
+                    {.format = presenter_->format(), .color = presenter_->color(), .slots = frames_in_flight});
     if (!gui) return failure(std::move(gui));
     gui_ = std::move(*gui);
     if (!job_.is_edit && !is_fixed() && scene_ != nullptr) tell("a click takes the mouse to look round, Esc frees it");
     return {};
 }
+
+// What a window of high range needs is asked for, and done without where it is not there.
+Result<> Viewer::make_device() {
+    std::vector<const char*> instance, device{darkroom::window::Presenter::device_extension};
+    std::ranges::copy(window_->instance_extensions(), std::back_inserter(instance));
+    const auto create = [&] {
+        return darkroom::Device::create(
+            {.select = job_.device, .log = log_sink(), .instance_extensions = instance, .device_extensions = device});
+    };
+    Result<darkroom::Device> made = darkroom::machine_error("");
+    if (job_.range == darkroom::window::DynamicRange::High) {
+        instance.push_back(VK_EXT_SWAPCHAIN_COLOR_SPACE_EXTENSION_NAME);
+        device.push_back(VK_EXT_HDR_METADATA_EXTENSION_NAME);
+        made = create();
+        if (!made) {
+            device.pop_back();
+            made = create();
+        }
+        if (!made) instance.pop_back();
+    }
+    if (!made) made = create();
+    if (!made) return failure(std::move(made));
+    device_ = std::make_unique<darkroom::Device>(std::move(*made));
+    return {};
+}
+
+bool Viewer::is_high_range() const { return presenter_ && !presenter_->color().is_standard_code(); }
 
 Result<> Viewer::start_interface() {
     darkroom::Look look = document_->look();
@@ -131,6 +156,7 @@ Result<LookView*> Viewer::view(Side side) {
     auto made = std::make_unique<LookView>(*device_, LookView::Desc{.frames_in_flight = frames_in_flight,
                                                                     .kernels = job_.kernels,
                                                                     .fuse = job_.fuse,
+                                                                    .makes_light = is_high_range(),
                                                                     .keeps = job_.timeline.entries()});
     if (Result<> done = made->show(look_of(side)); !done) return failure(std::move(done));
     view = std::move(made);
@@ -220,16 +246,18 @@ Result<> Viewer::show(const PresentFrame& frame) {
 
 void Viewer::draw_screen(const PresentFrame& frame) {
     LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
-    const auto picture_of = [&](Side side) {
-        const auto& of = views_[static_cast<std::size_t>(side)];
-        return of ? of->picture() : darkroom::ImageRef{};
-    };
+    const auto shown = [&](Side side) { return views_[static_cast<std::size_t>(side)].get(); };
+    const LookView* const left = shown(is_off() && !screen_.is_comparing() ? Side::Off : screen_.left());
+    const LookView* const right = screen_.is_comparing() ? shown(screen_.right()) : nullptr;
+    using darkroom::window::PaneTransfer;
     const std::size_t number = moment().number;
     screen_.draw({.source = *source_,
                   .view = look,
-                  .picture = picture_of(is_off() && !screen_.is_comparing() ? Side::Off : screen_.left()),
-                  .compared = screen_.is_comparing() ? picture_of(screen_.right()) : darkroom::ImageRef{},
+                  .picture = left != nullptr ? left->picture() : darkroom::ImageRef{},
+                  .compared = right != nullptr ? right->picture() : darkroom::ImageRef{},
                   .watched = look.watched(),
+                  .transfer = left != nullptr ? left->transfer() : PaneTransfer::Encoded,
+                  .compared_transfer = right != nullptr ? right->transfer() : PaneTransfer::Encoded,
                   .extent = look.extent(),
                   .window = frame.extent,
                   .scale = window_->scale(),

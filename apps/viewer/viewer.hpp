@@ -38,6 +38,8 @@ struct ViewerJob {
     std::string device;  ///< as in DeviceDesc
     darkroom::window::WindowDesc window;
     darkroom::window::Presentation presentation = darkroom::window::Presentation::Vsync;
+    darkroom::window::DynamicRange range = darkroom::window::DynamicRange::Standard;
+    float peak_nits = 1000;    ///< of a display of high range
     bool turns = false;        ///< the camera goes round by itself
     bool is_paused = false;    ///< the time stands still at first
     bool obeys_input = false;  ///< lines of standard input are the console's commands

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 
 #include "apps/darkroom/run/frames.hpp"
+#include "core/srgb.hpp"
 #include "core/text/param_text.hpp"
 #include "gpu/device/context.hpp"
 #include "image/picture/write.hpp"
@@ -95,7 +97,11 @@ void Viewer::store_picture(const PresentFrame& frame) {
         Result<darkroom::Readback> read = darkroom::Readback::create(context, view.picture());
         if (!read) return screen_.tell_error("store", read.error().text);
         read->record(frame.commands);
-        stores_.push_back({.frame = frame.number, .path = std::move(wanted_.picture), .picture = std::move(*read)});
+        stores_.push_back({.frame = frame.number,
+                           .path = std::move(wanted_.picture),
+                           .picture = std::move(*read),
+                           .transfer = view.transfer(),
+                           .has_floats = is_high_range()});
         wanted_.picture.clear();
     }
     if (!wanted_.frame.empty()) {
@@ -117,6 +123,9 @@ void Viewer::store_picture(const PresentFrame& frame) {
 void Viewer::store_window(const PresentFrame& frame) {
     if (wanted_.window.empty()) return;
     const std::filesystem::path path = std::exchange(wanted_.window, {});
+    if (is_high_range())
+        return screen_.tell_error("store",
+                                  "a window of high range is no picture for files; --range standard makes one");
     if (!presenter_->can_copy())
         return screen_.tell_error("store", "the window's pictures cannot be read on this device");
     const darkroom::ImageRef image{.image = frame.image,
@@ -136,7 +145,14 @@ void Viewer::finish_stores(bool waits) {
         stores_.pop_front();
         // Read here: the images may go. Written beside the frames.
         std::function<Result<>()> write;
-        if (store.picture) {
+        if (store.picture && store.has_floats) {
+            write = [pixels = store.picture->floats(4), extent = store.picture->extent(), path = store.path,
+                     is_light = store.transfer == darkroom::window::PaneTransfer::SceneLinear]() mutable {
+                for (std::size_t i = 0; is_light && i < pixels.size(); ++i)
+                    if (i % 4 != 3) pixels[i] = darkroom::srgb_encode(std::clamp(pixels[i], 0.0F, 1.0F));
+                return app::write(path, {.extent = extent, .pixels = std::move(pixels)}, {});
+            };
+        } else if (store.picture) {
             write = [bytes = store.picture->bytes(), extent = store.picture->extent(), path = store.path] {
                 return app::write(path, {.extent = extent, .bytes = bytes}, {});
             };

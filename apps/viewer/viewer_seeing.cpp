@@ -55,10 +55,14 @@ Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
     if (!picture.is_given()) return {};
     const VkExtent2D extent{std::min(scope_extent.width, picture.extent.width),
                             std::min(scope_extent.height, picture.extent.height)};
-    if (scope_image_.info.extent.width != extent.width || scope_image_.info.extent.height != extent.height) {
+    // Light is encoded by the format that it is copied into.
+    const bool is_light = look.transfer() == darkroom::window::PaneTransfer::SceneLinear;
+    const VkFormat format = is_light ? VK_FORMAT_R8G8B8A8_SRGB : scope_format;
+    if (scope_image_.info.extent.width != extent.width || scope_image_.info.extent.height != extent.height ||
+        scope_image_.info.format != format) {
         Result<darkroom::gpu::Image> made = darkroom::gpu::Image::create(
             context, {.name = "scopes",
-                      .format = scope_format,
+                      .format = format,
                       .extent = {extent.width, extent.height, 1},
                       .usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
         if (!made) return failure(std::move(made));

@@ -36,6 +36,8 @@ class Viewer {
     [[nodiscard]] darkroom::Result<> open();
     [[nodiscard]] darkroom::Result<> make_source();
     void take_scene(std::unique_ptr<SceneSource> scene);
+    [[nodiscard]] darkroom::Result<> make_device();
+    [[nodiscard]] bool is_high_range() const;
     [[nodiscard]] darkroom::Result<> start_interface();
     [[nodiscard]] darkroom::Result<> turn();
     [[nodiscard]] darkroom::Result<> show(const darkroom::window::PresentFrame& frame);
@@ -126,6 +128,8 @@ class Viewer {
         std::optional<darkroom::Readback> picture;
         std::optional<darkroom::FrameReadback> layers;
         darkroom::Frame of{};
+        darkroom::window::PaneTransfer transfer{};  ///< of the picture
+        bool has_floats = false;                    ///< likewise
     };
     struct Wanted {
         std::filesystem::path picture, window, frame;

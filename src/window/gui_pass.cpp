@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -91,7 +92,19 @@ struct DrawSlot {
     std::vector<const Pane*> panes;  ///< of the recording that is made; sets in the same order
 };
 
-gpu::PipelineDesc pipeline_desc(std::string name, std::string fragment, VkFormat format, VkDescriptorSetLayout layout) {
+/// The constants of shaders/gui_common.glsl.
+std::vector<std::uint32_t> target_constants(const GuiPass::Desc& desc) {
+    const auto kind = [&]() -> std::uint32_t {
+        if (desc.color.transfer == Transfer::Scrgb) return 2;
+        if (desc.color.transfer == Transfer::Pq) return 3;
+        if (desc.color.transfer == Transfer::Hlg) return 4;
+        return gpu::format_traits(desc.format).is_srgb ? 1 : 0;
+    };
+    return {kind(), std::bit_cast<std::uint32_t>(desc.color.peak_nits)};
+}
+
+gpu::PipelineDesc pipeline_desc(std::string name, std::string fragment, const GuiPass::Desc& desc,
+                                VkDescriptorSetLayout layout) {
     return {.name = std::move(name),
             .vertex = gui_vertex_shader(),
             .fragment = std::move(fragment),
@@ -101,8 +114,8 @@ gpu::PipelineDesc pipeline_desc(std::string name, std::string fragment, VkFormat
                            {2, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(ImDrawVert, col)}},
             .sets = {layout},
             .push_constant_size = sizeof(Block),
-            .specialization = {gpu::format_traits(format).is_srgb ? 1U : 0U},
-            .colors = {{.format = format,
+            .specialization = target_constants(desc),
+            .colors = {{.format = desc.format,
                         .is_blended = true,
                         .source = VK_BLEND_FACTOR_SRC_ALPHA,
                         .destination = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
@@ -171,12 +184,12 @@ Result<GuiPass> GuiPass::create(gpu::Context& context, const Desc& desc, ImFontA
     Result<gpu::SetLayout> layout = gpu::SetLayout::create(context, std::array<gpu::SetLayout::Binding, 2>{});
     if (!layout) return failure(std::move(layout));
     state.layout = std::move(*layout);
-    Result<gpu::Pipeline> lists = gpu::Pipeline::create(
-        context, pipeline_desc("interface", gui_fragment_shader(), desc.format, state.layout.handle));
+    Result<gpu::Pipeline> lists =
+        gpu::Pipeline::create(context, pipeline_desc("interface", gui_fragment_shader(), desc, state.layout.handle));
     if (!lists) return failure(std::move(lists));
     state.lists = std::move(*lists);
     Result<gpu::Pipeline> panes =
-        gpu::Pipeline::create(context, pipeline_desc("pane", pane_fragment_shader(), desc.format, state.layout.handle));
+        gpu::Pipeline::create(context, pipeline_desc("pane", pane_fragment_shader(), desc, state.layout.handle));
     if (!panes) return failure(std::move(panes));
     state.panes = std::move(*panes);
     state.slots.resize(desc.slots);

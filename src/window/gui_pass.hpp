@@ -27,7 +27,9 @@ class GuiPass {
 
     struct Desc {
         VkFormat format = VK_FORMAT_UNDEFINED;  ///< of the colour attachment; an sRGB one is given decoded colours
-        std::uint32_t slots = 2;                ///< recordings that may be unfinished
+        /// What it holds. White of the interface has 203 cd/m2, and pictures of light go on to the peak.
+        ColorState color = srgb_color;
+        std::uint32_t slots = 2;  ///< recordings that may be unfinished
     };
     /// Uploads the atlas, which is built if it was not. Errors: VkResult.
     [[nodiscard]] static Result<GuiPass> create(gpu::Context& context, const Desc& desc, ImFontAtlas& atlas);

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "panels/show/false_color.hpp"
+#include "shared/color_state_reference.hpp"
 #include "window/test_gui_pass.hpp"
 
 namespace darkroom::window {
@@ -311,6 +312,42 @@ TEST_F(WindowGpuPane, RefusesMorePanesThanItHasSetsFor) {
     draw(with(1));
     EXPECT_TRUE(result);
 }
+
+class WindowGpuHighRange : public test::GuiPassTest, public ::testing::WithParamInterface<ColorState> {
+  protected:
+    WindowGpuHighRange() : GuiPassTest(VK_FORMAT_R16G16B16A16_SFLOAT, GetParam()) {}
+
+    [[nodiscard]] std::array<double, 3> nits(const Pixels& pixels, std::uint32_t x, std::uint32_t y) const {
+        const std::array<float, 4> p = pixels.at(x, y);
+        return nits_of({p[0], p[1], p[2]}, GetParam());
+    }
+};
+
+// White of the interface is that of BT.2408, and light goes on to the display's peak.
+TEST_P(WindowGpuHighRange, WhatIsDrawnHasItsLuminance) {
+    const std::array<float, 4> lights{0.05F, 1, 3, 40};
+    const Picture light = upload(context,
+                                 make_pixels(4, 1,
+                                             [&](std::uint32_t x, std::uint32_t) {
+                                                 return std::array{lights[x], lights[x], lights[x], 1.0F};
+                                             }),
+                                 VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_LAYOUT_GENERAL);
+    Pane pane{.view = {.image = reference(light), .transfer = PaneTransfer::SceneLinear}, .is_nearest = true};
+    const Pixels pixels = draw(interface.frame([&](ImDrawList& list) {
+        list.AddRectFilled({0, 0}, {16, 16}, IM_COL32_WHITE);
+        list.AddRectFilled({16, 0}, {32, 16}, IM_COL32(128, 128, 128, 255));
+        list.AddImage(pane.texture(), {0, 16}, {64, 32});
+    }));
+    ASSERT_TRUE(result);
+    const auto expect_nits = [&](std::uint32_t x, std::uint32_t y, double wanted) {
+        for (const double found : nits(pixels, x, y)) EXPECT_NEAR(found, wanted, 0.01 * wanted) << x << " " << y;
+    };
+    expect_nits(8, 8, 203);
+    expect_nits(24, 8, 203 * decode(128 / 255.0));
+    for (std::uint32_t i = 0; i < lights.size(); ++i) expect_nits(16 * i + 8, 24, std::min(203.0 * lights[i], 1000.0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, WindowGpuHighRange, ::testing::Values(scrgb_color, pq_color, hlg_color));
 
 }  // namespace
 }  // namespace darkroom::window

@@ -35,6 +35,7 @@ struct Functions {
     PFN_vkDestroySemaphore DestroySemaphore = nullptr;
     PFN_vkWaitSemaphores WaitSemaphores = nullptr;
     PFN_vkGetSemaphoreCounterValue GetSemaphoreCounterValue = nullptr;
+    PFN_vkSetHdrMetadataEXT SetHdrMetadataEXT = nullptr;  ///< of VK_EXT_hdr_metadata; null: there is none
 
     [[nodiscard]] bool load(const gpu::Context& context) {
         bool is_complete = true;
@@ -62,6 +63,8 @@ struct Functions {
         of_device(DestroySemaphore, "vkDestroySemaphore");
         of_device(WaitSemaphores, "vkWaitSemaphores");
         of_device(GetSemaphoreCounterValue, "vkGetSemaphoreCounterValue");
+        SetHdrMetadataEXT = reinterpret_cast<PFN_vkSetHdrMetadataEXT>(
+            context.vk.GetDeviceProcAddr(context.device, "vkSetHdrMetadataEXT"));
         return is_complete;
     }
 };
@@ -139,6 +142,7 @@ struct Presenter::State {
     Functions vk;
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     VkSurfaceFormatKHR format{};
+    ColorState color = srgb_color;
     bool can_copy = false;
     Swapchain swapchain;
     VkExtent2D asked{};                     ///< for which the swapchain was made
@@ -211,14 +215,10 @@ Result<> Presenter::State::choose_format() {
         return vk.GetPhysicalDeviceSurfaceFormatsKHR(context->physical_device, surface, count, to);
     });
     if (Result<> done = check(result, "listing the formats of the window"); !done) return done;
-    if (formats.empty()) return machine_error("the window has no format that pictures can be shown in");
-    const auto rank = [](const VkSurfaceFormatKHR& of) {
-        if (of.colorSpace != VK_COLOR_SPACE_SRGB_NONLINEAR_KHR) return 3;
-        if (of.format == VK_FORMAT_B8G8R8A8_UNORM || of.format == VK_FORMAT_R8G8B8A8_UNORM) return 0;
-        if (of.format == VK_FORMAT_B8G8R8A8_SRGB || of.format == VK_FORMAT_R8G8B8A8_SRGB) return 1;
-        return 2;
-    };
-    format = *std::ranges::min_element(formats, {}, rank);
+    const std::optional<SurfaceChoice> chosen = choose_surface(formats, desc.range, desc.peak_nits);
+    if (!chosen) return machine_error("the window has no format that pictures can be shown in");
+    format = chosen->format;
+    color = chosen->color;
     return {};
 }
 
@@ -264,6 +264,10 @@ VkResult Presenter::State::make_swapchain(VkExtent2D window) {
     retire();
     if (result != VK_SUCCESS) return result;
     ++counters.swapchains;
+    if (vk.SetHdrMetadataEXT != nullptr && !color.is_standard_code()) {
+        const VkHdrMetadataEXT told = hdr_metadata(color);
+        vk.SetHdrMetadataEXT(context->device, 1, &made.handle, &told);
+    }
     result = add_images(made);
     swapchain = std::move(made);
     is_stale = result != VK_SUCCESS;
@@ -477,6 +481,7 @@ bool Presenter::is_finished(std::uint64_t number) const {
            done > number;
 }
 
+const ColorState& Presenter::color() const { return state_->color; }
 VkFormat Presenter::format() const { return state_->format.format; }
 bool Presenter::can_copy() const { return state_->can_copy; }
 Presentation Presenter::presentation() const { return state_->desc.presentation; }

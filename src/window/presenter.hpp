@@ -12,6 +12,8 @@
 #include <memory>
 #include <optional>
 
+#include "window/surface_format.hpp"
+
 namespace darkroom::window {
 
 /// When pictures are shown: with the display; with it, the newest one; at once, torn. What a surface does not have
@@ -21,6 +23,9 @@ enum class Presentation : std::uint32_t { Vsync, Mailbox, Immediate };
 struct PresenterDesc {
     Presentation presentation = Presentation::Vsync;
     std::uint32_t frames_in_flight = 2;
+    /// High needs VK_EXT_swapchain_colorspace; where VK_EXT_hdr_metadata is, the display is told of it.
+    DynamicRange range = DynamicRange::Standard;
+    float peak_nits = 1000;  ///< of pictures of high range
     /// Makes a surface for the window: at first, and after one was lost.
     std::function<Result<VkSurfaceKHR>(VkInstance)> make_surface;
 };
@@ -64,6 +69,8 @@ class Presenter {
 
     /// Of the images: an UNORM one where the surface has one, so that encoded pictures are shown as they are.
     [[nodiscard]] VkFormat format() const;
+    /// What their numbers mean.
+    [[nodiscard]] const ColorState& color() const;
     /// Can the images be copied from?
     [[nodiscard]] bool can_copy() const;
     [[nodiscard]] Presentation presentation() const;

@@ -47,9 +47,9 @@ class GuiPassTest : public ::testing::Test {
   protected:
     static constexpr VkExtent2D extent{96, 64};
 
-    explicit GuiPassTest(VkFormat format = VK_FORMAT_R8G8B8A8_UNORM)
+    explicit GuiPassTest(VkFormat format = VK_FORMAT_R8G8B8A8_UNORM, const ColorState& color = srgb_color)
         : target(gpu::test::blank(context, extent, format)),
-          pass(must(GuiPass::create(context, {.format = format}, *ImGui::GetIO().Fonts))) {}
+          pass(must(GuiPass::create(context, {.format = format, .color = color}, *ImGui::GetIO().Fonts))) {}
 
     void record(VkCommandBuffer commands, const Picture& onto, const ImDrawData& data, std::uint32_t slot) {
         const VkRenderingAttachmentInfo color{

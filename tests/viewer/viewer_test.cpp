@@ -281,6 +281,8 @@ TEST_F(CliViewer, RefusesWhatItCannotShow) {
     expect_refused({"play"}, 1, "a scene, a model or a frame is needed");
     expect_refused({"play", scenes + "dungeon.scene.toml", "b.exr"}, 1, "one scene or model at a time");
     expect_refused({"edit", scenes + "dungeon.scene.toml", "--present", "often"}, 1, "vsync, mailbox or immediate");
+    expect_refused({"edit", scenes + "dungeon.scene.toml", "--range", "wide"}, 1, "standard or high");
+    expect_refused({"play", scenes + "dungeon.scene.toml", "--peak-nits", "5"}, 1, "[100, 10000] cd/m2");
     expect_refused({"edit", path("missing.exr")}, 1, "missing.exr");
     expect_refused({"edit", scenes + "dungeon.scene.toml", "--screenshot", path("none/a.png")}, 1, "none");
 }

@@ -39,6 +39,16 @@ void ViewFlags::add_to(CommandFlags command, bool is_edit, std::span<const darkr
         .type_name("vsync|mailbox|immediate")
         .capture_default()
         .group(group);
+    command
+        .add_option("--range", range_,
+                    "High: light beyond white, where the display has it; with --frames the range is the standard one")
+        .type_name("standard|high")
+        .capture_default()
+        .group(group);
+    peak_.add_to(command, "Of a display of high range: the brightest that it shows")
+        .type_name("CD/M2")
+        .default_str("1000")
+        .group(group);
     frames_.add_to(command, "Shows so many frames, 1 / fps seconds apart, and ends").type_name("N").group(group);
     frames_per_second_.add_to(command, "Of --frames, and of a sequence")
         .type_name("N")
@@ -152,6 +162,12 @@ Result<> ViewFlags::read_window(ViewerJob& job) const {
         return user_error(
             fmt::format("--present {}: allowed is vsync, mailbox or immediate", printable(presentation_)));
     job.presentation = mode->second;
+    if (range_ != "standard" && range_ != "high")
+        return user_error(fmt::format("--range {}: allowed is standard or high", printable(range_)));
+    // The same command gives the same picture on every display.
+    if (range_ == "high" && !frames_.is_given() && screenshot_.empty() && window_screenshot_.empty())
+        job.range = darkroom::window::DynamicRange::High;
+    if (Result<> done = peak_.read_to(job.peak_nits); !done) return done;
     const Result<darkroom::KernelStage> stage = device_.stage();
     if (!stage) return failure(stage.error());
     job.kernels = *stage;

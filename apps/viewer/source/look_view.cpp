@@ -13,7 +13,8 @@ using darkroom::Result;
 
 namespace {
 
-constexpr VkFormat picture_format = VK_FORMAT_R8G8B8A8_UNORM, watched_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat code_format = VK_FORMAT_R8G8B8A8_UNORM, light_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat watched_format = VK_FORMAT_R32G32B32A32_SFLOAT;
 constexpr std::uint32_t watch_id = 1;
 
 VkExtent2D extent_of(const darkroom::PlanImage& image, std::uint32_t mip_level) {
@@ -55,6 +56,10 @@ Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui)
     if (wanted.color.format == VK_FORMAT_UNDEFINED) return {};
     wanted.kernels = desc_.kernels;
     wanted.fuse = desc_.fuse;
+    if (desc_.makes_light) {
+        wanted.target.format = light_format;
+        wanted.target_domain = darkroom::Domain::SceneLinear;
+    }
     wanted.target.usage |=
         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     if (ui != VK_FORMAT_UNDEFINED) wanted.ui = {ui, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
@@ -99,7 +104,7 @@ Result<> LookView::resize(VkExtent2D extent) {
     if (picture_.handle != VK_NULL_HANDLE && !must_wait(extent)) return {};
     Result<darkroom::gpu::Image> made =
         darkroom::gpu::Image::create(device_.context(), {.name = "picture",
-                                                         .format = picture_format,
+                                                         .format = compiled_.target.format,
                                                          .extent = {extent.width, extent.height, 1},
                                                          .usage = compiled_.target.usage});
     if (!made) return failure(std::move(made));
@@ -124,6 +129,7 @@ Result<> LookView::record(VkCommandBuffer commands, darkroom::Frame frame) {
     }
     Result<> done = composer_.record(commands, frame);
     is_drawn_ = is_drawn_ || done;
+    if (done && desc_.makes_light) transfer_ = darkroom::window::PaneTransfer::SceneLinear;
     return done;
 }
 
@@ -168,14 +174,17 @@ darkroom::ImageRef LookView::watched() const {
 
 void LookView::copy(VkCommandBuffer commands, const darkroom::ImageRef& from) {
     change_layout(commands, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    const VkImageCopy whole{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                            .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                            .extent = {std::min(from.extent.width, picture_.info.extent.width),
-                                       std::min(from.extent.height, picture_.info.extent.height), 1}};
-    device_.context().vk.CmdCopyImage(commands, from.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture_.handle,
-                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole);
+    const VkExtent2D both = least_of(from.extent, extent());
+    const VkOffset3D end{static_cast<std::int32_t>(both.width), static_cast<std::int32_t>(both.height), 1};
+    const VkImageSubresourceLayers layer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    // The formats differ where pictures are light.
+    const VkImageBlit whole{
+        .srcSubresource = layer, .srcOffsets = {{}, end}, .dstSubresource = layer, .dstOffsets = {{}, end}};
+    device_.context().vk.CmdBlitImage(commands, from.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture_.handle,
+                                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole, VK_FILTER_NEAREST);
     change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     is_drawn_ = true;
+    transfer_ = darkroom::window::PaneTransfer::Encoded;
 }
 
 void LookView::copy_to(VkCommandBuffer commands, const darkroom::gpu::Image& image) const {
@@ -205,7 +214,7 @@ darkroom::ImageRef LookView::picture() const { return is_drawn_ ? reference() : 
 darkroom::ImageRef LookView::reference() const {
     return {.image = picture_.handle,
             .view = picture_.mip_views.empty() ? VK_NULL_HANDLE : picture_.mip_views[0],
-            .format = picture_format,
+            .format = picture_.info.format,
             .extent = {picture_.info.extent.width, picture_.info.extent.height},
             .layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
             .last_stages = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,

@@ -9,6 +9,7 @@
 
 #include "gpu/resource/resources.hpp"
 #include "live_source.hpp"
+#include "window/pane.hpp"
 
 namespace app {
 
@@ -18,6 +19,7 @@ class LookView {
         std::uint32_t frames_in_flight = 2;
         darkroom::KernelStage kernels = darkroom::KernelStage::Auto;
         bool fuse = true;
+        bool makes_light = false;        ///< in place of code values of sRGB, for a window of high range
         std::vector<std::string> keeps;  ///< as in darkroom::ApplyOptions
     };
     LookView(darkroom::Device& device, Desc desc);
@@ -35,7 +37,7 @@ class LookView {
     [[nodiscard]] bool must_wait(VkExtent2D extent) const;
     /// Makes the picture, and leaves it to be sampled by fragment shaders.
     [[nodiscard]] darkroom::Result<> record(VkCommandBuffer commands, darkroom::Frame frame);
-    /// Copies somebody else's picture of the same extent there, which is in TRANSFER_SRC_OPTIMAL.
+    /// Copies somebody else's picture of the same extent there, code values, which is in TRANSFER_SRC_OPTIMAL.
     void copy(VkCommandBuffer commands, const darkroom::ImageRef& picture);
     /// The picture, scaled, into an image that was created for copies, which is left in TRANSFER_DST_OPTIMAL.
     void copy_to(VkCommandBuffer commands, const darkroom::gpu::Image& image) const;
@@ -47,6 +49,8 @@ class LookView {
     [[nodiscard]] darkroom::WatchState watch_state() const;
     /// As record() and copy() leave it; not given where neither has made one of its present size.
     [[nodiscard]] darkroom::ImageRef picture() const;
+    /// What its numbers mean.
+    [[nodiscard]] darkroom::window::PaneTransfer transfer() const { return transfer_; }
     [[nodiscard]] VkExtent2D extent() const { return {picture_.info.extent.width, picture_.info.extent.height}; }
     /// Why the look on the screen is not the newest; empty: it is, or will be.
     [[nodiscard]] std::string error() const;
@@ -69,6 +73,7 @@ class LookView {
     std::uint32_t frames_alike_ = 0;
     darkroom::gpu::Image picture_, watched_;
     bool is_drawn_ = false;
+    darkroom::window::PaneTransfer transfer_ = darkroom::window::PaneTransfer::Encoded;
     std::vector<darkroom::Watch> watches_;
 };
 

@@ -50,7 +50,7 @@ vec3 shown_color(vec4 value, View view) {
     if (is_marked && any(is_broken)) return vec3(1.0, 0.0, 1.0);
     if (any(isnan(numbers))) numbers = vec3(0.0);
     bool is_linear = view.transfer == transfer_scene_linear && !is_alpha;
-    vec3 picture = is_linear ? srgb_encode(clamp(numbers, 0.0, 1.0)) : clamp(numbers, 0.0, 1.0);
+    vec3 picture = is_linear ? clamp(srgb_encode(max(numbers, vec3(0.0))), 0.0, largest_code()) : clamp(numbers, 0.0, 1.0);
     if ((block.flags & flag_false_color) != 0 && view.transfer != transfer_raw && !is_alpha)
         picture = false_color(numbers, is_linear);
     // Stripes of four pixels, so that what is under them stays visible.
