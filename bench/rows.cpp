@@ -166,6 +166,7 @@ std::vector<Recipe> recipes() {
         }
     }
     add_chain(out, "tail/lut", graded_tail_stack({}), {});
+    add_chain(out, "tail/pq", high_range_tail_stack({}), {.target_color = pq_color});
     add_chain(out, "tail/ui, neutral", ui_tail_stack({}, true), {.world = WorldUse::Interface});
     add_chain(out, "tail/ui", ui_tail_stack({}, false), {.world = WorldUse::Interface});
     if (const Stack bloom = bloom_stack(); !bloom.empty())

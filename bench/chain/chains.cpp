@@ -103,6 +103,13 @@ Stack graded_tail_stack(const TailValues& values) {
     return stack;
 }
 
+Stack high_range_tail_stack(const TailValues& values) {
+    std::vector<NamedStep> steps = tail_steps(values);
+    steps.resize(3);  // it is neither encoded nor dithered
+    steps[1].values = {{"curve", std::string("bt2390")}, {"white", 16.0}, {"peak_nits", 1000.0}};
+    return stack_of(steps);
+}
+
 Stack ui_tail_stack(const TailValues& values, bool is_neutral) {
     const double on = is_neutral ? 0 : 1;
     std::vector<NamedStep> steps = tail_steps(values);
@@ -202,6 +209,7 @@ Result<Chain> compile_chain(Bed& bed, const Stack& stack, const ChainDesc& desc)
     CompileDesc compile_desc = bed.compile_desc(desc.world);
     compile_desc.kernels = desc.kernels;
     compile_desc.fuse = desc.fuse;
+    compile_desc.target_color = desc.target_color;
     auto plan = chain.composer->compile(compile_desc);
     if (!plan) return failure(std::move(plan));
     chain.plan = std::move(*plan);

@@ -33,6 +33,8 @@ using Stack = std::vector<Step>;
 [[nodiscard]] Stack foggy_tail_stack(const TailValues& values);
 /// The same with a colour table before the encoding, a cube of 33.
 [[nodiscard]] Stack graded_tail_stack(const TailValues& values);
+/// For a display of high range: exposure, BT.2390 to 1000 cd/m2, vignette; the target makes PQ of its light.
+[[nodiscard]] Stack high_range_tail_stack(const TailValues& values);
 /// Bloom at five levels.
 [[nodiscard]] Stack bloom_stack();
 /// A Gaussian blur alone; `resolution`: automatic or full.
@@ -58,6 +60,7 @@ struct ChainDesc {
     bool fuse = true;
     bool has_timers = false;
     WorldUse world = WorldUse::None;
+    std::optional<ColorState> target_color{};
 };
 /// A compiled stack, with its leaner kernels.
 struct Chain {
