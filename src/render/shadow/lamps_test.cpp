@@ -60,9 +60,10 @@ scene::Scene lit_by(const std::vector<scene::LightState>& lights) {
     return out;
 }
 
-Pixels shot(const scene::Snapshot& snapshot, bool has_shadows = true, ShadowFilter filter = ShadowFilter::Soft) {
+Pixels shot(const scene::Snapshot& snapshot, bool has_shadows = true, ShadowFilter filter = ShadowFilter::Soft,
+            const scene::Assets& assets = {}) {
     Renderer renderer = test::renderer_for(
-        {.extent = lamp_extent, .cascades = {.filter = filter}, .draw = {.has_shadows = has_shadows}}, {},
+        {.extent = lamp_extent, .cascades = {.filter = filter}, .draw = {.has_shadows = has_shadows}}, assets,
         lit_by(snapshot.lights));
     return test::shoot(renderer, snapshot).color;
 }
@@ -278,6 +279,83 @@ TEST(RenderGpuLampShadows, PostBetweenASpotAndTheFloorShadesWhereRaysSay) {
 TEST(RenderGpuLampShadows, PostBetweenAPointAndTheFloorShadesWhereRaysSay) {
     expect_shadow_of_a_post(point_lamp({-1.6F, 0.3F, -1.9F}), 2);
     expect_shadow_of_a_post(point_lamp({-0.9F, -1.1F, -1.7F}), 2);
+}
+
+namespace {
+
+/// A screen two metres before the camera, and three behind the camera a lamp that shines at it.
+scene::Snapshot screen_scene(scene::LightType type) {
+    scene::Snapshot snapshot = test::snapshot_of(lamp_extent);
+    add_chalk(snapshot, {-9, -9, -2.1F}, {9, 9, -2});
+    const vec3 lamp(0, 0, 3);
+    snapshot.lights = {type == scene::LightType::Point ? point_lamp(lamp, 30) : spot_lamp(lamp, vec3(0, 0, -1), 0.9F)};
+    return snapshot;
+}
+
+constexpr int all_of_half = 50 * 20;
+
+/// Of what a board of one metre halfway, behind the camera, would shade: pixels left and right of the middle.
+std::array<int, 2> shaded_halves(const scene::Snapshot& snapshot, const scene::Assets& assets, const Pixels& open) {
+    const Pixels cut = shot(snapshot, true, ShadowFilter::Plain, assets);
+    std::array<int, 2> out{};
+    // The shadow is 2 m wide, 60 pixels at 2 m; some pixels of its edges and of its middle are left out.
+    for (std::uint32_t y = 35; y < 85; ++y)
+        for (std::uint32_t x = 55; x < 105; ++x)
+            if (std::abs(static_cast<float>(x) - 79.5F) > 5 && cut.at(x, y)[0] < 0.5F * open.at(x, y)[0])
+                ++out[x < 80 ? 0 : 1];
+    return out;
+}
+
+}  // namespace
+
+TEST(RenderGpuLampShadows, HolesOfMaskedMaterialsLetLightThrough) {
+    scene::Assets assets;
+    assets.images.push_back({.name = "half", .width = 2, .height = 1, .rgba = {255, 255, 255, 255, 255, 255, 255, 0}});
+    for (const scene::LightType type : {scene::LightType::Point, scene::LightType::Spot}) {
+        scene::Snapshot snapshot = screen_scene(type);
+        const Pixels open = shot(snapshot, true, ShadowFilter::Plain, assets);
+        scene::SnapshotMaterial material = chalk();
+        material.entity_texture = 0;
+        material.surface.base_color_texture.is_nearest = true;
+        test::add_box(snapshot, {-0.5F, -0.5F, 0.48F}, {0.5F, 0.5F, 0.5F}, material);
+        EXPECT_EQ(shaded_halves(snapshot, assets, open), (std::array{all_of_half, all_of_half}))
+            << "opaque: alpha means nothing";
+        snapshot.materials.back().surface.blend = scene::SurfaceBlend::Mask;
+        const auto [left, right] = shaded_halves(snapshot, assets, open);
+        EXPECT_EQ(std::max(left, right), all_of_half) << int(type);
+        EXPECT_EQ(std::min(left, right), 0) << int(type);
+        snapshot.materials.back().surface.alpha_cutoff = 0;
+        EXPECT_EQ(shaded_halves(snapshot, assets, open), (std::array{all_of_half, all_of_half}));
+    }
+}
+
+// A board of half the width, whose joint moves it from the left to the right.
+TEST(RenderGpuLampShadows, SkinnedMeshesCastWhereTheirJointsAre) {
+    scene::Primitive primitive;
+    for (const float y : {-0.5F, 0.5F})
+        for (const float x : {-0.5F, 0.0F}) primitive.vertices.push_back({.position = vec3(x, y, 0.5F)});
+    primitive.indices = {0, 1, 2, 2, 1, 3};
+    primitive.skin.resize(4);
+    scene::Model model;
+    model.meshes = {{.primitives = {primitive}}};
+    scene::Assets assets;
+    assets.models = {model};
+    for (const scene::LightType type : {scene::LightType::Point, scene::LightType::Spot}) {
+        scene::Snapshot snapshot = screen_scene(type);
+        const Pixels open = shot(snapshot, true, ShadowFilter::Plain, assets);
+        snapshot.materials.push_back(chalk());
+        snapshot.materials.back().surface.is_double_sided = true;
+        scene::Instance board{.mesh = {.model = 0, .mesh = 0, .primitive = 0}};
+        board.material = 1;
+        board.bounds.add(vec3(-1, -1, 0.4F));
+        board.bounds.add(vec3(1, 1, 0.6F));
+        snapshot.instances.push_back(board);
+        EXPECT_EQ(shaded_halves(snapshot, assets, open), (std::array{all_of_half, 0})) << int(type);
+        snapshot.joints = {glm::translate(test::mat4(1), vec3(0.5F, 0, 0))};
+        snapshot.instances.back().first_joint = 0;
+        snapshot.instances.back().joint_count = 1;
+        EXPECT_EQ(shaded_halves(snapshot, assets, open), (std::array{0, all_of_half})) << int(type);
+    }
 }
 
 TEST(RenderGpuLampShadows, BeyondTheBudgetLampsShineWithoutAShadow) {
