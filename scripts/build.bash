@@ -9,8 +9,8 @@ die() {
     exit 2
 }
 
-# What packages.txt names, and what the caller has in `extra_packages`, or in the environment.
-extra_packages=(${DARKROOM_EXTRA_PACKAGES:-})
+# What packages.txt names, and what the caller has in `extra_packages`.
+extra_packages=()
 wanted_packages() {
     sed 's/#.*//; s/[[:space:]]//g; /^$/d' "$root/packages.txt"
     [[ ${#extra_packages[@]} == 0 ]] || printf '%s\n' "${extra_packages[@]}"
@@ -60,6 +60,17 @@ install_packages() {
     "${apt[@]}" update >>"$log" 2>&1 || say "apt-get update failed; going on with the package lists that are there"
     # Word by word: $missing is a list.
     "${apt[@]}" install -y --no-install-recommends $missing >>"$log" 2>&1 || failed "installing packages"
+}
+
+# What the caller has in DARKROOM_OPTIONAL_PACKAGES, as far as root can have it: what needs one of them is skipped without.
+install_optional_packages() {
+    local name apt=(env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0)
+    for name in ${DARKROOM_OPTIONAL_PACKAGES:-}; do
+        [[ $(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null) != installed ]] || continue
+        say "installing $name"
+        { [[ $(id -u) == 0 ]] && "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends "$name"; } \
+            >>"$log" 2>&1 || say "$name could not be installed: going on without it"
+    done
 }
 
 failed() {
@@ -125,6 +136,7 @@ build() {
     fi
     : >"$log"
     install_packages
+    install_optional_packages
     command -v cmake >/dev/null || die "cmake not found; needed packages (names of Debian 12): $(wanted_packages | xargs)"
 
     # A folder that was configured for a tree elsewhere (moved, copied) starts anew.
