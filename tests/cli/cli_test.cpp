@@ -109,6 +109,8 @@ TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     const std::string frame = path("frame.exr"), out = path("x.png");
     expect_refused({}, 1, "a command is needed");
     expect_refused({"devlop"}, 1, "did you mean 'develop'?");
+    expect_refused({"develop", frame, "-o", out, "--chromatic-aberration-intensity", "1"}, 1,
+                   "did you mean '--chromatic-aberration'?");
     expect_refused({"develop"}, 1, "INPUT");
     expect_refused({"develop", frame}, 1, "--output");
     expect_refused({"develop", path("none.exr"), "-o", out}, 1, "none.exr");

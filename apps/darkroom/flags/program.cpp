@@ -29,8 +29,17 @@ std::vector<std::string> known_names(const CLI::App& command) {
 }
 
 std::string unknown_argument(const CLI::App& command, const std::string& argument) {
+    const std::string name = argument.substr(0, argument.find('='));
+    const std::vector<std::string> known = known_names(command);
+    // The amount of some effects has the effect's own name.
+    for (const std::string_view amount : {"-intensity", "-amount", "-strength"}) {
+        const std::string effect = name.ends_with(amount) ? name.substr(0, name.size() - amount.size()) : "";
+        if (std::ranges::find(known, effect) != known.end())
+            return fmt::format("{}: unknown argument '{}', did you mean '{}'?", command.get_name(), printable(argument),
+                               effect);
+    }
     return fmt::format("{}: unknown argument '{}'{}", command.get_name(), printable(argument),
-                       darkroom::suggestion(argument.substr(0, argument.find('=')), known_names(command)));
+                       darkroom::suggestion(name, known));
 }
 
 // The first argument nobody took.
