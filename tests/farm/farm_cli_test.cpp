@@ -95,7 +95,7 @@ TEST_F(CliFarm, WhatATaskHasStartedEndsWithIt) {
         "child=$(grep -ls \"^PPid:[[:space:]]*$task$\" /proc/[0-9]*/status | cut -d/ -f3 | head -n 1)\ntest -n "
         "\"$child\" || echo no child\n"
         "kill -TERM $task\nwait $task\n"
-        "for i in $(seq 100); do kill -0 $child 2>/dev/null || break; sleep 0.05; done\n"
+        "for i in $(seq 600); do kill -0 $child 2>/dev/null || break; sleep 0.05; done\n"
         "kill -0 $child 2>/dev/null && echo is running\nexit 0");
     EXPECT_EQ(outcome.out, "");
     EXPECT_FALSE(fs::exists(path(out("out", 59))));
