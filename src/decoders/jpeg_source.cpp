@@ -13,7 +13,7 @@
 // After <cstdio>, which it needs.
 #include <jpeglib.h>
 
-#include "core/text/lower.hpp"
+#include "decoders/attributed_source.hpp"
 #include "decoders/exif.hpp"
 #include "decoders/integer_rows.hpp"
 
@@ -99,7 +99,7 @@ void light_of_inks(const std::uint8_t* inks, std::uint8_t* rgb, std::size_t widt
             rgb[c] = static_cast<std::uint8_t>(share(inks[c]) * share(inks[3]) * 255 + 0.5F);
 }
 
-class JpegSource final : public PictureSource {
+class JpegSource final : public AttributedSource {
   public:
     [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(std::span<const std::byte> bytes) {
         auto out = std::make_unique<JpegSource>();
@@ -118,16 +118,6 @@ class JpegSource final : public PictureSource {
         return std::unique_ptr<PictureSource>(std::move(out));
     }
 
-    std::vector<double> numbers(std::size_t /*part*/, std::string_view attribute) const override {
-        for (const auto& [name, number] : attributes_)
-            if (lower(name) == lower(attribute)) return {number};
-        return {};
-    }
-    std::vector<std::string> attributes(std::size_t /*part*/) const override {
-        std::vector<std::string> out;
-        for (const auto& attribute : attributes_) out.push_back(attribute.first);
-        return out;
-    }
     std::uint32_t row_unit(std::size_t /*part*/) const override { return 32; }
 
   private:
@@ -181,7 +171,6 @@ class JpegSource final : public PictureSource {
     std::unique_ptr<JpegReader> jpeg_;
     std::uint32_t next_ = 0;  // row
     bool has_started_ = false, has_failed_ = false;
-    std::vector<std::pair<std::string, double>> attributes_;
     std::vector<std::uint8_t> row_;
 };
 

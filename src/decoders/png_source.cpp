@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/text/lower.hpp"
+#include "decoders/attributed_source.hpp"
 #include "decoders/integer_rows.hpp"
 
 namespace darkroom {
@@ -85,7 +85,7 @@ class PngReader {
     png_infop info_ = nullptr;
 };
 
-class PngSource final : public PictureSource {
+class PngSource final : public AttributedSource {
   public:
     [[nodiscard]] static Result<std::unique_ptr<PictureSource>> open(std::span<const std::byte> bytes) {
         auto out = std::make_unique<PngSource>();
@@ -104,16 +104,6 @@ class PngSource final : public PictureSource {
         return std::unique_ptr<PictureSource>(std::move(out));
     }
 
-    std::vector<double> numbers(std::size_t /*part*/, std::string_view attribute) const override {
-        for (const auto& [name, number] : attributes_)
-            if (lower(name) == lower(attribute)) return {number};
-        return {};
-    }
-    std::vector<std::string> attributes(std::size_t /*part*/) const override {
-        std::vector<std::string> out;
-        for (const auto& attribute : attributes_) out.push_back(attribute.first);
-        return out;
-    }
     std::uint32_t row_unit(std::size_t /*part*/) const override { return 32; }
 
   private:
@@ -165,7 +155,6 @@ class PngSource final : public PictureSource {
     std::unique_ptr<PngReader> png_;
     std::uint32_t next_ = 0;  // row
     bool has_failed_ = false;
-    std::vector<std::pair<std::string, double>> attributes_;
     std::vector<std::byte> samples_;
 };
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/text/lower.hpp"
+#include "decoders/attributed_source.hpp"
 #include "decoders/integer_rows.hpp"
 
 namespace darkroom {
@@ -91,7 +91,7 @@ void put_real(const IntegerRow& row, const SamplePlace& place, std::byte* to) {
     }
 }
 
-class TiffSource final : public PictureSource {
+class TiffSource final : public AttributedSource {
   public:
     explicit TiffSource(std::span<const std::byte> bytes) : file_(bytes) {}
 
@@ -135,16 +135,6 @@ class TiffSource final : public PictureSource {
         return true;
     }
 
-    std::vector<double> numbers(std::size_t /*part*/, std::string_view attribute) const override {
-        for (const auto& [name, number] : attributes_)
-            if (lower(name) == lower(attribute)) return {number};
-        return {};
-    }
-    std::vector<std::string> attributes(std::size_t /*part*/) const override {
-        std::vector<std::string> out;
-        for (const auto& attribute : attributes_) out.push_back(attribute.first);
-        return out;
-    }
     std::uint32_t row_unit(std::size_t /*part*/) const override { return is_tiled_ ? chunk_height_ : 32; }
 
   private:
@@ -231,7 +221,6 @@ class TiffSource final : public PictureSource {
     bool is_apart_ = false, is_tiled_ = false;
     std::uint32_t chunk_width_ = 1, chunk_height_ = 1;
     std::uint32_t band_number_ = 0;  ///< one more than that which `band_` holds
-    std::vector<std::pair<std::string, double>> attributes_;
     std::vector<std::byte> band_, chunk_;
 };
 
