@@ -3,7 +3,7 @@
 # launcher.sh TREE: when ./darkroom builds, when it does not, and what it says, in a small tree with a CMake that only
 # pretends. Nothing is compiled or installed.
 set -euo pipefail
-unset DARKROOM_BUILD DARKROOM_CMAKE_OPTIONS DARKROOM_YES XDG_RUNTIME_DIR XDG_STATE_HOME
+unset DARKROOM_BUILD DARKROOM_CMAKE_OPTIONS DARKROOM_OPTIONAL_PACKAGES DARKROOM_YES XDG_RUNTIME_DIR XDG_STATE_HOME
 work=$(mktemp -d)
 trap 'chmod -R u+w "$work"; rm -rf "$work"' EXIT
 tree="$work/a tree"
