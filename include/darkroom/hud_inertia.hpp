@@ -15,6 +15,8 @@ class HudInertia {
     // picture widths per second and degree.
     static constexpr double jump_rate = 18, turn_rate = 14, jump_push = -0.2, turn_push = -0.002;
     static constexpr double longest_step = 0.1;  ///< seconds; a longer frame moves no more than this
+    /// Seconds without a push and below 1e-4 of the picture and 1e-3 of it a second, after which the springs rest.
+    static constexpr double rest_after = 0.1;
 
     /// Pushes, then moves by `delta_time` seconds: the exact solution, so frames of any length give the same curve.
     /// `yaw`: of the view, in degrees, from any origin; the shorter way round counts. `velocity_z`: of the player,
@@ -28,7 +30,9 @@ class HudInertia {
   private:
     struct Spring {
         double position = 0, velocity = 0;
+        double slight_seconds = 0;  ///< for how long it has been too slight to be seen
         void move(double delta_time, double rate);
+        void push(double by);
     };
     Spring x_, y_;
     std::optional<double> yaw_;

@@ -129,13 +129,38 @@ TEST(HudInertia, LongFramesAreShortenedAndThoseWithoutTimeWait) {
 }
 
 TEST(HudInertia, WhatIsNearlyAtRestRests) {
+    for (const double rate : {24.0, 60.0, 1000.0}) {
+        SCOPED_TRACE(rate);
+        HudInertia inertia = standing();
+        inertia.step(1 / rate, 5, true, 0);
+        EXPECT_NE(inertia.offset().x, 0);
+        for (int frame = 0; frame < rate; ++frame) inertia.step(1 / rate, 5, true, 0);
+        EXPECT_EQ(inertia.offset().x, 0);
+    }
+    // What is slight is not at rest at once: 0.4 degrees push by 0.0008 a second.
     HudInertia inertia = standing();
-    inertia.step(0.005, 0.4, true, 0);
-    EXPECT_EQ(inertia.offset().x, 0) << "too little to be seen";
-    inertia.step(0.005, 5, true, 0);
-    EXPECT_NE(inertia.offset().x, 0);
-    for (int frame = 0; frame < 200; ++frame) inertia.step(0.005, 5, true, 0);
+    EXPECT_NEAR(inertia.step(0.005, 0.4, true, 0).x, exact(-0.0008, 14, 0.005), 1e-9);
+    for (double at = 0.01; at < 0.095; at += 0.005)
+        EXPECT_NEAR(inertia.step(0.005, 0.4, true, 0).x, exact(-0.0008, 14, at), 1e-9) << at;
+    for (int frame = 0; frame < 3; ++frame) inertia.step(0.005, 0.4, true, 0);
     EXPECT_EQ(inertia.offset().x, 0);
+}
+
+// Turning by r degrees a second is a force of turn_push r, and the offset goes to that over rate^2. A frame's turn
+// pushes at its start: half a frame early, and off the integral by (rate dt)^2 / 12.
+TEST(HudInertia, TurningWithoutEndIsTheSameAtEveryFrameRate) {
+    for (const double degrees : {1.0, 60.0, 360.0})
+        for (const double rate : {24.0, 30.0, 60.0, 120.0, 144.0, 240.0, 500.0, 1000.0}) {
+            SCOPED_TRACE(testing::Message() << degrees << " degrees a second, frames a second: " << rate);
+            HudInertia inertia = standing();
+            const double limit = -0.002 * degrees / (14 * 14);
+            for (int frame = 1; frame <= rate; ++frame) {
+                const Vec2 offset = inertia.step(1 / rate, degrees * frame / rate, true, 0);
+                const double t = 14 * (frame + 0.5) / rate;
+                const double error = std::pow(14 / rate, 2) / 6;
+                EXPECT_NEAR(offset.x, limit * (1 - (1 + t) * std::exp(-t)), std::abs(limit) * (error + 1e-4)) << frame;
+            }
+        }
 }
 
 TEST(HudInertia, NumbersThatAreNotFiniteAreUnknown) {
