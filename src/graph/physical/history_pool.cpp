@@ -26,43 +26,63 @@ bool fits(const gpu::ImageInfo& there, const Slot& slot) {
 
 }  // namespace
 
-Result<std::shared_ptr<HistoryImages>> HistoryPool::acquire(gpu::Context& context, const Slot& slot,
-                                                            std::uint32_t view_index) {
-    const bool is_shared = slot.history_key.owner != 0;
-    const std::pair key(slot.history_key, view_index);
-    if (is_shared) {
-        const auto found = images_.find(key);
-        const auto is_there = [&](const HistoryImages& there) {
-            return slot.desc.is_buffer() ? there.buffer.memory.size >= slot.desc.buffer_bytes
-                                         : fits(there.images[0].info, slot);
-        };
-        if (found != images_.end() && is_there(*found->second)) return found->second;
+std::shared_ptr<HistoryImages> HistoryPool::find(const Slot& slot, std::uint32_t view_index) const {
+    const auto found = images_.find({slot.history_key, view_index});
+    if (slot.history_key.owner == 0 || found == images_.end()) return nullptr;
+    const HistoryImages& there = *found->second;
+    const bool is_usable =
+        slot.desc.is_buffer() ? there.buffer.memory.size >= slot.desc.buffer_bytes : fits(there.images[0].info, slot);
+    return is_usable ? found->second : nullptr;
+}
+
+Result<Histories> HistoryPool::acquire(gpu::Context& context, std::span<const Slot> slots, std::uint32_t views) {
+    Histories out;
+    std::vector<std::pair<std::pair<HistoryKey, std::uint32_t>, std::shared_ptr<HistoryImages>>> made;
+    std::vector<gpu::ImageInfo> infos;  // two of each that is made and has images
+    for (const Slot& slot : slots) {
+        if (slot.kind != Slot::Kind::History && slot.kind != Slot::Kind::Lasting) continue;
+        if (out.size() <= slot.history_index) out.resize(slot.history_index + 1);
+        std::vector<std::shared_ptr<HistoryImages>>& of_views = out[slot.history_index];
+        // The slot of the other parity may have brought them already.
+        for (auto view = static_cast<std::uint32_t>(of_views.size()); view < views; ++view) {
+            if (std::shared_ptr<HistoryImages> there = find(slot, view)) {
+                of_views.push_back(std::move(there));
+                continue;
+            }
+            const auto& history = of_views.emplace_back(std::make_shared<HistoryImages>());
+            made.emplace_back(std::pair(slot.history_key, view), history);
+            if (slot.desc.is_buffer()) {
+                auto buffer =
+                    gpu::Buffer::create(context, slot.desc.buffer_bytes, buffer_usage, gpu::Memory::Kind::Device,
+                                        fmt::format("{} of view {}", slot.desc.name, view));
+                if (!buffer) return failure(std::move(buffer));
+                history->buffer = std::move(*buffer);
+                continue;
+            }
+            history->resampling = resampling_of(context, slot.desc.format);
+            const bool is_resampled = history->resampling != HistoryImages::Resampling::None;
+            for (std::size_t parity = 0; parity < history->images.size(); ++parity)
+                infos.push_back(
+                    {.name = fmt::format("{} {} of view {}", slot.desc.name, parity, view),
+                     .format = slot.desc.format,
+                     .extent = {slot.extent.width, slot.extent.height, 1},
+                     .mip_levels = slot.desc.mip_levels,
+                     .array_layers = slot.desc.array_layers,
+                     .usage = slot.usage | (is_resampled ? VkImageUsageFlags{VK_IMAGE_USAGE_TRANSFER_SRC_BIT} : 0)});
+        }
     }
-    auto made = std::make_shared<HistoryImages>();
-    if (slot.desc.is_buffer()) {
-        auto buffer = gpu::Buffer::create(context, slot.desc.buffer_bytes, buffer_usage, gpu::Memory::Kind::Device,
-                                          fmt::format("{} of view {}", slot.desc.name, view_index));
-        if (!buffer) return failure(std::move(buffer));
-        made->buffer = std::move(*buffer);
-        if (is_shared) images_[key] = made;
-        return made;
+    const auto memory = std::make_shared<gpu::Memory>();
+    auto images = gpu::Image::create_together(context, infos, "histories", *memory);
+    if (!images) return failure(std::move(images));
+    auto next = images->begin();
+    for (const auto& [key, history] : made) {
+        if (history->buffer.handle == VK_NULL_HANDLE) {
+            history->memory = memory;
+            for (gpu::Image& image : history->images) image = std::move(*next++);
+        }
+        if (key.first.owner != 0) images_[key] = history;
     }
-    made->resampling = resampling_of(context, slot.desc.format);
-    VkImageUsageFlags usage = slot.usage;
-    if (made->resampling != HistoryImages::Resampling::None) usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    for (std::size_t parity = 0; parity < made->images.size(); ++parity) {
-        auto image =
-            gpu::Image::create(context, {.name = fmt::format("{} {} of view {}", slot.desc.name, parity, view_index),
-                                         .format = slot.desc.format,
-                                         .extent = {slot.extent.width, slot.extent.height, 1},
-                                         .mip_levels = slot.desc.mip_levels,
-                                         .array_layers = slot.desc.array_layers,
-                                         .usage = usage});
-        if (!image) return failure(std::move(image));
-        made->images[parity] = std::move(*image);
-    }
-    if (is_shared) images_[key] = made;
-    return made;
+    return out;
 }
 
 std::shared_ptr<HistoryView> HistoryPool::view(std::uint32_t index) {

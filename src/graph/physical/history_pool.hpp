@@ -27,8 +27,9 @@ struct HistoryState {
 /// A history in one view.
 struct HistoryImages {
     enum class Resampling : std::uint8_t { None, Nearest, Linear };
-    std::array<gpu::Image, 2> images;  ///< by Slot::history_parity
-    gpu::Buffer buffer;                ///< of a lasting buffer, in place of the images
+    std::shared_ptr<gpu::Memory> memory;  ///< of all histories that one plan was the first to declare
+    std::array<gpu::Image, 2> images;     ///< by Slot::history_parity
+    gpu::Buffer buffer;                   ///< of a lasting buffer, in place of the images
     Resampling resampling = Resampling::None;
     HistoryState state;
 };
@@ -46,12 +47,15 @@ inline constexpr VkBufferUsageFlags buffer_usage = VK_BUFFER_USAGE_STORAGE_BUFFE
                                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                                    VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
+/// By Slot::history_index and view.
+using Histories = std::vector<std::vector<std::shared_ptr<HistoryImages>>>;
+
 class HistoryPool {
   public:
-    /// The images of a history that a plan declares: those that are there, if they are of the same kind and size and
-    /// can be used as the plan wants, else new ones. For one thread at a time; another one may meanwhile record.
-    [[nodiscard]] Result<std::shared_ptr<HistoryImages>> acquire(gpu::Context& context, const Slot& slot,
-                                                                 std::uint32_t view_index);
+    /// The histories that a plan declares: those that are there, if they are of the same kind and size and can be used
+    /// as the plan wants, else new ones, whose images share one allocation. For one thread at a time; another one may
+    /// meanwhile record.
+    [[nodiscard]] Result<Histories> acquire(gpu::Context& context, std::span<const Slot> slots, std::uint32_t views);
     [[nodiscard]] std::shared_ptr<HistoryView> view(std::uint32_t index);
     /// A number for whoever records, never 0.
     [[nodiscard]] std::uint64_t next_recorder() { return ++last_recorder_; }
@@ -60,6 +64,9 @@ class HistoryPool {
     [[nodiscard]] std::size_t size() const { return images_.size(); }
 
   private:
+    /// Null: it is to be made.
+    [[nodiscard]] std::shared_ptr<HistoryImages> find(const Slot& slot, std::uint32_t view_index) const;
+
     std::map<std::pair<HistoryKey, std::uint32_t>, std::shared_ptr<HistoryImages>> images_;  ///< by key and view
     std::vector<std::shared_ptr<HistoryView>> views_;
     std::uint64_t last_recorder_ = 0;

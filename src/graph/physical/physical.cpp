@@ -44,21 +44,11 @@ void Physical::adopt(Entry& entry, const gpu::Image& image) {
     }
 }
 
-Result<> Physical::adopt_history(gpu::Context& context, const Slot& slot, std::uint32_t index, HistoryPool& pool) {
-    Entry& entry = entries_[index];
-    if (histories_.size() <= slot.history_index) histories_.resize(slot.history_index + 1);
+void Physical::adopt_history(const Slot& slot, std::uint32_t index) {
     History& history = histories_[slot.history_index];
     history.slots[slot.history_parity] = index;
-    for (std::uint32_t view_index = 0; view_index < views_.size(); ++view_index) {
-        // The slot of the other parity may have brought them already.
-        if (history.views.size() <= view_index) {
-            auto images = pool.acquire(context, slot, view_index);
-            if (!images) return failure(std::move(images));
-            history.views.push_back(std::move(*images));
-        }
-        if (!slot.desc.is_buffer()) adopt(entry, history.views[view_index]->images[slot.history_parity]);
-    }
-    return {};
+    if (slot.desc.is_buffer()) return;
+    for (const auto& of_view : history.views) adopt(entries_[index], of_view->images[slot.history_parity]);
 }
 
 Result<Physical> Physical::create(gpu::Context& context, const Compiled& compiled, std::uint32_t views) {
@@ -84,6 +74,9 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
         if (!buffers) return failure(std::move(buffers));
         physical.buffers_ = std::move(*buffers);
     }
+    auto histories = pool.acquire(context, compiled.slots(), static_cast<std::uint32_t>(physical.views_.size()));
+    if (!histories) return failure(std::move(histories));
+    for (auto& of_views : *histories) physical.histories_.push_back({.views = std::move(of_views)});
     for (const Slot& slot : compiled.slots()) {
         Entry entry{.kind = slot.kind,
                     .format = slot.desc.format,
@@ -99,8 +92,7 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
         if (slot.desc.is_buffer()) {
             kept.buffer = {physical.buffers_.handle, slot.offset, slot.desc.buffer_bytes};
             kept.history = slot.history_index;
-            if (slot.kind != Slot::Kind::Lasting) continue;
-            if (auto ok = physical.adopt_history(context, slot, index, pool); !ok) return failure(std::move(ok));
+            if (slot.kind == Slot::Kind::Lasting) physical.adopt_history(slot, index);
         } else if (slot.kind == Slot::Kind::Transient) {
             const gpu::ImageInfo info = info_of(slot.desc, slot.usage, slot.extent);
             auto image = gpu::Image::place(context, info, physical.memory_, slot.offset);
@@ -108,7 +100,7 @@ Result<Physical> Physical::create(gpu::Context& context, const Compiled& compile
             adopt(kept, *image);
             physical.images_.push_back(std::move(*image));
         } else if (slot.kind == Slot::Kind::History) {
-            if (auto ok = physical.adopt_history(context, slot, index, pool); !ok) return failure(std::move(ok));
+            physical.adopt_history(slot, index);
         } else {
             kept.handles.assign(1, VK_NULL_HANDLE);
             kept.views.assign(1, VK_NULL_HANDLE);

@@ -110,8 +110,7 @@ class Physical {
         std::vector<std::shared_ptr<HistoryImages>> views;
     };
     static void adopt(Entry& entry, const gpu::Image& image);
-    [[nodiscard]] Result<> adopt_history(gpu::Context& context, const Slot& slot, std::uint32_t index,
-                                         HistoryPool& pool);
+    void adopt_history(const Slot& slot, std::uint32_t index);
     /// A barrier of a whole image for transfers, after and before everything else.
     [[nodiscard]] Barrier before_transfer(std::uint32_t slot, VkImageLayout from, VkImageLayout to) const;
     [[nodiscard]] Barrier after_transfer(std::uint32_t slot, VkImageLayout from) const;
