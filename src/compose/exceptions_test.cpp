@@ -8,13 +8,14 @@
 #include <stdexcept>
 
 #include "compose/test_stacks/host.hpp"
-#include "core/test_support_allocations.hpp"
+#include "core/test_support_failing.hpp"
 
 namespace darkroom {
 namespace {
 
 using test::add;
 using test::Host;
+using test::with_each_allocation_failing;
 
 class ComposeExceptions : public test::StackTest {};
 
@@ -90,29 +91,6 @@ TEST_F(ComposeExceptions, OneOnTheWorkerIsAnErrorOfPendingAndThePlanGoesOn) {
         EXPECT_FALSE(composer.pending().error);
         EXPECT_GT(test::worst_difference(host.run(composer), expected), 0.01);
     }
-}
-
-/// Calls `call` with the first, the second, ... allocation of its thread failing, until none does. `call` says whether
-/// it reported an error.
-template <class Call>
-void with_each_allocation_failing(const char* name, const Call& call) {
-    constexpr std::uint64_t most = 100000;
-    for (std::uint64_t number = 0; number < most; ++number) {
-        bool has_failed = false, is_error = false;
-        {
-            const test::FailingAllocation failing(number);
-            try {
-                is_error = call();
-            } catch (...) {
-                ADD_FAILURE() << name << ": an exception left it as allocation " << number << " failed";
-            }
-            has_failed = failing.has_failed();
-        }
-        if (!has_failed) return;
-        // An allocation that fails may be one that nothing depends on.
-        static_cast<void>(is_error);
-    }
-    ADD_FAILURE() << name << " never got by without allocations";
 }
 
 // On a device that only plans, so that no driver and no compiler of others is in the way.

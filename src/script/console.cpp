@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/caught.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
 #include "script/console_state.hpp"
@@ -74,8 +75,11 @@ Console::~Console() = default;
 
 Composer& Console::composer() const { return *state_->composer; }
 
-std::uint32_t Console::execute(std::string_view commands, const ExecuteOptions& options) {
+std::uint32_t Console::execute(std::string_view commands, const ExecuteOptions& options) try {
     return script::run_commands(*state_, commands, {.execute = options});
+} catch (...) {
+    (options.print ? options.print : state_->desc.print)(Severity::Error, "out of memory");
+    return 1;
 }
 
 bool Console::has(std::string_view name) const { return script::find_variable(*state_->composer, name).has_value(); }
@@ -91,14 +95,18 @@ std::optional<double> Console::number(std::string_view name) const {
     return script::variable_number(*variable->row, state_->composer->words(variable->entry));
 }
 
-Result<std::string> Console::set(std::string_view name, std::string_view value) {
+Result<std::string> Console::set(std::string_view name, std::string_view value) try {
     const auto variable = state_->variable(name);
     return variable ? state_->write(name, *variable, value) : failure(variable.error());
+} catch (...) {
+    return caught("set");
 }
 
-Result<std::string> Console::set_override(std::string_view name, std::string_view owner, std::string_view value) {
+Result<std::string> Console::set_override(std::string_view name, std::string_view owner, std::string_view value) try {
     const auto variable = state_->variable(name);
     return variable ? state_->write(name, *variable, value, owner) : failure(variable.error());
+} catch (...) {
+    return caught("set_override");
 }
 
 std::vector<std::string> Console::names(std::string_view prefix) const {
@@ -128,7 +136,7 @@ bool Console::lock(std::string_view name, bool is_locked) {
     return true;
 }
 
-Result<> Console::read_config(const std::filesystem::path& path) {
+Result<> Console::read_config(const std::filesystem::path& path) try {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) return {};
     const auto content = read_file(path, {.max_size = longest_file});
@@ -139,9 +147,11 @@ Result<> Console::read_config(const std::filesystem::path& path) {
     options.kept = &state_->kept;
     script::run_commands(*state_, text, options);
     return {};
+} catch (...) {
+    return caught("read_config");
 }
 
-Result<> Console::write_config(const std::filesystem::path& path) const {
+Result<> Console::write_config(const std::filesystem::path& path) const try {
     const Composer& composer = *state_->composer;
     std::map<std::string, std::string> lines = state_->kept;
     for (const auto& [name, variable] : script::all_variables(composer)) {
@@ -156,6 +166,8 @@ Result<> Console::write_config(const std::filesystem::path& path) const {
     std::string text = "// Written by the program; variables that are archived.\n";
     for (const auto& [name, line] : lines) text += line + "\n";
     return write_file(path, std::as_bytes(std::span(text)));
+} catch (...) {
+    return caught("write_config");
 }
 
 }  // namespace darkroom

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/caught.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
 #include "script/controllers_state.hpp"
@@ -71,16 +72,18 @@ std::optional<std::string> Controllers::State::call(int arguments, script::Allow
     const int status = lua_pcall(lua, arguments, 0, handler);
     allowance = sandbox->end();
     std::optional<std::string> out;
-    if (status != LUA_OK) {
-        const char* const text = status == LUA_ERRRUN ? lua_tostring(lua, -1) : sandbox->why_stopped();
-        out.emplace();
-        std::string_view rest = text == nullptr ? "not enough memory" : text;
-        for (int line = 0; line < most_trace_lines && !rest.empty(); ++line) {
-            const std::size_t end = std::min(rest.find('\n'), rest.size());
-            out->append(out->empty() ? "" : "\n").append(printable(rest.substr(0, end)));
-            rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (status != LUA_OK) try {
+            const char* const text = status == LUA_ERRRUN ? lua_tostring(lua, -1) : sandbox->why_stopped();
+            out.emplace();
+            std::string_view rest = text == nullptr ? "not enough memory" : text;
+            for (int line = 0; line < most_trace_lines && !rest.empty(); ++line) {
+                const std::size_t end = std::min(rest.find('\n'), rest.size());
+                out->append(out->empty() ? "" : "\n").append(printable(rest.substr(0, end)));
+                rest.remove_prefix(std::min(end + 1, rest.size()));
+            }
+        } catch (...) {
+            out = "out of memory";  // no longer than a string holds in place
         }
-    }
     lua_settop(lua, handler - 1);
     return out;
 }
@@ -98,6 +101,7 @@ Result<> Controllers::State::run_text(const std::string& name, std::string_view 
     lua_pushcfunction(lua, trace);
     lua_pushcfunction(lua, run_chunk);
     lua_pushlightuserdata(lua, &chunk);
+    pending.clear();
     is_running = true;
     loading = &name;
     stated_pre_roll.reset();
@@ -129,6 +133,18 @@ Result<> Controllers::State::run(Script& script) {
     auto done = script.is_file ? run_file(script.name) : run_text(script.name, script.text);
     if (done) script.pre_roll = stated_pre_roll;
     return done;
+}
+
+void Controllers::State::run_again(bool (*is_meant)(Script&)) try {
+    if (is_running) return;
+    for (Script script : std::vector(scripts)) {
+        if (!is_meant(script)) continue;
+        const auto done = run(script);
+        if (!done) desc.print(Severity::Error, done.error().text);
+        keep(std::move(script));
+    }
+} catch (...) {
+    lose();
 }
 
 void Controllers::State::keep(Script script) {
@@ -182,7 +198,7 @@ Controllers::Controllers(Controllers&&) noexcept = default;
 Controllers& Controllers::operator=(Controllers&&) noexcept = default;
 Controllers::~Controllers() = default;
 
-Result<Controllers> Controllers::create(Console& console, ControllersDesc desc) {
+Result<Controllers> Controllers::create(Console& console, ControllersDesc desc) try {
     auto state = std::make_unique<State>();
     state->console = &console;
     state->desc = std::move(desc);
@@ -195,21 +211,27 @@ Result<Controllers> Controllers::create(Console& console, ControllersDesc desc) 
     if (lua_pcall(lua, 1, 0, 0) != LUA_OK) return machine_error("no memory for what scripts may call");
     state->sandbox = std::move(*sandbox);
     return Controllers(std::move(state));
+} catch (...) {
+    return caught("scripts");
 }
 
-Result<> Controllers::load(const fs::path& file) {
+Result<> Controllers::load(const fs::path& file) try {
     State::Script script{.name = file.string(), .is_file = true};
     script.look();
     auto done = state_->run(script);
     if (done) state_->keep(std::move(script));
     return done;
+} catch (...) {
+    return caught("load");
 }
 
-Result<> Controllers::load_text(std::string name, std::string_view text) {
+Result<> Controllers::load_text(std::string name, std::string_view text) try {
     State::Script script{.name = std::move(name), .text = std::string(text)};
     auto done = state_->run(script);
     if (done) state_->keep(std::move(script));
     return done;
+} catch (...) {
+    return caught("load_text");
 }
 
 void Controllers::unload(std::string_view name) {
@@ -219,22 +241,11 @@ void Controllers::unload(std::string_view name) {
 }
 
 void Controllers::reload_changed() {
-    if (state_->is_running) return;
-    for (State::Script script : std::vector(state_->scripts)) {
-        if (!script.is_file || !script.look()) continue;
-        const auto done = state_->run(script);
-        if (!done) state_->desc.print(Severity::Error, done.error().text);
-        state_->keep(std::move(script));
-    }
+    state_->run_again([](State::Script& script) { return script.is_file && script.look(); });
 }
 
 void Controllers::restart() {
-    if (state_->is_running) return;
-    for (State::Script script : std::vector(state_->scripts)) {
-        const auto done = state_->run(script);
-        if (!done) state_->desc.print(Severity::Error, done.error().text);
-        state_->keep(std::move(script));
-    }
+    state_->run_again([](State::Script&) { return true; });
 }
 
 void Controllers::frame(const ControllerFrame& frame) {
@@ -245,8 +256,11 @@ void Controllers::frame(const ControllerFrame& frame) {
     state.frame = frame;
     script::Allowance left{state.desc.instructions_per_frame, state.desc.milliseconds_per_frame};
     const std::size_t count = state.slots.size();  // what is registered now runs from the next frame on
-    for (std::size_t i = 0; i < count; ++i)
-        if (!state.slots[i].is_dead) state.run_slot(i, left, count - i);
+    for (std::size_t i = 0; i < count; ++i) try {
+            if (!state.slots[i].is_dead) state.run_slot(i, left, count - i);
+        } catch (...) {
+            state.lose();
+        }
     state.frame.game = nullptr;
     state.is_running = false;
     state.free_dead_slots();

@@ -35,32 +35,40 @@ void Controllers::State::remark(Severity severity, std::string_view text) {
     desc.print(severity, text);
 }
 
-bool Controllers::State::cvar_get(std::string_view name, std::string_view& text, double& number) noexcept {
+bool Controllers::State::cvar_get(std::string_view name, std::string_view& text, double& number) noexcept try {
     const auto found = console->get(name);
     if (!found) return false;
     reply = *found;
     text = reply;
     number = parse_number(reply).value_or(0);
     return true;
+} catch (...) {
+    return false;
 }
 
-void Controllers::State::cvar_set(std::string_view name, std::string_view value) noexcept {
+void Controllers::State::cvar_set(std::string_view name, std::string_view value) noexcept try {
     if (!console->has(name)) return remark(Severity::Warning, fmt::format("variable {} not found", printable(name)));
     writes += owner.empty() ? 0 : 1;
     const auto set = owner.empty() ? console->set(name, value) : console->set_override(name, owner, value);
     if (!set) remark(Severity::Warning, set.error().text);
     if (set && !set->empty()) remark(Severity::Warning, *set);
+} catch (...) {
+    lose();
 }
 
-void Controllers::State::cvar_set(std::string_view name, double value) noexcept {
+void Controllers::State::cvar_set(std::string_view name, double value) noexcept try {
     cvar_set(name, fmt::format("{}", value));
+} catch (...) {
+    lose();
 }
 
-void Controllers::State::exec(std::string_view commands) noexcept {
+void Controllers::State::exec(std::string_view commands) noexcept try {
     console->execute(commands, {.allows_files = desc.allows_files,
                                 .suggests = false,
                                 .print = [this](Severity severity, std::string_view line) { remark(severity, line); },
                                 .most_commands = most_commands});
+} catch (...) {
+    lose();
 }
 
 bool Controllers::State::state_pre_roll(double seconds) noexcept {
@@ -69,9 +77,16 @@ bool Controllers::State::state_pre_roll(double seconds) noexcept {
     return true;
 }
 
-void Controllers::State::print(std::string_view text) noexcept { remark(Severity::Info, printable(text)); }
+void Controllers::State::print(std::string_view text) noexcept try {
+    remark(Severity::Info, printable(text));
+} catch (...) {
+    lose();
+}
 
-bool Controllers::State::on_frame(std::string_view slot_name, int function) noexcept {
+// An exception may not go through Lua, which is C.
+void Controllers::State::lose() const { desc.print(Severity::Error, "scripts: out of memory"); }
+
+bool Controllers::State::on_frame(std::string_view slot_name, int function) noexcept try {
     const auto is_same = [&](const Slot& slot) { return slot.name == slot_name; };
     const bool is_new = std::ranges::none_of(slots, is_same) && std::ranges::none_of(pending, is_same);
     if (is_new && slots.size() + pending.size() >= most_slots) return false;
@@ -87,6 +102,8 @@ bool Controllers::State::on_frame(std::string_view slot_name, int function) noex
     slot.script = running->script;
     add_slot(std::move(slot));
     return true;
+} catch (...) {
+    return false;
 }
 
 void Controllers::State::push_game(lua_State* lua, std::string_view name) {

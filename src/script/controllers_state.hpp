@@ -58,6 +58,8 @@ struct Controllers::State final : script::Host {
     Result<> run_file(const std::string& name);
     Result<> run(Script& script);
     void keep(Script script);
+    /// Those that are meant, anew. What fails is printed, and stays as it was.
+    void run_again(bool (*is_meant)(Script&));
     /// The last registration wins, in the place of the first.
     void add_slot(Slot slot);
     void run_slot(std::size_t index, script::Allowance& left, std::size_t slots_left);
@@ -80,6 +82,8 @@ struct Controllers::State final : script::Host {
     void push_game(lua_State* lua, std::string_view name) override;
     [[nodiscard]] std::string_view next_of_game(std::string_view name) const noexcept override;
     void remark(Severity severity, std::string_view text);
+    /// Says that there was no memory for what a script did.
+    void lose() const;
 
     Console* console = nullptr;
     ControllersDesc desc;

@@ -6,6 +6,7 @@
 #include <darkroom/look.hpp>
 #include <map>
 
+#include "core/caught.hpp"
 #include "core/text/param_text.hpp"
 #include "looks/apply/look_resources.hpp"
 #include "looks/apply/look_stack.hpp"
@@ -151,7 +152,7 @@ class Follower {
             needs_compile_ = true;
             if (!at.is_given()) {
                 handle = composer_.add(effect, words.data(), placed.desc);
-                return {};
+                return handle.is_given() ? Result<>{} : machine_error("out of memory", ErrorCode::OutOfMemory);
             }
             const Result<Handle> made = composer_.insert(at, effect, words.data(), placed.desc);
             if (!made) return failure(made.error());
@@ -226,13 +227,17 @@ class Follower {
 
 }  // namespace
 
-Result<Followed> follow(const Look& was, const Look& is, Composer& composer, const ApplyOptions& options) {
+Result<Followed> follow(const Look& was, const Look& is, Composer& composer, const ApplyOptions& options) try {
     return Follower(was, is, composer).run(options);
+} catch (...) {
+    return caught("follow");
 }
 
-Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options) {
+Result<> apply(const Look& look, Composer& composer, const ApplyOptions& options) try {
     const auto done = follow(Look{.is_flat = false}, look, composer, options);
     return done ? Result<>{} : failure(done.error());
+} catch (...) {
+    return caught("apply");
 }
 
 }  // namespace darkroom

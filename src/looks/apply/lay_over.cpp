@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <darkroom/look.hpp>
 
+#include "core/caught.hpp"
 #include "core/text/param_text.hpp"
 #include "looks/apply/look_resources.hpp"
 #include "looks/look_parts.hpp"
@@ -63,7 +64,7 @@ class Layer {
 
 }  // namespace
 
-Result<> lay_over(Look& look, const std::filesystem::path& file, const LookOptions& options) {
+Result<> lay_over(Look& look, const std::filesystem::path& file, const LookOptions& options) try {
     LookOptions own = options;
     own.allows_modulation = false;
     const Result<Look> layer = read_look(file, own);
@@ -74,6 +75,8 @@ Result<> lay_over(Look& look, const std::filesystem::path& file, const LookOptio
     Result<> done = Layer(look, *layer, file.parent_path(), options).lay();
     return done ? done
                 : failure(Error{done.error().fault, fmt::format("{}: {}", layer->shown_name, done.error().text)});
+} catch (...) {
+    return caught("lay_over");
 }
 
 }  // namespace darkroom

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <darkroom/look.hpp>
 
+#include "core/caught.hpp"
 #include "core/text/param_text.hpp"
 #include "looks/apply/look_resources.hpp"
 #include "looks/look_parts.hpp"
@@ -74,8 +75,10 @@ class Overrider {
 
 }  // namespace
 
-Result<> override_look(Look& look, std::span<const LookOverride> overrides, const LookOptions& options) {
+Result<> override_look(Look& look, std::span<const LookOverride> overrides, const LookOptions& options) try {
     return Overrider(look, options).run(overrides);
+} catch (...) {
+    return caught("override_look");
 }
 
 }  // namespace darkroom

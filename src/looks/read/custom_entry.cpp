@@ -8,6 +8,7 @@
 #include <darkroom/describe.hpp>
 #include <darkroom/look.hpp>
 
+#include "core/caught.hpp"
 #include "core/text/param_text.hpp"
 #include "looks/look_parts.hpp"
 
@@ -51,15 +52,17 @@ Result<> share_effect(const Look& look, LookEntry& entry) {
     return {};
 }
 
-Result<LookEntry> custom_entry(const std::filesystem::path& file) {
+Result<LookEntry> custom_entry(const std::filesystem::path& file) try {
     const Result<CustomEffect> effect = CustomEffect::load(file);
     if (!effect) return failure(effect.error());
     LookEntry entry = entry_of(effect->info());
     entry.effect_file = file.string();
     return entry;
+} catch (...) {
+    return caught("custom_entry");
 }
 
-Result<> place_entry(Look& look, LookEntry entry) {
+Result<> place_entry(Look& look, LookEntry entry) try {
     if (const Result<> shared = share_effect(look, entry); !shared)
         return user_error(fmt::format("{}: {}", printable(entry.effect_file), shared.error().text));
     if (look.is_flat) make_stack(look);
@@ -83,6 +86,8 @@ Result<> place_entry(Look& look, LookEntry entry) {
                                       entry.effect->name, names_of(accepts), look.shown_name));
     look.entries.insert(place, std::move(entry));
     return {};
+} catch (...) {
+    return caught("place_entry");
 }
 
 }  // namespace darkroom

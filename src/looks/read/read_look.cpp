@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <darkroom/look.hpp>
 
+#include "core/caught.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
 #include "looks/look_parts.hpp"
@@ -122,11 +123,13 @@ Result<Look> LookReader::finish(Look look) {
     return look;
 }
 
-Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options) {
+Result<Look> parse_look(std::string_view text, std::string shown_name, const LookOptions& options) try {
     std::string shown = printable(shown_name);
     const Result<toml::table> file = parse_toml(text, shown);
     if (!file) return failure(file.error());
     return LookReader(std::move(shown), options).read(*file);
+} catch (...) {
+    return caught("parse_look");
 }
 
 Result<std::string> read_look_text(const std::filesystem::path& path) {
@@ -135,12 +138,14 @@ Result<std::string> read_look_text(const std::filesystem::path& path) {
     return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
 }
 
-Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) {
+Result<Look> read_look(const std::filesystem::path& path, const LookOptions& options) try {
     const Result<std::string> text = read_look_text(path);
     if (!text) return failure(text.error());
     LookOptions here = options;
     if (here.folder.empty()) here.folder = path.parent_path();
     return parse_look(*text, path.string(), here);
+} catch (...) {
+    return caught("read_look");
 }
 
 }  // namespace darkroom
