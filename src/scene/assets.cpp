@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 
+#include "core/lies_in.hpp"
 #include "core/thread/parallel.hpp"
 #include "image/codec/decoder.hpp"
 #include "image/frame/frame_file.hpp"

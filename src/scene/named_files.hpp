@@ -2,26 +2,11 @@
 #pragma once
 // Which files a scene, its prefabs and its models may name. One rule for all of them.
 
-#include <algorithm>
-#include <filesystem>
-#include <system_error>
-
 namespace darkroom::scene {
 
 enum class NamedFiles {
     Any,  ///< wherever the name leads: absolute, through "..", through links
     Own,  ///< what lies, with all links followed, in the folder of the file that names it or below
 };
-
-/// Whether the file, with all links followed, lies in the folder or below.
-[[nodiscard]] inline bool lies_in(const std::filesystem::path& folder, const std::filesystem::path& file) {
-    std::error_code error;
-    const std::filesystem::path root = std::filesystem::canonical(folder.empty() ? "." : folder, error);
-    if (error) return false;
-    const std::filesystem::path target = std::filesystem::canonical(file, error);
-    if (error) return false;
-    const auto [root_end, target_end] = std::mismatch(root.begin(), root.end(), target.begin(), target.end());
-    return root_end == root.end() && target_end != target.end();
-}
 
 }  // namespace darkroom::scene

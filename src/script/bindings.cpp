@@ -98,12 +98,13 @@ int print(lua_State* lua) {
     std::size_t size = 0;
     for (int i = 1; i <= lua_gettop(lua) && size < line.size(); ++i) {
         std::size_t length = 0;
-        const char* const text = luaL_tolstring(lua, i, &length);
+        hide_address(lua, i);
+        const char* const text = luaL_tolstring(lua, -1, &length);
         if (i > 1) line[size++] = ' ';
         const std::size_t count = std::min(length, line.size() - size);
         std::copy_n(text, count, line.data() + size);
         size += count;
-        lua_pop(lua, 1);
+        lua_pop(lua, 2);
     }
     host_of(lua).print({line.data(), size});
     return 0;

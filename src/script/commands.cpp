@@ -6,6 +6,7 @@
 #include <array>
 
 #include "core/files.hpp"
+#include "core/lies_in.hpp"
 #include "core/text/param_text.hpp"
 #include "script/command_reader.hpp"
 #include "script/console_state.hpp"
@@ -269,6 +270,9 @@ Result<> Run::exec(Words arguments) {
         return user_error(fmt::format("exec {}: allowed is a file of the console's folder, or of one in it", shown));
     if (depth_ >= deepest) return user_error(fmt::format("exec {}: files run files at most {} deep", shown, deepest));
     const std::filesystem::path path = state_.desc.folder / file;
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored) && !lies_in(state_.desc.folder, path))
+        return user_error(fmt::format("exec {}: leads out of the console's folder", shown));
     const auto content = read_file(path, {.max_size = longest_file});
     if (!content) return failure(content.error());
     ++depth_;

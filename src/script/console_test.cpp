@@ -374,6 +374,15 @@ TEST(ConsoleExec, ReadsFilesOfItsFolderAlone) {
     for (const std::string& name :
          {std::string("../b.cfg"), (folder.path / "b.cfg").string(), std::string("x/../../b.cfg"), std::string("..")})
         EXPECT_NE(bed.run("exec \"" + name + "\"").find("of the console's folder"), std::string::npos) << name;
+    // Links are followed in it, and not out of it: an error would print a line of what is there.
+    fs::create_symlink("a.cfg", folder.path / "inner" / "same.cfg");
+    EXPECT_EQ(bed.console->execute("exec same.cfg"), 1u) << "b.cfg, as above";
+    fs::create_symlink(folder.path / "b.cfg", folder.path / "inner" / "out.cfg");
+    fs::create_directory_symlink(folder.path, folder.path / "inner" / "up");
+    for (const std::string name : {"out.cfg", "up/b.cfg"}) {
+        EXPECT_EQ(bed.run("exec " + name), "exec " + name + ": leads out of the console's folder");
+        EXPECT_EQ(bed.console->get("contrast"), "1.4");
+    }
     ASSERT_EQ(::mkfifo((folder.path / "inner" / "pipe").c_str(), 0600), 0);
     EXPECT_EQ(bed.run("exec pipe"), (folder.path / "inner" / "pipe: is no regular file but a pipe").string())
         << "a pipe would be waited for";

@@ -273,5 +273,20 @@ TEST(Controllers, FilesAreReadOnlyWhereTheHostAllowsIt) {
     EXPECT_EQ(strict.said.back(), "exec autoexec.cfg: files are not read from here");
 }
 
+// Where the program lies in memory is nothing that scripts learn.
+TEST(Controllers, NoTextTellsAnAddress) {
+    ControllersBed bed;
+    EXPECT_EQ(bed.value("tostring(print)"), "function");
+    EXPECT_EQ(bed.value("tostring({})"), "table");
+    EXPECT_EQ(bed.value("tostring(game)"), "userdata");
+    EXPECT_EQ(bed.value("print"), "function");
+    EXPECT_EQ(bed.value("string.format('%s %5s', print, {})"), "function table");
+    EXPECT_EQ(bed.value("('%d%%'):format(7)"), "7%");
+    for (const std::string format : {"%p", "%-20p", "% 5p", "%%%p", "\\0%p", "%s%p"})
+        EXPECT_NE(bed.value("string.format('" + format + "', print, print)").find("is not allowed"), std::string::npos)
+            << format;
+    EXPECT_EQ(bed.value("tostring(nil) .. tostring(true) .. tostring(1.5) .. tostring('x')"), "niltrue1.5x");
+}
+
 }  // namespace
 }  // namespace darkroom

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <ctime>
 #include <span>
+#include <string_view>
 
 namespace darkroom::script {
 
@@ -33,16 +35,22 @@ std::uint64_t span_of_arguments(lua_State* lua, int index, lua_Integer last_defa
 
 // What a call costs in instructions, by its arguments. Only for functions whose work these bound.
 std::uint64_t cost_of_sizes(lua_State* lua) { return sizes_of_arguments(lua) / 8; }
-std::uint64_t cost_of_sort(lua_State* lua) { return lua_rawlen(lua, 1) * 32; }
-std::uint64_t cost_of_move(lua_State* lua) { return span_of_arguments(lua, 2, 0); }
+/// Of so many elements of tables, each looked up where other keys may collide with it.
+std::uint64_t cost_of_elements(lua_State* lua, std::uint64_t count) {
+    return count * Sandbox::of(lua).cost_of_element();
+}
+std::uint64_t cost_of_shifting(lua_State* lua) { return cost_of_elements(lua, sizes_of_arguments(lua) / 8); }
+std::uint64_t cost_of_sort(lua_State* lua) { return cost_of_elements(lua, lua_rawlen(lua, 1) * 32); }
+std::uint64_t cost_of_move(lua_State* lua) { return cost_of_elements(lua, span_of_arguments(lua, 2, 0)); }
 std::uint64_t cost_of_concat(lua_State* lua) {
     luaL_checktype(lua, 1, LUA_TTABLE);
-    return span_of_arguments(lua, 3, static_cast<lua_Integer>(lua_rawlen(lua, 1)));
+    return cost_of_elements(lua, span_of_arguments(lua, 3, static_cast<lua_Integer>(lua_rawlen(lua, 1))));
 }
 std::uint64_t cost_of_unpack(lua_State* lua) {
     luaL_checktype(lua, 1, LUA_TTABLE);
     const std::uint64_t count = span_of_arguments(lua, 2, static_cast<lua_Integer>(lua_rawlen(lua, 1)));
-    return count <= 256 ? count : static_cast<std::uint64_t>(luaL_error(lua, "unpack: allowed are at most 256 values"));
+    return count <= 256 ? cost_of_elements(lua, count)
+                        : static_cast<std::uint64_t>(luaL_error(lua, "unpack: allowed are at most 256 values"));
 }
 std::uint64_t cost_of_rep(lua_State* lua) {
     std::size_t size = 0, separator = 0;
@@ -55,26 +63,64 @@ std::uint64_t cost_of_rep(lua_State* lua) {
     return count * step / 8;
 }
 
+// Texts of what has an address, by which a script would learn where the program lies: the type's name stands for them.
+void hide_addresses(lua_State* lua, int first) {
+    for (int i = first; i <= lua_gettop(lua); ++i) {
+        const int type = lua_type(lua, i);
+        if (type < LUA_TTABLE && type != LUA_TLIGHTUSERDATA) continue;
+        lua_pushstring(lua, lua_typename(lua, type));
+        lua_replace(lua, i);
+    }
+}
+std::uint64_t cost_of_tostring(lua_State* lua) {
+    hide_addresses(lua, 1);
+    return 0;
+}
+std::uint64_t cost_of_format(lua_State* lua) {
+    const std::uint64_t cost = cost_of_sizes(lua);
+    hide_addresses(lua, 2);
+    std::size_t size = 0;
+    const char* const text = luaL_checklstring(lua, 1, &size);
+    const std::string_view format(text, size);
+    // Flags, a width and a precision may stand between the two characters.
+    for (std::size_t at = format.find('%'); at != std::string_view::npos; at = format.find('%', at + 1)) {
+        at = std::min(format.find_first_not_of("-+ #0123456789.", at + 1), format.size() - 1);
+        if (format[at] == 'p') luaL_error(lua, "format: '%%p' is not allowed");
+    }
+    return cost;
+}
+
 struct Offered {
     const char* name;
     std::uint64_t (*cost)(lua_State*) = nullptr;
 };
 // What is not here is not there: find, match, gmatch and gsub may take exponential time, load and coroutines would need
 // budgets of their own.
-constexpr Offered base_functions[] = {{"assert"}, {"error"},    {"ipairs"},   {"next"},   {"pairs"},
-                                      {"pcall"},  {"rawequal"}, {"rawget"},   {"rawlen"}, {"rawset"},
-                                      {"select"}, {"tonumber"}, {"tostring"}, {"type"}};
+constexpr Offered base_functions[] = {{"assert"},
+                                      {"error"},
+                                      {"ipairs"},
+                                      {"next"},
+                                      {"pairs"},
+                                      {"pcall"},
+                                      {"rawequal"},
+                                      {"rawget"},
+                                      {"rawlen"},
+                                      {"rawset"},
+                                      {"select"},
+                                      {"tonumber"},
+                                      {"tostring", cost_of_tostring},
+                                      {"type"}};
 constexpr Offered math_functions[] = {
     {"abs"},  {"acos"},      {"asin"}, {"atan"}, {"ceil"}, {"cos"},        {"deg"},        {"exp"}, {"floor"},
     {"fmod"}, {"log"},       {"max"},  {"min"},  {"modf"}, {"rad"},        {"random"},     {"sin"}, {"sqrt"},
     {"tan"},  {"tointeger"}, {"type"}, {"ult"},  {"huge"}, {"maxinteger"}, {"mininteger"}, {"pi"}};
 constexpr Offered string_functions[] = {
-    {"byte", cost_of_sizes},  {"char", cost_of_sizes}, {"format", cost_of_sizes},  {"len"},
+    {"byte", cost_of_sizes},  {"char", cost_of_sizes}, {"format", cost_of_format}, {"len"},
     {"lower", cost_of_sizes}, {"rep", cost_of_rep},    {"reverse", cost_of_sizes}, {"sub", cost_of_sizes},
     {"upper", cost_of_sizes}};
 constexpr Offered table_functions[] = {
-    {"concat", cost_of_concat}, {"insert", cost_of_sizes}, {"move", cost_of_move},    {"pack"},
-    {"remove", cost_of_sizes},  {"sort", cost_of_sort},    {"unpack", cost_of_unpack}};
+    {"concat", cost_of_concat},   {"insert", cost_of_shifting}, {"move", cost_of_move},    {"pack"},
+    {"remove", cost_of_shifting}, {"sort", cost_of_sort},       {"unpack", cost_of_unpack}};
 
 /// Upvalues: the real function, and what it costs.
 int call_bounded(lua_State* lua) {
@@ -124,6 +170,11 @@ void offer_library(lua_State* lua, const char* name, lua_CFunction opens, std::s
 
 }  // namespace
 
+void hide_address(lua_State* lua, int index) {
+    lua_pushvalue(lua, index);
+    hide_addresses(lua, lua_gettop(lua));
+}
+
 double cpu_milliseconds() {
     std::timespec time{};
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -148,6 +199,13 @@ void* Sandbox::allocate(void* self, void* block, std::size_t old_size, std::size
             sandbox.stop(is_large ? over_block : over_memory);
             return nullptr;
         }
+        const std::int64_t cost = block == nullptr && old_size == 0 ? sandbox.cost_of_filling(size) : 0;
+        if (cost > sandbox.left_) {
+            sandbox.stop(over_instructions);
+            return nullptr;
+        }
+        sandbox.left_ -= cost;
+        if (cost > 0) sandbox.most_nodes_ = std::max(sandbox.most_nodes_, size / sandbox.node_bytes_);
     }
     void* const out = std::realloc(block, size);
     if (out == nullptr) return nullptr;
@@ -162,6 +220,16 @@ void* Sandbox::allocate(void* self, void* block, std::size_t old_size, std::size
         }
     }
     return out;
+}
+
+std::uint64_t Sandbox::cost_of_element() const { return std::max<std::uint64_t>(most_nodes_ / 32, 1); }
+
+// A table that is full is filled anew, key by key, into a block of new nodes, before the next instruction. Keys may be
+// chosen so that all collide, and then it takes the square of their number, at some 2 ns each.
+std::int64_t Sandbox::cost_of_filling(std::size_t size) const {
+    const std::size_t nodes = node_bytes_ == 0 ? 0 : size / node_bytes_;
+    return nodes * node_bytes_ == size && std::has_single_bit(nodes) ? static_cast<std::int64_t>(nodes * nodes / 32)
+                                                                     : 0;
 }
 
 void Sandbox::stop(const char* why) {
@@ -262,6 +330,17 @@ Result<std::unique_ptr<Sandbox>> Sandbox::create() {
     lua_pushcfunction(sandbox->lua_, open);
     if (lua_pcall(sandbox->lua_, 0, 0, 0) != LUA_OK)
         return machine_error(fmt::format("opening the libraries of Lua: {}", lua_tostring(sandbox->lua_, -1)));
+    // What a node takes is not said by Lua's headers: a table of 1024 is that and itself more than one of none.
+    const auto bytes_of_table = [&](int nodes) {
+        const std::size_t before = sandbox->bytes_;
+        lua_createtable(sandbox->lua_, 0, nodes);
+        const std::size_t bytes = sandbox->bytes_ - before;
+        lua_pop(sandbox->lua_, 1);
+        return bytes;
+    };
+    lua_gc(sandbox->lua_, LUA_GCSTOP);
+    sandbox->node_bytes_ = (bytes_of_table(1024) - bytes_of_table(0)) / 1024;
+    lua_gc(sandbox->lua_, LUA_GCRESTART);
     return sandbox;
 }
 

@@ -41,6 +41,8 @@ class Sandbox {
     Allowance end();
     /// For functions in C whose work a script can scale: raises the error where it is too much.
     void spend(std::uint64_t instructions);
+    /// In instructions: an element of a table is found behind all that collide with it, which the largest table bounds.
+    [[nodiscard]] std::uint64_t cost_of_element() const;
     /// Frees what is garbage, if there is much. For between frames.
     void tidy();
     /// That its state holds.
@@ -63,8 +65,11 @@ class Sandbox {
     static int open(lua_State* lua);
     void stop(const char* why);
     void check_clock();
+    [[nodiscard]] std::int64_t cost_of_filling(std::size_t size) const;
 
     lua_State* lua_ = nullptr;
+    std::size_t node_bytes_ = 0;  ///< of a table's hash part
+    std::size_t most_nodes_ = 0;  ///< of one of a script, so far
     std::size_t bytes_ = 0, blocks_ = 0, bytes_limit_ = 0, blocks_limit_ = 0;
     std::int64_t left_ = 0;
     double milliseconds_ = 0, cpu_start_ = 0;
@@ -72,6 +77,9 @@ class Sandbox {
     bool is_bounded_ = false, is_short_ = false;
     const char* why_ = nullptr;
 };
+
+/// Pushes the value at `index`, or the name of its type where its text would tell an address.
+void hide_address(lua_State* lua, int index);
 
 /// Of this thread.
 [[nodiscard]] double cpu_milliseconds();

@@ -42,6 +42,10 @@ bool clamp(const Range& range, ParamValue& value) {
     return is_clamped;
 }
 
+/// Names in the code of a game that has the variables, beside those of its console.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 2> other_names{
+    {{"vid_gamma", "gamma"}, {"vid_contrast", "contrast"}}};
+
 }  // namespace
 
 std::optional<Variable> find_variable(const Composer& composer, std::string_view name) {
@@ -50,6 +54,9 @@ std::optional<Variable> find_variable(const Composer& composer, std::string_view
         const ParamInfo* const row = entry ? composer.info(*entry)->parameters.find(name.substr(dot + 1)) : nullptr;
         if (row != nullptr) return Variable{*entry, row};
     }
+    const auto* const other =
+        std::ranges::find(other_names, name, &std::pair<std::string_view, std::string_view>::first);
+    if (other != other_names.end()) name = other->second;
     for (std::size_t i = 0; i < composer.size(); ++i)
         for (const ParamInfo& row : composer.info(composer.entry(i))->parameters.rows)
             if (!row.also.empty() && row.also == name) return Variable{composer.entry(i), &row};

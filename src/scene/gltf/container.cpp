@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/files.hpp"
+#include "core/lies_in.hpp"
 #include "image/codec/decoder.hpp"
 
 namespace darkroom::scene::gltf {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "core/lies_in.hpp"
 #include "core/text/param_text.hpp"
 #include "scene/read/scene_file.hpp"
 
