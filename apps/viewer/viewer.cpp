@@ -207,7 +207,7 @@ LiveMoment Viewer::moment() const {
     LiveMoment out{.time = time_, .previous_time = previous_time_, .draw = draw_};
     if (scene_ != nullptr) out.orbit = camera_->orbit(scene_->snapshot());
     out.previous_orbit = last_orbit_;
-    out.is_post_off = !is_post_on_ && scene_ != nullptr && !screen_.is_comparing();
+    out.is_post_off = !is_post_on_ && !is_off() && !screen_.is_comparing();
     out.draw.exposure = darkroom::exposure_of(document_->look());
     if (source_->frames() > 0) {
         const double rate = job_.frame_desc.frames_per_second.value_or(1 / job_.step);

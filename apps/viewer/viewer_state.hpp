@@ -50,8 +50,8 @@ class Viewer {
     [[nodiscard]] LiveMoment moment() const;
     [[nodiscard]] darkroom::Result<LookView*> view(Side side);
     [[nodiscard]] VkExtent2D picture_extent() const;
-    /// Is the picture of a stored frame shown without the look? A scene draws its own then.
-    [[nodiscard]] bool is_off() const { return !is_post_on_ && scene_ == nullptr; }
+    /// Is a picture shown through a look that is switched off? A scene without an interface draws its own then.
+    [[nodiscard]] bool is_off() const { return !is_post_on_ && (scene_ == nullptr || interface_->is_given()); }
     [[nodiscard]] bool is_fixed() const { return job_.frames_to_show.has_value(); }
     [[nodiscard]] darkroom::Look look_of(Side side) const;
 

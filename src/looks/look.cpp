@@ -31,13 +31,6 @@ LookEntry entry_of(const EffectInfo& effect) {
     return {.effect = &effect, .words = {defaults.begin(), defaults.end()}, .effect_owner = effect.owner.lock()};
 }
 
-namespace {
-
-/// Noise that is laid over the finished picture, interface included.
-bool is_noise(const LookEntry& entry) { return entry.effect->is_last_step && entry.effect->makes == nullptr; }
-
-}  // namespace
-
 std::vector<const LookEntry*> ordered(const Look& look) {
     std::vector<const LookEntry*> out;
     for (const LookEntry& entry : look.entries)
@@ -49,9 +42,6 @@ std::vector<const LookEntry*> ordered(const Look& look) {
     }
     const auto ui = std::stable_partition(out.begin(), out.end(), std::not_fn(&LookEntry::is_of_ui));
     std::ranges::stable_sort(ui, out.end(), {}, rank);
-    auto place = ui;
-    while (place != out.begin() && is_noise(**(place - 1))) --place;
-    std::rotate(place, ui, out.end());
     return out;
 }
 
@@ -160,6 +150,9 @@ Look switched_off(const Look& look) {
             entry.state.enabled = found->state.enabled;
         }
     }
+    off.ui = look.ui;
+    std::erase_if(off.entries, &LookEntry::is_of_ui);
+    std::ranges::copy_if(look.entries, std::back_inserter(off.entries), &LookEntry::is_of_ui);
     return off;
 }
 

@@ -214,10 +214,12 @@ class Render {
     void choose_way() {
         const bool is_debug = job_.desc.draw.debug != render::DebugView::None;
         const bool is_off = flags_.look.is_off() || !look_.is_enabled;
-        if (!is_debug && !is_off)
+        const bool is_light = develop_.target == DevelopTarget::SceneLinear;
+        // The interface is laid over an encoded picture by the stack.
+        if (!is_debug && (!is_off || (look_.ui && !is_light)))
             way_ = Way::Developed;
         else
-            way_ = !is_debug && develop_.target == DevelopTarget::SceneLinear ? Way::Linear : Way::Display;
+            way_ = !is_debug && is_light ? Way::Linear : Way::Display;
         if (way_ == Way::Developed && !flags_.drawn.is_tone_mapped() && !switch_tone_mapping_off(look_))
             warn("--no-tonemapping: the look has no tone mapping");
     }

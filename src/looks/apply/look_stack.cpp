@@ -119,7 +119,8 @@ Result<std::vector<PlacedEntry>> stack_of(const Look& look, const ApplyOptions& 
     WireReader reader(look);
     for (const LookEntry* const entry : ordered(look)) {
         const std::string& name = names[static_cast<std::size_t>(entry - look.entries.data())];
-        const bool is_own = look.is_enabled || entry->effect->exposure != nullptr;
+        // The interface lies outside of post-processing.
+        const bool is_own = look.is_enabled || entry->is_of_ui || entry->effect->exposure != nullptr;
         const bool is_kept = is_own || is_domain_change(*entry->effect);
         if ((look.is_flat && !is_kept) || is_in_the_way(look, *entry, name, options)) continue;
         PlacedEntry placed{.entry = entry,
