@@ -151,6 +151,19 @@ TEST(Look, ValuesOutOfRangeLeaveTheDefaultAndSaySo) {
     EXPECT_TRUE(contains(error_of("[post_process]\nexposure = nan\n", true), "exposure = nan"));
 }
 
+TEST(Look, ConsoleVariablesOutOfRangeAreErrors) {
+    if (lacks({"contrast_gamma", "ui_warp"})) GTEST_SKIP() << "an effect that this test names is not in this build";
+    for (const auto& [text, part] :
+         {std::pair("[ui]\ncontrast_gamma_contrast = 3\n", "look:2:27: contrast_gamma_contrast = 3: allowed is [1, 2]"),
+          {"[ui]\nui_warp_strength = -9\n", "look:2:20: ui_warp_strength = -9: allowed is [-4, 4]"},
+          {"[[stack]]\neffect = \"contrast_gamma\"\ncontrast = 0.5\n",
+           "look:3:12: contrast = 0.5: allowed is [1, 2]"}}) {
+        const auto read = parse_look(text, "look");
+        ASSERT_FALSE(read) << text;
+        EXPECT_EQ(read.error().text, part);
+    }
+}
+
 TEST(Look, EveryWrongTypeIsListed) {
     if (lacks({"bloom", "exposure", "tonemap", "vignette"}))
         GTEST_SKIP() << "an effect that this test names is not in this build";

@@ -60,7 +60,8 @@ bool LookReader::take(const ParamInfo& row, std::span<std::uint32_t> words, cons
     }
     const std::optional<ParamProblem> problem = try_assign(row, words, *value, key);
     if (!problem) return true;
-    const bool is_wrong = problem->why == ParamProblem::Why::WrongKind;
+    // Of a variable with a name of its own a menu or a console would not take the value, either.
+    const bool is_wrong = problem->why == ParamProblem::Why::WrongKind || !row.also.empty();
     const std::string used = is_wrong || options_.is_strict ? "" : fmt::format("; {} is used", format(row, words));
     report(node, is_wrong ? Weight::Wrong : Weight::Slip, problem->text + used);
     return false;
