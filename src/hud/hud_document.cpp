@@ -67,14 +67,17 @@ struct HudDocument::State {
                            !reason.empty() && reason[0] >= '0' && reason[0] <= '9' ? "" : " ", reason);
     }
 
-    [[nodiscard]] Result<Template> read() const {
+    [[nodiscard]] Result<Template> read() {
         const auto bytes = read_file(path, {.max_size = options.limits.document_bytes});
         if (!bytes) return failure(bytes.error());
         std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-        if (auto checked = check_svg(text, options.limits.elements); !checked)
+        std::vector<std::string> named;
+        if (auto checked = check_svg(text, options.limits.elements, &named); !checked)
             return user_error(placed(checked.error().text));
         auto parsed = SvgTemplate::parse(std::move(text));
         if (!parsed) return user_error(placed(parsed.error().text));
+        for (std::string& name : named) name = (path.parent_path() / name).string();
+        scripts = std::move(named);
         return std::make_shared<const SvgTemplate>(std::move(*parsed));
     }
 
@@ -166,6 +169,7 @@ struct HudDocument::State {
     Template latest, good;  // as the file was read last; as it was drawn last
     std::shared_ptr<const HudPicture> picture;
     Wish drawn, failed;
+    std::vector<std::string> scripts;
     std::string file_error, draw_error;
     FileStamp stamp;
     Clock::time_point looked{};
@@ -200,8 +204,11 @@ void HudDocument::set(std::string_view name, HudValue value) {
         value = std::string("nan");
     const auto found = state_->values.find(name);
     if (found != state_->values.end() && found->second == value) return;
-    const auto binds = [&](const Template& document) { return document != nullptr && document->binds(name); };
-    if (binds(state_->latest) || binds(state_->good)) ++state_->value_changes;
+    const HudValue* const before = found == state_->values.end() ? nullptr : &found->second;
+    const auto shows = [&](const Template& document) {
+        return document != nullptr && document->shows(name, before, value);
+    };
+    if (shows(state_->latest) || shows(state_->good)) ++state_->value_changes;
     if (found != state_->values.end())
         found->second = std::move(value);
     else
@@ -225,6 +232,8 @@ std::shared_ptr<const HudPicture> HudDocument::picture(std::uint32_t width, std:
     }
     return state.picture;
 }
+
+const std::vector<std::string>& HudDocument::scripts() const { return state_->scripts; }
 
 const std::string& HudDocument::error() const {
     return state_->file_error.empty() ? state_->draw_error : state_->file_error;

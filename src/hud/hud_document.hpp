@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hud/svg_process.hpp"
 #include "hud/svg_text.hpp"
@@ -30,6 +31,8 @@ class HudDocument {
     ~HudDocument();
 
     void set(std::string_view name, HudValue value);
+    /// The controllers that its <script> elements name, as the file was read last; relative names are of its folder.
+    [[nodiscard]] const std::vector<std::string>& scripts() const;
     /// The newest drawing: headless, of this size and all values; else what was drawn last, perhaps at another size,
     /// and null before the first. What changed is begun now, and returned by the first call after it is done. The same
     /// pointer is the same picture.

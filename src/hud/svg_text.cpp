@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "core/text/lower.hpp"
@@ -18,6 +19,8 @@ namespace {
 
 /// librsvg and what it is made of go into each by a call.
 constexpr std::size_t most_depth = 200;
+constexpr std::size_t most_scripts = 16;
+constexpr std::size_t most_zeros = 15;  // of a number's form: what a double holds
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view style_blanks = " \t\r\n\f";
 
@@ -96,7 +99,8 @@ std::string without_escapes(std::string_view text) {
 /// Reads a document from its beginning to its end, and stops at the first thing that is refused.
 class Checker {
   public:
-    Checker(std::string_view text, std::uint32_t most_elements) : text_(text), most_elements_(most_elements) {}
+    Checker(std::string_view text, std::uint32_t most_elements, std::vector<std::string>* scripts)
+        : text_(text), most_elements_(most_elements), scripts_(scripts) {}
 
     Result<> run() {
         if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
@@ -232,11 +236,19 @@ class Checker {
         const std::string_view value = text_.substr(at_ + 1, end - at_ - 1);
         const std::string_view kind = without_prefix(name);
         const bool is_reference = kind == "href" || kind == "src" || (kind == "base" && kind != name);
+        if (kind != "base" && is_reference && element == "script" && !value.empty())
+            add_script(without_entities(value));
         // What a link or a script names is nothing that is drawn.
         if (is_reference && element != "a" && element != "script" && !value.starts_with('#'))
             refuse(fmt::format("{}=\"{}\": allowed is #name, of an element of the document", name, printable(value)));
         check_style(without_entities(value));
         at_ = end + 1;
+    }
+
+    void add_script(std::string name) {
+        if (scripts_ == nullptr || std::ranges::count(*scripts_, name) > 0) return;
+        if (scripts_->size() == most_scripts) refuse(fmt::format("more than {} scripts", most_scripts));
+        scripts_->push_back(std::move(name));
     }
 
     /// References as CSS and presentation attributes have them, in what the parser of XML makes of a text.
@@ -265,6 +277,7 @@ class Checker {
     std::string_view text_;
     std::vector<Open> open_;
     std::uint32_t most_elements_;
+    std::vector<std::string>* scripts_;
     std::size_t at_ = 0, start_ = 0;
     std::uint32_t elements_ = 0;
     bool is_in_style_ = false;
@@ -298,6 +311,17 @@ void append_escaped(std::string& out, std::string_view text) {
     }
 }
 
+/// Of "00.0".
+bool read_form(std::string_view text, int& digits, int& decimals) {
+    const std::size_t point = std::min(text.find('.'), text.size());
+    const std::string_view whole = text.substr(0, point), part = text.substr(std::min(point + 1, text.size()));
+    digits = static_cast<int>(whole.size());
+    decimals = static_cast<int>(part.size());
+    return !whole.empty() && whole.size() <= most_zeros && part.size() <= most_zeros &&
+           part.empty() == (point == text.size()) && whole.find_first_not_of('0') == std::string_view::npos &&
+           part.find_first_not_of('0') == std::string_view::npos;
+}
+
 bool is_name(std::string_view text) {
     return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
@@ -306,8 +330,8 @@ bool is_name(std::string_view text) {
 
 }  // namespace
 
-Result<> check_svg(std::string_view document, std::uint32_t most_elements) {
-    return Checker(document, most_elements).run();
+Result<> check_svg(std::string_view document, std::uint32_t most_elements, std::vector<std::string>* scripts) {
+    return Checker(document, most_elements, scripts).run();
 }
 
 Result<SvgTemplate> SvgTemplate::parse(std::string document) {
@@ -321,11 +345,17 @@ Result<SvgTemplate> SvgTemplate::parse(std::string document) {
         if (close == std::string::npos || close > line_end) return error(at, "'{{' without '}}' on its line");
         const std::string inside = document.substr(at + 2, close - at - 2);
         const std::size_t first = std::min(inside.find_first_not_of(blanks), inside.size());
-        const std::string name = inside.substr(first, inside.find_last_not_of(blanks) + 1 - first);
-        if (!is_name(name))
+        const std::string word = inside.substr(first, inside.find_last_not_of(blanks) + 1 - first);
+        const std::size_t colon = std::min(word.find(':'), word.size());
+        Binding binding{.begin = at, .end = close + 2, .name = word.substr(0, colon)};
+        if (!is_name(binding.name))
             return error(at, fmt::format("{{{{{}}}}}: allowed is a name of letters, digits, '_', '-' and '.'",
                                          printable(inside)));
-        out.bindings_.push_back({at, close + 2, name});
+        if (colon < word.size() && !read_form(word.substr(colon + 1), binding.digits, binding.decimals))
+            return error(at,
+                         fmt::format("{{{{{}}}}}: allowed behind ':' is a number's form of zeros, as 0, 000 or 0.00",
+                                     printable(inside)));
+        out.bindings_.push_back(std::move(binding));
         at = close + 2;
     }
     out.document_ = std::move(document);
@@ -346,16 +376,28 @@ Result<std::string> SvgTemplate::fill(const HudValues& values) const {
             return user_error(fmt::format("{}: {{{{{}}}}}: nothing has this name{}", line_of(document_, binding.begin),
                                           binding.name, suggestion(binding.name, names)));
         }
-        if (const double* const number = std::get_if<double>(&found->second))
-            out += fmt::format("{}", *number);
-        else
-            append_escaped(out, printable(std::get<std::string>(found->second)));
+        append_escaped(out, text_of(binding, found->second));
     }
     return out.append(document_, at);
 }
 
-bool SvgTemplate::binds(std::string_view name) const {
-    return std::ranges::find(bindings_, name, &Binding::name) != bindings_.end();
+std::string SvgTemplate::text_of(const Binding& binding, const HudValue& value) {
+    const double* const number = std::get_if<double>(&value);
+    if (number == nullptr) return printable(std::get<std::string>(value));
+    if (binding.digits == 0 || !(std::abs(*number) < 1e15)) return fmt::format("{}", *number);
+    std::string out = fmt::format("{:.{}f}", std::abs(*number), binding.decimals);
+    const auto digits = std::min(out.find('.'), out.size());
+    out.insert(0, static_cast<std::size_t>(binding.digits) - std::min(digits, static_cast<std::size_t>(binding.digits)),
+               '0');
+    // What is shown as nothing has no sign.
+    const bool has_sign = *number < 0 && out.find_first_not_of("0.") != std::string::npos;
+    return has_sign ? "-" + out : out;
+}
+
+bool SvgTemplate::shows(std::string_view name, const HudValue* before, const HudValue& after) const {
+    return std::ranges::any_of(bindings_, [&](const Binding& binding) {
+        return binding.name == name && (before == nullptr || text_of(binding, *before) != text_of(binding, after));
+    });
 }
 
 }  // namespace darkroom

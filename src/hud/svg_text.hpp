@@ -13,16 +13,19 @@
 
 namespace darkroom {
 
-/// Of the game: a number is shown in the shortest form that reads back the same.
+/// Of the game: a number is shown in the shortest form that reads back the same, or in the form that its binding names.
 using HudValue = std::variant<double, std::string>;
 using HudValues = std::map<std::string, HudValue, std::less<>>;
 
 /// A document that stands by itself: tags that close each other, no document type (and so no entities), no processing
 /// instructions, UTF-8, and no reference but to its own elements (#name), as it reads once XML's entities and CSS's
 /// escapes are undone. The error is "line: reason".
-[[nodiscard]] Result<> check_svg(std::string_view document, std::uint32_t most_elements);
+/// `scripts`: what its <script> elements name by `src` or `href`, in order, each once.
+[[nodiscard]] Result<> check_svg(std::string_view document, std::uint32_t most_elements,
+                                 std::vector<std::string>* scripts = nullptr);
 
-/// A document cut at its bindings, which may stand wherever text may: between tags and in attributes' values.
+/// A document cut at its bindings, {{name}} or {{name:00.0}}, which may stand wherever text may: between tags and in
+/// attributes' values. Zeros before the point are the fewest digits of a number, those behind it its decimals.
 class SvgTemplate {
   public:
     /// Names are words of letters, digits, '_', '-' and '.'. The error is "line: reason".
@@ -30,13 +33,17 @@ class SvgTemplate {
     /// The document with the values in place, escaped, so that they are text and never tags. A name without a value is
     /// an error, "line: reason".
     [[nodiscard]] Result<std::string> fill(const HudValues& values) const;
-    [[nodiscard]] bool binds(std::string_view name) const;
+    /// Does a text change where this name has another value?
+    [[nodiscard]] bool shows(std::string_view name, const HudValue* before, const HudValue& after) const;
 
   private:
     struct Binding {
         std::size_t begin = 0, end = 0;  ///< with its braces
         std::string name;
+        /// Of numbers; no decimals and no digits: the shortest form.
+        int digits = 0, decimals = 0;
     };
+    static std::string text_of(const Binding& binding, const HudValue& value);
     std::string document_;
     std::vector<Binding> bindings_;
 };

@@ -119,5 +119,43 @@ TEST(HudText, NamesTheLineOfABindingThatCannotBeFilled) {
     EXPECT_EQ(filled("<svg>\n{{a\n}}</svg>", {}), "2: '{{' without '}}' on its line");
 }
 
+TEST(HudText, NumbersTakeTheFormOfTheirBinding) {
+    const auto shown = [](const std::string& form, double number) {
+        return filled("{{a:" + form + "}}", {{"a", number}});
+    };
+    EXPECT_EQ(shown("0", 81.7), "82");
+    EXPECT_EQ(shown("000", 24), "024");
+    EXPECT_EQ(shown("0.00", 1.005e3), "1005.00");
+    EXPECT_EQ(shown("00.0", -3.26), "-03.3");
+    EXPECT_EQ(shown("0", -0.4), "0") << "no sign of nothing";
+    EXPECT_EQ(shown("0", 1e300), "1e+300");
+    EXPECT_EQ(filled("{{ a:0 }}", {{"a", HudValue("text")}}), "text");
+    for (const std::string form : {"", "1", ".0", "0.", "0.0.0", "#", "0000000000000000", "0x"})
+        EXPECT_NE(shown(form, 1).find("a number's form of zeros"), std::string::npos) << form;
+    // What is shown stays where only hidden decimals change.
+    const auto parsed = SvgTemplate::parse("{{a:0}}");
+    ASSERT_TRUE(parsed);
+    const HudValue before = 81.7;
+    EXPECT_FALSE(parsed->shows("a", &before, 82.4));
+    EXPECT_TRUE(parsed->shows("a", &before, 82.6));
+    EXPECT_TRUE(parsed->shows("a", nullptr, 81.7));
+    EXPECT_FALSE(parsed->shows("b", nullptr, 1.0));
+}
+
+TEST(HudText, TellsWhatScriptsItNames) {
+    std::vector<std::string> scripts;
+    ASSERT_TRUE(
+        check_svg("<svg><script src='a.lua'/><script xlink:href=\"b&amp;c.lua\"/><script href='a.lua'/>"
+                  "<script>text</script><a href='d.lua'/></svg>",
+                  plenty, &scripts));
+    EXPECT_EQ(scripts, (std::vector<std::string>{"a.lua", "b&c.lua"}));
+    std::string many = "<svg>\n";
+    for (int i = 0; i < 17; ++i) many += "<script src='" + std::to_string(i) + ".lua'/>";
+    scripts.clear();
+    const auto refused = check_svg(many + "</svg>", plenty, &scripts);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().text, "2: more than 16 scripts");
+}
+
 }  // namespace
 }  // namespace darkroom
