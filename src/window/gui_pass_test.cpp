@@ -28,6 +28,9 @@ void expect_as_drawn_by_the_cpu(const Pixels& pixels, const ImDrawData& data, in
     EXPECT_EQ(wrong, 0);
 }
 
+/// The atlas may be read at coarser coordinates than lavapipe's: SwiftShader's have 16 bits, of hundreds of texels.
+int codes_of_text() { return gpu::test::is_lavapipe() ? 1 : 4; }
+
 class WindowGpuGuiPass : public test::GuiPassTest {};
 
 TEST_F(WindowGpuGuiPass, DrawsTextAndShapesAsTheCpuDoes) {
@@ -42,7 +45,7 @@ TEST_F(WindowGpuGuiPass, DrawsTextAndShapesAsTheCpuDoes) {
     });
     const Pixels pixels = draw(data);
     ASSERT_TRUE(result);
-    expect_as_drawn_by_the_cpu(pixels, data, 1);
+    expect_as_drawn_by_the_cpu(pixels, data, codes_of_text());
     EXPECT_EQ(pixels.at(8, 8), (std::array{200 / 255.0F, 40 / 255.0F, 20 / 255.0F, 1.0F}));
 }
 
@@ -130,7 +133,7 @@ TEST_F(WindowGpuGuiPass, AtlasesMayBeExchanged) {
     atlas.AddFontDefault(&large);
     must(pass.upload_fonts(atlas));
     const ImDrawData& data = text();
-    expect_as_drawn_by_the_cpu(draw(data), data, 1);
+    expect_as_drawn_by_the_cpu(draw(data), data, codes_of_text());
 }
 
 class WindowGpuSrgbTarget : public test::GuiPassTest {
