@@ -159,8 +159,8 @@ struct LookOptions {
 [[nodiscard]] LookEntry flat_entry(const EffectInfo& effect, LookOrder order);
 /// Of a flat look: values that are the defaults of its order become those of the new one.
 void set_order(Look& look, LookOrder order);
-/// What remains of a look where post-processing is off: its exposure, tone mapping and encoding at their defaults, and the
-/// interface.
+/// What remains of a look where post-processing is off: its exposure, tone mapping and encoding at their defaults, and
+/// the interface.
 [[nodiscard]] Look switched_off(const Look& look);
 /// The multiplier of the scene's light that the look has; 1: it has none.
 [[nodiscard]] float exposure_of(const Look& look);

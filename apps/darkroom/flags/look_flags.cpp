@@ -11,6 +11,7 @@
 #include "apps/darkroom/effects/named_effects.hpp"
 #include "apps/darkroom/help/describe.hpp"
 #include "apps/darkroom/run/report.hpp"
+#include "apps/darkroom/run/ui_source.hpp"
 #include "core/text/param_text.hpp"
 #include "image/table/resource_file.hpp"
 #include "looks/look_parts.hpp"
@@ -54,9 +55,11 @@ std::string shown_value(const darkroom::ParamInfo& row) {
 // What changes the domain stays: an encoding that is off is not the same as none.
 void drop_what_is_off(Look& look) {
     if (!look.is_flat || !look.is_enabled) return;
+    // Controllers move the interface, also where it is at rest.
+    const bool has_controllers = !interface_of(look).controllers.empty();
     std::erase_if(look.entries, [&](const darkroom::LookEntry& entry) {
         const darkroom::EffectInfo& effect = *entry.effect;
-        if (darkroom::is_moved(look, effect.name)) return false;
+        if (darkroom::is_moved(look, effect.name) || (entry.is_of_ui && has_controllers)) return false;
         const bool is_identity = effect.is_identity != nullptr && effect.is_identity(entry.words.data());
         return effect.makes == nullptr && (entry.state.enabled.on == 0 || is_identity);
     });

@@ -101,8 +101,11 @@ class TimelineReader {
             return read_table(node, "layer", [&](std::string_view name, const toml::node& value) {
                 return read_weight(std::string(name), value, event);
             });
-        if (key.str() == "game" || key.str() == "jump" || key.str() == "yaw") return read_game(key, node, event.game);
-        return failure(unknown(key, {"time", "set", "fire", "layer", "over", "game", "jump", "yaw"}));
+        if (key.str() == "game") return read_game(node, event.game);
+        if (key.str() == "jump") return read_truth(key, node, event.game.is_jump);
+        if (key.str() == "teleport") return read_truth(key, node, event.game.is_teleport);
+        if (key.str() == "yaw") return read_yaw(key, node, event.game);
+        return failure(unknown(key, {"time", "set", "fire", "layer", "over", "game", "jump", "yaw", "teleport"}));
     }
 
     Result<float> read_number(const ParamInfo& row, const toml::node& node, std::string_view key) {
@@ -120,19 +123,19 @@ class TimelineReader {
         return problem ? failure(at(node, problem->text)) : Result<>{};
     }
 
-    Result<> read_game(const toml::key& key, const toml::node& node, GameEvent& event) {
-        if (key.str() == "game") {
-            Result<darkroom::GameTable> values = darkroom::game_values(node);
-            if (!values) return failure(at(node, values.error().text));
-            event.values = std::move(*values);
-            return {};
-        }
-        if (key.str() == "jump") {
-            const auto* const jumps = node.as_boolean();
-            if (jumps == nullptr) return failure(at(node, fmt::format("jump = {}: expected true", show(node))));
-            event.is_jump = jumps->get();
-            return {};
-        }
+    Result<> read_game(const toml::node& node, GameEvent& event) {
+        Result<darkroom::GameTable> values = darkroom::game_values(node);
+        if (!values) return failure(at(node, values.error().text));
+        event.values = std::move(*values);
+        return {};
+    }
+    Result<> read_truth(const toml::key& key, const toml::node& node, bool& out) {
+        const auto* const truth = node.as_boolean();
+        if (truth == nullptr) return failure(at(node, fmt::format("{} = {}: expected true", key.str(), show(node))));
+        out = truth->get();
+        return {};
+    }
+    Result<> read_yaw(const toml::key& key, const toml::node& node, GameEvent& event) {
         const Result<float> yaw = read_number(yaw_row, node, key.str());
         if (!yaw) return failure(yaw.error());
         event.yaw = double{*yaw};
@@ -256,7 +259,8 @@ std::vector<double> Timeline::times() const {
 std::vector<GameEvent> Timeline::game() const {
     std::vector<GameEvent> out;
     for (const Event& event : events_) {
-        if (event.game.values.empty() && !event.game.is_jump && !event.game.yaw) continue;
+        const GameEvent& said = event.game;
+        if (said.values.empty() && !said.is_jump && !said.is_teleport && !said.yaw) continue;
         out.push_back(event.game);
         out.back().time = event.time;
     }

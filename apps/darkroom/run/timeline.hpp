@@ -15,6 +15,7 @@ struct GameEvent {
     double time = 0;
     darkroom::GameTable values;
     bool is_jump = false;
+    bool is_teleport = false;   ///< the view is elsewhere at once, at rest: `yaw` pushes nothing
     std::optional<double> yaw;  ///< degrees: where the view looks from then on
 };
 

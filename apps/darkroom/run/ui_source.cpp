@@ -45,10 +45,20 @@ Result<> move_interface(Composer& composer, darkroom::Vec2 offset) {
     return composer.set_override(*entry, "offset", "inertia", words);
 }
 
+darkroom::LookUi interface_of(const darkroom::Look& look) {
+    darkroom::LookUi ui = look.ui.value_or(darkroom::LookUi{});
+    if (std::filesystem::path(ui.document).extension() != ".svg") return ui;
+    const auto document = darkroom::HudDocument::load(ui.document, {.is_headless = true});
+    if (!document) return ui;
+    for (const std::string& script : (*document)->scripts())
+        if (std::ranges::count(ui.controllers, script) == 0) ui.controllers.push_back(script);
+    return ui;
+}
+
 std::vector<std::filesystem::path> ui_files(const darkroom::Look& look) {
-    if (!look.ui) return {};
-    std::vector<std::filesystem::path> out(look.ui->controllers.begin(), look.ui->controllers.end());
-    if (!look.ui->document.empty()) out.emplace_back(look.ui->document);
+    const darkroom::LookUi ui = interface_of(look);
+    std::vector<std::filesystem::path> out(ui.controllers.begin(), ui.controllers.end());
+    if (!ui.document.empty()) out.emplace_back(ui.document);
     return out;
 }
 
@@ -94,6 +104,10 @@ darkroom::Vec2 UiSource::offset_at(double time) const {
     for (const GameEvent& event : events_) {
         if (event.time >= time) break;
         move(event.time);
+        if (event.is_teleport) {
+            inertia.reset();
+            jumps = false;
+        }
         jumps |= event.is_jump && event.time > time - memory;
         yaw = event.yaw.value_or(yaw);
     }

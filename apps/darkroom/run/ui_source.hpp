@@ -19,6 +19,9 @@
 
 namespace app {
 
+/// Of a look as LookFlags gives it: with the controllers that its document names, behind its own. A document that
+/// cannot be read names none; drawing it says why.
+[[nodiscard]] darkroom::LookUi interface_of(const darkroom::Look& look);
 /// What the interface of a look, as LookFlags gives it, is read from.
 [[nodiscard]] std::vector<std::filesystem::path> ui_files(const darkroom::Look& look);
 /// That they can be opened.
@@ -35,7 +38,7 @@ class UiSource {
     UiSource() = default;
     /// Of a look as LookFlags gives it.
     UiSource(const darkroom::Look& look, const Timeline& timeline)
-        : ui_(look.ui.value_or(darkroom::LookUi{})), events_(timeline.game()), game_(ui_.game) {}
+        : ui_(interface_of(look)), events_(timeline.game()), game_(ui_.game) {}
     [[nodiscard]] bool has_controllers() const { return !ui_.controllers.empty(); }
     /// Loads the controllers for this Composer, which advance() does as well. Errors: of scripts.
     [[nodiscard]] darkroom::Result<> start(darkroom::Composer& composer);

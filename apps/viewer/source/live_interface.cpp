@@ -23,7 +23,7 @@ Result<> LiveInterface::start(const darkroom::Look& look, const Timeline& timeli
     uploaded_.reset();
     inertia_.reset();
     failed_.clear();
-    ui_ = look.ui.value_or(darkroom::LookUi{});
+    ui_ = interface_of(look);
     events_ = timeline.game();
     composer_ = &composer;
     console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print_});

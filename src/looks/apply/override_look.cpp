@@ -51,7 +51,7 @@ class Overrider {
         if (!is_state) {
             if (Result<> done = assign(*row, entry->words, *value, shown); !done) return done;
             const bool is_positive = std::bit_cast<float>(entry->words[row->word]) > 0;
-            if (row->is_amount) {
+            if (row->is_amount && !entry->is_of_ui) {
                 entry->state.enabled = std::bit_cast<float>(entry->words[row->word]) != 0;
                 entry->is_asked_for = entry->state.enabled.on != 0;
             }
