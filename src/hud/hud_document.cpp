@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -25,8 +27,14 @@ using Template = std::shared_ptr<const SvgTemplate>;
 struct Wish {
     Template document;
     std::uint32_t width = 0, height = 0;
-    std::uint64_t values = 0;  ///< counts their changes
+    float scale = 1;
+    std::uint64_t values = 0;  ///< counts their changes, and those of classes
     bool operator==(const Wish&) const = default;
+};
+
+struct Shown {
+    HudValues values;
+    HudClasses classes;
 };
 
 struct Outcome {
@@ -71,23 +79,28 @@ struct HudDocument::State {
         const auto bytes = read_file(path, {.max_size = options.limits.document_bytes});
         if (!bytes) return failure(bytes.error());
         std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-        std::vector<std::string> named;
-        if (auto checked = check_svg(text, options.limits.elements, &named); !checked)
+        SvgFacts facts;
+        if (auto checked = check_svg(text, options.limits.elements, &facts); !checked)
             return user_error(placed(checked.error().text));
         auto parsed = SvgTemplate::parse(std::move(text));
         if (!parsed) return user_error(placed(parsed.error().text));
-        for (std::string& name : named) name = (path.parent_path() / name).string();
-        scripts = std::move(named);
+        for (std::string& name : facts.scripts) name = (path.parent_path() / name).string();
+        scripts = std::move(facts.scripts);
         return std::make_shared<const SvgTemplate>(std::move(*parsed));
     }
 
-    [[nodiscard]] Result<std::shared_ptr<const HudPicture>> draw(const Wish& wish, const HudValues& with) {
-        auto text = wish.document->fill(with);
+    [[nodiscard]] Result<std::shared_ptr<const HudPicture>> draw(const Wish& wish, const Shown& with) {
+        auto text = wish.document->fill(with.values);
+        SvgFacts facts;
         // Values stand in attributes too, and so in references.
         if (text)
-            if (auto checked = check_svg(*text, options.limits.elements); !checked) text = failure(std::move(checked));
+            if (auto checked = check_svg(*text, options.limits.elements, &facts); !checked)
+                text = failure(std::move(checked));
         if (!text) return user_error(placed(text.error().text));
-        auto made = process.draw(*text, wish.width, wish.height);
+        // The place behind the root's name comes before all others, and stays.
+        const std::string sized =
+            at_size(with_classes(std::move(*text), facts, with.classes), facts, wish.width, wish.height, wish.scale);
+        auto made = process.draw(sized, wish.width, wish.height);
         if (!made) return failure(Error{made.error().fault, placed(printable(located(made.error().text)))});
         return std::make_shared<const HudPicture>(std::move(*made));
     }
@@ -129,7 +142,7 @@ struct HudDocument::State {
             const std::lock_guard lock(mutex);
             if (is_busy) return;
             job = std::move(wish);
-            job_values = values;
+            job_shown = shown;
             is_busy = true;
         }
         wakes.notify_all();
@@ -153,7 +166,7 @@ struct HudDocument::State {
                 continue;
             }
             const Wish wish = *std::exchange(job, std::nullopt);
-            const HudValues with = std::move(job_values);
+            const Shown with = std::move(job_shown);
             lock.unlock();
             Outcome outcome{wish, draw(wish, with)};
             lock.lock();
@@ -164,7 +177,7 @@ struct HudDocument::State {
     std::filesystem::path path;
     HudOptions options;
     // Of the caller's thread:
-    HudValues values;
+    Shown shown;
     std::uint64_t value_changes = 0, drawings = 0;
     Template latest, good;  // as the file was read last; as it was drawn last
     std::shared_ptr<const HudPicture> picture;
@@ -179,7 +192,7 @@ struct HudDocument::State {
     std::mutex mutex;
     std::condition_variable wakes;
     std::optional<Wish> job;
-    HudValues job_values;
+    Shown job_shown;
     std::optional<Outcome> done;
     bool is_busy = false, is_over = false;
     std::thread worker;
@@ -202,32 +215,50 @@ void HudDocument::set(std::string_view name, HudValue value) {
     // A NaN differs from itself, and would be drawn in every frame.
     if (const double* const number = std::get_if<double>(&value); number != nullptr && std::isnan(*number))
         value = std::string("nan");
-    const auto found = state_->values.find(name);
-    if (found != state_->values.end() && found->second == value) return;
-    const HudValue* const before = found == state_->values.end() ? nullptr : &found->second;
+    const auto found = state_->shown.values.find(name);
+    if (found != state_->shown.values.end() && found->second == value) return;
+    const HudValue* const before = found == state_->shown.values.end() ? nullptr : &found->second;
     const auto shows = [&](const Template& document) {
         return document != nullptr && document->shows(name, before, value);
     };
     if (shows(state_->latest) || shows(state_->good)) ++state_->value_changes;
-    if (found != state_->values.end())
+    if (found != state_->shown.values.end())
         found->second = std::move(value);
     else
-        state_->values.emplace(name, std::move(value));
+        state_->shown.values.emplace(name, std::move(value));
 }
 
-std::shared_ptr<const HudPicture> HudDocument::picture(std::uint32_t width, std::uint32_t height) {
+bool HudDocument::set_class(std::string_view id, std::string_view name, bool is_on) {
+    constexpr std::size_t most = 256, longest = 64;
+    const auto is_word = [](std::string_view text) {
+        const auto is_of_it = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+        return !text.empty() && text.size() <= longest && std::ranges::all_of(text, is_of_it);
+    };
+    if (!is_word(id) || !is_word(name)) return false;
+    HudClasses& classes = state_->shown.classes;
+    const auto [found, is_new] = classes.try_emplace({std::string(id), std::string(name)}, !is_on);
+    if (is_new && classes.size() > most) {
+        classes.erase(found);
+        return false;
+    }
+    state_->value_changes += found->second != is_on ? 1 : 0;
+    found->second = is_on;
+    return true;
+}
+
+std::shared_ptr<const HudPicture> HudDocument::picture(std::uint32_t width, std::uint32_t height, float scale) {
     State& state = *state_;
     state.look_at_file();
     state.take_done();
     // Twice where a new document cannot be drawn, and the last good one is wished for instead.
     for (int attempt = 0; attempt < 2; ++attempt) {
-        Wish wish{state.latest, width, height, state.value_changes};
+        Wish wish{state.latest, width, height, scale, state.value_changes};
         if (wish == state.drawn || wish == state.failed) break;
         if (!state.options.is_headless) {
             state.ask(std::move(wish));
             break;
         }
-        auto drawn = state.draw(wish, state.values);
+        auto drawn = state.draw(wish, state.shown);
         state.take({std::move(wish), std::move(drawn)});
     }
     return state.picture;

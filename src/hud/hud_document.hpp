@@ -31,12 +31,17 @@ class HudDocument {
     ~HudDocument();
 
     void set(std::string_view name, HudValue value);
+    /// Adds a class to the element with this id, or takes it away, from now on: what its styles and the document's say
+    /// of it changes with the next drawing. False: a name is not of 1 to 64 letters, digits, '_' and '-', or 256 pairs
+    /// of element and class have been named before.
+    bool set_class(std::string_view id, std::string_view name, bool is_on);
     /// The controllers that its <script> elements name, as the file was read last; relative names are of its folder.
     [[nodiscard]] const std::vector<std::string>& scripts() const;
     /// The newest drawing: headless, of this size and all values; else what was drawn last, perhaps at another size,
     /// and null before the first. What changed is begun now, and returned by the first call after it is done. The same
     /// pointer is the same picture.
-    [[nodiscard]] std::shared_ptr<const HudPicture> picture(std::uint32_t width, std::uint32_t height);
+    /// `scale`: pixels of a unit, of a document that has neither a viewBox nor a reference height; a window's scale.
+    [[nodiscard]] std::shared_ptr<const HudPicture> picture(std::uint32_t width, std::uint32_t height, float scale = 1);
     /// Why the picture is not that of the file, the values and the size; one line, empty where it is.
     [[nodiscard]] const std::string& error() const;
     /// Successful ones, so far.

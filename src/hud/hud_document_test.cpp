@@ -99,6 +99,26 @@ TEST_F(HudDocuments, IsDrawnForItsSizeAndItsValuesAlone) {
     EXPECT_EQ(document->drawings(), drawings);
 }
 
+TEST_F(HudDocuments, AClassChangesWhatStylesSay) {
+    write("<style>.low { fill: #f00; }</style><rect id='bar' width='10' height='10' fill='#0f0'/>");
+    const auto document = load();
+    EXPECT_EQ(pixel(document->picture(10, 10), 5, 5), (Pixel{0, 255, 0, 255}));
+    EXPECT_TRUE(document->set_class("bar", "low", true));
+    EXPECT_EQ(pixel(document->picture(10, 10), 5, 5), (Pixel{255, 0, 0, 255}));
+    EXPECT_TRUE(document->set_class("bar", "low", true));
+    const auto same = document->picture(10, 10);
+    EXPECT_EQ(document->drawings(), 2u);
+    EXPECT_TRUE(document->set_class("bar", "low", false));
+    EXPECT_EQ(pixel(document->picture(10, 10), 5, 5), (Pixel{0, 255, 0, 255}));
+    for (const std::string& name : {std::string(), std::string("a b"), std::string("\"/><x"), std::string(65, 'a')}) {
+        EXPECT_FALSE(document->set_class("bar", name, true)) << name;
+        EXPECT_FALSE(document->set_class(name, "low", true)) << name;
+    }
+    int taken = 0;
+    for (int i = 0; i < 1000; ++i) taken += document->set_class("bar", "c" + std::to_string(i), true) ? 1 : 0;
+    EXPECT_EQ(taken, 255) << "and the one above";
+}
+
 TEST_F(HudDocuments, UnknownNamesAreAnErrorUntilTheyAreSet) {
     write("<text>{{health}}</text>");
     const auto document = load();

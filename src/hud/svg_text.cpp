@@ -20,6 +20,7 @@ namespace {
 /// librsvg and what it is made of go into each by a call.
 constexpr std::size_t most_depth = 200;
 constexpr std::size_t most_scripts = 16;
+constexpr double most_reference_height = 65536;
 constexpr std::size_t most_zeros = 15;  // of a number's form: what a double holds
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view style_blanks = " \t\r\n\f";
@@ -99,8 +100,8 @@ std::string without_escapes(std::string_view text) {
 /// Reads a document from its beginning to its end, and stops at the first thing that is refused.
 class Checker {
   public:
-    Checker(std::string_view text, std::uint32_t most_elements, std::vector<std::string>* scripts)
-        : text_(text), most_elements_(most_elements), scripts_(scripts) {}
+    Checker(std::string_view text, std::uint32_t most_elements) : text_(text), most_elements_(most_elements) {}
+    [[nodiscard]] SvgFacts take_facts() { return std::move(facts_); }
 
     Result<> run() {
         if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
@@ -206,6 +207,8 @@ class Checker {
             refuse(fmt::format("<{}> takes in other files: a document stands by itself", element));
             return;
         }
+        if (elements_ == 1) facts_.root_at = at_;
+        element_ = {.at = at_};
         while (error_.empty()) {
             at_ = std::min(text_.find_first_not_of(blanks, at_), text_.size());
             if (rest().starts_with(">") || rest().starts_with("/>")) {
@@ -213,6 +216,9 @@ class Checker {
                 style_.clear();
                 if (rest().front() == '>') open_.push_back({full_name, begin});
                 if (open_.size() > most_depth) refuse(fmt::format("elements in more than {} others", most_depth));
+                if (!element_.id.empty()) facts_.elements.push_back(std::move(element_));
+                if (elements_ == 1 && facts_.reference_height > 0 && facts_.has_view_box)
+                    refuse("data-reference-height beside viewBox: one of them says how large a unit is");
                 at_ += rest().front() == '>' ? 1 : 2;
                 return;
             }
@@ -242,13 +248,30 @@ class Checker {
         if (is_reference && element != "a" && element != "script" && !value.starts_with('#'))
             refuse(fmt::format("{}=\"{}\": allowed is #name, of an element of the document", name, printable(value)));
         check_style(without_entities(value));
+        note(name, value);
         at_ = end + 1;
     }
 
+    void note(std::string_view name, std::string_view value) {
+        if (name == "id") element_.id = without_entities(value);
+        if (name == "class") {
+            element_.class_begin = static_cast<std::size_t>(value.data() - text_.data());
+            element_.class_size = value.size();
+        }
+        if (elements_ != 1) return;
+        facts_.has_view_box |= name == "viewBox";
+        if (name != "data-reference-height") return;
+        const auto read = std::from_chars(value.data(), value.data() + value.size(), facts_.reference_height);
+        const bool is_number = read.ec == std::errc() && read.ptr == value.data() + value.size();
+        if (!is_number || !(facts_.reference_height >= 1 && facts_.reference_height <= most_reference_height))
+            refuse(fmt::format("data-reference-height=\"{}\": allowed is a number in [1, {}]", printable(value),
+                               most_reference_height));
+    }
+
     void add_script(std::string name) {
-        if (scripts_ == nullptr || std::ranges::count(*scripts_, name) > 0) return;
-        if (scripts_->size() == most_scripts) refuse(fmt::format("more than {} scripts", most_scripts));
-        scripts_->push_back(std::move(name));
+        if (std::ranges::count(facts_.scripts, name) > 0) return;
+        if (facts_.scripts.size() == most_scripts) refuse(fmt::format("more than {} scripts", most_scripts));
+        facts_.scripts.push_back(std::move(name));
     }
 
     /// References as CSS and presentation attributes have them, in what the parser of XML makes of a text.
@@ -277,7 +300,8 @@ class Checker {
     std::string_view text_;
     std::vector<Open> open_;
     std::uint32_t most_elements_;
-    std::vector<std::string>* scripts_;
+    SvgFacts facts_;
+    SvgFacts::Element element_;  // that is being read
     std::size_t at_ = 0, start_ = 0;
     std::uint32_t elements_ = 0;
     bool is_in_style_ = false;
@@ -330,8 +354,42 @@ bool is_name(std::string_view text) {
 
 }  // namespace
 
-Result<> check_svg(std::string_view document, std::uint32_t most_elements, std::vector<std::string>* scripts) {
-    return Checker(document, most_elements, scripts).run();
+Result<> check_svg(std::string_view document, std::uint32_t most_elements, SvgFacts* facts) {
+    Checker checker(document, most_elements);
+    Result<> done = checker.run();
+    if (done && facts != nullptr) *facts = checker.take_facts();
+    return done;
+}
+
+std::string at_size(std::string document, const SvgFacts& facts, std::uint32_t width, std::uint32_t height,
+                    double scale) {
+    const double unit = facts.reference_height > 0 ? height / facts.reference_height : scale;
+    if (facts.has_view_box || unit == 1) return document;
+    return document.insert(facts.root_at, fmt::format(" viewBox=\"0 0 {} {}\"", width / unit, height / unit));
+}
+
+std::string with_classes(std::string document, const SvgFacts& facts, const HudClasses& classes) {
+    // From the last, so that the places of the others stay.
+    for (auto element = facts.elements.rbegin(); element != facts.elements.rend(); ++element) {
+        std::string words = fmt::format(" {} ", document.substr(element->class_begin, element->class_size));
+        std::ranges::replace_if(
+            words, [](char c) { return blanks.find(c) != std::string_view::npos; }, ' ');
+        bool is_changed = false;
+        for (auto of = classes.lower_bound({element->id, ""}); of != classes.end() && of->first.first == element->id;
+             ++of) {
+            const std::string word = fmt::format(" {} ", of->first.second);
+            for (std::size_t at = words.find(word); at != std::string::npos; at = words.find(word))
+                words.erase(at, word.size() - 1);
+            if (of->second) words += word.substr(1);
+            is_changed = true;
+        }
+        if (!is_changed) continue;
+        if (element->class_begin > 0)
+            document.replace(element->class_begin, element->class_size, words);
+        else
+            document.insert(element->at, fmt::format(" class=\"{}\"", words));
+    }
+    return document;
 }
 
 Result<SvgTemplate> SvgTemplate::parse(std::string document) {
@@ -391,7 +449,8 @@ std::string SvgTemplate::text_of(const Binding& binding, const HudValue& value) 
                '0');
     // What is shown as nothing has no sign.
     const bool has_sign = *number < 0 && out.find_first_not_of("0.") != std::string::npos;
-    return has_sign ? "-" + out : out;
+    if (has_sign) out.insert(0, 1, '-');
+    return out;
 }
 
 bool SvgTemplate::shows(std::string_view name, const HudValue* before, const HudValue& after) const {

@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,12 +18,34 @@ namespace darkroom {
 using HudValue = std::variant<double, std::string>;
 using HudValues = std::map<std::string, HudValue, std::less<>>;
 
+/// Of an element, by its id, and a class of it: whether it has it.
+using HudClasses = std::map<std::pair<std::string, std::string>, bool>;
+
+/// What check_svg() finds on its way. Places are of the text that was checked.
+struct SvgFacts {
+    struct Element {
+        std::string id;
+        std::size_t at = 0;                           ///< behind its name
+        std::size_t class_begin = 0, class_size = 0;  ///< the value; no begin: it has none
+    };
+    std::vector<Element> elements;     ///< those with an id
+    std::vector<std::string> scripts;  ///< what <script> elements name by `src` or `href`, in order, each once
+    std::size_t root_at = 0;           ///< behind the name of the outermost element
+    double reference_height = 0;       ///< its data-reference-height; 0: none
+    bool has_view_box = false;
+};
+
 /// A document that stands by itself: tags that close each other, no document type (and so no entities), no processing
 /// instructions, UTF-8, and no reference but to its own elements (#name), as it reads once XML's entities and CSS's
 /// escapes are undone. The error is "line: reason".
-/// `scripts`: what its <script> elements name by `src` or `href`, in order, each once.
-[[nodiscard]] Result<> check_svg(std::string_view document, std::uint32_t most_elements,
-                                 std::vector<std::string>* scripts = nullptr);
+[[nodiscard]] Result<> check_svg(std::string_view document, std::uint32_t most_elements, SvgFacts* facts = nullptr);
+
+/// How many pixels of a picture a unit of the document is: `height` over its reference height, or `scale` where it has
+/// neither one nor a viewBox.
+[[nodiscard]] std::string at_size(std::string document, const SvgFacts& facts, std::uint32_t width,
+                                  std::uint32_t height, double scale);
+/// With classes added to elements, or taken from them.
+[[nodiscard]] std::string with_classes(std::string document, const SvgFacts& facts, const HudClasses& classes);
 
 /// A document cut at its bindings, {{name}} or {{name:00.0}}, which may stand wherever text may: between tags and in
 /// attributes' values. Zeros before the point are the fewest digits of a number, those behind it its decimals.

@@ -143,18 +143,63 @@ TEST(HudText, NumbersTakeTheFormOfTheirBinding) {
 }
 
 TEST(HudText, TellsWhatScriptsItNames) {
-    std::vector<std::string> scripts;
+    SvgFacts facts;
     ASSERT_TRUE(
         check_svg("<svg><script src='a.lua'/><script xlink:href=\"b&amp;c.lua\"/><script href='a.lua'/>"
                   "<script>text</script><a href='d.lua'/></svg>",
-                  plenty, &scripts));
-    EXPECT_EQ(scripts, (std::vector<std::string>{"a.lua", "b&c.lua"}));
+                  plenty, &facts));
+    EXPECT_EQ(facts.scripts, (std::vector<std::string>{"a.lua", "b&c.lua"}));
     std::string many = "<svg>\n";
     for (int i = 0; i < 17; ++i) many += "<script src='" + std::to_string(i) + ".lua'/>";
-    scripts.clear();
-    const auto refused = check_svg(many + "</svg>", plenty, &scripts);
+    facts = {};
+    const auto refused = check_svg(many + "</svg>", plenty, &facts);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().text, "2: more than 16 scripts");
+}
+
+TEST(HudText, ElementsGetAndLoseClasses) {
+    const std::string document =
+        "<svg id='root'><g class=\"a  low\" id=\"health\"/><g id='b&amp;c'/><text class='low' id='other'/></svg>";
+    SvgFacts facts;
+    ASSERT_TRUE(check_svg(document, plenty, &facts));
+    EXPECT_EQ(with_classes(document, facts, {}), document);
+    EXPECT_EQ(with_classes(document, facts,
+                           {{{"b&c", "x"}, true},
+                            {{"health", "low"}, false},
+                            {{"health", "on"}, true},
+                            {{"none", "x"}, true},
+                            {{"root", "y"}, true},
+                            {{"root", "z"}, false}}),
+              "<svg class=\"  y \" id='root'><g class=\" a  on \" id=\"health\"/><g class=\"  x \" id='b&amp;c'/>"
+              "<text class='low' id='other'/></svg>");
+    // What is there is not there twice.
+    EXPECT_EQ(with_classes("<g id='a' class='x x'/>",
+                           [] {
+                               SvgFacts one;
+                               EXPECT_TRUE(check_svg("<g id='a' class='x x'/>", plenty, &one));
+                               return one;
+                           }(),
+                           {{{"a", "x"}, true}}),
+              "<g id='a' class=' x '/>");
+}
+
+TEST(HudText, UnitsFollowTheReferenceHeightOrTheScale) {
+    const auto sized = [](const std::string& document, double scale) {
+        SvgFacts facts;
+        EXPECT_TRUE(check_svg(document, plenty, &facts)) << document;
+        return at_size(document, facts, 1920, 1080, scale);
+    };
+    EXPECT_EQ(sized("<svg data-reference-height='540'/>", 3),
+              "<svg viewBox=\"0 0 960 540\" data-reference-height='540'/>");
+    EXPECT_EQ(sized("<svg/>", 1), "<svg/>");
+    EXPECT_EQ(sized("<svg/>", 2), "<svg viewBox=\"0 0 960 540\"/>");
+    EXPECT_EQ(sized("<svg viewBox='0 0 4 3'/>", 2), "<svg viewBox='0 0 4 3'/>");
+    EXPECT_EQ(sized("<svg><g data-reference-height='540'/></svg>", 1), "<svg><g data-reference-height='540'/></svg>");
+    for (const std::string height : {"0", "-1", "nan", "inf", "1e9", "", "540px"})
+        EXPECT_EQ(checked("<svg data-reference-height='" + height + "'/>"),
+                  "1: data-reference-height=\"" + height + "\": allowed is a number in [1, 65536]");
+    EXPECT_EQ(checked("<svg data-reference-height='9' viewBox='0 0 1 1'/>"),
+              "1: data-reference-height beside viewBox: one of them says how large a unit is");
 }
 
 }  // namespace
