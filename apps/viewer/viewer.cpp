@@ -332,7 +332,7 @@ Result<> Viewer::record(const PresentFrame& frame, VkExtent2D extent) {
         input.camera.is_cut = is_cut_;
     }
     if (interface_->is_given()) {
-        const Result<darkroom::ImageRef> ui = interface_->record(frame.commands, frame.slot, extent);
+        const Result<darkroom::ImageRef> ui = interface_->record(frame.commands, frame.slot, extent, window_->scale());
         if (!ui) return failure(ui.error());
         input.ui = *ui;
     }

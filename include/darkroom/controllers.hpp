@@ -15,6 +15,7 @@
 #include <darkroom/console.hpp>
 #include <darkroom/game_table.hpp>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,6 +32,9 @@ struct ControllersDesc {
     /// CPU time of the same, for instructions that take longer than others.
     double milliseconds_per_frame = 2;
     bool allows_files = false;  ///< may `engine.exec` run files of the console's folder?
+    /// Gives an element of the interface's document a class, or takes it away; false: it has no such names. None:
+    /// `engine.set_class` is false.
+    std::function<bool(std::string_view id, std::string_view name, bool is_on)> set_class{};
 };
 
 struct ControllerFrame {

@@ -82,6 +82,14 @@ int pre_roll(lua_State* lua) {
     return luaL_error(lua, "pre_roll: a script states it while it is loaded, not in a callback");
 }
 
+int set_class(lua_State* lua) {
+    Sandbox::of(lua).spend(cost_of_setting);
+    const std::string_view id = text_argument(lua, 1, longest_name), name = text_argument(lua, 2, longest_name);
+    luaL_checktype(lua, 3, LUA_TBOOLEAN);
+    lua_pushboolean(lua, host_of(lua).set_class(id, name, lua_toboolean(lua, 3) != 0) ? 1 : 0);
+    return 1;
+}
+
 int time(lua_State* lua) {
     lua_pushnumber(lua, host_of(lua).time());
     return 1;
@@ -142,7 +150,8 @@ constexpr luaL_Reg engine_functions[] = {{"cvar_get", cvar_get}, {"cvar_get_numb
                                          {"cvar_set", cvar_set}, {"exec", exec},
                                          {"fire", fire},         {"on_frame", on_frame},
                                          {"time", time},         {"hud_visible", hud_visible},
-                                         {"pre_roll", pre_roll}, {nullptr, nullptr}};
+                                         {"pre_roll", pre_roll}, {"set_class", set_class},
+                                         {nullptr, nullptr}};
 constexpr luaL_Reg game_functions[] = {
     {"__index", game_index}, {"__newindex", game_newindex}, {"__pairs", game_pairs}, {nullptr, nullptr}};
 

@@ -25,6 +25,8 @@ class Host {
     virtual void print(std::string_view text) noexcept = 0;
     /// Of the script that is being loaded. False: none is.
     virtual bool state_pre_roll(double seconds) noexcept = 0;
+    /// Of an element of the interface's document. False: it has no such names.
+    virtual bool set_class(std::string_view id, std::string_view name, bool is_on) noexcept = 0;
     /// `function`: a reference in the registry, which the host owns from now on. False: refused, and not taken.
     virtual bool on_frame(std::string_view slot, int function) noexcept = 0;
     [[nodiscard]] virtual double time() const noexcept = 0;

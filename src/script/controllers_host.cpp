@@ -77,6 +77,12 @@ bool Controllers::State::state_pre_roll(double seconds) noexcept {
     return true;
 }
 
+bool Controllers::State::set_class(std::string_view id, std::string_view name, bool is_on) noexcept try {
+    return desc.set_class && desc.set_class(id, name, is_on);
+} catch (...) {
+    return false;
+}
+
 void Controllers::State::print(std::string_view text) noexcept try {
     remark(Severity::Info, printable(text));
 } catch (...) {

@@ -77,6 +77,7 @@ struct Controllers::State final : script::Host {
     void print(std::string_view text) noexcept override;
     bool on_frame(std::string_view slot, int function) noexcept override;
     bool state_pre_roll(double seconds) noexcept override;
+    bool set_class(std::string_view id, std::string_view name, bool is_on) noexcept override;
     [[nodiscard]] double time() const noexcept override { return frame.time; }
     [[nodiscard]] bool is_hud_visible() const noexcept override { return frame.is_hud_visible; }
     void push_game(lua_State* lua, std::string_view name) override;

@@ -288,5 +288,19 @@ TEST(Controllers, NoTextTellsAnAddress) {
     EXPECT_EQ(bed.value("tostring(nil) .. tostring(true) .. tostring(1.5) .. tostring('x')"), "niltrue1.5x");
 }
 
+TEST(Controllers, SetClassesOfTheDocument) {
+    std::vector<std::string> set;
+    ControllersBed bed(
+        {.milliseconds_per_frame = 1e4, .set_class = [&](std::string_view id, std::string_view name, bool is_on) {
+             set.push_back(std::string(id) + "." + std::string(name) + (is_on ? " on" : " off"));
+             return id != "none";
+         }});
+    EXPECT_EQ(bed.value("engine.set_class('bar', 'low', true), engine.set_class('none', 'low', false)"), "true false");
+    EXPECT_EQ(set, (std::vector<std::string>{"bar.low on", "none.low off"}));
+    EXPECT_NE(bed.value("engine.set_class('bar', 'low')").find("boolean expected"), std::string::npos);
+    EXPECT_NE(bed.value("engine.set_class(('x'):rep(300), 'low', true)").find("too long"), std::string::npos);
+    EXPECT_EQ(ControllersBed().value("engine.set_class('bar', 'low', true)"), "false") << "there is no document";
+}
+
 }  // namespace
 }  // namespace darkroom

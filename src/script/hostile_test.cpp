@@ -116,6 +116,7 @@ std::vector<Attack> attacks() {
         {"CvarSet", slot("local i = 0 while true do i = i + 1 engine.cvar_set('r_ui_warp', i) end")},
         {"CvarSetUnknown", slot("while true do engine.cvar_set('r_ui_wrap', 1) end")},
         {"CvarSetGarbage", slot("while true do engine.cvar_set('sample.curve', ('1:1,'):rep(250)) end")},
+        {"SetClass", slot("local i = 0 while true do i = i + 1 engine.set_class('a' .. i, 'b', true) end")},
         {"LongNames",
          slot(long_string + "while true do pcall(engine.cvar_get, s) pcall(engine.on_frame, s, print) end")},
         {"ManySlots", slot("local i = 0 while true do i = i + 1 engine.on_frame('slot ' .. i, function() end) end")},

@@ -231,6 +231,22 @@ TEST_F(CliUi, ADocumentBringsItsControllers) {
     expect_refused(arguments, 1, "none.lua");
 }
 
+TEST_F(CliUi, ControllersSetClassesOfTheDocument) {
+    write("hud.svg",
+          "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100%\" height=\"100%\" viewBox=\"0 0 48 32\">"
+          "<style>.low { fill: #ff0000; }</style><script src=\"low.lua\"/>"
+          "<rect id=\"bar\" width=\"48\" height=\"32\" fill=\"#00ff00\"/></svg>");
+    write("low.lua",
+          "engine.pre_roll(0)\nengine.on_frame('low', function() engine.set_class('bar', 'low', game.health < 25) "
+          "end)\n");
+    const auto red = [&](const std::string& health) {
+        return code(developed({"--look", path("plain.toml"), "--ui", path("hud.svg"), "--game", "health=" + health})
+                        .at(5, 5)[0]);
+    };
+    EXPECT_EQ(red("80"), 0);
+    EXPECT_EQ(red("20"), 255);
+}
+
 TEST_F(CliUi, ControllersMoveWhatIsAtRest) {
     write("bend.lua",
           "engine.pre_roll(0)\nengine.on_frame('bend', function() engine.cvar_set('r_ui_warp', -0.3) end)\n");

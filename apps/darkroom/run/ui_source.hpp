@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -62,6 +64,9 @@ class UiSource {
     std::unique_ptr<darkroom::Console> console_;
     std::optional<darkroom::Controllers> controllers_;
     double last_time_ = 0;
+    /// That controllers set, until the document takes them: they outlive a move of this, as what they call does.
+    using Classes = std::vector<std::tuple<std::string, std::string, bool>>;
+    std::shared_ptr<Classes> classes_ = std::make_shared<Classes>();
     std::shared_ptr<bool> is_silent_ = std::make_shared<bool>(false);  ///< what the controllers' sink looks at
 
     VkExtent2D extent_{};

@@ -33,7 +33,10 @@ Result<> LiveInterface::start(const darkroom::Look& look, const Timeline& timeli
         document_ = std::move(*loaded);
     }
     if (ui_.controllers.empty()) return {};
-    auto made = darkroom::Controllers::create(*console_, {.print = print_});
+    const auto set_class = [this](std::string_view id, std::string_view name, bool is_on) {
+        return document_ != nullptr && document_->set_class(id, name, is_on);
+    };
+    auto made = darkroom::Controllers::create(*console_, {.print = print_, .set_class = set_class});
     if (!made) return failure(std::move(made));
     controllers_.emplace(std::move(*made));
     for (const std::string& file : ui_.controllers)
@@ -68,9 +71,9 @@ bool LiveInterface::must_wait(VkExtent2D extent) const {
            (image_.info.extent.width != extent.width || image_.info.extent.height != extent.height);
 }
 
-Result<LiveInterface::Bytes> LiveInterface::picture(VkExtent2D& extent) {
+Result<LiveInterface::Bytes> LiveInterface::picture(VkExtent2D& extent, float scale) {
     if (document_ != nullptr) {
-        const auto drawn = document_->picture(extent.width, extent.height);
+        const auto drawn = document_->picture(extent.width, extent.height, scale);
         if (drawn == nullptr) return Bytes();
         extent = {drawn->width, drawn->height};
         return Bytes(drawn, &drawn->rgba);
@@ -104,10 +107,11 @@ Result<> LiveInterface::resize(VkExtent2D extent) {
     return {};
 }
 
-Result<darkroom::ImageRef> LiveInterface::record(VkCommandBuffer commands, std::uint32_t slot, VkExtent2D extent) {
+Result<darkroom::ImageRef> LiveInterface::record(VkCommandBuffer commands, std::uint32_t slot, VkExtent2D extent,
+                                                 float scale) {
     if (Result<> done = resize(extent); !done) return failure(std::move(done));
     VkExtent2D drawn = extent;
-    const Result<Bytes> read = picture(drawn);
+    const Result<Bytes> read = picture(drawn, scale);
     if (!read) failed_ = read.error().text;
     const Bytes bytes = read ? *read : nullptr;
     const gpu::Context& context = device_.context();

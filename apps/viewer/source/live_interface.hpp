@@ -37,9 +37,10 @@ class LiveInterface {
     void set_game(const darkroom::GameTable& game) { ui_.game = game; }
     /// Reads scripts again that have changed. Documents do so by themselves.
     void reload_changed();
-    /// Brings its image up to date. Where must_wait() says so, no frame is unfinished. What Frame::ui takes.
+    /// Brings its image up to date. Where must_wait() says so, no frame is unfinished. What Frame::ui takes. `scale`:
+    /// the window's, see HudDocument::picture.
     [[nodiscard]] darkroom::Result<darkroom::ImageRef> record(VkCommandBuffer commands, std::uint32_t slot,
-                                                              VkExtent2D extent);
+                                                              VkExtent2D extent, float scale);
     [[nodiscard]] bool must_wait(VkExtent2D extent) const;
     [[nodiscard]] bool is_given() const { return !ui_.document.empty(); }
     /// UNDEFINED: there is none.
@@ -49,7 +50,7 @@ class LiveInterface {
   private:
     static constexpr VkFormat image_format = VK_FORMAT_R8G8B8A8_UNORM;
     using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
-    [[nodiscard]] darkroom::Result<Bytes> picture(VkExtent2D& extent);
+    [[nodiscard]] darkroom::Result<Bytes> picture(VkExtent2D& extent, float scale);
     [[nodiscard]] darkroom::Result<> resize(VkExtent2D extent);
 
     darkroom::Device& device_;
