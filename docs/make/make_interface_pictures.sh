@@ -13,7 +13,7 @@ sed 's|"../hud|"../../hud|; s|^game = .*|&\ncontrollers = ["../../controllers/co
 picture() {
     printf '[[event]]\ntime = 1.0\ngame = { %s }\n' "$2" >"$work/events.toml"
     "$darkroom" render scenes/showcase.scene.toml --look "$work/visor.toml" --events "$work/events.toml" --time 1 --msaa 4 \
-        --size 480x270 --contrast-gamma-contrast 1 --contrast-gamma-gamma 1 "${@:3}" -o "docs/pictures/interface_$1.jpg" >/dev/null
+        --size 480x270 "${@:3}" -o "docs/pictures/interface_$1.jpg" >/dev/null
 }
 picture rest 'health = 82'
 picture hit 'health = 61, face_pain = true'
