@@ -46,7 +46,9 @@ Names names_of(std::string_view body, const WordSet& asked) {
     for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
         if (token.kind != Token::Kind::Word) continue;
         if (asked.contains(token.text)) out.words.insert(token.text);
-        if (token.text.find("custom") != std::string_view::npos) out.has_literal_indices &= is_literal(scanner);
+        constexpr std::string_view custom = "custom";
+        if (token.text.size() >= custom.size() && token.text.find(custom) != std::string_view::npos)
+            out.has_literal_indices &= is_literal(scanner);
     }
     return out;
 }
@@ -102,6 +104,7 @@ MembersText members_text(std::span<const BlockMember> members, std::uint32_t fir
 }  // namespace
 
 bool writes_flat_values(const Context& context) {
+    if (context.is_assumed) return true;
     VkPhysicalDeviceProperties properties{};
     context.vk.GetPhysicalDeviceProperties(context.physical_device, &properties);
     const VkPhysicalDeviceLimits& limits = properties.limits;
@@ -120,6 +123,7 @@ std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
     if (std::ranges::any_of(spec.members, [](const BlockMember& member) { return member.count > 0; }))
         return std::nullopt;
     WordSet asked{"size", "load_clamped", "sample_linear"};
+    asked.reserve(asked.size() + spec.frame.size() + spec.members.size());
     for (const BlockMember& member : spec.frame) asked.insert(member.name);
     for (const BlockMember& member : spec.members) asked.insert(member.name);
     const Names names = names_of(spec.body, asked);

@@ -2,18 +2,29 @@
 #include "gpu/shader/glsl_scan.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 namespace darkroom::gpu {
 
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool starts_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool continues_word(char c) { return starts_word(c) || is_digit(c); }
-bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+// A kernel's text is read several times on the way to its pipeline: what a character is, is looked up.
+constexpr std::uint8_t space = 1, digit = 2, letter = 4;
+constexpr std::array<std::uint8_t, 256> kinds = [] {
+    std::array<std::uint8_t, 256> out{};
+    for (const char c : {' ', '\n', '\t', '\r', '\v', '\f'}) out[static_cast<std::size_t>(c)] = space;
+    for (std::size_t c = '0'; c <= '9'; ++c) out[c] = digit;
+    for (std::size_t c = 'a'; c <= 'z'; ++c) out[c] = letter;
+    for (std::size_t c = 'A'; c <= 'Z'; ++c) out[c] = letter;
+    out['_'] = letter;
+    return out;
+}();
 
-std::size_t while_true(std::string_view text, std::size_t at, bool (*holds)(char)) {
-    while (at < text.size() && holds(text[at])) ++at;
+bool is(char c, std::uint8_t wanted) { return (kinds[static_cast<unsigned char>(c)] & wanted) != 0; }
+
+std::size_t end_of(std::string_view text, std::size_t at, std::uint8_t wanted) {
+    while (at < text.size() && is(text[at], wanted)) ++at;
     return at;
 }
 
@@ -22,24 +33,24 @@ std::size_t while_true(std::string_view text, std::size_t at, bool (*holds)(char
 Token GlslScanner::next() {
     using enum Token::Kind;
     if (at_ >= text_.size()) return {};
-    const std::string_view rest = text_.substr(at_);
+    const char first = text_[at_], second = at_ + 1 < text_.size() ? text_[at_ + 1] : '\0';
     Token::Kind kind = Mark;
     std::size_t end = at_ + 1;
-    if (rest.starts_with("//") || rest.front() == '#') {
-        kind = rest.front() == '#' ? Directive : Blank;
+    if (is(first, letter | digit)) {
+        kind = is(first, digit) ? Number : is_after_dot_ ? Member : Word;
+        end = end_of(text_, end, letter | digit);
+    } else if (is(first, space)) {
+        kind = Blank;
+        end = end_of(text_, end, space);
+    } else if (first == '#' || (first == '/' && second == '/')) {
+        kind = first == '#' ? Directive : Blank;
         end = std::min(text_.find('\n', at_), text_.size());
-    } else if (rest.starts_with("/*")) {
+    } else if (first == '/' && second == '*') {
         kind = Blank;
         const std::size_t close = text_.find("*/", at_ + 2);
         end = close == std::string_view::npos ? text_.size() : close + 2;
-    } else if (is_space(rest.front())) {
-        kind = Blank;
-        end = while_true(text_, at_, is_space);
-    } else if (continues_word(rest.front())) {
-        kind = is_digit(rest.front()) ? Number : is_after_dot_ ? Member : Word;
-        end = while_true(text_, at_, continues_word);
     }
-    if (kind != Blank) is_after_dot_ = kind == Mark && rest.front() == '.';
+    if (kind != Blank) is_after_dot_ = kind == Mark && first == '.';
     const Token token{kind, text_.substr(at_, end - at_)};
     at_ = end;
     return token;
