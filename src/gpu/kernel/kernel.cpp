@@ -193,11 +193,11 @@ Kernel::Kernel() = default;
 Kernel::~Kernel() = default;
 
 Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpec& spec, Stage stage) {
-    return create(context, spec, stage, kernel_source(spec, stage));
+    return create(context, spec, stage, KernelText(spec, stage));
 }
 
 Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpec& spec, Stage stage,
-                                               std::string source) {
+                                               const KernelText& text) {
     DARKROOM_ASSERT((spec.compute || !spec.outputs.empty()) && spec.buffers.size() <= most_buffers);
     DARKROOM_ASSERT(spec.outputs.size() <= most_outputs && spec.images.size() <= most_images);
     if (Result<> checked = usable(context, spec, stage); !checked) return failure(std::move(checked));
@@ -208,8 +208,7 @@ Result<std::unique_ptr<Kernel>> Kernel::create(Context& context, const KernelSpe
     state.spec.body.clear();
     state.stage = stage;
     if (Result<> created = state.create_layouts(); !created) return failure(std::move(created));
-    Result<VkPipeline> pipeline =
-        create_kernel_pipeline(context, spec, stage, std::move(source), state.pipeline_layout);
+    Result<VkPipeline> pipeline = create_kernel_pipeline(context, spec, stage, text, state.pipeline_layout);
     if (!pipeline) return failure(std::move(pipeline));
     state.pipeline = *pipeline;
     return kernel;

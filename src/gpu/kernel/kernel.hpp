@@ -51,6 +51,7 @@
 #include <string>
 #include <vector>
 
+#include "core/digest/sha256.hpp"
 #include "gpu/kernel/block.hpp"
 
 namespace darkroom::gpu {
@@ -124,6 +125,17 @@ struct KernelSpec {
 /// The whole shader for one stage. Pure text: tested without a device.
 [[nodiscard]] std::string kernel_source(const KernelSpec& spec, Stage stage);
 
+/// The same without the names of files in its #line directives: an effect of a user's is the same wherever it lies.
+[[nodiscard]] std::string without_file_names(std::string_view source);
+
+/// The shader with what it is known by.
+struct KernelText {
+    KernelText(const KernelSpec& spec, Stage stage);
+    std::string source;
+    Digest digest{};       ///< of without_file_names()
+    std::string vertices;  ///< of a triangle that brings it values, if one may (gpu/shader/flat_values.hpp)
+};
+
 /// The part of an image that a frame uses. Layouts are the graph's matter.
 struct Region {
     VkOffset2D offset{};
@@ -151,9 +163,9 @@ void write_own_block(const KernelSpec& spec, const Region& output, std::span<con
 class Kernel {
   public:
     [[nodiscard]] static Result<std::unique_ptr<Kernel>> create(Context& context, const KernelSpec& spec, Stage stage);
-    /// The same from text that kernel_source(spec, stage) gave.
+    /// The same from the text of `spec` and `stage`.
     [[nodiscard]] static Result<std::unique_ptr<Kernel>> create(Context& context, const KernelSpec& spec, Stage stage,
-                                                                std::string source);
+                                                                const KernelText& text);
     ~Kernel();
     /// Without its body.
     [[nodiscard]] const KernelSpec& spec() const;

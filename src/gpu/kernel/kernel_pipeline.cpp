@@ -8,7 +8,6 @@
 #include "gpu/device/context.hpp"
 #include "gpu/resource/resources.hpp"
 #include "gpu/shader/flat_values.hpp"
-#include "gpu/shader/shader.hpp"
 
 namespace darkroom::gpu {
 
@@ -59,17 +58,13 @@ class ShaderModule {
     VkShaderModule handle_ = VK_NULL_HANDLE;
 };
 
-Result<std::vector<std::uint32_t>> full_screen_vertex(Context& context, const KernelSpec& spec,
+Result<std::vector<std::uint32_t>> full_screen_vertex(Context& context, const KernelSpec& spec, const KernelText& text,
                                                       std::span<const std::uint32_t> fragment) {
-    const auto values = flat_values(spec, Stage::Raster);
-    if (values && reads_flat_inputs(fragment))
-        return context.shaders->compile({.name = "full-screen triangle with values",
-                                         .text = flat_vertex_source(spec, *values),
-                                         .stage = ShaderStage::Vertex});
+    const ShaderSource source = vertex_shader(spec.name, text, fragment);
+    if (source.text != full_screen_source) return context.shaders->compile(source);
     const std::lock_guard lock(context.full_screen_mutex);
     if (!context.full_screen_vertex.empty()) return context.full_screen_vertex;
-    Result<std::vector<std::uint32_t>> words = context.shaders->compile(
-        {.name = "full-screen triangle", .text = std::string(full_screen_source), .stage = ShaderStage::Vertex});
+    Result<std::vector<std::uint32_t>> words = context.shaders->compile(source);
     if (words) context.full_screen_vertex = *words;
     return words;
 }
@@ -95,9 +90,10 @@ Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& s
     return pipeline;
 }
 
-Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& spec, VkPipelineLayout layout,
-                                          std::span<const std::uint32_t> fragment_words, const ShaderModule& fragment) {
-    const Result<std::vector<std::uint32_t>> words = full_screen_vertex(context, spec, fragment_words);
+Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& spec, const KernelText& text,
+                                          VkPipelineLayout layout, std::span<const std::uint32_t> fragment_words,
+                                          const ShaderModule& fragment) {
+    const Result<std::vector<std::uint32_t>> words = full_screen_vertex(context, spec, text, fragment_words);
     if (!words) return failure(words.error());
     const Result<ShaderModule> vertex = ShaderModule::create(context, *words, "full-screen triangle");
     if (!vertex) return failure(vertex.error());
@@ -175,18 +171,29 @@ Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& sp
 
 }  // namespace
 
-Result<VkPipeline> create_kernel_pipeline(Context& context, const KernelSpec& spec, Stage stage, std::string source,
+ShaderSource kernel_shader(std::string_view name, Stage stage, const KernelText& text) {
+    const bool is_compute = stage == Stage::Compute;
+    return {.name = fmt::format("{} ({})", name, is_compute ? "compute" : "raster"),
+            .text = text.source,
+            .stage = is_compute ? ShaderStage::Compute : ShaderStage::Fragment,
+            .digest = text.digest};
+}
+
+ShaderSource vertex_shader(std::string_view name, const KernelText& text, std::span<const std::uint32_t> fragment) {
+    if (!text.vertices.empty() && reads_flat_inputs(fragment))
+        return {.name = fmt::format("{} (vertices)", name), .text = text.vertices, .stage = ShaderStage::Vertex};
+    return {.name = "full-screen triangle", .text = std::string(full_screen_source), .stage = ShaderStage::Vertex};
+}
+
+Result<VkPipeline> create_kernel_pipeline(Context& context, const KernelSpec& spec, Stage stage, const KernelText& text,
                                           VkPipelineLayout layout) {
     const bool is_compute = stage == Stage::Compute;
-    const Result<std::vector<std::uint32_t>> words =
-        context.shaders->compile({.name = fmt::format("{} ({})", spec.name, is_compute ? "compute" : "raster"),
-                                  .text = std::move(source),
-                                  .stage = is_compute ? ShaderStage::Compute : ShaderStage::Fragment});
+    const Result<std::vector<std::uint32_t>> words = context.shaders->compile(kernel_shader(spec.name, stage, text));
     if (!words) return failure(words.error());
     const Result<ShaderModule> module = ShaderModule::create(context, *words, spec.name);
     if (!module) return failure(module.error());
     Result<VkPipeline> made = is_compute ? create_compute_pipeline(context, spec, layout, *module)
-                                         : create_raster_pipeline(context, spec, layout, *words, *module);
+                                         : create_raster_pipeline(context, spec, text, layout, *words, *module);
     if (!made) return made;
     ++context.pipelines_created;
     name_object(context, VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(*made), spec.name);

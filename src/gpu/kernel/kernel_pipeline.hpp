@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// From the text of a kernel to its pipeline, for gpu/kernel/kernel.cpp.
+// From the text of a kernel to its pipeline, for gpu/kernel/kernel.cpp, and the shaders that this takes, for who bakes
+// them.
 
-#include <string>
+#include <cstdint>
+#include <span>
+#include <string_view>
 
 #include "gpu/kernel/kernel.hpp"
+#include "gpu/shader/shader.hpp"
 
 namespace darkroom::gpu {
 
@@ -17,6 +21,12 @@ inline constexpr std::uint32_t first_image_binding = 2;
 }
 
 [[nodiscard]] Result<VkPipeline> create_kernel_pipeline(Context& context, const KernelSpec& spec, Stage stage,
-                                                        std::string source, VkPipelineLayout layout);
+                                                        const KernelText& text, VkPipelineLayout layout);
+
+/// `name`: that of the spec.
+[[nodiscard]] ShaderSource kernel_shader(std::string_view name, Stage stage, const KernelText& text);
+/// What goes with a fragment shader made of kernel_shader().
+[[nodiscard]] ShaderSource vertex_shader(std::string_view name, const KernelText& text,
+                                         std::span<const std::uint32_t> fragment);
 
 }  // namespace darkroom::gpu

@@ -73,8 +73,8 @@ bool has_quads(const KernelSpec& spec, Stage stage) {
     return stage == Stage::Raster && spec.is_software && spec.is_whole;
 }
 
-void write_blocks(Text text, const KernelSpec& spec, Stage stage, const BlockSource& own) {
-    if (const auto values = flat_values(spec, stage)) {
+void write_blocks(Text text, const KernelSpec& spec, const std::optional<FlatValues>& values, const BlockSource& own) {
+    if (values) {
         fmt::format_to(text, "{}", flat_inputs(spec, *values));
         return;
     }
@@ -322,9 +322,7 @@ std::array<std::int32_t, 4> rectangle(const Region& region) {
             static_cast<std::int32_t>(region.extent.height)};
 }
 
-}  // namespace
-
-std::string kernel_source(const KernelSpec& spec, Stage stage) {
+std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<FlatValues>& values) {
     std::string source(preamble);
     const Text text = std::back_inserter(source);
     if (stage == Stage::Compute) {
@@ -338,7 +336,7 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
                    spec.rays_meet);
     write_quads(text, has_quads(spec, stage));
     const BlockSource own = block_source(spec.members, first_member_word(spec));
-    write_blocks(text, spec, stage, own);
+    write_blocks(text, spec, values, own);
     source += pixel_functions;
     std::vector<std::string_view> names;
     for (const KernelImage& image : spec.images) {
@@ -354,9 +352,33 @@ std::string kernel_source(const KernelSpec& spec, Stage stage) {
     write_buffers(text, spec, stage);
     if (spec.compute) names.insert(names.end(), spec.compute->outputs.begin(), spec.compute->outputs.end());
     const std::string body = rewrite_indexing(rewrite_image_calls(spec.body, image_functions, names), own.arrays);
-    fmt::format_to(text, "#line 1 \"kernel\"\n{}\n#line 1 \"kernel: main\"\n", body);
+    source.append("#line 1 \"kernel\"\n").append(body).append("\n#line 1 \"kernel: main\"\n");
     write_main(text, spec, stage);
     return source;
+}
+
+}  // namespace
+
+std::string kernel_source(const KernelSpec& spec, Stage stage) {
+    return source_of(spec, stage, flat_values(spec, stage));
+}
+
+std::string without_file_names(std::string_view source) {
+    constexpr std::string_view line = "\n#line ";
+    std::string out;
+    out.reserve(source.size());
+    for (std::size_t at = source.find(line); at != std::string_view::npos; at = source.find(line)) {
+        out += source.substr(0, source.find_first_of("\"\n", at + line.size()));
+        source.remove_prefix(std::min(source.find('\n', at + line.size()), source.size()));
+    }
+    return out.append(source);
+}
+
+KernelText::KernelText(const KernelSpec& spec, Stage stage) {
+    const std::optional<FlatValues> values = flat_values(spec, stage);
+    source = source_of(spec, stage, values);
+    digest = sha256(without_file_names(source));
+    if (values) vertices = flat_vertex_source(spec, *values);
 }
 
 std::size_t own_block_size(const KernelSpec& spec) {

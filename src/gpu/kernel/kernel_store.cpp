@@ -2,45 +2,58 @@
 #include "gpu/kernel/kernel_store.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 #include <vector>
 
+#include "core/assert.hpp"
 #include "core/caught.hpp"
 
 namespace darkroom::gpu {
 
 namespace {
 
-/// What the text does not say: a fragment shader names no format and no blending.
-Hash key_of(const KernelSpec& spec, Stage stage, const std::string& source) {
-    std::string key;
-    key.reserve(source.size() + 64);
-    key += static_cast<char>(stage);
-    key += spec.is_additive ? '+' : '=';
-    for (const VkFormat format : spec.outputs) key.append(std::to_string(format)).push_back(',');
-    return content_hash(key += source);
-}
+#ifdef NDEBUG
+constexpr bool keeps_texts = false;
+#else
+constexpr bool keeps_texts = true;
+#endif
 
 }  // namespace
 
+std::size_t KernelStore::HashOfKey::operator()(const Key& key) const {
+    std::size_t out = 0;
+    std::memcpy(&out, key.text.data(), sizeof out);
+    return out;
+}
+
+KernelStore::Key KernelStore::key_of(const KernelSpec& spec, Stage stage, const Digest& text) {
+    Key key{.text = text, .stage = stage, .is_additive = spec.is_additive};
+    std::ranges::copy(spec.outputs, key.outputs.begin());
+    return key;
+}
+
 Result<std::shared_ptr<const Kernel>> KernelStore::get(const KernelSpec& spec, Stage stage) {
-    std::string source = kernel_source(spec, stage);
-    const Hash key = key_of(spec, stage, source);
+    DARKROOM_ASSERT(spec.outputs.size() <= most_outputs);
+    const KernelText text(spec, stage);
+    const Key key = key_of(spec, stage, text.digest);
     std::unique_lock lock(mutex_);
     const std::uint64_t now = ++counters_.requests;
     for (auto found = entries_.find(key); found != entries_.end(); found = entries_.find(key)) {
         Entry& entry = found->second;
         entry.last_used = now;
+        DARKROOM_ASSERT(!keeps_texts || without_file_names(entry.text) == without_file_names(text.source));
         if (entry.kernel) return entry.kernel;
-        if (entry.error) return failure(*entry.error);
+        if (entry.error && entry.text == text.source) return failure(*entry.error);
+        if (entry.error) break;  // it names a file of the same text
         built_.wait(lock);
     }
-    entries_[key].last_used = now;
+    entries_[key] = {.last_used = now, .text = keeps_texts ? text.source : std::string()};
     lock.unlock();
     // Whoever waits for this kernel waits until it is made or has failed.
     auto made = [&]() -> Result<std::unique_ptr<Kernel>> {
         try {
-            return Kernel::create(context_, spec, stage, std::move(source));
+            return Kernel::create(context_, spec, stage, text);
         } catch (...) {
             return caught("making a kernel");
         }
@@ -55,7 +68,7 @@ Result<std::shared_ptr<const Kernel>> KernelStore::get(const KernelSpec& spec, S
     } else {
         result = failure(made.error());
         if (made.error().fault == Fault::User)
-            entries_[key].error = made.error();
+            entries_[key] = {.error = made.error(), .last_used = now, .text = text.source};
         else
             entries_.erase(key);
     }

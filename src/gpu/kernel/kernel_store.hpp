@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // The kernels of a device, each made once: a request is the kernel's text, its stage and its outputs, and whoever asks
-// for the same gets the same. Failures are remembered, too. Any thread may ask.
+// for the same gets the same. A text is known by its SHA-256; debug builds compare the texts. Failures are remembered,
+// too. Any thread may ask.
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <darkroom/result.hpp>
@@ -11,7 +13,6 @@
 #include <optional>
 #include <unordered_map>
 
-#include "core/hash.hpp"
 #include "gpu/kernel/kernel.hpp"
 
 namespace darkroom::gpu {
@@ -35,21 +36,31 @@ class KernelStore {
     [[nodiscard]] Counters counters() const;
 
   private:
+    /// What the text does not say stands beside it: a fragment shader names no format and no blending.
+    struct Key {
+        Digest text{};
+        Stage stage = Stage::Compute;
+        bool is_additive = false;
+        std::array<VkFormat, most_outputs> outputs{};
+        friend bool operator==(const Key&, const Key&) = default;
+    };
+    struct HashOfKey {
+        std::size_t operator()(const Key& key) const;
+    };
     struct Entry {
-        std::shared_ptr<const Kernel> kernel;
-        std::optional<Error> error;
+        std::shared_ptr<const Kernel> kernel{};
+        std::optional<Error> error{};
         std::uint64_t last_used = 0;
+        std::string text{};  ///< of what failed, and in debug builds of all
     };
-    struct HashOfHash {
-        std::size_t operator()(const Hash& hash) const { return static_cast<std::size_t>(hash.low); }
-    };
+    [[nodiscard]] static Key key_of(const KernelSpec& spec, Stage stage, const Digest& text);
     void drop_unused();
 
     Context& context_;
     std::size_t most_unused_;
     mutable std::mutex mutex_;
     std::condition_variable built_;
-    std::unordered_map<Hash, Entry, HashOfHash> entries_;
+    std::unordered_map<Key, Entry, HashOfKey> entries_;
     Counters counters_;
 };
 

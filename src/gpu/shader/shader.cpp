@@ -37,9 +37,9 @@ shaderc_shader_kind kind_of(ShaderStage stage) {
 }
 
 std::filesystem::path entry_path(const std::filesystem::path& folder, const ShaderSource& source) {
-    const std::string key =
-        fmt::format("{}|{}|{}|{}", options_version, shaderc_version, static_cast<int>(source.stage), source.text);
-    return folder / (content_hash(key).hex() + ".spv");
+    const std::string key = fmt::format("{}|{}|{}|{}", options_version, shaderc_version, static_cast<int>(source.stage),
+                                        hex(source.identity()));
+    return folder / (hex(sha256(key)) + ".spv");
 }
 
 /// An entry is the hash of its words, then the words.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// GLSL to SPIR-V, with a content-addressed disk cache: the key hashes source, stage, options and the compiler's
-// version. A damaged entry is recompiled, never trusted (the file carries a hash of its words). Several processes may
-// share a folder: entries appear whole, and one that another process removed is compiled again.
+// GLSL to SPIR-V, with a content-addressed disk cache. The identity of a text is its SHA-256, since strangers may write
+// texts; the cache's key adds stage, options and the compiler's version. A damaged entry is recompiled, never trusted
+// (the file carries a hash of its words). Several processes may share a folder: entries appear whole, and one that
+// another process removed is compiled again.
 
 #include <atomic>
 #include <cstdint>
@@ -14,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "core/digest/sha256.hpp"
+
 namespace darkroom::gpu {
 
 enum class ShaderStage : std::uint8_t { Vertex, Fragment, Compute };
@@ -22,6 +25,9 @@ struct ShaderSource {
     std::string name;  ///< for messages: "effects/bloom/bloom_downsample.glsl (compute)"
     std::string text;
     ShaderStage stage = ShaderStage::Compute;
+    std::optional<Digest> digest{};  ///< of the text, from who has worked it out already
+
+    [[nodiscard]] Digest identity() const { return digest ? *digest : sha256(text); }
 };
 
 class ShaderCompiler {
