@@ -4,8 +4,8 @@
 # Included last, when all targets are there.
 
 # What only helps to build or to test what is drawn; so does what an effect brings.
-set(DARKROOM_HOUSE_HELPERS darkroom_options darkroom_fmt darkroom_shaderc darkroom_static darkroom_headers_alone
-  darkroom_count_memory darkroom_hold_back)
+set(DARKROOM_HOUSE_HELPERS darkroom_options darkroom_fmt darkroom_shaderc darkroom_no_glsl darkroom_static darkroom_headers_alone
+  darkroom_count_memory darkroom_hold_back darkroom_baked_host darkroom_baked_host_without darkroom_without_compiler)
 
 function(darkroom_house_targets folder out)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)

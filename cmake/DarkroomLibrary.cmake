@@ -1,4 +1,4 @@
-# What an engine links: libdarkroom.so, one shared object of core, gpu, graph, plan, compose, effects and
+# What an engine links: libdarkroom.so, one shared object of core, glsl, gpu, graph, plan, compose, effects and
 # custom, libdarkroom_looks.so, which reads looks (TOML) and table files, and libdarkroom_script.so, a console and
 # controllers in Lua; or libdarkroom.a, which is the first as an archive (DARKROOM_STATIC). In the tree and installed they
 # are Darkroom::darkroom, Darkroom::looks, Darkroom::script and Darkroom::static. Included after the folders they are made
@@ -12,7 +12,7 @@ function(darkroom_shared_library name)
   foreach(part ${library_PARTS})
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
     target_link_libraries(${name} PRIVATE
-      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|gpu|graph|plan|compose|effects|custom|toml|tables|looks|script)$>")
+      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|glsl|no_glsl|gpu|graph|plan|compose|effects|custom|toml|tables|looks|script)$>")
   endforeach()
   set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
     LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -29,7 +29,7 @@ function(darkroom_shared_library name)
   set_property(GLOBAL APPEND PROPERTY DARKROOM_LIBRARIES ${name})
 endfunction()
 
-set(DARKROOM_PARTS core gpu graph plan compose effects custom)
+set(DARKROOM_PARTS core ${DARKROOM_GLSL} gpu graph plan compose effects custom)
 darkroom_shared_library(darkroom_shared OUTPUT darkroom EXPORT darkroom PARTS ${DARKROOM_PARTS})
 # The headers name Vulkan types; a host calls Vulkan through whatever loader it has.
 target_link_libraries(darkroom_shared INTERFACE Vulkan::Headers)

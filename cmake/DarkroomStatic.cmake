@@ -2,8 +2,11 @@
 # included. All symbols but those of darkroom:: are local to it, so that it stands beside another glslang, shaderc or
 # fmt in one program. Needs the linker and objcopy of GNU, and shaderc as an archive.
 
-get_target_property(DARKROOM_STATIC_COMPILER darkroom_shaderc INTERFACE_LINK_LIBRARIES)
-list(FILTER DARKROOM_STATIC_COMPILER INCLUDE REGEX "\\.(a|so)$")
+set(DARKROOM_STATIC_COMPILER "")
+if(TARGET darkroom_shaderc)
+  get_target_property(DARKROOM_STATIC_COMPILER darkroom_shaderc INTERFACE_LINK_LIBRARIES)
+  list(FILTER DARKROOM_STATIC_COMPILER INCLUDE REGEX "\\.(a|so)$")
+endif()
 if(DARKROOM_STATIC_COMPILER MATCHES "\\.so")
   message(STATUS "libdarkroom.a is left out: shaderc is a shared library here")
   return()

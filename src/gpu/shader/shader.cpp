@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
-#include <shaderc/shaderc.hpp>
-#include <string_view>
 #include <system_error>
 
 #include "core/files.hpp"
 #include "core/hash.hpp"
 #include "core/thread/parallel.hpp"
-#include "gpu/shaderc_version.hpp"
+#include "gpu/shader/glsl_compiler.hpp"
 
 namespace darkroom::gpu {
 
@@ -21,24 +19,9 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-// Raised whenever the options below change, so that no entry made with others is found.
-constexpr std::string_view options_version = "darkroom 3: vulkan 1.2, spir-v 1.5, performance, clamped NaN";
-
-shaderc_shader_kind kind_of(ShaderStage stage) {
-    switch (stage) {
-        case ShaderStage::Vertex:
-            return shaderc_glsl_vertex_shader;
-        case ShaderStage::Fragment:
-            return shaderc_glsl_fragment_shader;
-        case ShaderStage::Compute:
-            return shaderc_glsl_compute_shader;
-    }
-    return shaderc_glsl_compute_shader;
-}
-
 std::filesystem::path entry_path(const std::filesystem::path& folder, const ShaderSource& source) {
-    const std::string key = fmt::format("{}|{}|{}|{}", options_version, shaderc_version, static_cast<int>(source.stage),
-                                        hex(source.identity()));
+    const std::string key =
+        fmt::format("{}|{}|{}", glsl_compiler_version(), static_cast<int>(source.stage), hex(source.identity()));
     return folder / (hex(sha256(key)) + ".spv");
 }
 
@@ -112,41 +95,6 @@ std::uintmax_t thin_out(const std::filesystem::path& folder, std::uintmax_t most
     return total;
 }
 
-/// The first line that reports an error, without the word "error:". The compiler writes "file:line: error: message".
-std::string first_error(const std::string& messages, const std::string& name) {
-    constexpr std::string_view mark = "error: ";
-    std::size_t begin = 0;
-    while (begin < messages.size()) {
-        const std::size_t end = std::min(messages.find('\n', begin), messages.size());
-        std::string line = messages.substr(begin, end - begin);
-        if (const std::size_t at = line.find(mark); at != std::string::npos) return line.erase(at, mark.size());
-        begin = end + 1;
-    }
-    return fmt::format("{}: the shader compiler failed without a message", name);
-}
-
-Result<Words> run_compiler(const ShaderSource& source) {
-    try {
-        shaderc::Compiler compiler;
-        shaderc::CompileOptions options;
-        // What a 1.2 device loads. SPIR-V 1.6 would also state workgroup sizes in a way that asks the host for the
-        // feature maintenance4.
-        options.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_2);
-        options.SetTargetSpirv(shaderc_spirv_version_1_5);
-        options.SetOptimizationLevel(shaderc_optimization_level_performance);
-        // min, max and clamp take the operand that is a number: clamp(NaN, low, high) is low.
-        options.SetNanClamp(true);
-        const shaderc::SpvCompilationResult result =
-            compiler.CompileGlslToSpv(source.text, kind_of(source.stage), source.name.c_str(), options);
-        if (result.GetCompilationStatus() != shaderc_compilation_status_success) {
-            return user_error(first_error(result.GetErrorMessage(), source.name));
-        }
-        return Words(result.begin(), result.end());
-    } catch (const std::exception& exception) {
-        return machine_error(fmt::format("{}: the shader compiler failed: {}", source.name, exception.what()));
-    }
-}
-
 }  // namespace
 
 ShaderCompiler::ShaderCompiler(std::filesystem::path cache_folder, std::uintmax_t most_bytes)
@@ -168,7 +116,7 @@ Result<Words> ShaderCompiler::compile(const ShaderSource& source) {
         }
     }
     ++compiled;
-    Result<Words> words = run_compiler(source);
+    Result<Words> words = compile_glsl(source);
     if (words && !path.empty()) add_entry(path, *words);
     return words;
 }
