@@ -260,6 +260,7 @@ class Composer {
     [[nodiscard]] Result<Plan> rebind(const Device& device);
 
   private:
+    friend class KernelFile;
     Result<> set_all(Handle, const EffectInfo&, const void* parameters);
     struct State;
     std::unique_ptr<State> state_;

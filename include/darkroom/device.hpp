@@ -7,6 +7,7 @@
 // VK_KHR_synchronization2 and VK_KHR_dynamic_rendering.
 
 #include <vulkan/vulkan.h>
+#include <cstddef>
 #include <cstdint>
 #include <darkroom/log.hpp>
 #include <darkroom/result.hpp>
@@ -24,6 +25,9 @@ class Context;
 /// Which shader stage runs the kernels; both give the same picture. `Auto` chooses per kernel, by what was measured on
 /// this kind of device.
 enum class KernelStage : std::uint32_t { Auto, Compute, Raster };
+
+/// What kind of device kernels are made for ahead of time: an ordinary GPU, or a driver that runs on the CPU.
+enum class DeviceProfile : std::uint32_t { Gpu, Software };
 
 struct DeviceInfo {
     std::uint32_t index = 0;
@@ -50,6 +54,9 @@ struct DeviceDesc {
     std::string cache_folder;
     /// False: no file is read or written. DARKROOM_SHADER_CACHE=off does the same for all devices.
     bool caches_on_disk = true;
+    /// A file of kernels that KernelFile or `darkroom bake` made (darkroom/kernel_file.hpp), copied by the call. Stacks
+    /// are then planned as for a device of its profile, and what is in it needs no compiler.
+    std::span<const std::byte> kernels{};
     /// Enabled beside the library's own, for who shows pictures in a window: what the window system asks for, and
     /// VK_KHR_swapchain. Errors name what is missing.
     std::span<const char*const> instance_extensions{}, device_extensions{};
@@ -101,9 +108,10 @@ struct AdoptDesc {
     /// VkDeviceCreateInfo::ppEnabledExtensionNames. Read on Vulkan 1.2 only.
     std::span<const char* const> enabled_device_extensions;
     PFN_vkGetInstanceProcAddr get_proc = nullptr;
-    LogSink log;                 ///< as in DeviceDesc
-    std::string cache_folder;    ///< as in DeviceDesc
-    bool caches_on_disk = true;  ///< as in DeviceDesc
+    LogSink log;                           ///< as in DeviceDesc
+    std::string cache_folder;              ///< as in DeviceDesc
+    bool caches_on_disk = true;            ///< as in DeviceDesc
+    std::span<const std::byte> kernels{};  ///< as in DeviceDesc
     /// The host's, which is then used instead of one of the library's: never saved, never destroyed, and not created
     /// with VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT, since several threads build pipelines.
     VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
@@ -119,10 +127,10 @@ class Device {
     [[nodiscard]] static Result<std::vector<DeviceInfo>> list();
     /// Creates a headless device. Errors: no such device (names those there are), a missing feature, VkResult.
     [[nodiscard]] static Result<Device> create(const DeviceDesc& desc = {});
-    /// No device: what an ordinary GPU can do, for who plans stacks or only holds them, and needs no driver for it.
-    /// Plans say that they were made so. Of a Composer on it, compile() and compile_later() are errors; images may be
-    /// up to 16384 a side.
-    [[nodiscard]] static Device assumed();
+    /// No device: what an ordinary one of this kind can do, for who plans stacks, bakes kernels, or only holds stacks,
+    /// and needs no driver for it. Plans say that they were made so. Of a Composer on it, compile() and compile_later()
+    /// are errors; images may be up to 16384 a side.
+    [[nodiscard]] static Device assumed(DeviceProfile profile = DeviceProfile::Gpu);
     /// Takes the host's. Errors name every missing feature, extension and queue capability in one line.
     [[nodiscard]] static Result<Device> adopt(const AdoptDesc& desc);
 

@@ -181,7 +181,7 @@ Result<Plan> Composer::plan(const CompileDesc& desc) const try {
     std::vector<const plan::Entry*> entries;
     for (const plan::Entry& entry : snapshot->values) entries.push_back(&entry);
     Plan plan = plan::describe_program(*program, *compiled, desc, entries);
-    if (state_->context->is_assumed) plan.remarks.emplace_back(gpu::assumed_device_remark);
+    if (state_->context->is_assumed) plan.remarks.emplace_back(gpu::assumed_device_remark(*state_->context->profile));
     return plan;
 } catch (...) {
     return caught("plan");

@@ -54,7 +54,7 @@ void Worker::build_wanted(PassKernels* list) {
         PassKernels* const after = list->next;  // once its wish is taken, it may be pushed again
         try {
             if (const std::optional<plan::Shape> shape = list->take_wanted())
-                if (const auto ok = list->build(*context_.kernels, *shape); !ok)
+                if (const auto ok = list->build(context_, *shape); !ok)
                     context_.say(Severity::Warning, "a lean kernel could not be built: " + ok.error().text);
         } catch (...) {
             context_.say(Severity::Warning, caught("building a lean kernel").value().text);

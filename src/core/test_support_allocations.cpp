@@ -8,7 +8,7 @@
 namespace {
 
 constexpr std::uint64_t never = ~std::uint64_t{0};
-thread_local std::uint64_t count = 0;
+thread_local std::uint64_t count = 0, bytes = 0;
 thread_local std::uint64_t failing = never;  ///< the value of `count` with which an allocation fails
 
 }  // namespace
@@ -19,6 +19,7 @@ namespace {
 
 void* allocate(std::size_t size, std::size_t alignment) {
     if (count++ == failing) throw std::bad_alloc();
+    bytes += size;
     const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
     void* memory = alignment <= alignof(std::max_align_t) ? std::malloc(size == 0 ? 1 : size)
                                                           : std::aligned_alloc(alignment, rounded);
@@ -44,6 +45,7 @@ bool darkroom::test::counts_allocations() { return false; }
 #endif
 
 std::uint64_t darkroom::test::allocation_count() { return count; }
+std::uint64_t darkroom::test::allocated_bytes() { return bytes; }
 
 darkroom::test::FailingAllocation::FailingAllocation(std::uint64_t others) { failing = count + others; }
 darkroom::test::FailingAllocation::~FailingAllocation() { failing = never; }

@@ -9,7 +9,9 @@ namespace darkroom::test {
 
 /// Allocations that the calling thread has made through operator new since it began.
 [[nodiscard]] std::uint64_t allocation_count();
-/// False under AddressSanitizer: the count then stays 0.
+/// And how much they asked for, together.
+[[nodiscard]] std::uint64_t allocated_bytes();
+/// False under AddressSanitizer: the counts then stay 0.
 [[nodiscard]] bool counts_allocations();
 
 /// While it lives, one allocation of the calling thread throws std::bad_alloc: the first one that comes after `others`.

@@ -10,9 +10,10 @@ namespace darkroom::test {
 
 TEST(TestAllocations, AreCounted) {
     if (!counts_allocations()) GTEST_SKIP() << "this build has its own operator new";
-    const std::uint64_t before = allocation_count();
+    const std::uint64_t before = allocation_count(), bytes_before = allocated_bytes();
     const std::vector<int> numbers(100);
     EXPECT_EQ(allocation_count(), before + 1);
+    EXPECT_EQ(allocated_bytes(), bytes_before + 100 * sizeof(int));
     EXPECT_EQ(numbers.size(), 100u);
 }
 

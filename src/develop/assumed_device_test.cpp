@@ -62,7 +62,7 @@ TEST(ComposeAssumedDevice, PlansWhatADeviceWouldRun) {
                     0.25 * static_cast<double>(real.transient_bytes_unaliased))
             << "drivers add padding";
         ASSERT_EQ(plan.remarks.size(), real.remarks.size() + 1);
-        EXPECT_EQ(plan.remarks.back(), gpu::assumed_device_remark);
+        EXPECT_EQ(plan.remarks.back(), gpu::assumed_device_remark(DeviceProfile::Gpu));
     }
 }
 

@@ -289,6 +289,7 @@ const std::vector<HeldRow>& held_rows() {
          {"CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed"}},
         {"words and marks of a statement; characters of the value of a `#define` | 2000; 120",
          {"CustomPasses, CodeDeclaresNothingOfTheKernel"}},
+        {"file of kernels; kernels in it | 16 MiB; 65536", {"BakedShaders, EveryNumberIsCheckedBeforeItIsUsed"}},
         {"entries in a fused kernel; entries of a plan that join a kernel begun by another | 16; 96;",
          {"ComposePlan, ALongStackHasKernelsAndPicturesWithinBounds"}},
         {"kernels of a plan that do not run while their entries are off, as each keeps a picture | 32;",

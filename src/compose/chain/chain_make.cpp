@@ -92,8 +92,7 @@ Result<> Chain::make_kernels(std::span<const plan::Entry> values) {
     return for_all(missing.size(), desc_.max_threads, [&](std::size_t i) -> Result<> {
         const auto [pass, is_complete] = missing[i];
         PassKernels& kernels = *desc_.program->kernels[pass];
-        return is_complete ? kernels.build_complete(*context_.kernels)
-                           : kernels.build(*context_.kernels, last_shapes_[pass]);
+        return is_complete ? kernels.build_complete(*context_.kernels) : kernels.build(context_, last_shapes_[pass]);
     });
 }
 
@@ -114,7 +113,7 @@ Result<> Chain::build_lean() {
             if (kernels.find(shape, desc_.program->recordings, desc_.program->most_unfinished, worker_.garbage()) !=
                 nullptr)
                 continue;
-            if (auto ok = kernels.build(*context_.kernels, shape); !ok) return ok;
+            if (auto ok = kernels.build(context_, shape); !ok) return ok;
         }
     }
     return {};

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "gpu/device/context.hpp"
+#include "gpu/shader/shader.hpp"
+
 namespace darkroom::compose {
 
 PassKernels::~PassKernels() {
@@ -23,16 +26,18 @@ Result<> PassKernels::build_complete(gpu::KernelStore& store) {
     return {};
 }
 
-Result<> PassKernels::build(gpu::KernelStore& store, const plan::Shape& shape) {
+Result<> PassKernels::build(gpu::Context& context, const plan::Shape& shape) {
     auto arrival = std::make_unique<Arrival>();
     arrival->lean.shape = shape;
     Result<> result;
     if (auto spec = plan::lean_spec(pass_, shape); !spec)
         result = failure(std::move(spec));
-    else if (auto kernel = store.get(*spec, pass_.stage); !kernel)
-        result = failure(std::move(kernel));
-    else
+    else if (auto kernel = context.kernels->get(*spec, pass_.stage); kernel)
         arrival->lean.kernel = std::move(*kernel);
+    else if (context.shaders->is_missing(kernel.error()))
+        context.say(Severity::Info, kernel.error().text + "; the complete kernel, which is slower, takes its place");
+    else
+        result = failure(std::move(kernel));
     arrivals_.push(*arrival.release());
     const std::scoped_lock lock(built_mutex_);
     if (std::ranges::find(built_, shape) == built_.end()) built_.push_back(shape);

@@ -26,8 +26,8 @@ class PassKernels {
     // At compile, or on the worker.
     [[nodiscard]] Result<> build_complete(gpu::KernelStore& store);
     /// Gets the kernel of a shape; find() has it from then on. One that cannot be built is remembered: the complete one
-    /// takes its place.
-    [[nodiscard]] Result<> build(gpu::KernelStore& store, const plan::Shape& shape);
+    /// takes its place. That is no error, but told, where there is no compiler and nobody baked it.
+    [[nodiscard]] Result<> build(gpu::Context& context, const plan::Shape& shape);
     [[nodiscard]] bool has_complete() const { return complete_ != nullptr; }
     [[nodiscard]] const gpu::Kernel& complete() const { return *complete_; }
     /// Was it built before? It may have made room for others since; then recordings want it again.

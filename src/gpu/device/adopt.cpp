@@ -160,7 +160,7 @@ Result<Device> Device::adopt(const AdoptDesc& desc) try {
     if (const Result<> loaded = context->vk.load_device(desc.device, has_debug_utils, names); !loaded)
         return lacking(desc, loaded);
     context->device = desc.device;
-    if (Result<> finished = context->finish(); !finished) return failure(std::move(finished));
+    if (Result<> finished = context->finish(desc.kernels); !finished) return failure(std::move(finished));
     return Device(std::move(context));
 } catch (...) {
     return caught("adopting a device");

@@ -124,15 +124,16 @@ Result<> Context::check(VkResult result, std::string_view what) const {
 
 VkFormatFeatureFlags Context::features_of(VkFormat format) const {
     if (is_assumed) return assumed_features(format);
+    const auto planned = [&](VkFormatFeatureFlags own) { return profile ? planned_features(format, own) : own; };
     {
         const std::shared_lock lock(formats_mutex_);
-        if (const auto known = formats_.find(format); known != formats_.end()) return known->second;
+        if (const auto known = formats_.find(format); known != formats_.end()) return planned(known->second);
     }
     VkFormatProperties properties{};
     vk.GetPhysicalDeviceFormatProperties(physical_device, format, &properties);
     const std::unique_lock lock(formats_mutex_);
     formats_.emplace(format, properties.optimalTilingFeatures);
-    return properties.optimalTilingFeatures;
+    return planned(properties.optimalTilingFeatures);
 }
 
 bool Context::supports(VkFormat format, VkFormatFeatureFlags features) const {
@@ -181,7 +182,7 @@ void Context::free_memory(const DeviceMemory& piece) const {
     vk.FreeMemory(device, piece.memory, allocator);
 }
 
-Result<> Context::finish() {
+Result<> Context::finish(std::span<const std::byte> baked) {
     vk.GetPhysicalDeviceMemoryProperties(physical_device, &memory);
     VkPhysicalDeviceProperties properties{};
     vk.GetPhysicalDeviceProperties(physical_device, &properties);
@@ -208,6 +209,13 @@ Result<> Context::finish() {
     traits.timestamp_period_ns = traits.timestamp_valid_bits > 0 ? static_cast<double>(limits.timestampPeriod) : 0.0;
 
     shaders = std::make_unique<ShaderCompiler>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");
+    if (!baked.empty()) {
+        Result<BakedShaders> read = BakedShaders::read(baked);
+        if (!read) return failure(std::move(read));
+        profile = read->profile();
+        traits = planned_traits(traits, *profile);
+        shaders->set_baked(std::move(*read));
+    }
     kernels = std::make_unique<KernelStore>(*this);
     if (Result<> samplers = create_samplers(); !samplers) return samplers;
     // A pipeline out of a cache may have no statistics.

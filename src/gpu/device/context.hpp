@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <span>
 #include <string>
@@ -67,7 +68,9 @@ class Context {
     std::mutex queue_mutex;          ///< held while something is submitted to it
     bool is_owner = false;           ///< of instance, device and messenger
     bool is_assumed = false;         ///< there is no device: gpu/device/assumed_device.hpp
-    bool compiles_only = false;      ///< as in DeviceDesc: no image may be made, nothing submitted
+    /// What is planned here is planned as for an assumed device of this kind: it is one, or its kernels were baked.
+    std::optional<DeviceProfile> profile;
+    bool compiles_only = false;  ///< as in DeviceDesc: no image may be made, nothing submitted
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     const VkAllocationCallbacks* allocator = nullptr;  ///< of every object that is created or destroyed
     DeviceMemoryHooks memory_hooks{};                  ///< empty: vkAllocateMemory
@@ -106,7 +109,8 @@ class Context {
 
     /// Makes what every use of the device needs: samplers, pipeline cache, shader compiler, memory properties, limits.
     /// Called once by Device, when dispatch table, handles and traits that depend on enabled features are set.
-    [[nodiscard]] Result<> finish();
+    /// `kernels`: as in DeviceDesc.
+    [[nodiscard]] Result<> finish(std::span<const std::byte> kernels);
 
   private:
     [[nodiscard]] Result<> allocate_own(const DeviceMemoryRequest&, const std::string& what, DeviceMemory&) const;

@@ -307,7 +307,7 @@ Result<std::vector<DeviceInfo>> Device::list() try {
     return caught("listing devices");
 }
 
-Device Device::assumed() { return Device(gpu::assumed_context()); }
+Device Device::assumed(DeviceProfile profile) { return Device(gpu::assumed_context(profile)); }
 
 Result<Device> Device::create(const DeviceDesc& desc) try {
     auto context = std::make_shared<Context>();
@@ -325,7 +325,7 @@ Result<Device> Device::create(const DeviceDesc& desc) try {
     context->queue_family = gpu::find_queue_family(context->vk, context->physical_device).value_or(0);
     if (Result<> created = create_device(*context, desc.device_extensions); !created)
         return failure(std::move(created));
-    if (Result<> finished = context->finish(); !finished) return failure(std::move(finished));
+    if (Result<> finished = context->finish(desc.kernels); !finished) return failure(std::move(finished));
     return Device(std::move(context));
 } catch (...) {
     return caught("creating a device");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/text/lower.hpp"
+
 namespace darkroom::gpu {
 
 namespace {
@@ -127,6 +129,12 @@ FormatTraits format_traits(VkFormat format) {
 std::string_view format_name(VkFormat format) {
     const Row* const found = find_row(format);
     return found == nullptr ? std::string_view("an unknown format") : found->name;
+}
+
+VkFormat format_named(std::string_view name) {
+    const auto found =
+        std::ranges::find_if(rows, [&](const Row& candidate) { return lower(candidate.name) == lower(name); });
+    return found == rows.end() ? VK_FORMAT_UNDEFINED : found->traits.format;
 }
 
 bool is_depth(VkFormat format) { return (format_traits(format).aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0; }

@@ -28,6 +28,8 @@ struct FormatTraits {
 [[nodiscard]] FormatTraits format_traits(VkFormat format);
 /// "R16G16B16A16_SFLOAT"; "an unknown format" for one that the list does not hold.
 [[nodiscard]] std::string_view format_name(VkFormat format);
+/// By that name, in capitals or not. UNDEFINED: there is none.
+[[nodiscard]] VkFormat format_named(std::string_view name);
 [[nodiscard]] bool is_depth(VkFormat format);
 [[nodiscard]] bool has_stencil(VkFormat format);
 /// The one aspect that a view for sampling, or a copy, names: depth of depth formats with or without stencil.

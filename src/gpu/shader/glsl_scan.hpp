@@ -3,6 +3,7 @@
 // Reads GLSL as tokens, for all that changes or asks a kernel's text: it knows words, comments and directives, and no
 // grammar.
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -29,6 +30,8 @@ class GlslScanner {
     Token next();
     /// The next token that is not Blank, without taking it.
     [[nodiscard]] Token peek() const;
+    /// Where that token begins.
+    [[nodiscard]] std::size_t place() const { return at_; }
 
   private:
     std::string_view text_;

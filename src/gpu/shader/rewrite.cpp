@@ -52,22 +52,24 @@ std::string rewrite_image_calls(std::string_view body, std::span<const std::stri
                                 std::span<const std::string_view> images) {
     std::string result;
     result.reserve(body.size() + body.size() / 4);
+    std::size_t copied = 0;     // up to where the body is in the result
     bool drops_spaces = false;  // after the comma that went
     GlslScanner scanner(body);
     for (Token token = scanner.next(); token.kind != End; token = scanner.next()) {
         if (drops_spaces && token.kind == Blank)
-            token.text.remove_prefix(std::min(token.text.find_first_not_of(' '), token.text.size()));
+            copied += std::min(token.text.find_first_not_of(' '), token.text.size());
         drops_spaces = false;
-        result += token.text;
         if (token.kind != Word || !contains(functions, token.text)) continue;
         const Call call = read_call(scanner, images);
         if (call.image.empty()) continue;
+        result.append(body.substr(copied, scanner.place() - copied));
         result.append("_").append(call.image).append(call.before_open).append("(").append(call.inside);
         if (!call.has_more) result += ')';
         drops_spaces = call.has_more;
         scanner = call.after;
+        copied = scanner.place();
     }
-    return result;
+    return result.append(body.substr(copied));
 }
 
 std::string rewrite_indexing(std::string_view body, std::span<const std::string_view> arrays) {

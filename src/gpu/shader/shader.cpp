@@ -19,9 +19,8 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-std::filesystem::path entry_path(const std::filesystem::path& folder, const ShaderSource& source) {
-    const std::string key =
-        fmt::format("{}|{}|{}", glsl_compiler_version(), static_cast<int>(source.stage), hex(source.identity()));
+std::filesystem::path entry_path(const std::filesystem::path& folder, const Digest& text, ShaderStage stage) {
+    const std::string key = fmt::format("{}|{}|{}", glsl_compiler_version(), static_cast<int>(stage), hex(text));
     return folder / (hex(sha256(key)) + ".spv");
 }
 
@@ -95,10 +94,19 @@ std::uintmax_t thin_out(const std::filesystem::path& folder, std::uintmax_t most
     return total;
 }
 
+Failure missing(const ShaderSource& source, const BakedShaders& baked) {
+    const std::string what = baked.size() == 0
+                                 ? std::string("the device was given no baked kernels")
+                                 : fmt::format("it is not among the {} kernels that were baked for profile {}",
+                                               baked.size(), profile_name(baked.profile()));
+    return failure({Fault::User, fmt::format("{}: {}, and this library has no compiler of GLSL", source.name, what),
+                    ErrorCode::Unsupported});
+}
+
 }  // namespace
 
 ShaderCompiler::ShaderCompiler(std::filesystem::path cache_folder, std::uintmax_t most_bytes)
-    : folder_(std::move(cache_folder)), most_bytes_(most_bytes) {}
+    : has_compiler(!glsl_compiler_version().empty()), folder_(std::move(cache_folder)), most_bytes_(most_bytes) {}
 
 void ShaderCompiler::add_entry(const std::filesystem::path& path, const Words& words) {
     const std::uintmax_t bytes = write_entry(path, words);
@@ -108,7 +116,13 @@ void ShaderCompiler::add_entry(const std::filesystem::path& path, const Words& w
 }
 
 Result<Words> ShaderCompiler::compile(const ShaderSource& source) {
-    const std::filesystem::path path = folder_.empty() ? std::filesystem::path() : entry_path(folder_, source);
+    const Digest text = source.identity();
+    if (std::optional<Words> words = baked_.find(text, source.stage)) {
+        ++from_baked;
+        return std::move(*words);
+    }
+    if (!has_compiler) return missing(source, baked_);
+    const std::filesystem::path path = folder_.empty() ? folder_ : entry_path(folder_, text, source.stage);
     if (!path.empty()) {
         if (std::optional<Words> words = read_entry(path)) {
             ++from_cache;
