@@ -27,6 +27,7 @@ struct Command {
 [[nodiscard]] Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_probe(CommandFlags program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> named);
+[[nodiscard]] Command add_bake(CommandFlags program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_effects(CommandFlags program);
 [[nodiscard]] Command add_devices(CommandFlags program);
 [[nodiscard]] Command add_compare(CommandFlags program);

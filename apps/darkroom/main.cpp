@@ -33,6 +33,7 @@ std::vector<app::Command> add_commands(app::CommandFlags program, std::span<cons
         {{"develop"}, [&] { return Commands{app::add_develop(program, named)}; }},
         {{"probe"}, [&] { return Commands{app::add_probe(program, named)}; }},
         {{"plan"}, [&] { return Commands{app::add_plan(program, named)}; }},
+        {{"bake"}, [&] { return Commands{app::add_bake(program, named)}; }},
         {{"effects"}, [&] { return Commands{app::add_effects(program)}; }},
         {{"devices"}, [&] { return Commands{app::add_devices(program)}; }},
         {{"compare"}, [&] { return Commands{app::add_compare(program)}; }},

@@ -64,6 +64,14 @@ TEST_F(CliNoDriver, PlansForAnAssumedDeviceAndSaysSo) {
     expect_refused({"plan", "--size", "99999x2"}, 1, "allows 1x1 to 16384x16384");
 }
 
+TEST_F(CliNoDriver, KernelsAreBaked) {
+    const std::string look = write("look.toml", "format = 1\n[[stack]]\neffect = \"exposure\"\n");
+    for (const char* const profile : {"gpu", "software"}) {
+        const Outcome baked = run({"bake", look, "-o", path("kernels.dkb"), "--profile", profile});
+        EXPECT_EQ(baked.code, 0) << baked.err;
+    }
+}
+
 TEST_F(CliNoDriver, ADeviceThatIsAskedForIsNotAssumed) { expect_refused({"plan", "--device", "0"}, 2, "Vulkan"); }
 
 }  // namespace
