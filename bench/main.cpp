@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "bench/program/baked.hpp"
 #include "bench/program/edits.hpp"
 #include "bench/program/headers.hpp"
 #include "bench/program/sequence.hpp"
@@ -93,6 +94,8 @@ Result<> measure_all(const Options& options, Bed& bed, Report& report) {
     if (auto ok = add_sequence(options, bed.device, bed.extent, report); !ok) return ok;
     if (options.edits > 0 && is_asked_for(options, {std::string(edits_name)}))
         if (auto ok = append(report.figures, edit_figures(bed.device, options.edits)); !ok) return ok;
+    if (is_asked_for(options, {"baked"}))
+        if (auto ok = append(report.figures, baked_figures(options.rounds)); !ok) return ok;
     if (is_asked_for(options, {"headers"}))
         if (auto ok = append(report.figures, header_figures(options.rounds)); !ok) return ok;
     if (!options.filters.empty()) return {};

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// In place of edits.cpp, scene.cpp and sequence.cpp where what they measure is not built.
+// In place of baked.cpp, edits.cpp, scene.cpp and sequence.cpp where what they measure is not built.
+#include "baked.hpp"
 #include "edits.hpp"
 #include "scene.hpp"
 #include "sequence.hpp"
 
 namespace darkroom::bench {
 
+Result<std::vector<Figure>> baked_figures(std::uint32_t) { return std::vector<Figure>(); }
 Result<std::vector<Figure>> edit_figures(Device&, std::uint32_t) { return std::vector<Figure>(); }
 std::vector<Recipe> scene_recipes() { return {}; }
 std::vector<std::string> sequence_row_names() { return {}; }
