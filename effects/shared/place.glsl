@@ -10,7 +10,7 @@ struct Place {
 
 // c (1 + strength |c|^2), c the distance from the middle in uv: above 0 the corners are drawn inward, below 0 outward.
 vec2 barrel(vec2 uv, float strength) {
-    vec2 from_centre = uv - 0.5;
+    precise vec2 from_centre = uv - 0.5;
     return from_centre * (1.0 + strength * dot(from_centre, from_centre)) + 0.5;
 }
 #endif

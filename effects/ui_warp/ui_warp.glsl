@@ -3,7 +3,8 @@
 #include "shared/place.glsl"
 
 Place ui_warp(Place place, UiWarp parameters) {
-    place.uv = (place.uv - 0.5) * (1.0 + 0.5 * abs(parameters.strength)) + 0.5 + parameters.offset;
+    precise vec2 uv = (place.uv - 0.5) * (1.0 + 0.5 * abs(parameters.strength)) + 0.5 + parameters.offset;
+    place.uv = uv;
     place.barrel += parameters.strength;
     return place;
 }
