@@ -48,6 +48,8 @@ pair fog courtyard --fog-enabled off -- --fog-density 0.05
 pair bloom forge --bloom-enabled off -- --bloom-intensity 0.12
 pair exposure courtyard --exposure 0.4 -- --exposure 1.2
 pair tonemap showcase --tonemap-curve linear -- --tonemap-curve aces_narkowicz
+saturated=(--tonemap-curve linear --color-grade-saturation 2.5)
+pair gamut_compression showcase "${saturated[@]}" -- "${saturated[@]}" --gamut-compression-enabled on
 pair vignette showcase --vignette-enabled off -- --vignette-intensity 0.7
 pair radial_blur forge --radial-blur 0 -- --radial-blur 0.8
 pair chromatic_aberration forge --chromatic-aberration 0 -- --chromatic-aberration 3
