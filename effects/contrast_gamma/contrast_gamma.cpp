@@ -27,6 +27,7 @@ const EffectInfo& effect_info(const ContrastGamma&) {
         .accepts = Domains::only(Domain::Encoded),
         .flat = {.documented = 125, .scene_linear = 125, .is_of_ui = true},
         .works_encoded = true,
+        .maps_colors = true,
         .reference = pointwise_reference<ContrastGamma, contrast_gamma_reference>,
         .is_identity =
             [](const void* parameters) {

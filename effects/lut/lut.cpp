@@ -140,6 +140,7 @@ const EffectInfo& effect_info(const Lut&) {
         .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
         .makes = makes,
         .flat = {.documented = 87, .scene_linear = 78, .starts_on = false},
+        .maps_colors = true,
         .build = build,
         .reference = lut_reference,
         .is_identity =

@@ -38,6 +38,8 @@ struct ColorState {
     Transfer transfer = Transfer::Linear;
     float white_nits = 203;  ///< of a diffuse white: ITU-R BT.2408
     float peak_nits = 0;     ///< of the brightest that it holds; 0: there is no end, as in a scene
+    /// Its numbers were multiplied by alpha, as OpenEXR has them; else alpha only goes along, as in PNG.
+    bool is_associated = false;
 
     /// Luminance of 1.0 behind the transfer.
     [[nodiscard]] constexpr float unit_nits() const {

@@ -82,6 +82,7 @@ struct ComposerDesc {
 struct CompileDesc {
     VkExtent2D max_extent{};
     ImageUse color{VK_FORMAT_R16G16B16A16_SFLOAT};
+    bool is_color_associated = false;  ///< the frames' colour is multiplied by its alpha: ColorState::is_associated
     ImageUse depth;
     /// Every frame's camera says DepthKind::Planar: the depth image is then read as it is, without a pass.
     bool is_depth_planar = false;

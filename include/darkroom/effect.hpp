@@ -109,6 +109,9 @@ struct EffectInfo {
     float (*working_white_nits)(const void* parameters) = nullptr;
     /// What a path tracer or a camera puts into its pictures itself: occlusion, light in the air, motion.
     bool is_in_traced_light = false;
+    /// What it makes of a colour is no multiple of that: of a picture that is multiplied by its alpha it gets the
+    /// colours divided, and they are multiplied again behind it.
+    bool maps_colors = false;
     bool is_last_step = false;  ///< encode, dither: skipped where the target takes linear floats
     std::function<void(PassBuilder&)> build{};
     /// The published equation in double precision; see reference.hpp.

@@ -45,6 +45,7 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, c
     };
     CompileDesc out = compile_desc_for(context, desc);
     out.max_extent = input.extent;
+    out.is_color_associated = input.is_color_associated;
     out.color = {layers[0].format, shader_usage(context, layers[0].format)};
     out.depth = use(1);
     out.is_depth_planar = out.depth.format != VK_FORMAT_UNDEFINED;
@@ -59,7 +60,7 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, c
 /// Do two descriptions that one DevelopDesc made ask for the same?
 bool is_same(const CompileDesc& a, const CompileDesc& b) {
     return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
-           plan::bring_the_same(a, b);
+           a.is_color_associated == b.is_color_associated && plan::bring_the_same(a, b);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ namespace darkroom {
 struct DevelopInput {
     VkExtent2D extent{};
     std::span<const float> color;                                ///< red, green, blue, alpha; scene-linear Rec. 709
+    bool is_color_associated = false;                            ///< as CompileDesc has it
     std::span<const float> depth;                                ///< planar distance
     std::span<const float> normals;                              ///< x, y, z
     std::span<const float> velocity;                             ///< x, y

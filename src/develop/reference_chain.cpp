@@ -79,7 +79,23 @@ class Chain {
         return {.white_nits = input_.target_color ? input_.target_color->white_nits : ColorState{}.white_nits};
     }
     Domain target_domain() const { return input_.target_color ? input_.target_color->domain : input_.target_domain; }
+    static double alpha_of(const Rgba& p) { return p.a > 0 && p.a < 1 ? p.a : 1; }
+    static ReferenceImage alpha_divided(ReferenceImage picture) {
+        for (Rgba& p : picture.pixels) p = {p.r / alpha_of(p), p.g / alpha_of(p), p.b / alpha_of(p), p.a};
+        return picture;
+    }
+    static ReferenceImage alpha_multiplied(ReferenceImage picture) {
+        for (Rgba& p : picture.pixels) p = {p.r * alpha_of(p), p.g * alpha_of(p), p.b * alpha_of(p), p.a};
+        return picture;
+    }
     void finish(ReferenceImage& picture, const ColorState& state) const {
+        const bool before = input_.is_color_associated;
+        if (before) picture = alpha_divided(std::move(picture));
+        convert(picture, state);
+        if (input_.target_color ? input_.target_color->is_associated : before)
+            picture = alpha_multiplied(std::move(picture));
+    }
+    void convert(ReferenceImage& picture, const ColorState& state) const {
         if (!input_.target_color) {
             if (target_domain() == Domain::Encoded && state.domain != Domain::Encoded && input_.encodes_target)
                 for (Rgba& pixel : picture.pixels)
@@ -296,7 +312,13 @@ class Chain {
                                      ? frame_output()
                                      : sizes_[from].scaled(info.output_scale.numerator, info.output_scale.denominator);
         if (is_off) return keep(pictures_[at_size(from, size)], size);
-        return keep(encoded_result(info, desc, words, index, from), size);
+        const bool is_wrapped = plan::may_need_work(info, states_[from].domain == Domain::Encoded, desc.is_ui);
+        if (!plan::maps_without_alpha(info, is_wrapped, input_.is_color_associated && !desc.is_ui))
+            return keep(encoded_result(info, desc, words, index, from), size);
+        const ColorState state = states_[from];
+        from = keep(alpha_divided(pictures_[from]), sizes_[from]);
+        states_[from] = state;
+        return keep(alpha_multiplied(encoded_result(info, desc, words, index, from)), size);
     }
 
     static bool is_plain(const EntryDesc& desc) {

@@ -50,6 +50,7 @@ struct ReferenceChainInput {
     double delta_time = 1.0 / 60;
     std::uint64_t frame_index = 0;
     ReferenceHistories* histories = nullptr;   ///< null: a frame by itself
+    bool is_color_associated = false;          ///< as CompileDesc has it
     std::optional<ColorState> target_color{};  ///< as CompileDesc has it; unset: what the two members below say
     Domain target_domain = Domain::Encoded;    ///< SceneLinear: encode and dither are skipped
     /// Whether a picture that the stack leaves unencoded is sRGB-encoded for an Encoded target: by a kernel or, for an

@@ -60,7 +60,10 @@ struct Entry {
     }
     /// What the picture is behind it, in a frame with these values.
     [[nodiscard]] ColorState state_after(const ColorState& before, const std::uint32_t* words, bool is_on) const {
-        return is_on && info->makes != nullptr ? info->makes(before, words) : before;
+        if (!is_on || info->makes == nullptr) return before;
+        ColorState out = info->makes(before, words);
+        out.is_associated = before.is_associated;
+        return out;
     }
     /// At this opacity: is its result the output as it is?
     [[nodiscard]] bool is_plain(float opacity) const {
@@ -102,6 +105,7 @@ struct FusedPass {
     Finish finish = Finish::None;
     Resampling resampling = Resampling::None;
     bool is_alpha = false;  ///< makes a grey picture of the alpha before its steps
+    FinishAlpha alpha{};
 };
 /// A kernel of an effect's build.
 struct KernelPass {

@@ -131,6 +131,36 @@ TEST_F(CliColor, PicturesAreWrittenForAnotherSpaceAndComeBack) {
     expect_error({"--output-space", "p3", "--output-peak", "500"}, "--output-peak: is of pq and hlg, and not of p3");
 }
 
+// OpenEXR has colours multiplied by alpha, PNG has them straight.
+TEST_F(CliColor, AnEdgeHasTheColourOfWhatItIsTheEdgeOf) {
+    if (find_effect("tonemap") == nullptr) GTEST_SKIP() << "this build has no tonemap";
+    FrameFile frame;
+    frame.color = Picture(32, 18);
+    for (std::size_t i = 0; i < frame.color.pixels.size(); ++i) {
+        const float alpha = i / 4 % 32 < 16 ? 1.0F : 0.5F;
+        frame.color.pixels[i] = i % 4 == 3 ? alpha : alpha * 3;
+    }
+    frame.has_alpha = true;
+    frame.samples = SampleKind::Float;
+    ASSERT_TRUE(write_frame(path("edge.exr"), frame));
+    write("curve.toml", "[[stack]]\neffect = \"tonemap\"\ncurve = \"reinhard_extended\"\nwhite = 8.0\n");
+    const auto made = [&](const std::string& out, const char* flag) {
+        const Outcome outcome = run({"develop", path("edge.exr"), "--look", path("curve.toml"), "--alpha", "-o",
+                                     path(out), "--bits", out.ends_with("png") ? "16" : "float", flag});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        const Picture picture = this->picture(out);
+        return std::array{*picture.at(4, 9), *picture.at(24, 9), picture.at(24, 9)[3]};
+    };
+    for (const char* const flag : {"--quiet", "--reference"}) {
+        const auto straight = made("edge.png", flag);
+        EXPECT_NEAR(straight[1], straight[0], 2.0 / 65535) << flag;
+        EXPECT_NEAR(straight[2], 0.5, 1.0 / 65535);
+        const auto multiplied = made("edge.exr.exr", flag);
+        EXPECT_NEAR(multiplied[1], 0.5 * multiplied[0], 1e-5) << flag;
+        EXPECT_EQ(multiplied[2], 0.5);
+    }
+}
+
 TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
     const std::string config = path("config.ocio");
     for (const char* const out : {"a.png", "a.tif", "a.jpg"})

@@ -111,6 +111,7 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
         job.develop.target = target_for(*samples, job.write);
         job.develop.color = darkroom::color_of(job.write, *samples);
     }
+    if (job.write.alpha) job.develop.color = with_alpha(job.develop.color, job.develop.target, job.write);
     suit(job.look, job.develop.target, job.write);
     std::size_t next_written = inputs.size();
     for (std::size_t i = inputs.size(); i-- > 0;) {
@@ -297,6 +298,9 @@ class Develop {
         item.frame = std::move(*sized);
         item.lights = take_lights(item.frame);
         item.input = develop_input(item.frame, item.lights);
+        // Else alpha is a mask at most, as scenes write it.
+        item.input.is_color_associated =
+            job_.write.alpha && item.frame.has_alpha && item.frame.kind == darkroom::FileKind::OpenExr;
         set_time(step, item);
         return {};
     }

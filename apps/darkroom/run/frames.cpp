@@ -194,6 +194,14 @@ void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::
             entry.state.enabled = false;
 }
 
+darkroom::ColorState with_alpha(const std::optional<darkroom::ColorState>& color, darkroom::DevelopTarget target,
+                                const darkroom::WriteOptions& options) {
+    const bool is_light = target == darkroom::DevelopTarget::SceneLinear;
+    darkroom::ColorState out = color.value_or(is_light ? darkroom::ColorState{} : darkroom::srgb_color);
+    out.is_associated = is_light && !options.view;
+    return out;
+}
+
 // Linear targets skip the last steps by definition; that is no news.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
                                      std::span<const std::string> left_out, std::string_view frame) {
@@ -243,16 +251,18 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
                                            {FrameImage::Ui, given(ui)}};
     const darkroom::Domain domain =
         desc.target == DevelopTarget::SceneLinear ? darkroom::Domain::SceneLinear : darkroom::Domain::Encoded;
-    Result<darkroom::ReferenceChainOutput> made = darkroom::run_reference(composer, {.color = &color,
-                                                                                     .images = images,
-                                                                                     .lights = input.lights,
-                                                                                     .camera = input.camera,
-                                                                                     .time = input.time,
-                                                                                     .delta_time = input.delta_time,
-                                                                                     .frame_index = input.frame_index,
-                                                                                     .histories = &histories,
-                                                                                     .target_color = desc.color,
-                                                                                     .target_domain = domain});
+    Result<darkroom::ReferenceChainOutput> made =
+        darkroom::run_reference(composer, {.color = &color,
+                                           .images = images,
+                                           .lights = input.lights,
+                                           .camera = input.camera,
+                                           .time = input.time,
+                                           .delta_time = input.delta_time,
+                                           .frame_index = input.frame_index,
+                                           .histories = &histories,
+                                           .is_color_associated = input.is_color_associated,
+                                           .target_color = desc.color,
+                                           .target_domain = domain});
     if (!made) return failure(made.error());
     left_out = std::move(made->left_out);
     DevelopedPicture out{.extent = {made->picture.width, made->picture.height}};

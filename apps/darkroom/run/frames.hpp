@@ -35,6 +35,9 @@ void tell_of_assumed_view(const darkroom::FrameFile& frame, std::string_view sho
 /// Switches off noise that nobody asked for where the picture has more than 8 bits, whose steps it hides, what encodes
 /// for sRGB where the picture is for another space, and tone mapping where a view of a display has its own.
 void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::WriteOptions& options);
+/// What a file with alpha holds: straight, and multiplied by it in a file of floats, which is an OpenEXR file.
+[[nodiscard]] darkroom::ColorState with_alpha(const std::optional<darkroom::ColorState>& color,
+                                              darkroom::DevelopTarget target, const darkroom::WriteOptions& options);
 /// One warning, `frame` first, for each entry that is on and has no place in the plan, but for those that are on by
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,

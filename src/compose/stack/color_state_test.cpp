@@ -11,8 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "compose/test_stacks/host.hpp"
+#include "compose/test_stacks/random_stack.hpp"
 #include "compose/test_stacks/support.hpp"
 #include "develop/reference_chain.hpp"
 #include "shared/color_state_reference.hpp"
@@ -223,6 +225,89 @@ TEST(ComposeColorState, AnSrgbTargetGetsTheSameBitsWhetherItIsToldOrNot) {
                 const ReferenceImage told = test::develop(fill, picture, options);
                 EXPECT_EQ(test::worst_difference(before, told), 0) << format << " " << encoder << is_fused;
             }
+        }
+    }
+}
+
+ReferenceImage multiplied_by_alpha(ReferenceImage picture) {
+    for (Rgba& p : picture.pixels) p = {p.r * p.a, p.g * p.a, p.b * p.a, p.a};
+    return picture;
+}
+/// An edge: opaque to the left, a quarter to the right, a half where both meet.
+ReferenceImage picture_of_an_edge() {
+    ReferenceImage out = test::random_display(24, 8, 5);
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            Rgba& p = out.at(x, y);
+            p = {4 * p.r, 4 * p.g, 4 * p.b, x < 12 ? 1.0 : x == 12 ? 0.5 : 0.25};
+        }
+    return test::round_to_float(out);
+}
+
+// Of all effects of a pixel's colour alone: one that forgets to say maps_colors is found, too.
+TEST(ComposeColorState, ColoursAreMappedWithoutTheirAlpha) {
+    const ReferenceImage straight = picture_of_an_edge(), associated = multiplied_by_alpha(straight);
+    std::size_t tried = 0;
+    for (const EffectInfo* const info : all_effects()) {
+        const bool is_of_colors = info->touch == Touch::Pointwise && !info->has_second && info->name != "dither" &&
+                                  (info->build == nullptr || info->maps_colors);
+        if (!is_of_colors) continue;
+        SCOPED_TRACE(info->name);
+        ++tried;
+        for (const float opacity : {1.0f, 0.5f}) {
+            const auto fill = [&](Composer& composer) {
+                std::mt19937 random(3);
+                test::set_random(random, composer, composer.add(*info, nullptr, {.opacity = opacity}),
+                                 test::Values::Sane);
+            };
+            const ReferenceImage expected = multiplied_by_alpha(test::develop(fill, straight));
+            const ReferenceImage out = test::develop(fill, associated, {.is_color_associated = true});
+            const double bound = info->name == "posterize" ? 1e-3 : 2e-5;
+            for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+                const Rgba &a = out.pixels[i], &b = expected.pixels[i];
+                const double most = bound * std::max({std::abs(b.r), std::abs(b.g), std::abs(b.b), 1.0});
+                EXPECT_NEAR(a.r, b.r, most) << i;
+                EXPECT_NEAR(a.g, b.g, most) << i;
+                EXPECT_NEAR(a.b, b.b, most) << i;
+                EXPECT_EQ(a.a, b.a);
+            }
+        }
+    }
+    EXPECT_GE(tried, 1U);
+}
+
+TEST(ComposeColorState, ATargetGetsItsColoursWithOrWithoutAlphaAsItSays) {
+    const ReferenceImage straight = picture_of_an_edge(), associated = multiplied_by_alpha(straight);
+    for (const ColorState& target : {srgb_color, pq_color, light_709}) {
+        for (std::uint32_t encoder = 0; encoder < 3; ++encoder) {
+            const auto fill = [&](Composer& composer) {
+                composer.add(Tonemap{});
+                add_encoder(composer, encoder);
+            };
+            const auto out = [&](bool is_associated, bool is_wanted, bool is_fused) {
+                ColorState told = target;
+                told.is_associated = is_wanted;
+                return test::develop(fill, is_associated ? associated : straight,
+                                     {.fuse = is_fused, .is_color_associated = is_associated, .target_color = told});
+            };
+            const ReferenceImage expected = out(false, false, true);
+            for (const bool is_associated : {false, true})
+                for (const bool is_wanted : {false, true})
+                    for (const bool is_fused : {true, false}) {
+                        SCOPED_TRACE(testing::Message() << encoder << is_associated << is_wanted << is_fused);
+                        const ReferenceImage made = out(is_associated, is_wanted, is_fused);
+                        EXPECT_LE(test::worst_difference(made, is_wanted ? multiplied_by_alpha(expected) : expected),
+                                  2e-5);
+                        const ReferenceImage& picture = is_associated ? associated : straight;
+                        Composer composer(Device::assumed());
+                        fill(composer);
+                        ColorState told = target;
+                        told.is_associated = is_wanted;
+                        const auto reference = run_reference(
+                            composer, {.color = &picture, .is_color_associated = is_associated, .target_color = told});
+                        ASSERT_TRUE(reference) << reference.error().text;
+                        EXPECT_LE(test::worst_difference(made, reference->picture), 2e-4);
+                    }
         }
     }
 }

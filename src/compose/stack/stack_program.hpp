@@ -17,7 +17,7 @@ namespace darkroom::compose {
 /// its answers are the same.
 [[nodiscard]] inline auto facts_of(const CompileDesc& desc) {
     return std::tie(desc.target, desc.target_extent.width, desc.target_extent.height, desc.target_domain,
-                    desc.target_color, desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate, desc.watches);
+                    desc.target_color, desc.is_color_associated, desc.encodes_target, desc.kernels, desc.fuse, desc.intermediate, desc.watches);
 }
 
 struct StackProgram {

@@ -168,6 +168,7 @@ ReferenceImage develop(const std::function<void(Composer&)>& fill, const Referen
     fill(composer);
     const auto plan = composer.compile({.max_extent = extent,
                                         .color = {options.color, gpu::test::all_usage(context, options.color)},
+                                        .is_color_associated = options.is_color_associated,
                                         .depth = {depth ? options.depth_format : VK_FORMAT_UNDEFINED},
                                         .is_depth_planar = depth && options.is_depth_planar,
                                         .normals = {normals ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_UNDEFINED},

@@ -25,7 +25,8 @@ struct RunOptions {
     VkFormat color = VK_FORMAT_R32G32B32A32_SFLOAT;
     VkFormat target = VK_FORMAT_R32G32B32A32_SFLOAT;
     std::optional<Domain> target_domain = Domain::Encoded;  ///< Encoded: nothing is skipped
-    std::optional<ColorState> target_color{};               ///< in place of target_domain
+    bool is_color_associated = false;
+    std::optional<ColorState> target_color{};  ///< in place of target_domain
     VkFormat intermediate = VK_FORMAT_R32G32B32A32_SFLOAT;
     double time = 0;
     std::uint64_t frame_index = 0;

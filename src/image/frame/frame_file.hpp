@@ -99,7 +99,7 @@ struct HalfLayers {
 
 struct FrameFile {
     /// Scene-linear Rec. 709. As large as the display window; pixels outside the data window are 0, alpha included.
-    /// Alpha is carried as the file has it: colour is neither multiplied nor divided by it.
+    /// Alpha is carried as the file has it: straight, but multiplied into the colour in OpenEXR.
     Picture color;
     /// Where overscan was kept: the display window, in pixels of this picture.
     std::optional<PixelWindow> display;

@@ -80,7 +80,19 @@ Domain target_domain(const CompileDesc& desc) {
 }
 
 ColorState scene_state(const CompileDesc& desc) {
-    return {.white_nits = desc.target_color ? desc.target_color->white_nits : ColorState{}.white_nits};
+    return {.white_nits = desc.target_color ? desc.target_color->white_nits : ColorState{}.white_nits,
+            .is_associated = desc.is_color_associated};
+}
+
+bool maps_without_alpha(const EffectInfo& info, bool is_wrapped, bool is_associated) {
+    return is_associated && info.touch == Touch::Pointwise && (info.maps_colors || is_wrapped);
+}
+
+FinishAlpha finish_alpha(const CompileDesc& desc, Finish finish) {
+    const bool before = desc.is_color_associated;
+    const bool behind = desc.target_color ? desc.target_color->is_associated : before;
+    if (before == behind && finish == Finish::None) return {};
+    return {.divides = before, .multiplies = behind};
 }
 
 Result<> check_target_color(const CompileDesc& desc) {
@@ -108,7 +120,8 @@ std::string text_of(const ColorState& state) {
     if (state.domain == Domain::Encoded)
         out += fmt::format(", {}", transfers[static_cast<std::size_t>(state.transfer)]);
     out += fmt::format(", white {:g} cd/m2", state.white_nits);
-    return state.peak_nits > 0 ? out + fmt::format(", up to {:g} cd/m2", state.peak_nits) : out;
+    if (state.peak_nits > 0) out += fmt::format(", up to {:g} cd/m2", state.peak_nits);
+    return state.is_associated ? out + ", multiplied by alpha" : out;
 }
 
 }  // namespace darkroom::plan

@@ -46,6 +46,10 @@ inline constexpr std::uint32_t conversion_bits = 14;  ///< of Conversion::word()
 [[nodiscard]] Domain target_domain(const CompileDesc& desc);
 /// What a frame's colour is: light, whose white is the target's.
 [[nodiscard]] ColorState scene_state(const CompileDesc& desc);
+/// Does an effect get the colours of a picture that `is_associated` divided by alpha?
+[[nodiscard]] bool maps_without_alpha(const EffectInfo& info, bool is_wrapped, bool is_associated);
+/// What the target's kernel does for alpha. A target that is not told keeps it as the frames have it.
+[[nodiscard]] FinishAlpha finish_alpha(const CompileDesc& desc, Finish finish);
 /// Errors: a target that cannot hold what it says.
 [[nodiscard]] Result<> check_target_color(const CompileDesc& desc);
 

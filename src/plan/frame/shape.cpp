@@ -20,7 +20,7 @@ std::uint32_t bits_of(const ParamInfo& row) {
 
 Result<std::string> body_of(const FusedPass& pass, std::span<const FusedStep> steps, Finish finish,
                             std::uint32_t word) {
-    return fused_body(steps, finish, pass.resampling, pass.is_alpha, word);
+    return fused_body(steps, finish, pass.resampling, pass.is_alpha, word, pass.alpha);
 }
 Result<std::string> body_of(const KernelPass&, std::span<const FusedStep> steps, Finish, std::uint32_t) {
     return pass_body(steps.front());

@@ -111,6 +111,7 @@ Result<std::size_t> Planner::add_entry(std::uint32_t entry, std::size_t input) {
                    .constants = builder.end_function,
                    .custom_vectors = builder.end_vectors};
     step.is_wrapped = may_need_work(info, may_be_encoded(entry), is_of_ui(entry));
+    step.divides_alpha = maps_without_alpha(info, step.is_wrapped, desc_.is_color_associated && !is_of_ui(entry));
     if (is_reading(info.touch)) {
         if (!builder.sides.empty() || entry_values_read_.contains(entry))
             return user_error(fmt::format("effect '{}': a map reads no images and no values", info.name));
@@ -295,6 +296,7 @@ Result<> Planner::finish() {
                         own.width, own.height));
     program_.target_size = kernels_[kernel].size;
     const graph::Version target = import_host({HostImage::Kind::Target}, "target", desc_.target, program_.target_size);
+    kernels_[kernel].alpha = finish_alpha(desc_, finish);
     auto version = close_kernel(kernel, target, desc_.target.format, finish, true);
     if (!version) return failure(std::move(version));
     program_.graph.keep(*version);
@@ -329,8 +331,8 @@ Result<graph::Version> Planner::close_kernel(std::size_t index, graph::Version t
     const bool is_warp = is_moved_here && kernel.steps.front().info->touch == Touch::Warp;
     const bool is_resampled = !is_warp && !has_size(kernel.picture, kernel.size);
     const Resampling resampling = is_resampled ? kernel.resampling : Resampling::None;
-    pass.kind = FusedPass{kernel.steps, finish, resampling, kernel.is_alpha};
-    if (kernel.steps.empty() && finish == Finish::None && !kernel.is_alpha)
+    pass.kind = FusedPass{kernel.steps, finish, resampling, kernel.is_alpha, kernel.alpha};
+    if (kernel.steps.empty() && finish == Finish::None && !kernel.is_alpha && kernel.alpha == FinishAlpha{})
         pass.kind = CopyPass{.resampling = resampling, .constants = kernel.constants};
     const bool loads_alone = is_warp && traits_.is_software && kernel.steps.front().text->loads_picture_alone;
     const bool is_filtered = is_moved_here && !loads_alone;

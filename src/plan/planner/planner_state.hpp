@@ -59,6 +59,7 @@ class Planner {
         Resampling resampling = Resampling::Linear;  ///< where the picture has another size
         ConstantsFunction constants = nullptr;       ///< of the resampling
         bool is_alpha = false;                       ///< makes a grey picture of the alpha before anything else
+        FinishAlpha alpha{};                         ///< of the target's
         std::vector<FusedStep> steps;
         std::vector<std::pair<std::string, PassInput>> images;
         std::vector<std::pair<std::string, std::uint32_t>> values;  ///< buffers, by name

@@ -371,10 +371,6 @@ constexpr std::string_view closest_function = R"(vec4 closest_texel(Pixel pixel)
 }
 )";
 
-}  // namespace
-
-namespace {
-
 /// The lines that finish for the target.
 std::string finish_code(Finish finish, std::uint32_t word) {
     const std::string by = finish == Finish::Convert ? fmt::format("{}u", word) : "finish_";
@@ -399,9 +395,10 @@ std::string finish_code(Finish finish, std::uint32_t word) {
 }  // namespace
 
 Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling, bool is_alpha,
-                               std::uint32_t finish_word) {
+                               std::uint32_t finish_word, FinishAlpha alpha) {
     std::string declarations, code;
     bool has_merge = false, has_reading = false, reads_picture = false, has_wrap = false;
+    bool has_alpha = alpha.divides || alpha.multiplies;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const FusedStep& step = steps[i];
         const std::string suffix = place_suffix(step.place), prefix = block_prefix(*step.info, step.place);
@@ -447,6 +444,14 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
                 suffix, word, prefix, layer);
             layer = fmt::format("wrapped{}(color, pixel)", suffix);
         }
+        if (step.divides_alpha) {
+            has_alpha = true;
+            declarations += fmt::format(
+                "vec4 without_alpha{}(vec4 color, Pixel pixel) {{\n    color = alpha_divided(color);\n"
+                "    return alpha_multiplied({});\n}}\n",
+                suffix, layer);
+            layer = fmt::format("without_alpha{}(color, pixel)", suffix);
+        }
         code += step.is_certain ? fmt::format("    color = {};\n", layer)
                                 : fmt::format("    if ({}enabled_ != 0u) color = {};\n", prefix, layer);
     }
@@ -462,6 +467,9 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
         if (auto ok = include("shared/place.glsl"); !ok) return failure(std::move(ok));
     if (has_wrap)
         if (auto ok = include("shared/color_state.glsl"); !ok) return failure(std::move(ok));
+    if (has_alpha)
+        if (auto ok = include("shared/alpha.glsl"); !ok) return failure(std::move(ok));
+    if (alpha.divides) code += "    color = alpha_divided(color);\n";
     if (finish != Finish::None) {
         if (auto ok = include("shared/srgb.glsl"); !ok) return failure(std::move(ok));
         const bool may_convert = finish == Finish::Convert || finish == Finish::OfFrameOrConvert;
@@ -469,6 +477,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
             if (auto ok = include("shared/color_state.glsl"); !ok) return failure(std::move(ok));
         code += finish_code(finish, finish_word);
     }
+    if (alpha.multiplies) code += "    color = alpha_multiplied(color);\n";
     std::string_view read = is_moved(steps) ? "load_clamped(picture, pixel.texel)" : "load(picture, pixel.texel)";
     if (resampling == Resampling::Linear) read = "sample_linear(picture, pixel.uv)";
     // The texel under the pixel's centre; in integers, because a product of floats may fall short of it.

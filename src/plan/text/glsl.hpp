@@ -71,6 +71,7 @@ struct FusedStep {
     bool is_layer = false;                   ///< of such: laid over the picture, with opacity, mode and mask
     bool is_second_resampled = false;        ///< its second picture has another size than the kernel's
     bool is_wrapped = false;                 ///< it may get the picture as code values of sRGB: see frame/color.hpp
+    bool divides_alpha = false;              ///< it gets the picture's colours without their alpha
     bool is_merge = false;                   ///< only lays image layer_e<place> over the picture
     bool has_mask = false;                   ///< image mask_e<place>
     ConstantsFunction constants = nullptr;   ///< of a pointwise end
@@ -93,6 +94,11 @@ enum class Finish : std::uint8_t {
     OfFrame,           ///< the block's member finish_ says which of the first three
     OfFrameOrConvert,  ///< or which of all
 };
+/// What it does to the picture's colours before that, and behind it.
+struct FinishAlpha {
+    bool divides = false, multiplies = false;
+    friend bool operator==(const FinishAlpha&, const FinishAlpha&) = default;
+};
 [[nodiscard]] constexpr bool is_by_frame(Finish finish) { return finish >= Finish::OfFrame; }
 /// The members of the block that a finish by the frame reads.
 void append_finish_members(Finish finish, std::vector<gpu::BlockMember>& out);
@@ -114,7 +120,8 @@ inline constexpr std::string_view picture_name = "picture";
 /// The body of a fused kernel: reads image `picture` (or only its alpha, as a grey picture), applies the steps in
 /// order, finishes for the target. `finish_word`: Conversion::word() of a lean kernel.
 [[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling,
-                                             bool is_alpha = false, std::uint32_t finish_word = 0);
+                                             bool is_alpha = false, std::uint32_t finish_word = 0,
+                                             FinishAlpha alpha = {});
 /// The body of an effect's pass.
 [[nodiscard]] std::string pass_body(const FusedStep& step);
 
