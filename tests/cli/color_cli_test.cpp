@@ -131,6 +131,30 @@ TEST_F(CliColor, PicturesAreWrittenForAnotherSpaceAndComeBack) {
     expect_error({"--output-space", "p3", "--output-peak", "500"}, "--output-peak: is of pq and hlg, and not of p3");
 }
 
+// PNG files without cICP say that they are sRGB.
+TEST_F(CliColor, CodesOfAnotherDisplayAreNotWrittenAsThoughTheyWereOfSrgb) {
+    const std::string frame = path("frame.exr"), out = path("none.png");
+    for (const char* const transfer : {"pq", "hlg", "scrgb", "p3"}) {
+        const Outcome refused = run({"develop", frame, "-o", out, "--encode-transfer", transfer});
+        EXPECT_EQ(refused.code, 1) << transfer;
+        EXPECT_EQ(refused.err,
+                  "darkroom: encode: its code values are not sRGB's, which the file would say they are: allowed is "
+                  "--output-space srgb, p3, pq, hlg, which makes them, too, and says so\n");
+        EXPECT_FALSE(std::filesystem::exists(out));
+    }
+    for (const std::vector<std::string>& flags :
+         {std::vector<std::string>{"--encode-transfer", "gamma22"}, {"--encode-transfer", "pq", "--no-encode"}}) {
+        std::vector<std::string> all{"develop", frame, "-o", path("plain.png")};
+        all.insert(all.end(), flags.begin(), flags.end());
+        const Outcome outcome = run(all);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+    }
+    const Outcome said =
+        run({"develop", frame, "-o", path("said.png"), "--encode-transfer", "pq", "--output-space", "pq"});
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_NE(content(path("said.png")).find("cICP"), std::string::npos);
+}
+
 // OpenEXR has colours multiplied by alpha, PNG has them straight.
 TEST_F(CliColor, AnEdgeHasTheColourOfWhatItIsTheEdgeOf) {
     if (find_effect("tonemap") == nullptr) GTEST_SKIP() << "this build has no tonemap";

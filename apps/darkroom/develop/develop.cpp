@@ -113,6 +113,8 @@ Result<> add_steps(const Options& options, std::uint32_t pre_roll, Job& job) {
     }
     if (job.write.alpha) job.develop.color = with_alpha(job.develop.color, job.develop.target, job.write);
     suit(job.look, job.develop.target, job.write);
+    if (!job.stream)
+        if (Result<> done = check_codes(job.look, job.develop.target, job.write); !done) return done;
     std::size_t next_written = inputs.size();
     for (std::size_t i = inputs.size(); i-- > 0;) {
         const bool is_asked_for = is_in_range(inputs[i].number);

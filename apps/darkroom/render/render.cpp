@@ -114,6 +114,8 @@ class Render {
         look_ = std::move(*look);
         if (Result<> done = check_ui_files(look_); !done) return done;
         suit(look_, job_.target, job_.write);
+        if (!job_.stream)
+            if (Result<> done = check_codes(look_, job_.target, job_.write); !done) return done;
         if (!flags_.look.events.empty()) {
             Result<Timeline> timeline = Timeline::read(flags_.look.events, look_);
             if (!timeline) return failure(std::move(timeline));

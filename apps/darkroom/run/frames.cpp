@@ -202,6 +202,27 @@ darkroom::ColorState with_alpha(const std::optional<darkroom::ColorState>& color
     return out;
 }
 
+Result<> check_codes(const darkroom::Look& look, darkroom::DevelopTarget target,
+                     const darkroom::WriteOptions& options) {
+    if (target == darkroom::DevelopTarget::SceneLinear || options.space || options.view) return {};
+    const std::vector<std::string> names = darkroom::entry_names(look);
+    darkroom::ColorState codes = darkroom::srgb_color;
+    std::string_view name;
+    for (std::size_t i = 0; i < look.entries.size(); ++i) {
+        const darkroom::LookEntry& entry = look.entries[i];
+        if (entry.state.enabled.on == 0 || entry.effect->makes == nullptr) continue;
+        const darkroom::ColorState made = entry.effect->makes({}, entry.words.data());
+        if (made.domain != darkroom::Domain::Encoded) continue;
+        codes = made;
+        name = names[i];
+    }
+    if (codes.is_standard_code() && codes.primaries == darkroom::Primaries::Rec709) return {};
+    return darkroom::user_error(
+        fmt::format("{}: its code values are not sRGB's, which the file would say they are: allowed is "
+                    "--output-space {}, which makes them, too, and says so",
+                    name, darkroom::output_space_names_of(true)));
+}
+
 // Linear targets skip the last steps by definition; that is no news.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
                                      std::span<const std::string> left_out, std::string_view frame) {

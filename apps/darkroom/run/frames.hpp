@@ -38,6 +38,9 @@ void suit(darkroom::Look& look, darkroom::DevelopTarget target, const darkroom::
 /// What a file with alpha holds: straight, and multiplied by it in a file of floats, which is an OpenEXR file.
 [[nodiscard]] darkroom::ColorState with_alpha(const std::optional<darkroom::ColorState>& color,
                                               darkroom::DevelopTarget target, const darkroom::WriteOptions& options);
+/// Refuses code values of another display than sRGB's where the files would say that they are sRGB's.
+[[nodiscard]] darkroom::Result<> check_codes(const darkroom::Look& look, darkroom::DevelopTarget target,
+                                             const darkroom::WriteOptions& options);
 /// One warning, `frame` first, for each entry that is on and has no place in the plan, but for those that are on by
 /// default. Gives how many that were.
 std::size_t warn_of_what_is_left_out(const darkroom::Look& look, const darkroom::Composer& composer,
