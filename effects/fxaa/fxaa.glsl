@@ -8,15 +8,16 @@ const float fxaa_green = 0.587;
 float fxaa_luma(vec3 color) { return color.r * (0.299 / fxaa_green) + color.g + color.b * (0.114 / fxaa_green); }
 float fxaa_luma_at(int x, int y) { return fxaa_luma(load(picture, ivec2(x, y)).rgb); }
 
-// From the pixel seen in one round to that of the next: pairs at first, a leap at last.
-int fxaa_step(int round, int last) {
+// From the pixel seen in one round to that of the next: each in `dense` rounds, then pairs, a leap at last.
+int fxaa_step(int round, int last, int dense) {
     int stride = last == 4 ? 3 : 4, leap = last == 12 ? 8 : 12;
-    return round < last - 2 ? 2 : round < last - 1 ? stride : leap;
+    return round <= dense ? 1 : round < last - 2 ? 2 : round < last - 1 ? stride : leap;
 }
 
 vec4 fxaa(Pixel pixel, Fxaa parameters) {
     uint quality = parameters.quality;
     int last = quality == Fxaa_quality_low ? 4 : quality == Fxaa_quality_medium ? 8 : 12;
+    int dense = quality == Fxaa_quality_ultra ? 4 : 0;
     ivec2 texel = pixel.texel, limit = size(picture) - 1, before = max(texel - 1, 0), behind = min(texel + 1, limit);
     vec4 own = load(picture, texel);
     float m = fxaa_luma(own.rgb);
@@ -47,7 +48,7 @@ vec4 fxaa(Pixel pixel, Fxaa parameters) {
     float corner_before = is_first ? nw : is_horizontal ? sw : ne, corner_behind = is_first ? (is_horizontal ? ne : sw) : se;
     vec2 found = vec2((is_horizontal ? w : n) + corner_before, (is_horizontal ? e : s) + corner_behind) - edge;
     bvec2 is_open = lessThan(abs(found), vec2(enough));
-    ivec2 seen = ivec2(is_open), at = 1 + 2 * seen;
+    ivec2 seen = ivec2(is_open), at = 1 + fxaa_step(1, last, dense) * seen;
     int round = 1;
     // Not do ... while: SwiftShader goes on computing for a pixel that has left the loop while others beside it have not,
     // and keeps what it was left with where the loop is tested at its top alone.
@@ -58,7 +59,7 @@ vec4 fxaa(Pixel pixel, Fxaa parameters) {
         is_open = lessThan(abs(found), vec2(enough));
         seen = mix(seen, at, is_open);
         ++round;
-        if (round < last) at = mix(at, at + fxaa_step(round, last), is_open);
+        if (round < last) at = mix(at, at + fxaa_step(round, last, dense), is_open);
     }
 
     // The end is one of the pixels behind the last that is none: it is taken from their middle, here twice as far.

@@ -13,6 +13,7 @@ enum class FxaaQuality : std::uint32_t {
     Low,     ///< the steps of preset 11
     Medium,  ///< of preset 15
     High,    ///< of preset 29
+    Ultra,   ///< of preset 39: every pixel at first, so that short steps end where they do
 };
 
 struct Fxaa {

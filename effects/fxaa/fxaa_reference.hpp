@@ -22,9 +22,10 @@ inline std::span<const int> fxaa_reference_steps(FxaaQuality quality) {
     static constexpr std::array low{1, 2, 3, 12};
     static constexpr std::array medium{1, 2, 2, 2, 2, 2, 4, 12};
     static constexpr std::array high{1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 4, 8};
+    static constexpr std::array ultra{1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 4, 8};
     if (quality == FxaaQuality::Low) return low;
     if (quality == FxaaQuality::Medium) return medium;
-    return high;
+    return quality == FxaaQuality::High ? std::span<const int>(high) : ultra;
 }
 
 /// How far pixel (x, y) moves, and toward which neighbour.

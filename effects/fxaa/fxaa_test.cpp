@@ -15,7 +15,7 @@
 namespace darkroom {
 namespace {
 
-constexpr std::array every_quality{FxaaQuality::Low, FxaaQuality::Medium, FxaaQuality::High};
+constexpr std::array every_quality{FxaaQuality::Low, FxaaQuality::Medium, FxaaQuality::High, FxaaQuality::Ultra};
 
 ReferenceImage developed(const Fxaa& fxaa, const ReferenceImage& picture, KernelStage kernels = KernelStage::Auto) {
     return test::develop([&](Composer& composer) { composer.add(fxaa); }, picture, {.kernels = kernels});
@@ -88,6 +88,24 @@ TEST(EffectFxaa, AStairBecomesTheLineThatItStandsFor) {
         for (std::uint32_t y = 0; y < out.height; ++y) covered += out.at(x, y).g;
         EXPECT_NEAR(covered, out.height - (8 + (x + 0.5) / 10 - 0.5), 0.11) << x;
     }
+}
+
+// Ends that lie an even number of pixels away are found by pixels alone, not by pairs.
+TEST(EffectFxaa, TheDensestSearchFindsTheEndsOfShortSteps) {
+    const ReferenceImage picture = slanted_edge(200, 32, 5, false);
+    const auto worst = [&](FxaaQuality quality) {
+        const ReferenceImage out = developed({.quality = quality, .subpixel = 0}, picture);
+        double most = 0;
+        for (std::uint32_t x = 30; x < 80; ++x) {
+            double covered = 0;
+            for (std::uint32_t y = 0; y < out.height; ++y) covered += out.at(x, y).g;
+            most = std::max(most, std::abs(covered - (out.height - (8 + (x + 0.5) / 5 - 0.5))));
+        }
+        return most;
+    };
+    // As far from the line as exact ends bring it: 1/3 of a pixel for 2/5.
+    EXPECT_NEAR(worst(FxaaQuality::Ultra), 1.0 / 15, 1e-4);
+    EXPECT_GT(worst(FxaaQuality::High), 0.075);
 }
 
 TEST(EffectFxaa, TextLeavesItsFieldUnchanged) {
