@@ -16,8 +16,7 @@ constexpr auto classic_bloom_rows = describe(
     field<&ClassicBloom::source_kind>("What glows; the layer is named by the entry's source, for example alpha.")
         .at_compile(),
     field<&ClassicBloom::threshold>("Light above this glows; not used with a layer.", {0, 65504}),
-    field<&ClassicBloom::radius>("Half-width of the glow, which is not below 7.", {1, 64}, unit::pixels)
-        .as_loop_count());
+    field<&ClassicBloom::radius>("Half-width of the glow.", {7, 64}, unit::pixels).as_loop_count());
 
 constexpr std::uint32_t vectors = (classic_bloom_capacity + 3) / 4;
 

@@ -22,7 +22,7 @@ struct ClassicBloom {
     ClassicBloomSource source_kind = ClassicBloomSource::Hdr;
     /// Light above this glows; not used with a layer. [0, 65504]
     float threshold = 1.0f;
-    /// Half-width of the glow, which is not below 7. [1, 64] px
+    /// Half-width of the glow. [7, 64] px
     std::int32_t radius = 16;
 };
 

@@ -166,6 +166,14 @@ TEST(EffectClassicBloom, SpotsAreRoundAndNoStars) {
     }
 }
 
+TEST(EffectClassicBloom, EveryRadiusIsAnotherGlow) {
+    const EffectInfo& info = effect_info(ClassicBloom{});
+    const auto row = std::ranges::find(info.parameters.rows, std::string_view("radius"), &ParamInfo::name);
+    ASSERT_NE(row, info.parameters.rows.end());
+    for (auto radius = static_cast<std::int32_t>(row->range.min); radius < row->range.max; ++radius)
+        EXPECT_NE(classic_bloom_weights(radius), classic_bloom_weights(radius + 1)) << radius;
+}
+
 // Of a spot of 4x4 pixels, which are one of the small picture: its variance is the radius', along and across.
 TEST(EffectClassicBloom, TheGlowIsAsWideAsItIsHigh) {
     ReferenceImage picture(192, 160);
