@@ -138,6 +138,12 @@ const EffectInfo& effect_info(const Lut&) {
         .files = embedded_files("lut"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear) | Domains::only(Domain::DisplayLinear),
+        .accepts_now =
+            [](const void* parameters) {
+                const bool is_display = static_cast<const Lut*>(parameters)->space == LutSpace::Display;
+                return Domains::only(Domain::SceneLinear) |
+                       (is_display ? Domains::only(Domain::DisplayLinear) : Domains());
+            },
         .makes = makes,
         .flat = {.documented = 87, .scene_linear = 78, .starts_on = false},
         .maps_colors = true,

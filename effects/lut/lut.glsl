@@ -96,6 +96,9 @@ vec3 lut_encode(vec3 light, uint space) {
     if (space == Lut_space_acescct) return acescct_encode(light);
     if (space == Lut_space_logc3) return logc3_encode(light);
     if (space == Lut_space_slog3) return slog3_encode(light);
+    if (space == Lut_space_logc4) return logc4_encode(light);
+    if (space == Lut_space_vlog) return vlog_encode(light);
+    if (space == Lut_space_davinci_intermediate) return davinci_encode(light);
     return log_shaper_encode(light);
 }
 
@@ -104,6 +107,9 @@ vec3 lut_decode(vec3 value, uint space) {
     if (space == Lut_space_acescct) return acescct_decode(value);
     if (space == Lut_space_logc3) return logc3_decode(value);
     if (space == Lut_space_slog3) return slog3_decode(value);
+    if (space == Lut_space_logc4) return logc4_decode(value);
+    if (space == Lut_space_vlog) return vlog_decode(value);
+    if (space == Lut_space_davinci_intermediate) return davinci_decode(value);
     return log_shaper_decode(value);
 }
 

@@ -11,7 +11,7 @@ namespace darkroom {
 struct EffectInfo;
 
 /// What a table is given; see lut.md for curves and primaries.
-enum class LutSpace : std::uint32_t { Display, SceneLinear, Acescct, Logc3, Slog3 };
+enum class LutSpace : std::uint32_t { Display, SceneLinear, Acescct, Logc3, Slog3, Logc4, Vlog, DavinciIntermediate };
 /// What a table gives.
 enum class LutResult : std::uint32_t { Same, Display };
 enum class LutInterpolation : std::uint32_t { Tetrahedral, Trilinear };

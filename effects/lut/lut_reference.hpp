@@ -27,6 +27,14 @@ inline constexpr Chromaticities arri_wide_gamut_3{.red{0.6840, 0.3130}, .green{0
 /// Sony, "Technical Summary for S-Gamut3.Cine/S-Log3 and S-Gamut3/S-Log3", 2014.
 inline constexpr Chromaticities s_gamut3_cine{.red{0.766, 0.275}, .green{0.225, 0.800}, .blue{0.089, -0.087}};
 
+/// ARRI, "ARRI LogC4 Logarithmic Color Space, Specification", 2022.
+inline constexpr Chromaticities arri_wide_gamut_4{.red{0.7347, 0.2653}, .green{0.1424, 0.8576}, .blue{0.0991, -0.0308}};
+/// Panasonic, "V-Log/V-Gamut Reference Manual", 2014.
+inline constexpr Chromaticities v_gamut{.red{0.730, 0.280}, .green{0.165, 0.840}, .blue{0.100, -0.030}};
+/// Blackmagic Design, "DaVinci Wide Gamut Intermediate", 2020.
+inline constexpr Chromaticities davinci_wide_gamut{
+    .red{0.8000, 0.3130}, .green{0.1682, 0.9877}, .blue{0.0790, -0.1155}};
+
 /// Of the tables of a space; none: those of the working space.
 inline std::optional<Chromaticities> gamut_of(LutSpace space) {
     switch (space) {
@@ -36,10 +44,22 @@ inline std::optional<Chromaticities> gamut_of(LutSpace space) {
             return arri_wide_gamut_3;
         case LutSpace::Slog3:
             return s_gamut3_cine;
+        case LutSpace::Logc4:
+            return arri_wide_gamut_4;
+        case LutSpace::Vlog:
+            return v_gamut;
+        case LutSpace::DavinciIntermediate:
+            return davinci_wide_gamut;
         default:
             return std::nullopt;
     }
 }
+
+/// The constants of LogC4's specification.
+struct LogC4 {
+    double a = (262144.0 - 16) / 117.45, b = 928.0 / 1023, c = 95.0 / 1023;
+    double s = 7 * std::log(2.0) * std::exp2(7 - 14 * c / b) / (a * b), t = (std::exp2(6 - 14 * c / b) - 64) / a;
+};
 
 /// The curve of one channel. ACEScct is equations 6 and 7 of S-2016-001, LogC3 has the constants for EI 800 and S-Log3
 /// those of Sony's summary.
@@ -56,6 +76,14 @@ inline double encode(double x, LutSpace space) {
         case LutSpace::Slog3:
             return x >= 0.01125 ? (420 + std::log10((x + 0.01) / (0.18 + 0.01)) * 261.5) / 1023
                                 : (x * (171.2102946929 - 95) / 0.01125 + 95) / 1023;
+        case LutSpace::Logc4: {
+            const LogC4 k;
+            return x >= k.t ? (std::log2(k.a * x + 64) - 6) / 14 * k.b + k.c : (x - k.t) / k.s;
+        }
+        case LutSpace::Vlog:
+            return x >= 0.01 ? 0.241514 * std::log10(x + 0.00873) + 0.598206 : 5.6 * x + 0.125;
+        case LutSpace::DavinciIntermediate:
+            return x > 0.00262409 ? (std::log2(x + 0.0075) + 7) * 0.07329248 : 10.44426855 * x;
     }
     return x;
 }
@@ -74,6 +102,14 @@ inline double decode(double v, LutSpace space) {
         case LutSpace::Slog3:
             return v >= 171.2102946929 / 1023 ? std::pow(10, (v * 1023 - 420) / 261.5) * (0.18 + 0.01) - 0.01
                                               : (v * 1023 - 95) * 0.01125 / (171.2102946929 - 95);
+        case LutSpace::Logc4: {
+            const LogC4 k;
+            return v >= 0 ? (std::exp2(14 * (v - k.c) / k.b + 6) - 64) / k.a : v * k.s + k.t;
+        }
+        case LutSpace::Vlog:
+            return v >= 0.181 ? std::pow(10, (v - 0.598206) / 0.241514) - 0.00873 : (v - 0.125) / 5.6;
+        case LutSpace::DavinciIntermediate:
+            return v > 0.02740668 ? std::exp2(v / 0.07329248 - 7) - 0.0075 : v / 10.44426855;
     }
     return v;
 }

@@ -15,8 +15,9 @@
 namespace darkroom {
 namespace {
 
-constexpr std::array all_spaces{LutSpace::Display, LutSpace::SceneLinear, LutSpace::Acescct, LutSpace::Logc3,
-                                LutSpace::Slog3};
+constexpr std::array all_spaces{
+    LutSpace::Display, LutSpace::SceneLinear, LutSpace::Acescct, LutSpace::Logc3,
+    LutSpace::Slog3,   LutSpace::Logc4,       LutSpace::Vlog,    LutSpace::DavinciIntermediate};
 constexpr std::array both{LutInterpolation::Tetrahedral, LutInterpolation::Trilinear};
 
 /// A cube whose entries are `make` of their places in [0, 1].
@@ -105,13 +106,20 @@ TEST(EffectLut, CurvesHaveTheirPublishedValues) {
     EXPECT_NEAR(encode(0.18, LutSpace::Slog3), 420.0 / 1023, 1e-12);
     EXPECT_NEAR(encode(0, LutSpace::Slog3), 95.0 / 1023, 1e-12);
     EXPECT_NEAR(encode(0.9, LutSpace::Slog3), 598.0 / 1023, 5e-4) << "code 598: 90 % reflection";
+    EXPECT_NEAR(encode(0.18, LutSpace::Logc4), 0.2783958, 1e-7);
+    EXPECT_NEAR(encode(469.8, LutSpace::Logc4), 1, 1e-12) << "the brightest of a camera";
+    EXPECT_NEAR(encode(0.18, LutSpace::Vlog), 433.0 / 1023, 5e-4) << "code 433 of 10 bits";
+    EXPECT_NEAR(encode(0, LutSpace::Vlog), 128.0 / 1023, 5e-4) << "code 128";
+    EXPECT_NEAR(encode(0.18, LutSpace::DavinciIntermediate), 0.336043, 1e-6);
+    EXPECT_NEAR(encode(100, LutSpace::DavinciIntermediate), 1, 1e-7);
     EXPECT_NEAR(encode(0.18, LutSpace::SceneLinear), 10 / 16.5, 1e-12);
     EXPECT_EQ(encode(0, LutSpace::SceneLinear), 0);
     for (const LutSpace space : all_spaces)
         for (double light = 0.0002; light < 1; light *= 1.3)
             EXPECT_NEAR(lut_detail::decode(encode(light, space), space), light, 1e-6 * light) << light;
     // Dark light has no place among the stops, but in the curves with a toe it may be below black.
-    for (const LutSpace space : {LutSpace::Acescct, LutSpace::Logc3, LutSpace::Slog3})
+    for (const LutSpace space : {LutSpace::Acescct, LutSpace::Logc3, LutSpace::Slog3, LutSpace::Logc4, LutSpace::Vlog,
+                                 LutSpace::DavinciIntermediate})
         EXPECT_NEAR(lut_detail::decode(encode(-0.01, space), space), -0.01, 1e-9);
 }
 
@@ -159,6 +167,25 @@ TEST(EffectLut, DomainsFollowWhatTheTableGives) {
               Domain::DisplayLinear);
 }
 
+// A logarithm of what a tone curve has brought into [0, 1] uses a corner of its table.
+TEST(EffectLut, LogarithmsAreOfTheScenesLight) {
+    const auto is_remarked = [](LutSpace space, bool has_curve) {
+        Composer composer(Device::assumed());
+        if (has_curve) composer.add(Tonemap{});
+        composer.add(Lut{.space = space});
+        const auto plan = composer.plan({.max_extent = {64, 64}});
+        EXPECT_TRUE(plan) << plan.error().text;
+        return plan && std::ranges::find(plan->remarks,
+                                         "lut expects a picture that is scene_linear; this one is "
+                                         "display_linear.") != plan->remarks.end();
+    };
+    for (const LutSpace space : std::span(all_spaces).subspan(1)) {
+        EXPECT_TRUE(is_remarked(space, true)) << static_cast<int>(space);
+        EXPECT_FALSE(is_remarked(space, false)) << static_cast<int>(space);
+    }
+    EXPECT_FALSE(is_remarked(LutSpace::Display, true));
+}
+
 TEST(EffectLut, GpuIdentityIsThePictureWithinACode) {
     const ReferenceImage picture = test::round_to_float(test::random_display(67, 41, 1));
     for (const std::uint32_t size : {2u, 17u, 33u}) {
@@ -173,7 +200,7 @@ TEST(EffectLut, GpuIdentityIsThePictureWithinACode) {
         for (std::uint32_t y = 0; y < 4; ++y)
             light.at(x, y) = {0.001 * std::exp2(x / 8.0), 0.4 * y + 0.001, 0.0005 * x + 0.001, 0.5};
     light = test::round_to_float(light);
-    for (const LutSpace space : {LutSpace::SceneLinear, LutSpace::Acescct, LutSpace::Logc3, LutSpace::Slog3})
+    for (const LutSpace space : std::span(all_spaces).subspan(1))
         EXPECT_LE(worst_code(on_gpu({.space = space}, identity(33), light), light, space), 0.1);
 }
 

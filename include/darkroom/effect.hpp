@@ -89,6 +89,8 @@ struct EffectInfo {
     /// Encoded are code values of a display of standard range. A pointwise effect that accepts them, but for the last
     /// step, gets others (PQ, HLG, scRGB) as sRGB's, and they are turned back behind it.
     Domains accepts = Domains::all();
+    /// Of effects whose parameters leave fewer of them: what is remarked goes by these; null: all.
+    Domains (*accepts_now)(const void* parameters) = nullptr;
     /// The state after the effect, given that before it and the parameters; null: unchanged.
     ColorState (*makes)(ColorState before, const void* parameters) = nullptr;
     Needs needs{};

@@ -41,7 +41,8 @@ void remark_domains(const Program& program, const FrameValues& values, const Com
                     std::span<const Entry* const> entries, std::vector<std::string>& remarks) {
     for (std::uint32_t i = 0; i < entries.size(); ++i) {
         const Domain domain = values.state_before(program, i).domain;
-        const Domains accepts = entries[i]->info->accepts;
+        const EffectInfo& info = *entries[i]->info;
+        const Domains accepts = info.accepts_now == nullptr ? info.accepts : info.accepts_now(values.words(i));
         if (program.is_left_out[i] || !entries[i]->desc.enabled || accepts.contains(domain)) continue;
         remarks.push_back(fmt::format("{} expects a picture that is {}; this one is {}.", entries[i]->desc.name,
                                       accepted_domains(accepts), name_of(domain)));
