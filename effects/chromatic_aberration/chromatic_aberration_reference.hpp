@@ -15,8 +15,9 @@ inline ReferenceImage chromatic_aberration_reference(const void* parameters, con
     for (std::uint32_t y = 0; y < out.height; ++y) {
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const double u = (x + 0.5) / out.width, v = (y + 0.5) / out.height;
-            out.at(x, y).r = sample_reference(*input.picture, u + (u - 0.5) * scale, v + (v - 0.5) * scale).r;
-            out.at(x, y).b = sample_reference(*input.picture, u - (u - 0.5) * scale, v - (v - 0.5) * scale).b;
+            out.at(x, y).g = finite_reference(out.at(x, y).g);
+            out.at(x, y).r = finite_sample_reference(*input.picture, u + (u - 0.5) * scale, v + (v - 0.5) * scale).r;
+            out.at(x, y).b = finite_sample_reference(*input.picture, u - (u - 0.5) * scale, v - (v - 0.5) * scale).b;
         }
     }
     return out;

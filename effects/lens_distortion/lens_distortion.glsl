@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Any domain. custom(0) and custom(1): see lens_distortion_way.glsl; custom(0).w = taps.
 #include "lens_distortion_way.glsl"
+#include "shared/sanitize.glsl"
 #include "shared/warp_grid.glsl"
 
 // 1 in the picture; beyond, it falls to 0 within a pixel.
@@ -27,5 +28,5 @@ vec4 lens_distortion(Pixel pixel, LensDistortion parameters) {
         vec4 tap = sample_linear(picture, uv) * lens_distortion_inside(uv, pixel.size);
         color = i == 0 ? tap : i == 1 ? vec4(tap.r, color.gba) : vec4(color.rg, tap.b, color.a);
     } while (++i < taps);
-    return color;
+    return sanitize(color);
 }

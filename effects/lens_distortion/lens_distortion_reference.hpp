@@ -64,7 +64,7 @@ inline ReferenceImage lens_distortion_reference(const void* parameters, const Re
                 // Black beyond the picture, by way of one pixel.
                 const double inside = std::clamp((0.5 - std::abs(at_u - 0.5)) * width + 1, 0.0, 1.0) *
                                       std::clamp((0.5 - std::abs(at_v - 0.5)) * height + 1, 0.0, 1.0);
-                const Rgba tap = sample_reference(picture, at_u, at_v);
+                const Rgba tap = finite_sample_reference(picture, at_u, at_v);
                 taps[channel] = {tap.r * inside, tap.g * inside, tap.b * inside, tap.a * inside};
             }
             out.at(x, y) = {taps[0].r, taps[1].g, taps[2].b, taps[1].a};

@@ -194,18 +194,5 @@ TEST(EffectLensDistortion, GpuOnTinyPictures) {
     }
 }
 
-TEST(EffectLensDistortion, GpuNanStaysWhereItIsRead) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    ReferenceImage picture = test::round_to_float(test::random_display(48, 48, 4));
-    picture.at(24, 24) = {nan, nan, nan, 1};
-    const ReferenceImage out = developed({.lens_distortion = 0.1f, .fill = false}, picture);
-    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
-    for (std::uint32_t y = 0; y < out.height; ++y)
-        for (std::uint32_t x = 0; x < out.width; ++x)
-            if (std::abs(static_cast<int>(x) - 24) > 2 || std::abs(static_cast<int>(y) - 24) > 2) {
-                EXPECT_TRUE(std::isfinite(out.at(x, y).g)) << x << "," << y;
-            }
-}
-
 }  // namespace
 }  // namespace darkroom

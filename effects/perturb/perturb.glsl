@@ -3,6 +3,7 @@
 // is there an image).
 #include "perturb_distortion.glsl"
 #include "perturb_shift.glsl"
+#include "shared/sanitize.glsl"
 #include "shared/warp_grid.glsl"
 
 float perturb_table_sine(float turns) {
@@ -30,5 +31,5 @@ vec4 perturb(Pixel pixel, Perturb parameters) {
         vec2 sines = perturb_sines_at(perturb_turns(pixel.uv, frame, parameters), parameters);
         shift = perturb_sum(pixel.uv, sines, image, frame, extent, parameters);
     }
-    return sample_linear(picture, pixel.uv + shift / extent);
+    return sanitize(sample_linear(picture, pixel.uv + shift / extent));
 }

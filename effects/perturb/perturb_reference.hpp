@@ -78,7 +78,7 @@ inline ReferenceImage perturb_reference(const void* parameters, const ReferenceI
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const double u = (x + 0.5) / width, v = (y + 0.5) / height;
             const std::array shift = is_grid ? warp_grid_reference(p.grid, u, v, exact) : exact(u, v);
-            out.at(x, y) = sample_reference(*input.picture, u + shift[0] / width, v + shift[1] / height);
+            out.at(x, y) = finite_sample_reference(*input.picture, u + shift[0] / width, v + shift[1] / height);
         }
     }
     return out;

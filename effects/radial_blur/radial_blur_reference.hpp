@@ -24,12 +24,14 @@ inline ReferenceImage radial_blur_reference(const void* parameters, const Refere
             Rgba mean{0, 0, 0, 0};
             for (int i = 0; i < 8; ++i) {
                 const double t = (i - 3.5) * strength * 0.04;
-                const Rgba tap = sample_reference(*input.picture, u + du * t, v + dv * t);
+                const Rgba tap = finite_sample_reference(*input.picture, u + du * t, v + dv * t);
                 mean = {mean.r + tap.r / 8, mean.g + tap.g / 8, mean.b + tap.b / 8, 0};
             }
             const double s = std::clamp((distance - 0.1) / 0.6, 0.0, 1.0);
             const double amount = std::clamp(s * s * (3 - 2 * s) * strength, 0.0, 1.0);
             Rgba& pixel = out.at(x, y);
+            pixel = {finite_reference(pixel.r), finite_reference(pixel.g), finite_reference(pixel.b),
+                     finite_reference(pixel.a)};
             pixel = {std::lerp(pixel.r, mean.r, amount), std::lerp(pixel.g, mean.g, amount),
                      std::lerp(pixel.b, mean.b, amount), pixel.a};
         }

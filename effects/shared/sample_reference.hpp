@@ -5,6 +5,8 @@
 #include <cmath>
 #include <darkroom/reference.hpp>
 
+#include "shared/finite_reference.hpp"
+
 namespace darkroom {
 
 inline Rgba sample_reference(const ReferenceImage& image, double u, double v) {
@@ -18,6 +20,12 @@ inline Rgba sample_reference(const ReferenceImage& image, double u, double v) {
         return (a.*m * (1 - fx) + b.*m * fx) * (1 - fy) + (c.*m * (1 - fx) + d.*m * fx) * fy;
     };
     return {mix(&Rgba::r), mix(&Rgba::g), mix(&Rgba::b), mix(&Rgba::a)};
+}
+
+/// What warps make of it: NaN counts as 0.
+inline Rgba finite_sample_reference(const ReferenceImage& image, double u, double v) {
+    const Rgba tap = sample_reference(image, u, v);
+    return {finite_reference(tap.r), finite_reference(tap.g), finite_reference(tap.b), finite_reference(tap.a)};
 }
 
 }  // namespace darkroom

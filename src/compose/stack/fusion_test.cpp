@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Fusion is invisible: random stacks give the same picture fused and unfused, in either stage, and every time.
 
+#include <cmath>
+#include <limits>
+
 #include "compose/test_stacks/random_stack.hpp"
 
 namespace darkroom {
@@ -128,6 +131,29 @@ TEST_F(ComposeFusion, FiniteInputStaysFinite) {
             ASSERT_TRUE(p.r >= 0 && p.r <= 1 && p.g >= 0 && p.g <= 1 && p.b >= 0 && p.b <= 1)
                 << p.r << " " << p.g << " " << p.b;
     }
+}
+
+TEST_F(ComposeFusion, WarpsCountWhatIsNoNumberAsNothing) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    ReferenceImage picture = test::round_to_float(test::random_display(45, 37, 3));
+    for (std::uint32_t i = 0; i < 45; i += 4) picture.at(i, i % 37) = {nan, nan, nan, 1};
+    picture.at(30, 9) = {infinity, -infinity, nan, 1};
+    const test::Host host(picture);
+    std::mt19937 random(8);
+    std::size_t tried = 0;
+    for (const EffectInfo* const info : all_effects()) {
+        // What lies on no edge it leaves as it is.
+        if (info->touch != Touch::Warp || info->name == "fxaa") continue;
+        ++tried;
+        for (int i = 0; i < 5; ++i) {
+            Composer composer(host.device);
+            test::set_random(random, composer, composer.add(*info, nullptr), test::Values::Sane);
+            test::must(composer.compile(host.compile_desc()));
+            for (const Rgba& p : host.run(composer).pixels)
+                ASSERT_TRUE(std::isfinite(p.r) && std::isfinite(p.g) && std::isfinite(p.b)) << info->name;
+        }
+    }
+    EXPECT_GE(tried, 1U);
 }
 
 }  // namespace
