@@ -54,8 +54,10 @@ constexpr std::size_t slope = 8;       // factor of log2; segments of the curves
 constexpr std::size_t offset = 9;      // added to it
 constexpr std::size_t turn = 10;       // 3 rows
 constexpr std::size_t curves = 13;     // stops that are added below the first points
-constexpr std::size_t segments = 14;   // of each: start, 1 / width, stops that are added beyond it
-constexpr std::size_t vectors = segments + 3 * (Curve::capacity - 1);
+constexpr std::size_t segments = 14;   // of each: start, 1 / width, then the cubic of the stops that are added: what
+                                       // goes with t^2, with t^3; with t, channel by channel, what the first three hold
+constexpr std::size_t segment_vectors = 4;
+constexpr std::size_t vectors = segments + segment_vectors * (Curve::capacity - 1);
 
 const ColorGrade& grade_of(const void* parameters) { return *static_cast<const ColorGrade*>(parameters); }
 
@@ -79,9 +81,15 @@ void put_curve(const Curve& curve, std::size_t channel, std::span<PassVector> ou
         const double start = is_there ? double{curve.x[i]} : 0.0, end = is_there ? double{curve.x[i + 1]} : 1.0;
         const double width = std::max(end - start, 1e-6);
         const double added = is_there ? double{curve.y[i + 1]} - double{curve.y[i]} - (end - start) : 0.0;
-        out[segments + 3 * i][channel] = static_cast<float>(start + grey);
-        out[segments + 3 * i + 1][channel] = static_cast<float>(1 / width);
-        out[segments + 3 * i + 2][channel] = static_cast<float>(added);
+        // Of what is added, as the stops themselves rise with a slope of 1.
+        const double first = is_there ? (color_grade_slope(curve, i) - 1) * width : 0.0;
+        const double second = is_there ? (color_grade_slope(curve, i + 1) - 1) * width : 0.0;
+        const std::size_t vector = segments + segment_vectors * i;
+        out[vector][channel] = static_cast<float>(start + grey);
+        out[vector + 1][channel] = static_cast<float>(1 / width);
+        out[vector + 2][channel] = static_cast<float>(3 * added - 2 * first - second);
+        out[vector + 3][channel] = static_cast<float>(first + second - 2 * added);
+        out[vector + channel][3] = static_cast<float>(first);
     }
 }
 

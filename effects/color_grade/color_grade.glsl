@@ -21,8 +21,10 @@ vec3 color_grade_zones(vec3 light) {
 vec3 color_grade_curves(vec3 stops, int segments) {
     vec3 moved = color_grade_custom(13).rgb;
     for (int i = 0; i < segments; ++i) {
-        vec4 start = color_grade_custom(14 + 3 * i), scale = color_grade_custom(15 + 3 * i);
-        moved += clamp((stops - start.rgb) * scale.rgb, 0.0, 1.0) * color_grade_custom(16 + 3 * i).rgb;
+        int at = 14 + 4 * i;
+        vec4 start = color_grade_custom(at), scale = color_grade_custom(at + 1), square = color_grade_custom(at + 2);
+        vec3 t = clamp((stops - start.rgb) * scale.rgb, 0.0, 1.0);
+        moved += t * (vec3(start.a, scale.a, square.a) + t * (square.rgb + t * color_grade_custom(at + 3).rgb));
     }
     return moved;
 }

@@ -13,7 +13,24 @@
 
 namespace darkroom {
 
-/// Linear between the points; outside, in and out differ by as much as at the end.
+/// F. N. Fritsch and J. Butland, "A Method for Constructing Local Monotone Piecewise Cubic Interpolants", 1984: slopes
+/// in the points, which never overshoot. At the ends it is that of what lies beyond, 1, as far as it may be.
+inline double color_grade_slope(const Curve& curve, std::size_t point) {
+    const auto secant = [&](std::size_t i) {
+        return (double{curve.y[i + 1]} - double{curve.y[i]}) /
+               std::max(double{curve.x[i + 1]} - double{curve.x[i]}, 1e-6);
+    };
+    const std::size_t last = curve.count - 1;
+    if (point == 0 || point == last) return std::clamp(3 * secant(point == 0 ? 0 : last - 1), 0.0, 1.0);
+    const double before = secant(point - 1), behind = secant(point);
+    if (before * behind <= 0) return 0;
+    const double left = double{curve.x[point]} - double{curve.x[point - 1]},
+                 right = double{curve.x[point + 1]} - double{curve.x[point]};
+    const double a = 2 * right + left, b = right + 2 * left;
+    return (a + b) / (a / before + b / behind);
+}
+
+/// A monotone cubic between the points; outside, in and out differ by as much as at the end.
 inline double color_grade_reference_curve(const Curve& curve, double in) {
     if (curve.count == 0) return in;
     const std::size_t last = curve.count - 1;
@@ -21,8 +38,12 @@ inline double color_grade_reference_curve(const Curve& curve, double in) {
     if (in >= double{curve.x[last]}) return in + (double{curve.y[last]} - double{curve.x[last]});
     std::size_t i = 0;
     while (in > double{curve.x[i + 1]}) ++i;
-    const double x = curve.x[i], part = (in - x) / (double{curve.x[i + 1]} - x);
-    return std::lerp(double{curve.y[i]}, double{curve.y[i + 1]}, part);
+    const double x = curve.x[i], width = double{curve.x[i + 1]} - x, t = (in - x) / width;
+    const double from = curve.y[i], to = curve.y[i + 1];
+    // Hermite's form.
+    return from * (1 + 2 * t) * (1 - t) * (1 - t) + to * t * t * (3 - 2 * t) +
+           width * (color_grade_slope(curve, i) * t * (1 - t) * (1 - t) -
+                    color_grade_slope(curve, i + 1) * t * t * (1 - t));
 }
 
 inline Rgba color_grade_reference(Rgba color, const ReferencePixel&, const ColorGrade& grade) {

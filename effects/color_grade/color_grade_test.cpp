@@ -160,19 +160,36 @@ TEST(EffectColorGrade, ContrastTurnsAboutThePivotInStops) {
     EXPECT_EQ(grey(0, {.contrast = 0.5f}), 0.0);
 }
 
-TEST(EffectColorGrade, CurvesAreLinearBetweenTheirPointsInStops) {
+TEST(EffectColorGrade, CurvesGoThroughTheirPointsInStops) {
     const ColorGrade grade{.curve_green = curve_of({{-4, -5}, {0, 1}, {2, 2}})};
     const auto green = [&](double stops) {
         // The least of a colour on its own, for saturation does not touch it.
         return std::log2(graded({0.18, 0.18 * std::exp2(stops), 0.18, 1}, grade).g / 0.18);
     };
+    EXPECT_NEAR(green(-4), -5, 2e-3);
     EXPECT_NEAR(green(0), 1, 2e-3);
-    EXPECT_NEAR(green(1), 1.5, 2e-3);
-    EXPECT_NEAR(green(-2), -2, 2e-3);
+    EXPECT_NEAR(green(2), 2, 2e-3);
     // Beyond the ends the light moves as it does there, so black stays black.
     EXPECT_NEAR(green(-6), -7, 2e-3);
     EXPECT_NEAR(green(5), 5, 2e-3);
     EXPECT_EQ(graded({0, 0, 0, 1}, grade).g, 0.0);
+}
+
+TEST(EffectColorGrade, CurvesHaveNoKinksAndNeverOvershoot) {
+    constexpr double step = 1e-3;
+    for (const Curve& curve : {curve_of({{-4, -5}, {0, 1}, {2, 2}}), curve_of({{-6, -5}, {-1, -1}, {0, -1}, {3, 4}}),
+                               curve_of({{-2, 0}, {1, 1}})}) {
+        double before = color_grade_reference_curve(curve, -8 - step), slope = 1;
+        for (double stops = -8; stops < 6; stops += step) {
+            const double value = color_grade_reference_curve(curve, stops), now = (value - before) / step;
+            EXPECT_GE(now, -1e-9) << stops << ": the points rise";
+            EXPECT_NEAR(now, slope, 0.02) << stops;
+            slope = now;
+            before = value;
+        }
+        for (std::size_t i = 0; i < curve.count; ++i)
+            EXPECT_NEAR(color_grade_reference_curve(curve, double{curve.x[i]}), double{curve.y[i]}, 1e-12);
+    }
 }
 
 TEST(EffectColorGrade, HueAndSaturationKeepLuminance) {
