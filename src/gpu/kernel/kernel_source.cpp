@@ -73,14 +73,14 @@ bool has_quads(const KernelSpec& spec, Stage stage) {
     return stage == Stage::Raster && spec.is_software && spec.is_whole;
 }
 
-void write_blocks(Text text, const KernelSpec& spec, const std::optional<FlatValues>& values, const BlockSource& own) {
+void write_blocks(Text text, const KernelSpec& spec, const std::optional<FlatValues>& values) {
     if (values) {
         fmt::format_to(text, "{}", flat_inputs(spec, *values));
         return;
     }
     if (!spec.frame.empty()) {
         fmt::format_to(text, "layout(std140, set = 0, binding = 0) uniform DarkroomFrame {{\n{}}};\n",
-                       block_source(spec.frame, 0).members);
+                       block_source(spec.frame, 0));
     }
     fmt::format_to(text,
                    "layout(std140, set = 0, binding = 1) uniform DarkroomOwn {{\n"
@@ -94,13 +94,7 @@ void write_blocks(Text text, const KernelSpec& spec, const std::optional<FlatVal
         for (const std::string& output : spec.compute->outputs)
             fmt::format_to(text, "    ivec4 darkroom_region_{};\n", output);
     if (spec.custom_vectors > 0) fmt::format_to(text, "    vec4 custom[{}];\n", spec.custom_vectors);
-    fmt::format_to(text, "{}}};\n", own.members);
-    // Two blocks on one binding: Vulkan lets resources alias.
-    if (!own.arrays.empty()) {
-        fmt::format_to(
-            text, "layout(std140, set = 0, binding = 1) uniform DarkroomWords {{ uvec4 darkroom_words[{}]; }};\n{}",
-            own_block_size(spec) / 16, own.accessors);
-    }
+    fmt::format_to(text, "{}}};\n", block_source(spec.members, first_member_word(spec)));
 }
 
 /// Vulkan 1.3 specification, "Texel Filtering", with the address mode CLAMP_TO_EDGE, by four loads.
@@ -335,8 +329,7 @@ std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<F
                    spec.is_software, spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.output_is_twice,
                    spec.rays_meet);
     write_quads(text, has_quads(spec, stage));
-    const BlockSource own = block_source(spec.members, first_member_word(spec));
-    write_blocks(text, spec, values, own);
+    write_blocks(text, spec, values);
     source += pixel_functions;
     std::vector<std::string_view> names;
     for (const KernelImage& image : spec.images) {
@@ -351,8 +344,9 @@ std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<F
     write_outputs(text, spec, stage);
     write_buffers(text, spec, stage);
     if (spec.compute) names.insert(names.end(), spec.compute->outputs.begin(), spec.compute->outputs.end());
-    const std::string body = rewrite_indexing(rewrite_image_calls(spec.body, image_functions, names), own.arrays);
-    source.append("#line 1 \"kernel\"\n").append(body).append("\n#line 1 \"kernel: main\"\n");
+    source.append("#line 1 \"kernel\"\n")
+        .append(rewrite_image_calls(spec.body, image_functions, names))
+        .append("\n#line 1 \"kernel: main\"\n");
     write_main(text, spec, stage);
     return source;
 }

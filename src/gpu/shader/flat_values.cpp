@@ -55,25 +55,11 @@ Names names_of(std::string_view body, const WordSet& asked) {
 
 std::uint32_t vector_count(std::span<const BlockMember> members) { return (word_count(members) + 3) / 4; }
 
-/// Calls `visit(member, word)` with the word that each begins at.
-template <class Visit>
-void visit_members(std::span<const BlockMember> members, std::uint32_t first_vector, const Visit& visit) {
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        const std::uint32_t word = 4 * first_vector + word_count(members.first(i));
-        visit(members[i], members[i].type == BlockMember::Type::Vec4 ? (word + 3) / 4 * 4 : word);
-    }
-}
-
 /// The input that a vector is, if it is one.
 std::optional<std::size_t> location_of(const std::vector<std::uint32_t>& vectors, std::uint32_t vector) {
     const auto found = std::ranges::find(vectors, vector);
     if (found == vectors.end()) return std::nullopt;
     return static_cast<std::size_t>(found - vectors.begin());
-}
-
-std::string_view type_of(const BlockMember& member) {
-    constexpr std::array<std::string_view, 4> names{"float", "int", "uint", "vec4"};
-    return names[static_cast<std::size_t>(member.type)];
 }
 
 std::string value_of(std::string_view type, std::size_t location, std::uint32_t word) {
@@ -89,14 +75,14 @@ struct MembersText {
 MembersText members_text(std::span<const BlockMember> members, std::uint32_t first_vector,
                          const std::vector<std::uint32_t>& vectors, std::size_t first_location) {
     MembersText out;
-    visit_members(members, first_vector, [&](const BlockMember& member, std::uint32_t word) {
+    visit_members(members, 4 * first_vector, [&](const BlockMember& member, std::uint32_t word) {
         const auto location = location_of(vectors, word / 4);
-        const std::string_view type = type_of(member);
+        const std::string_view type = member.type_name();
         if (location)
             out.globals +=
                 fmt::format("{} {} = {};\n", type, member.name, value_of(type, first_location + *location, word));
         else
-            out.rest += fmt::format("    layout(offset = {}) {} {};\n", 4 * word, type, member.name);
+            out.rest += member_source(member, word);
     });
     return out;
 }
@@ -120,8 +106,6 @@ std::uint32_t first_member_vector(const KernelSpec& spec) { return first_custom_
 
 std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
     if (stage != Stage::Raster || !spec.is_software) return std::nullopt;
-    if (std::ranges::any_of(spec.members, [](const BlockMember& member) { return member.count > 0; }))
-        return std::nullopt;
     WordSet asked{"size", "load_clamped", "sample_linear"};
     asked.reserve(asked.size() + spec.frame.size() + spec.members.size());
     for (const BlockMember& member : spec.frame) asked.insert(member.name);
@@ -134,7 +118,7 @@ std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
     };
     const auto add_named = [&](std::span<const BlockMember> members, std::uint32_t first_vector,
                                std::vector<std::uint32_t>& vectors) {
-        visit_members(members, first_vector, [&](const BlockMember& member, std::uint32_t word) {
+        visit_members(members, 4 * first_vector, [&](const BlockMember& member, std::uint32_t word) {
             if (names.words.contains(member.name)) add(vectors, word / 4);
         });
     };

@@ -27,7 +27,7 @@ inline constexpr std::uint32_t vectors_per_image = 3;
 struct FlatValues {
     std::vector<std::uint32_t> frame, own;
 };
-/// None: the kernel reads its blocks, because its device does that well, or because its members are arrays.
+/// None: the kernel reads its blocks, because its device does that well.
 [[nodiscard]] std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage);
 
 /// Instead of the blocks' declarations: the inputs, what they hold under the members' names, and blocks of the rest.

@@ -49,13 +49,10 @@ TEST(GpuFlatValues, LeaveCustomVectorsWhereTheirIndexIsNoLiteral) {
     EXPECT_EQ(own_of(many), (Vectors{0, 1})) << "all or none";
 }
 
-TEST(GpuFlatValues, AreNoneForComputeForGpusAndForArrays) {
+TEST(GpuFlatValues, AreNoneForComputeAndForGpus) {
     KernelSpec spec = spec_of("gain");
     EXPECT_FALSE(flat_values(spec, Stage::Compute));
     spec.is_software = false;
-    EXPECT_FALSE(flat_values(spec, Stage::Raster));
-    spec = spec_of("gain");
-    spec.members.push_back({Float, "curve", 3});
     EXPECT_FALSE(flat_values(spec, Stage::Raster));
 }
 

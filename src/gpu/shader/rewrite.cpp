@@ -2,7 +2,6 @@
 #include "gpu/shader/rewrite.hpp"
 
 #include <algorithm>
-#include <vector>
 
 #include "gpu/shader/glsl_scan.hpp"
 
@@ -70,28 +69,6 @@ std::string rewrite_image_calls(std::string_view body, std::span<const std::stri
         copied = scanner.place();
     }
     return result.append(body.substr(copied));
-}
-
-std::string rewrite_indexing(std::string_view body, std::span<const std::string_view> arrays) {
-    if (arrays.empty()) return std::string(body);
-    std::string result;
-    std::vector<bool> brackets;  // of those open now: whether it was rewritten
-    GlslScanner scanner(body);
-    for (Token token = scanner.next(); token.kind != End; token = scanner.next()) {
-        if (token.kind == Word && contains(arrays, token.text) && scanner.peek().text == "[") {
-            result.append(token.text).append("_at(");
-            std::string blanks;
-            take_solid(scanner, blanks);
-            brackets.push_back(true);
-        } else if (token.text == "]" && !brackets.empty()) {
-            result += brackets.back() ? ')' : ']';
-            brackets.pop_back();
-        } else {
-            if (token.text == "[") brackets.push_back(false);
-            result += token.text;
-        }
-    }
-    return result;
 }
 
 }  // namespace darkroom::gpu

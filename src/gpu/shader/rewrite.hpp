@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Two textual changes to a kernel's body, which let it name images and arrays of constants as if GLSL could pass the
-// one and pack the other. They read tokens, not grammar: they change nothing in comments, and no line number.
+// A textual change to a kernel's body, which lets it name images as if GLSL could pass them. It reads tokens, not
+// grammar: it changes nothing in comments, and no line number.
 
 #include <span>
 #include <string>
@@ -13,8 +13,5 @@ namespace darkroom::gpu {
 /// nothing but one of `images`.
 [[nodiscard]] std::string rewrite_image_calls(std::string_view body, std::span<const std::string_view> functions,
                                               std::span<const std::string_view> images);
-
-/// curve[i + 1] becomes curve_at(i + 1), for each of `arrays`.
-[[nodiscard]] std::string rewrite_indexing(std::string_view body, std::span<const std::string_view> arrays);
 
 }  // namespace darkroom::gpu
