@@ -3,6 +3,7 @@
 // difference is a barrier.
 #include <algorithm>
 
+#include "graph/schedule.hpp"
 #include "graph/solution.hpp"
 
 namespace darkroom::graph {

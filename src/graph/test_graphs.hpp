@@ -8,7 +8,7 @@
 #include <array>
 #include <random>
 
-#include "graph/graph.hpp"
+#include "graph/schedule.hpp"
 
 namespace darkroom::graph::test {
 

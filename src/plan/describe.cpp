@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "gpu/resource/formats.hpp"
+#include "graph/schedule.hpp"
 #include "plan/frame/frame_values.hpp"
 #include "plan/frame_inputs.hpp"
 

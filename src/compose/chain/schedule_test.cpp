@@ -5,6 +5,7 @@
 #include <random>
 
 #include "compose/test_stacks/host.hpp"
+#include "graph/schedule.hpp"
 #include "plan/program.hpp"
 
 namespace darkroom::plan {

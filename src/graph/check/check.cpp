@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "graph/schedule.hpp"
 #include "graph/solution.hpp"
 
 namespace darkroom::graph {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include "graph/schedule.hpp"
 #include "graph/solution.hpp"
 
 namespace darkroom::graph {

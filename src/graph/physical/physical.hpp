@@ -10,8 +10,8 @@
 // 3. end().
 
 #include "gpu/resource/resources.hpp"
-#include "graph/graph.hpp"
 #include "graph/physical/history_pool.hpp"
+#include "graph/schedule.hpp"
 
 namespace darkroom::graph {
 

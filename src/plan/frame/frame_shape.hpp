@@ -3,6 +3,7 @@
 // Which lean kernel of a pass a frame gets: its shape, from the frame's values and the regions of its images. Allocates
 // nothing.
 
+#include "graph/schedule.hpp"
 #include "plan/frame/frame_values.hpp"
 
 namespace darkroom::plan {
