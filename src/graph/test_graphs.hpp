@@ -9,6 +9,7 @@
 #include <random>
 
 #include "graph/schedule.hpp"
+#include "graph_check/check.hpp"
 
 namespace darkroom::graph::test {
 

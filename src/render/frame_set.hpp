@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "gpu/kernel/pipeline.hpp"
+#include "draw/pipeline.hpp"
 #include "scene/math.hpp"
 
 namespace darkroom::render {

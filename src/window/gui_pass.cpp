@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "core/assert.hpp"
+#include "draw/pipeline.hpp"
 #include "gpu/device/context.hpp"
-#include "gpu/kernel/pipeline.hpp"
 #include "gpu/resource/formats.hpp"
 #include "gpu/resource/resources.hpp"
 #include "window/gui_shaders.hpp"

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "compose/test_stacks/host.hpp"
-#include "graph/schedule.hpp"
+#include "graph_check/check.hpp"
 #include "plan/program.hpp"
 
 namespace darkroom::plan {

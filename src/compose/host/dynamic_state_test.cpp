@@ -3,7 +3,7 @@
 // dynamic state is to be set anew, whatever kernels a plan has.
 
 #include "compose/test_stacks/host.hpp"
-#include "gpu/kernel/pipeline.hpp"
+#include "draw/pipeline.hpp"
 
 namespace darkroom {
 namespace {

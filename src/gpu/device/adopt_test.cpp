@@ -4,9 +4,9 @@
 #include <set>
 #include <string_view>
 
+#include "draw/pipeline.hpp"
 #include "gpu/device/loader.hpp"
 #include "gpu/device/test_host_desc.hpp"
-#include "gpu/kernel/pipeline.hpp"
 #include "gpu/test_run.hpp"
 
 namespace darkroom {

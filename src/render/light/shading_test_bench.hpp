@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "gpu/kernel/pipeline.hpp"
+#include "draw/pipeline.hpp"
 #include "render/frame_set.hpp"
 #include "render/light/shading_test_support.hpp"
 #include "scene/model.hpp"

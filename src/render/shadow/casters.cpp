@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/assert.hpp"
-#include "gpu/kernel/pipeline.hpp"
+#include "draw/pipeline.hpp"
 #include "render/shader_text.hpp"
 
 namespace darkroom::render {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "gpu/kernel/pipeline.hpp"
+#include "draw/pipeline.hpp"
 #include "gpu/resource/resources.hpp"
 #include "render/frame_set.hpp"
 #include "scene/assets.hpp"

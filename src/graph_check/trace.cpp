@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include "graph/schedule.hpp"
 #include "graph/solution.hpp"
+#include "graph_check/check.hpp"
 
 namespace darkroom::graph {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gpu/kernel/pipeline.hpp"
+#include "draw/pipeline.hpp"
 
 #include <fmt/format.h>
 

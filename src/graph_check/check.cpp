@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
-#include "graph/schedule.hpp"
 #include "graph/solution.hpp"
+#include "graph_check/check.hpp"
 
 namespace darkroom::graph {
 namespace {
