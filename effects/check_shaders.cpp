@@ -11,8 +11,10 @@ int main() {
     using namespace darkroom;
     std::vector<gpu::ShaderSource> sources;
     for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster}) {
+        // Of files with two forms, each is in one of both.
         const auto kernels =
-            every_kernel({.stage_of = [=](const gpu::KernelSpec&) { return Result<gpu::Stage>(stage); }});
+            every_kernel({.stage_of = [=](const gpu::KernelSpec&) { return Result<gpu::Stage>(stage); },
+                          .is_software = stage == gpu::Stage::Raster});
         if (!kernels) {
             std::fprintf(stderr, "error: %s\n", kernels.error().text.c_str());
             return 1;

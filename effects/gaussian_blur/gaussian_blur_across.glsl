@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The blur along the lines, in the picture's own domain. NaN counts as 0, infinity as 65504.
+#include "gaussian_blur_sum.glsl"
 #include "gaussian_blur_taps.glsl"
 #include "shared/finite.glsl"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The blur along the columns, of what gaussian_blur_across.glsl made.
+#include "gaussian_blur_sum.glsl"
 #include "gaussian_blur_taps.glsl"
 
 vec4 shade(Pixel pixel) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One direction of the blur of a smaller picture.
+#include "gaussian_blur_sum.glsl"
 #include "gaussian_blur_taps.glsl"
 
 vec4 shade(Pixel pixel) {

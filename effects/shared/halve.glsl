@@ -2,9 +2,10 @@
 // A picture of half the size, floored: the tent over four texels each way, centred on the output's own. Along one axis,
 // where the centre lies at fraction f between b and c of the texels a b c d, their weights are
 //     (1-f, 2-f, 1+f, f) / 4,
-// (1 3 3 1) / 8 of an even side; at any fraction all texels of the picture count alike. Two bilinear taps do the same:
-// between a and b at (2-f)/(3-2f) with weight (3-2f)/4, between c and d at f/(1+2f) with weight (1+2f)/4.
-// NaN counts as 0, infinity as 65504.
+// (1 3 3 1) / 8 of an even side; at any fraction all texels of the picture count alike. NaN counts as 0, infinity as 65504.
+//
+// Two bilinear taps do along one axis what four texels would: between a and b at (2-f)/(3-2f) with weight (3-2f)/4,
+// between c and d at f/(1+2f) with weight (1+2f)/4.
 #include "shared/finite.glsl"
 #include "shared/sanitize.glsl"
 
@@ -13,7 +14,7 @@ vec3 halve_tap(vec2 uv, bool is_clean) {
     return (is_clean ? color : sanitize(color)).rgb;
 }
 
-vec3 halve_by_taps(vec2 b, vec2 f, bool is_clean) {
+vec3 halve_sum(vec2 b, vec2 f, bool is_clean) {
     vec2 extent = vec2(size(halve_input));
     vec2 near = (b - 0.5 + (2.0 - f) / (3.0 - 2.0 * f)) / extent;
     vec2 far = (b + 1.5 + f / (1.0 + 2.0 * f)) / extent;
@@ -22,32 +23,6 @@ vec3 halve_by_taps(vec2 b, vec2 f, bool is_clean) {
     vec3 top = halve_tap(near, is_clean) * near_weight.x + halve_tap(vec2(far.x, near.y), is_clean) * far_weight.x;
     vec3 bottom = halve_tap(vec2(near.x, far.y), is_clean) * near_weight.x + halve_tap(far, is_clean) * far_weight.x;
     return top * near_weight.y + bottom * far_weight.y;
-}
-
-vec4 halve_weights(float f) {
-    return 0.25 * vec4(1.0 - f, 2.0 - f, 1.0 + f, f);
-}
-
-vec3 halve_texel(ivec2 texel, bool is_clean) {
-    vec4 color = load_clamped(halve_input, texel);
-    return (is_clean ? color : sanitize(color)).rgb;
-}
-
-vec3 halve_row(ivec2 a, vec4 weights, bool is_clean) {
-    return halve_texel(a, is_clean) * weights.x + halve_texel(a + ivec2(1, 0), is_clean) * weights.y +
-           halve_texel(a + ivec2(2, 0), is_clean) * weights.z + halve_texel(a + ivec2(3, 0), is_clean) * weights.w;
-}
-
-vec3 halve_by_loads(vec2 b, vec2 f, bool is_clean) {
-    ivec2 a = ivec2(b) - 1;
-    vec4 x = halve_weights(f.x);
-    vec4 y = halve_weights(f.y);
-    return halve_row(a, x, is_clean) * y.x + halve_row(a + ivec2(0, 1), x, is_clean) * y.y +
-           halve_row(a + ivec2(0, 2), x, is_clean) * y.z + halve_row(a + ivec2(0, 3), x, is_clean) * y.w;
-}
-
-vec3 halve_sum(vec2 b, vec2 f, bool is_clean) {
-    return is_software ? halve_by_loads(b, f, is_clean) : halve_by_taps(b, f, is_clean);
 }
 
 vec4 shade(Pixel pixel) {

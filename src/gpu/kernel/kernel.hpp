@@ -13,7 +13,6 @@
 //     void shade(Pixel pixel, out vec4 result[N])   with N
 // It may read KernelSpec::frame and members by their names, custom[i], output_size(), which is pixel.size, and the
 // constants, for choices that must not cost a branch,
-//     bool is_software                       the device is a CPU: loads cost less than linear taps, and pow() a lot
 //     bool loads_outside_are_zero            a load outside any image gives zeros here, and may be made
 //     bool input_is_twice                    the first image's region is exactly twice the output's in both directions
 //     bool output_is_twice                   the output's region is exactly twice the first image's
@@ -110,7 +109,7 @@ struct KernelSpec {
     bool input_is_twice = false;           ///< constants that the body may ask for, see the top of this file
     bool output_is_twice = false;
     bool rays_meet = false;
-    bool is_software = false;
+    bool is_software = false;          ///< values come by vertices, pixels tell each other in quads
     bool has_robust_images = false;    ///< robustImageAccess: with whole images, loads outside are zero
     std::uint32_t sub_texel_bits = 4;  ///< VkPhysicalDeviceLimits::subTexelPrecisionBits; 4 is what all promise
     bool is_additive = false;          ///< output 0 += result instead of = result

@@ -324,10 +324,9 @@ std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<F
                        spec.workgroup[1]);
     }
     fmt::format_to(text,
-                   "const bool is_software = {};\nconst bool loads_outside_are_zero = {};\n"
-                   "const bool input_is_twice = {};\nconst bool output_is_twice = {};\nconst bool rays_meet = {};\n",
-                   spec.is_software, spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.output_is_twice,
-                   spec.rays_meet);
+                   "const bool loads_outside_are_zero = {};\nconst bool input_is_twice = {};\n"
+                   "const bool output_is_twice = {};\nconst bool rays_meet = {};\n",
+                   spec.has_robust_images && spec.is_whole, spec.input_is_twice, spec.output_is_twice, spec.rays_meet);
     write_quads(text, has_quads(spec, stage));
     write_blocks(text, spec, values);
     source += pixel_functions;

@@ -403,7 +403,7 @@ Result<std::shared_ptr<const EffectText>> Planner::text_of(const EffectInfo& inf
                                                            std::uint32_t place, std::span<const std::string> images) {
     const auto key = std::tuple(&info, file, place, std::vector<std::string>(images.begin(), images.end()));
     if (const auto found = texts_.find(key); found != texts_.end()) return found->second;
-    auto text = effect_text(info, file, place, images);
+    auto text = effect_text(info, file, place, images, traits_.is_software);
     if (!text) return failure(std::move(text));
     return texts_[key] = std::make_shared<const EffectText>(std::move(*text));
 }

@@ -121,14 +121,26 @@ Result<void> append_with_includes(std::string& out, std::string_view text, const
     return result;
 }
 
-/// Lines that include a file of the effect's own folder, replaced by it.
-std::string with_own_files(const EffectInfo& info, std::string_view text, std::string_view shown_name) {
+/// Where the device is a CPU: the form of a file for such, if it has one. Names of a user's files have no dot.
+std::string form_of(const EffectInfo& info, std::string_view file, bool is_software) {
+    std::string other = fmt::format("{}.software.glsl", file.substr(0, file.rfind('.')));
+    const bool is_there = find_file(info.files, other) != nullptr || find_file(shared_files(), other) != nullptr;
+    return is_software && is_there ? std::move(other) : std::string(file);
+}
+
+/// Lines that include a file of the effect's own folder, replaced by it, and those of the others in the right form.
+std::string with_own_files(const EffectInfo& info, std::string_view text, std::string_view shown_name,
+                           bool is_software) {
     std::string out;
     for_each_line(text, [&](std::string_view line, std::size_t number) {
-        const std::string_view name = included_name(line);
+        if (included_name(line).empty()) {
+            out.append(line).push_back('\n');
+            return;
+        }
+        const std::string name = form_of(info, included_name(line), is_software);
         const std::string_view included = file_text(info.files, name);
         if (included.empty())
-            out.append(line).push_back('\n');
+            out += fmt::format("#include \"{}\"\n", name);
         else
             out += fmt::format("#line 1 \"effects/{}/{}\"\n{}\n#line {} \"{}\"\n", info.name, name, included,
                                number + 1, shown_name);
@@ -287,14 +299,15 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::s
 
 }  // namespace
 
-Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, std::uint32_t place,
-                               std::span<const std::string> images) {
+Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, std::uint32_t place,
+                               std::span<const std::string> images, bool is_software) {
+    const std::string file = form_of(info, name, is_software);
     const EffectFile* const own = find_file(info.files, file);
     const std::string_view text = own != nullptr ? own->text : file_text(shared_files(), file);
     const bool is_shared = own == nullptr && !text.empty();
     std::string shown = is_shared ? fmt::format("effects/{}", file) : fmt::format("effects/{}/{}", info.name, file);
     if (own != nullptr && !own->shown.empty()) shown = own->shown;
-    const std::string expanded = with_own_files(info, text, shown);
+    const std::string expanded = with_own_files(info, text, shown, is_software);
     if (expanded.empty()) return user_error(fmt::format("{}: there is no such file", shown));
 
     EffectText out;

@@ -56,8 +56,10 @@ struct EffectText {
     bool loads_picture_alone = true;  ///< names it in load(), load_clamped() and size(), and nowhere else
     bool asks_parameters = false;     ///< calls <effect>_parameters(); a pass that does not has none in its block
 };
-[[nodiscard]] Result<EffectText> effect_text(const EffectInfo& info, std::string_view file, std::uint32_t place,
-                                             std::span<const std::string> images);
+/// `is_software`: of a file with another form for drivers on the CPU, "NAME.software.glsl" beside "NAME.glsl", that
+/// form is taken, whoever includes it.
+[[nodiscard]] Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, std::uint32_t place,
+                                             std::span<const std::string> images, bool is_software);
 
 /// One step of a fused kernel; a pass of an effect has one, itself.
 struct FusedStep {
