@@ -316,8 +316,19 @@ std::array<std::int32_t, 4> rectangle(const Region& region) {
             static_cast<std::int32_t>(region.extent.height)};
 }
 
-std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<FlatValues>& values) {
+/// The names by which a body calls its images.
+std::vector<std::string_view> image_names(const KernelSpec& spec) {
+    std::vector<std::string_view> names;
+    for (const KernelImage& image : spec.images) names.emplace_back(image.name);
+    if (spec.compute) names.insert(names.end(), spec.compute->outputs.begin(), spec.compute->outputs.end());
+    return names;
+}
+
+/// `body`: with its calls of images rewritten.
+std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<FlatValues>& values,
+                      std::string_view body) {
     std::string source(preamble);
+    source.reserve(2 * body.size() + 4096);
     const Text text = std::back_inserter(source);
     if (stage == Stage::Compute) {
         fmt::format_to(text, "layout(local_size_x = {}, local_size_y = {}) in;\n", spec.workgroup[0],
@@ -330,31 +341,24 @@ std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<F
     write_quads(text, has_quads(spec, stage));
     write_blocks(text, spec, values);
     source += pixel_functions;
-    std::vector<std::string_view> names;
+    std::uint32_t binding = first_image_binding;
     for (const KernelImage& image : spec.images) {
-        const auto binding = first_image_binding + static_cast<std::uint32_t>(names.size());
         if (image.storage_format != VK_FORMAT_UNDEFINED) {
-            write_storage_input(text, image, binding, spec.is_whole);
+            write_storage_input(text, image, binding++, spec.is_whole);
         } else {
-            write_sampled_input(text, spec, image, binding, stage);
+            write_sampled_input(text, spec, image, binding++, stage);
         }
-        names.emplace_back(image.name);
     }
     write_outputs(text, spec, stage);
     write_buffers(text, spec, stage);
-    if (spec.compute) names.insert(names.end(), spec.compute->outputs.begin(), spec.compute->outputs.end());
-    source.append("#line 1 \"kernel\"\n")
-        .append(rewrite_image_calls(spec.body, image_functions, names))
-        .append("\n#line 1 \"kernel: main\"\n");
+    source.append("#line 1 \"kernel\"\n").append(body).append("\n#line 1 \"kernel: main\"\n");
     write_main(text, spec, stage);
     return source;
 }
 
 }  // namespace
 
-std::string kernel_source(const KernelSpec& spec, Stage stage) {
-    return source_of(spec, stage, flat_values(spec, stage));
-}
+std::string kernel_source(const KernelSpec& spec, Stage stage) { return KernelText(spec, stage).source; }
 
 std::string without_file_names(std::string_view source) {
     constexpr std::string_view line = "\n#line ";
@@ -368,8 +372,14 @@ std::string without_file_names(std::string_view source) {
 }
 
 KernelText::KernelText(const KernelSpec& spec, Stage stage) {
-    const std::optional<FlatValues> values = flat_values(spec, stage);
-    source = source_of(spec, stage, values);
+    std::optional<WordsOfBlocks> words;
+    if (takes_flat_values(spec, stage)) words.emplace(spec);
+    const auto visit = [&](std::string_view word, const GlslScanner& after) { words->visit(word, after); };
+    const std::string body =
+        rewrite_image_calls(spec.body, image_functions, image_names(spec), words ? VisitWord(visit) : VisitWord());
+    std::optional<FlatValues> values;
+    if (words) values = flat_values(spec, *words);
+    source = source_of(spec, stage, values, body);
     digest = sha256(without_file_names(source));
     if (values) vertices = flat_vertex_source(spec, *values);
 }

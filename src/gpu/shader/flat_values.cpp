@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <unordered_set>
+#include <optional>
 
 #include "gpu/device/context.hpp"
-#include "gpu/shader/glsl_scan.hpp"
 
 namespace darkroom::gpu {
 
@@ -17,13 +16,6 @@ namespace {
 // 128 components, less the 7 of what every vertex shader may write: position, point size, clip and cull distance.
 constexpr std::size_t most_flat_vectors = 30;
 constexpr std::uint32_t components_of_vertices = 128;
-
-using WordSet = std::unordered_set<std::string_view>;
-
-struct Names {
-    WordSet words;                    ///< of those asked for
-    bool has_literal_indices = true;  ///< of custom, also by way of an entry's NAME_custom()
-};
 
 /// NAME[1], NAME(1), vec4 NAME(int index) and its NAME[1 + index]. An array whose index is found out for each pixel
 /// must stay in memory.
@@ -38,19 +30,6 @@ bool is_literal(GlslScanner after_name) {
     if (index.kind != Token::Kind::Number) return index.text == "int";
     const std::string_view mark = next().text;
     return mark == "]" || mark == ")" || (mark == "+" && next().text == "index");
-}
-
-Names names_of(std::string_view body, const WordSet& asked) {
-    Names out;
-    GlslScanner scanner(body);
-    for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
-        if (token.kind != Token::Kind::Word) continue;
-        if (asked.contains(token.text)) out.words.insert(token.text);
-        constexpr std::string_view custom = "custom";
-        if (token.text.size() >= custom.size() && token.text.find(custom) != std::string_view::npos)
-            out.has_literal_indices &= is_literal(scanner);
-    }
-    return out;
 }
 
 std::uint32_t vector_count(std::span<const BlockMember> members) { return (word_count(members) + 3) / 4; }
@@ -104,13 +83,22 @@ std::uint32_t first_custom_vector(const KernelSpec& spec) {
 
 std::uint32_t first_member_vector(const KernelSpec& spec) { return first_custom_vector(spec) + spec.custom_vectors; }
 
-std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
-    if (stage != Stage::Raster || !spec.is_software) return std::nullopt;
-    WordSet asked{"size", "load_clamped", "sample_linear"};
-    asked.reserve(asked.size() + spec.frame.size() + spec.members.size());
-    for (const BlockMember& member : spec.frame) asked.insert(member.name);
-    for (const BlockMember& member : spec.members) asked.insert(member.name);
-    const Names names = names_of(spec.body, asked);
+bool takes_flat_values(const KernelSpec& spec, Stage stage) { return stage == Stage::Raster && spec.is_software; }
+
+WordsOfBlocks::WordsOfBlocks(const KernelSpec& spec) : asked_{"size", "load_clamped", "sample_linear"} {
+    asked_.reserve(asked_.size() + spec.frame.size() + spec.members.size());
+    for (const BlockMember& member : spec.frame) asked_.insert(member.name);
+    for (const BlockMember& member : spec.members) asked_.insert(member.name);
+}
+
+void WordsOfBlocks::visit(std::string_view word, const GlslScanner& after) {
+    if (asked_.contains(word)) found.insert(word);
+    constexpr std::string_view custom = "custom";
+    if (word.size() >= custom.size() && word.find(custom) != std::string_view::npos)
+        has_literal_indices &= is_literal(after);
+}
+
+FlatValues flat_values(const KernelSpec& spec, const WordsOfBlocks& words) {
     FlatValues out;
     const auto add = [&](std::vector<std::uint32_t>& vectors, std::uint32_t vector) {
         const bool is_new = vectors.empty() || vectors.back() != vector;
@@ -119,14 +107,14 @@ std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
     const auto add_named = [&](std::span<const BlockMember> members, std::uint32_t first_vector,
                                std::vector<std::uint32_t>& vectors) {
         visit_members(members, 4 * first_vector, [&](const BlockMember& member, std::uint32_t word) {
-            if (names.words.contains(member.name)) add(vectors, word / 4);
+            if (words.found.contains(member.name)) add(vectors, word / 4);
         });
     };
     const auto is_read_by_size = [&](const KernelImage& image) {
         const bool filters_loads = image.is_filtered_by_loads || image.storage_format != VK_FORMAT_UNDEFINED;
-        return image.is_depth || (filters_loads && names.words.contains("sample_linear"));
+        return image.is_depth || (filters_loads && words.found.contains("sample_linear"));
     };
-    const bool asks_sizes = names.words.contains("size") || names.words.contains("load_clamped");
+    const bool asks_sizes = words.found.contains("size") || words.found.contains("load_clamped");
     for (std::uint32_t vector = 0; vector < first_custom_vector(spec); ++vector) {
         const bool is_size = (vector - vectors_of_output) % vectors_per_image + 1 == vectors_per_image;
         // Of whole images only the size is asked for, if that.
@@ -137,7 +125,7 @@ std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage) {
     add_named(spec.frame, 0, out.frame);
     add_named(spec.members, first_member_vector(spec), out.own);
     const bool has_room = out.frame.size() + out.own.size() + spec.custom_vectors <= most_flat_vectors;
-    if (names.has_literal_indices && has_room)
+    if (words.has_literal_indices && has_room)
         for (std::uint32_t i = 0; i < spec.custom_vectors; ++i) add(out.own, first_custom_vector(spec) + i);
     return out;
 }

@@ -5,12 +5,14 @@
 // blocks, and pixels get what they name as flat inputs, one instruction each. The bits are the same.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include "gpu/kernel/kernel.hpp"
+#include "gpu/shader/glsl_scan.hpp"
 
 namespace darkroom::gpu {
 
@@ -27,8 +29,20 @@ inline constexpr std::uint32_t vectors_per_image = 3;
 struct FlatValues {
     std::vector<std::uint32_t> frame, own;
 };
-/// None: the kernel reads its blocks, because its device does that well.
-[[nodiscard]] std::optional<FlatValues> flat_values(const KernelSpec& spec, Stage stage);
+/// Else the kernel reads its blocks, because its device does that well.
+[[nodiscard]] bool takes_flat_values(const KernelSpec& spec, Stage stage);
+/// What a kernel's body names of them. Its words are visited one after the other.
+class WordsOfBlocks {
+  public:
+    explicit WordsOfBlocks(const KernelSpec& spec);
+    void visit(std::string_view word, const GlslScanner& after);
+    std::unordered_set<std::string_view> found;
+    bool has_literal_indices = true;  ///< of custom, also by way of an entry's NAME_custom()
+
+  private:
+    std::unordered_set<std::string_view> asked_;
+};
+[[nodiscard]] FlatValues flat_values(const KernelSpec& spec, const WordsOfBlocks& words);
 
 /// Instead of the blocks' declarations: the inputs, what they hold under the members' names, and blocks of the rest.
 [[nodiscard]] std::string flat_inputs(const KernelSpec& spec, const FlatValues& values);

@@ -27,7 +27,13 @@ KernelSpec spec_of(std::string body) {
             .body = std::move(body)};
 }
 
-Vectors own_of(const KernelSpec& spec) { return flat_values(spec, Stage::Raster).value().own; }
+Vectors own_of(const KernelSpec& spec) {
+    WordsOfBlocks words(spec);
+    GlslScanner scanner(spec.body);
+    for (Token token = scanner.next_word(); token.kind != Token::Kind::End; token = scanner.next_word())
+        words.visit(token.text, scanner);
+    return flat_values(spec, words).own;
+}
 
 TEST(GpuFlatValues, AreTheVectorsThatTheBodyNames) {
     EXPECT_EQ(own_of(spec_of("custom[1] * tint")), (Vectors{0, 1, 8, 5, 6})) << "members begin at vector 7";
@@ -51,9 +57,10 @@ TEST(GpuFlatValues, LeaveCustomVectorsWhereTheirIndexIsNoLiteral) {
 
 TEST(GpuFlatValues, AreNoneForComputeAndForGpus) {
     KernelSpec spec = spec_of("gain");
-    EXPECT_FALSE(flat_values(spec, Stage::Compute));
+    EXPECT_TRUE(takes_flat_values(spec, Stage::Raster));
+    EXPECT_FALSE(takes_flat_values(spec, Stage::Compute));
     spec.is_software = false;
-    EXPECT_FALSE(flat_values(spec, Stage::Raster));
+    EXPECT_FALSE(takes_flat_values(spec, Stage::Raster));
 }
 
 std::vector<std::byte> bits_of(const KernelSpec& spec, const test::Run& values) {
@@ -95,7 +102,7 @@ TEST(GpuFlatValues, AreTheBitsOfTheBlock) {
         for (const bool is_whole : {true, false}) {
             spec.is_whole = is_whole;
             spec.is_software = true;
-            ASSERT_TRUE(flat_values(spec, Stage::Raster));
+            ASSERT_TRUE(takes_flat_values(spec, Stage::Raster));
             const std::vector<std::byte> flat = bits_of(spec, values);
             spec.is_software = false;
             EXPECT_EQ(flat, bits_of(spec, values)) << index << (is_whole ? ", whole" : ", regions");

@@ -56,6 +56,12 @@ Token GlslScanner::next() {
     return token;
 }
 
+Token GlslScanner::next_word() {
+    Token token = next();
+    while (token.kind != Token::Kind::Word && token.kind != Token::Kind::End) token = next();
+    return token;
+}
+
 Token GlslScanner::peek() const {
     GlslScanner ahead = *this;
     Token token = ahead.next();

@@ -28,6 +28,8 @@ class GlslScanner {
   public:
     explicit GlslScanner(std::string_view text) : text_(text) {}
     Token next();
+    /// The next Word, or End.
+    Token next_word();
     /// The next token that is not Blank, without taking it.
     [[nodiscard]] Token peek() const;
     /// Where that token begins.

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "gpu/shader/glsl_scan.hpp"
-
 namespace darkroom::gpu {
 
 namespace {
@@ -48,25 +46,23 @@ Call read_call(GlslScanner scanner, std::span<const std::string_view> images) {
 }  // namespace
 
 std::string rewrite_image_calls(std::string_view body, std::span<const std::string_view> functions,
-                                std::span<const std::string_view> images) {
+                                std::span<const std::string_view> images, const VisitWord& visit) {
     std::string result;
     result.reserve(body.size() + body.size() / 4);
-    std::size_t copied = 0;     // up to where the body is in the result
-    bool drops_spaces = false;  // after the comma that went
+    std::size_t copied = 0;  // up to where the body is in the result
     GlslScanner scanner(body);
-    for (Token token = scanner.next(); token.kind != End; token = scanner.next()) {
-        if (drops_spaces && token.kind == Blank)
-            copied += std::min(token.text.find_first_not_of(' '), token.text.size());
-        drops_spaces = false;
-        if (token.kind != Word || !contains(functions, token.text)) continue;
+    for (Token token = scanner.next_word(); token.kind != End; token = scanner.next_word()) {
+        if (visit) visit(token.text, scanner);
+        if (!contains(functions, token.text)) continue;
         const Call call = read_call(scanner, images);
         if (call.image.empty()) continue;
         result.append(body.substr(copied, scanner.place() - copied));
         result.append("_").append(call.image).append(call.before_open).append("(").append(call.inside);
         if (!call.has_more) result += ')';
-        drops_spaces = call.has_more;
         scanner = call.after;
         copied = scanner.place();
+        // Behind the comma that went.
+        if (call.has_more) copied = std::min(body.find_first_not_of(' ', copied), body.size());
     }
     return result.append(body.substr(copied));
 }
