@@ -136,6 +136,16 @@ VkFormatFeatureFlags Context::features_of(VkFormat format) const {
     return planned(properties.optimalTilingFeatures);
 }
 
+bool Context::writes_without_format(VkFormat format) const {
+    if (!traits.has_storage_write_without_format || is_assumed) return traits.has_storage_write_without_format;
+    VkFormatProperties3 own{.sType = VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_3};
+    VkFormatProperties2 properties{.sType = VK_STRUCTURE_TYPE_FORMAT_PROPERTIES_2, .pNext = &own};
+    vk.GetPhysicalDeviceFormatProperties2(physical_device, format, &properties);
+    // Before Vulkan 1.3 there may be no answer by format: the feature then stands for all.
+    return own.optimalTilingFeatures == 0 ||
+           (own.optimalTilingFeatures & VK_FORMAT_FEATURE_2_STORAGE_WRITE_WITHOUT_FORMAT_BIT) != 0;
+}
+
 bool Context::supports(VkFormat format, VkFormatFeatureFlags features) const {
     return (features_of(format) & features) == features;
 }

@@ -98,6 +98,8 @@ class Context {
     [[nodiscard]] bool supports(VkFormat format, VkFormatFeatureFlags features) const;
     /// Whether a linear sampler may read it.
     [[nodiscard]] bool is_filterable(VkFormat format) const;
+    /// Whether a kernel may write to it by a storage image that names no format.
+    [[nodiscard]] bool writes_without_format(VkFormat format) const;
 
     /// From the host's hooks or the driver; `what` is for the error.
     [[nodiscard]] Result<> allocate_memory(const DeviceMemoryRequest&, std::string_view what, DeviceMemory&) const;

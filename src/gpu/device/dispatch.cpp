@@ -47,6 +47,7 @@ void load_instance_functions(Dispatch& table, Load& load) {
     load(table.GetPhysicalDeviceProperties2, "vkGetPhysicalDeviceProperties2");
     load(table.GetPhysicalDeviceFeatures2, "vkGetPhysicalDeviceFeatures2");
     load(table.GetPhysicalDeviceFormatProperties, "vkGetPhysicalDeviceFormatProperties");
+    load(table.GetPhysicalDeviceFormatProperties2, "vkGetPhysicalDeviceFormatProperties2");
     load(table.GetPhysicalDeviceMemoryProperties, "vkGetPhysicalDeviceMemoryProperties");
     load(table.GetPhysicalDeviceQueueFamilyProperties, "vkGetPhysicalDeviceQueueFamilyProperties");
     load(table.EnumerateDeviceExtensionProperties, "vkEnumerateDeviceExtensionProperties");

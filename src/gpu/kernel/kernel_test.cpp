@@ -304,6 +304,35 @@ TEST(GpuKernel, UsableNamesTheFormatThatIsNot) {
     EXPECT_NE(loaded.error().text.find("\"scene\" of format B8G8R8A8_UNORM"), std::string::npos) << loaded.error().text;
 }
 
+/// Formats that a device writes by no storage image without a format, for the test below.
+VkFormat& not_without_format() {
+    static VkFormat format = VK_FORMAT_UNDEFINED;
+    return format;
+}
+
+TEST(GpuKernel, AFormatThatIsNotWrittenWithoutItsNameIsRasterised) {
+    if (!context().traits.has_storage_write_without_format) GTEST_SKIP() << "no format is";
+    Dispatch& vk = context().vk;
+    const auto real = vk.GetPhysicalDeviceFormatProperties2;
+    vk.GetPhysicalDeviceFormatProperties2 = [](VkPhysicalDevice, VkFormat format, VkFormatProperties2* out) {
+        auto* const own = static_cast<VkFormatProperties3*>(out->pNext);
+        own->optimalTilingFeatures = VK_FORMAT_FEATURE_2_STORAGE_IMAGE_BIT;
+        if (format != not_without_format())
+            own->optimalTilingFeatures |= VK_FORMAT_FEATURE_2_STORAGE_WRITE_WITHOUT_FORMAT_BIT;
+    };
+    const KernelSpec spec = spec_of(bodies[0], VK_FORMAT_B8G8R8A8_UNORM);
+    const bool is_storage = context().supports(VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT);
+    EXPECT_EQ(usable(context(), spec, Stage::Compute).has_value(), is_storage);
+    not_without_format() = VK_FORMAT_B8G8R8A8_UNORM;
+    const Result<> refused = usable(context(), spec, Stage::Compute);
+    EXPECT_EQ(preferred_stage(context(), spec), Stage::Raster);
+    EXPECT_TRUE(usable(context(), spec_of(bodies[0], VK_FORMAT_R8G8B8A8_UNORM), Stage::Compute)) << "it has a name";
+    vk.GetPhysicalDeviceFormatProperties2 = real;
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().text.find("B8G8R8A8_UNORM"), std::string::npos) << refused.error().text;
+    EXPECT_NE(refused.error().text.find("without a format"), std::string::npos) << refused.error().text;
+}
+
 }  // namespace
 
 }  // namespace darkroom::gpu

@@ -46,6 +46,10 @@ Result<> can_store(const Context& context, const KernelSpec& spec, std::size_t i
     if (traits.glsl_qualifier.empty() && !context.traits.has_storage_write_without_format) {
         return refusal(spec, Stage::Compute, thing, format, "shaderStorageImageWriteWithoutFormat is not enabled");
     }
+    if (traits.glsl_qualifier.empty() && !context.writes_without_format(format)) {
+        return refusal(spec, Stage::Compute, thing, format,
+                       "the device writes it by no storage image without a format");
+    }
     if (traits.needs_extended && !context.traits.has_extended_storage_formats) {
         return refusal(spec, Stage::Compute, thing, format, "shaderStorageImageExtendedFormats is not enabled");
     }
