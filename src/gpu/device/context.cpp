@@ -281,6 +281,11 @@ std::vector<std::byte> Context::read_pipeline_cache(const std::filesystem::path&
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (error) return {};
+    // Drivers trust what they are given, so nobody else may have written it.
+    if (!is_of_this_user_alone(path) || !is_of_this_user_alone(path.parent_path())) {
+        say(Severity::Info, fmt::format("{}: others may write it or its folder, ignored", path.string()));
+        return {};
+    }
     // The file is the hash of the driver's data, then the data: drivers are known to crash on damaged data, so a file
     // that does not match is ignored and written anew.
     std::vector<std::byte> data;
@@ -334,11 +339,12 @@ void Context::save_pipeline_cache_if_grown() {
     bytes.resize(sizeof(Hash) + size);
     const Hash hash = content_hash(std::span(bytes).subspan(sizeof(Hash)));
     std::memcpy(bytes.data(), &hash, sizeof hash);
-    std::filesystem::create_directories(cache_folder, error);
+    make_cache_folder(cache_folder);
     // Without the cache the next start is slower and nothing else, so a remark is enough.
     if (const Result<> written = write_file(pipeline_cache_path_, bytes); !written) {
         say(Severity::Info, written.error().text);
     }
+    keep_others_from_writing(pipeline_cache_path_);
     pipeline_cache_size_ = size;
     pipelines_saved_ = created;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "gpu/device/context.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <cstdlib>
 #include <thread>
@@ -185,6 +188,41 @@ TEST_F(GpuPipelineCache, OneThatIsTooLargeIsNotKept) {
     grow(device);
     device.context().save_pipeline_cache_if_grown();
     EXPECT_TRUE(file().empty());
+}
+
+TEST_F(GpuPipelineCache, IsNotReadWhereOthersMayWrite) {
+    using enum std::filesystem::perms;
+    using std::filesystem::perm_options;
+    {
+        const mode_t before = ::umask(0);
+        const Device device = create();
+        build(device, "1, 0, 0, 1");
+        device.context().save_pipeline_cache_if_grown();
+        ::umask(before);
+    }
+    const std::filesystem::path saved = file();
+    ASSERT_FALSE(saved.empty());
+    const auto is_ignored = [&] {
+        std::vector<std::string> said;
+        const Device device = test::must(Device::create(
+            {.log = [&](Severity, std::string_view text) { said.emplace_back(text); }, .cache_folder = folder}));
+        return std::ranges::any_of(said, [&](const std::string& text) {
+            return text == saved.string() + ": others may write it or its folder, ignored";
+        });
+    };
+    EXPECT_FALSE(is_ignored()) << "what the library made, whatever the umask";
+    for (const std::filesystem::path& one : {saved, folder}) {
+        for (const std::filesystem::perms bit : {group_write, others_write}) {
+            std::filesystem::permissions(one, bit, perm_options::add);
+            EXPECT_TRUE(is_ignored()) << one;
+            std::filesystem::permissions(one, bit, perm_options::remove);
+        }
+        EXPECT_FALSE(is_ignored());
+        if (::geteuid() != 0) continue;
+        ASSERT_EQ(::chown(one.c_str(), 12345, ::getegid()), 0);
+        EXPECT_TRUE(is_ignored()) << one << " is another user's";
+        ASSERT_EQ(::chown(one.c_str(), 0, ::getegid()), 0);
+    }
 }
 
 TEST_F(GpuPipelineCache, NoFileIsWrittenWhereCachesAreSwitchedOff) {

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
@@ -110,6 +113,25 @@ std::filesystem::path cache_folder_of(const std::filesystem::path& wanted, bool 
     const char* const variable = std::getenv("DARKROOM_SHADER_CACHE");
     if (!caches_on_disk || (variable != nullptr && std::string_view(variable) == "off")) return {};
     return wanted.empty() ? user_cache_folder() : wanted;
+}
+
+void keep_others_from_writing(const std::filesystem::path& path) {
+    using enum std::filesystem::perms;
+    std::error_code error;
+    std::filesystem::permissions(path, group_write | others_write, std::filesystem::perm_options::remove, error);
+}
+
+void make_cache_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    if (folder.empty() || std::filesystem::exists(folder, error)) return;
+    make_cache_folder(folder.parent_path());
+    if (std::filesystem::create_directory(folder, error)) keep_others_from_writing(folder);
+}
+
+bool is_of_this_user_alone(const std::filesystem::path& path) {
+    struct stat facts {};
+    const bool is_there = ::stat(path.c_str(), &facts) == 0;
+    return is_there && facts.st_uid == ::geteuid() && (facts.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
 }  // namespace darkroom::gpu

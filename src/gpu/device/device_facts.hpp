@@ -38,5 +38,10 @@ namespace darkroom::gpu {
 
 /// The folder of the caches: the user's own where none is wanted, none where they are switched off.
 [[nodiscard]] std::filesystem::path cache_folder_of(const std::filesystem::path& wanted, bool caches_on_disk);
+/// Makes it and what it lies in, as far as they are not there: others may write to none of those.
+void make_cache_folder(const std::filesystem::path& folder);
+void keep_others_from_writing(const std::filesystem::path& path);
+/// Does it belong to the user of this process, and may nobody else write to it?
+[[nodiscard]] bool is_of_this_user_alone(const std::filesystem::path& path);
 
 }  // namespace darkroom::gpu

@@ -11,6 +11,7 @@
 #include "core/files.hpp"
 #include "core/hash.hpp"
 #include "core/thread/parallel.hpp"
+#include "gpu/device/device_facts.hpp"
 #include "gpu/shader/glsl_compiler.hpp"
 
 namespace darkroom::gpu {
@@ -43,9 +44,7 @@ std::optional<Words> read_entry(const std::filesystem::path& path) {
 
 /// A cache that cannot be written is slow, not wrong: failures are dropped.
 std::uintmax_t write_entry(const std::filesystem::path& path, const Words& words) {
-    std::error_code error;
-    std::filesystem::create_directories(path.parent_path(), error);
-    if (error) return 0;
+    make_cache_folder(path.parent_path());
     const std::span<const std::byte> content = std::as_bytes(std::span(words));
     const Hash hash = content_hash(content);
     std::vector<std::byte> bytes(sizeof hash + content.size());
