@@ -110,6 +110,8 @@ struct ComputePassDesc {
     std::uint32_t shared_bytes = 0;
     /// Groups of a dispatch; (0, 0): as many as cover the first output, or the first input where there is none.
     std::array<std::uint32_t, 2> groups{};
+    std::array<std::uint32_t, 2> tile{};  ///< texels that a group covers there; (0, 0): as many as invocations
+    bool is_additive = false;             ///< of one output: store() adds to what it holds
     std::uint32_t custom_vectors = 0;
     ConstantsFunction constants = nullptr;
     ConditionFunction condition = nullptr;
@@ -181,6 +183,9 @@ class PassBuilder {
     /// The same of a pass with several outputs, `output` first; none after an error.
     virtual std::vector<PassImage> add_all(const KernelPassDesc& desc) { return {add(desc)}; }
     [[nodiscard]] virtual ComputeLimits compute_limits() const { return {}; }
+    /// Is a compute pass that writes this format, and keeps what it makes on the way in so much shared memory, faster
+    /// here than a kernel for each step? Where not, the plan remarks why.
+    [[nodiscard]] virtual bool tiles_pay(VkFormat /*format*/, std::uint32_t /*shared_bytes*/) { return false; }
     /// A buffer of this frame, for passes of the effect alone.
     [[nodiscard]] virtual PassBuffer create_buffer(std::string_view /*name*/, std::uint32_t /*bytes*/) { return {}; }
     /// A few numbers that outlast the frame and have a name, for all entries behind: what a pass wrote, then or in an

@@ -46,7 +46,8 @@ struct PlanPass {
     std::vector<std::string> entries;  ///< that it holds, in order
     std::string boundary;              ///< why a new pass starts here: one sentence
     VkExtent2D extent{};
-    std::uint64_t bytes_read = 0;  ///< each input texel counted once
+    std::uint64_t invocations = 0;  ///< its threads: one a pixel, but in passes that make tiles
+    std::uint64_t bytes_read = 0;   ///< each input texel counted once
     std::uint64_t bytes_written = 0;
     std::vector<PlanUse> reads;
     PlanUse writes;                      ///< its image is PlanImage::never where a pass writes buffers alone

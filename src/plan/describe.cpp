@@ -205,6 +205,11 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
         if (!pass.output.is_valid() && !pass.inputs.empty())
             out.extent =
                 extent_of(schedule.slot_of(pass.inputs[0].version, pass.inputs[0].instead), pass.inputs[0].mip_level);
+        out.invocations = std::uint64_t{out.extent.width} * out.extent.height;
+        if (const auto* const compute = pass.as<ComputePass>()) {
+            const auto [width, height] = compute->groups_of(out.extent);
+            out.invocations = std::uint64_t{width} * height * pass.spec.workgroup[0] * pass.spec.workgroup[1];
+        }
         for (std::size_t k = 0; k < pass.inputs.size(); ++k) {
             const PassInput& input = pass.inputs[k];
             // An image that is both loaded and sampled stands there twice.

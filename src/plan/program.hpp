@@ -120,7 +120,12 @@ struct ComputePass {
         std::uint32_t mip_level = 0;
     };
     std::vector<Output> outputs;
-    std::array<std::uint32_t, 2> groups{};  ///< (0, 0): from the extent of the first output or input
+    std::array<std::uint32_t, 2> groups{};  ///< (0, 0): as many tiles as cover the first output or input
+    std::array<std::uint32_t, 2> tile{};
+    [[nodiscard]] std::array<std::uint32_t, 2> groups_of(VkExtent2D extent) const {
+        if (groups[0] != 0) return groups;
+        return {(extent.width + tile[0] - 1) / tile[0], (extent.height + tile[1] - 1) / tile[1]};
+    }
 };
 /// An image as it is, or brought to another size.
 struct CopyPass {
@@ -258,7 +263,7 @@ struct PlannerTraits {
     bool is_software = false;          ///< see gpu/kernel/kernel.hpp
     bool has_robust_images = false;    ///< likewise
     std::uint32_t sub_texel_bits = 4;  ///< likewise
-    bool packing_pays = true;          ///< smaller pixels take less time, which no software driver shows
+    bool packing_pays = true;          ///< smaller pixels and shared memory save time, as on no software driver
     std::uint32_t max_image_side = 16384;
     std::uint32_t max_storage_images = 4;  ///< of a kernel, its output among them
     std::array<std::uint32_t, 2> workgroup{16, 8};

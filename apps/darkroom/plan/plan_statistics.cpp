@@ -53,7 +53,8 @@ std::vector<Row> rows_of(const StatisticsReport& report) {
         }
         const auto bytes = static_cast<double>(pass.bytes_read + pass.bytes_written);
         if (row.cost && report.chip != nullptr)
-            row.milliseconds = darkroom::milliseconds(*row.cost, pixels_of(pass.extent), bytes, *report.chip);
+            row.milliseconds =
+                darkroom::milliseconds(*row.cost, static_cast<double>(pass.invocations), bytes, *report.chip);
         rows.push_back(std::move(row));
     }
     return rows;
@@ -76,14 +77,14 @@ Result<> check_loops(const StatisticsReport& report, std::span<const Row> rows) 
 
 struct Sum {
     double milliseconds = 0;
-    double cycles = 0;  ///< for 64 pixels of the frame: passes of fewer pixels count less
+    double cycles = 0;  ///< for 64 pixels of the frame: passes of fewer threads count less
 };
 
 Sum sum_of(std::span<const Row> rows, VkExtent2D frame) {
     Sum sum;
     for (const Row& row : rows) {
         sum.milliseconds += row.milliseconds;
-        if (row.cost) sum.cycles += row.cost->cycles() * pixels_of(row.pass.extent) / pixels_of(frame);
+        if (row.cost) sum.cycles += row.cost->cycles() * static_cast<double>(row.pass.invocations) / pixels_of(frame);
     }
     return sum;
 }

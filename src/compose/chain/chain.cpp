@@ -19,16 +19,6 @@ using plan::PassInput;
 using plan::ProgramPass;
 using plan::Shape;
 
-namespace {
-
-std::array<std::uint32_t, 2> groups_of(const plan::ComputePass& pass, const gpu::KernelSpec& spec, VkExtent2D extent) {
-    if (pass.groups[0] != 0) return pass.groups;
-    const auto [width, height] = spec.workgroup;
-    return {(extent.width + width - 1) / width, (extent.height + height - 1) / height};
-}
-
-}  // namespace
-
 Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
     find_watched(frame);
@@ -368,7 +358,7 @@ void Chain::record_pass(VkCommandBuffer commands, std::uint32_t index, const Fra
     const VkDescriptorSet set = updated_set(index, kernel, inputs, outputs, {blocks.data(), pass.buffers.size()});
     gpu::begin_label(context_, commands, pass.name.c_str());
     if (const auto* const compute = pass.as<plan::ComputePass>())
-        kernel.record_groups(commands, set, groups_of(*compute, pass.spec, region.extent));
+        kernel.record_groups(commands, set, compute->groups_of(region.extent));
     else
         kernel.record(commands, set, outputs);
     gpu::end_label(context_, commands);

@@ -25,7 +25,8 @@
 // A compute pass has a body of its own instead (KernelSpec::compute): it defines
 //     void run()                             with GLSL's own invocation numbers, `shared` variables and barrier()
 // reads its images as above, writes its outputs, which have names and may be mip levels of several extents, by
-//     void store(OUTPUT, ivec2 texel, vec4 value)   and asks ivec2 size(OUTPUT)
+//     void store(OUTPUT, ivec2 texel, vec4 value)   and asks ivec2 size(OUTPUT), and what packed floats are rounded to:
+//     vec4 as_stored(OUTPUT, vec4 value)
 // and its buffers are arrays, NAME[i], that any kernel may read and a compute pass may write, by atomics, too.
 // output_size() is the extent that its groups are counted from.
 // The functions of images exist for 2D images; another sampler type is used by its name and GLSL's own functions. Where

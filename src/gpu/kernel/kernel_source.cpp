@@ -16,8 +16,8 @@ namespace darkroom::gpu {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> image_functions{"sample_linear", "load", "load_clamped", "gather_red",
-                                                          "gather_green",  "size", "store"};
+constexpr std::array<std::string_view, 8> image_functions{"sample_linear", "load", "load_clamped", "gather_red",
+                                                          "gather_green",  "size", "store",        "as_stored"};
 
 /// Words of the own block before its members.
 std::uint32_t first_member_word(const KernelSpec& spec) { return 4 * first_member_vector(spec); }
@@ -212,7 +212,11 @@ void write_compute_output(Text text, const KernelSpec& spec, std::uint32_t index
                    "    imageStore(result_{0}, place, {4}({1}vec4(value){2}));\n"
                    "}}\n",
                    index, prefix_of(traits.numeric), old, offset, is_packed ? "darkroom_rounded" : "", name);
-    if (spec.compute) fmt::format_to(text, "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n", name);
+    if (!spec.compute) return;
+    fmt::format_to(text,
+                   "ivec2 size_{0}() {{ return darkroom_region_{0}.zw; }}\n"
+                   "vec4 as_stored_{0}(vec4 value) {{ return {1}(value); }}\n",
+                   name, is_packed ? "darkroom_rounded" : "");
 }
 
 void write_outputs(Text text, const KernelSpec& spec, Stage stage) {

@@ -16,6 +16,23 @@ constexpr std::uint32_t first_value_number = 1u << 16u;
 
 }  // namespace
 
+bool Builder::tiles_pay(VkFormat format, std::uint32_t shared_bytes) {
+    const PlannerTraits& traits = planner_.traits_;
+    std::string why;
+    if (!traits.packing_pays)
+        why = "shared memory does not pay on a software driver";
+    else if (!is_stored(format))
+        why = "compute kernels do not write its images here";
+    else if (shared_bytes > traits.compute.shared_bytes)
+        why = fmt::format("it needs {} bytes of shared memory, and there are {}", shared_bytes,
+                          traits.compute.shared_bytes);
+    else
+        return true;
+    planner_.program_.remarks.push_back(
+        fmt::format("{} has a pass for each step: {}.", planner_.stack_[entry_].desc.name, why));
+    return false;
+}
+
 PassBuffer Builder::create_buffer(std::string_view name, std::uint32_t bytes) {
     const std::string shown = planner_.own_name(fmt::format("{}.{}", planner_.stack_[entry_].desc.name, name));
     planner_.buffers_.push_back({.version = planner_.program_.graph.create_buffer(shown, std::max(bytes, 4u))});
@@ -107,7 +124,8 @@ std::vector<PassImage> Builder::add_compute(const ComputePassDesc& desc) {
     ProgramPass pass{.name = fmt::format("{}.{}", entry.desc.name, desc.name)};
     FusedStep step{.info = entry.info, .entry = entry_, .name = entry.desc.name};
     for (const KernelPassDesc::Input& input : desc.inputs) add_input(pass, step, input);
-    ComputePass compute{.groups = desc.groups};
+    ComputePass compute{.groups = desc.groups, .tile = desc.tile[0] != 0 ? desc.tile : desc.workgroup};
+    pass.spec.is_additive = desc.is_additive;
     pass.spec.compute = gpu::ComputeBody{.outputs = {}, .shared_bytes = desc.shared_bytes};
     for (const ComputePassDesc::Output& out : desc.outputs) {
         const Image& image = images_[out.image.index];

@@ -135,7 +135,9 @@ Result<> Planner::add_compute(ProgramPass pass) {
         if (!desc.writes.empty() && desc.writes.back().version == output.version)
             ++desc.writes.back().mips.count;
         else
-            desc.writes.push_back({output.version, graph::Use::StorageWrite, {output.mip_level, 1}});
+            desc.writes.push_back({output.version,
+                                   pass.spec.is_additive ? graph::Use::StorageReadWrite : graph::Use::StorageWrite,
+                                   {output.mip_level, 1}});
         write_of.push_back(desc.writes.size() - 1);
     }
     for (const PassBufferUse& buffer : pass.buffers) {

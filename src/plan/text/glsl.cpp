@@ -129,8 +129,8 @@ std::string form_of(const EffectInfo& info, std::string_view file, bool is_softw
 }
 
 /// Lines that include a file of the effect's own folder, replaced by it, and those of the others in the right form.
-std::string with_own_files(const EffectInfo& info, std::string_view text, std::string_view shown_name,
-                           bool is_software) {
+std::string with_own_files(const EffectInfo& info, std::string_view text, std::string_view shown_name, bool is_software,
+                           int depth = 0) {
     std::string out;
     for_each_line(text, [&](std::string_view line, std::size_t number) {
         if (included_name(line).empty()) {
@@ -139,11 +139,12 @@ std::string with_own_files(const EffectInfo& info, std::string_view text, std::s
         }
         const std::string name = form_of(info, included_name(line), is_software);
         const std::string_view included = file_text(info.files, name);
-        if (included.empty())
+        const std::string shown = fmt::format("effects/{}/{}", info.name, name);
+        if (included.empty() || depth > 8)
             out += fmt::format("#include \"{}\"\n", name);
         else
-            out += fmt::format("#line 1 \"effects/{}/{}\"\n{}\n#line {} \"{}\"\n", info.name, name, included,
-                               number + 1, shown_name);
+            out += fmt::format("#line 1 \"{}\"\n{}\n#line {} \"{}\"\n", shown,
+                               with_own_files(info, included, shown, is_software, depth + 1), number + 1, shown_name);
     });
     return out;
 }
