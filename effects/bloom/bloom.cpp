@@ -56,11 +56,9 @@ void prefilter_constants(const void* parameters, const PassContext& context, std
     out[1] = {bloom.firefly_filter ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
 }
 
-void upsample_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
-    const auto below = [](std::uint32_t side) { return static_cast<float>(std::max(side / 2, 1u)); };
-    const float width = below(context.output_extent.width), height = below(context.output_extent.height);
-    out[0] = {width, height, 1.0f / width, 1.0f / height};
-    out[1] = {gain(bloom_of(parameters)), 0.0f, 0.0f, 0.0f};
+void level_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const Bloom& bloom = bloom_of(parameters);
+    out[0] = {gain(bloom), static_cast<float>(used_levels(bloom, context.frame_extent)), 0.0f, 0.0f};
 }
 
 void end_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
@@ -75,19 +73,8 @@ bool is_level_used(const void* parameters, const PassContext& context, std::uint
     return level < used_levels(bloom_of(parameters), context.frame_extent);
 }
 
-void build(PassBuilder& builder) {
-    const PassVector neutral{0.0f, 0.0f, 0.0f, 0.0f};
-    const std::uint32_t levels = builder.from_max_extent(bloom_level_count);
-    builder.end_constants(1, end_constants);
-    if (levels == 0) {
-        builder.side("bloom_pyramid", PassImage{}, neutral);
-        return;
-    }
-    const VkFormat packed = VK_FORMAT_B10G11R11_UFLOAT_PACK32;
-    PassImage pyramid = builder.create({.name = "pyramid",
-                                        .format = builder.is_stored(packed) ? packed : VK_FORMAT_R16G16B16A16_SFLOAT,
-                                        .denominator = 2,
-                                        .mip_levels = levels});
+/// A kernel for each level, on the way down and up again.
+PassImage add_kernels(PassBuilder& builder, PassImage pyramid, std::uint32_t levels) {
     pyramid = builder.add({.name = "prefilter",
                            .shader = "bloom_prefilter.glsl",
                            .inputs = {{.name = "bloom_source", .image = builder.source(), .is_loaded = true}},
@@ -99,7 +86,7 @@ void build(PassBuilder& builder) {
     for (std::uint32_t level = 1; level < levels; ++level)
         pyramid = builder.add(
             {.name = "downsample " + std::to_string(level),
-             .shader = "bloom_downsample.glsl",
+             .shader = level % 2 == 1 ? "bloom_downsample.glsl" : "bloom_downsample_texels.glsl",
              .inputs = {{.name = "bloom_above", .image = pyramid, .mip_level = level - 1, .is_loaded = true}},
              .output = pyramid,
              .output_mip_level = level,
@@ -113,11 +100,83 @@ void build(PassBuilder& builder) {
              .output = pyramid,
              .output_mip_level = level,
              .is_additive = true,
-             .custom_vectors = 2,
-             .constants = upsample_constants,
+             .custom_vectors = 1,
+             .constants = level_constants,
              .condition = is_level_used,
              .argument = level + 1});
-    builder.loaded_side("bloom_pyramid", pyramid, neutral);
+    return pyramid;
+}
+
+/// Shared memory of the three passes below, in bytes.
+constexpr std::uint32_t narrow_bytes = 8 * 38 * 38, wide_bytes = 8 * (34 * 34 + 14 * 14),
+                        join_bytes = 8 * (36 * 21 + 22 * 14);
+
+/// The same arithmetic with the levels between in shared memory: levels 1 and 2 are made by one pass, 3 and 4 and their
+/// sum with 2 by another, and the sum with 1 and 0 by a third.
+PassImage add_tiles(PassBuilder& builder, PassImage pyramid, std::uint32_t levels, VkFormat format) {
+    const auto add = [&](ComputePassDesc pass) {
+        pass.condition = is_level_used;
+        const std::vector<PassImage> made = builder.add_compute(pass);
+        return made.empty() ? PassImage{} : made.back();
+    };
+    pyramid = add({.name = "prefilter",
+                   .shader = "bloom_prefilter_pairs.glsl",
+                   .inputs = {{.name = "bloom_source", .image = builder.source()}},
+                   .outputs = {{"bloom_level_0", pyramid}},
+                   .workgroup = {8, 16},
+                   .tile = {16, 16},
+                   .custom_vectors = 2,
+                   .constants = prefilter_constants});
+    const auto add_levels = [&](ComputePassDesc pass) {
+        pass.workgroup = {128, 1};
+        pass.custom_vectors = 1;
+        pass.constants = level_constants;
+        pass.argument = 1;
+        return add(std::move(pass));
+    };
+    pyramid = add_levels({.name = "downsample",
+                          .shader = "bloom_narrow.glsl",
+                          .inputs = {{.name = "bloom_level_0", .image = pyramid}},
+                          .outputs = {{"bloom_level_1", pyramid, 1}, {"bloom_level_2", pyramid, 2}},
+                          .shared_bytes = narrow_bytes,
+                          .tile = {32, 32}});
+    KernelPassDesc::Input sum{.name = "bloom_sum", .image = pyramid, .mip_level = 2};
+    if (levels > 3)
+        sum = {.name = "bloom_sum",
+               .image = add_levels(
+                   {.name = "wide levels",
+                    .shader = "bloom_wide.glsl",
+                    .inputs = {{.name = "bloom_level_2", .image = pyramid, .mip_level = 2}},
+                    .outputs = {{"bloom_sum",
+                                 builder.create({.name = "wide levels", .format = format, .denominator = 8})}},
+                    .shared_bytes = wide_bytes,
+                    .tile = {32, 32}})};
+    return add_levels({.name = "upsample",
+                       .shader = "bloom_join.glsl",
+                       .inputs = {{.name = "bloom_level_1", .image = pyramid, .mip_level = 1}, sum},
+                       .outputs = {{"bloom_level_0", pyramid}},
+                       .shared_bytes = join_bytes,
+                       .tile = {64, 32},
+                       .is_additive = true});
+}
+
+void build(PassBuilder& builder) {
+    const PassVector neutral{0.0f, 0.0f, 0.0f, 0.0f};
+    const std::uint32_t levels = builder.from_max_extent(bloom_level_count);
+    builder.end_constants(1, end_constants);
+    if (levels == 0) {
+        builder.side("bloom_pyramid", PassImage{}, neutral);
+        return;
+    }
+    const VkFormat packed = VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+                   format = builder.is_stored(packed) ? packed : VK_FORMAT_R16G16B16A16_SFLOAT;
+    // With fewer levels they are no more than so many passes anyway.
+    const bool has_tiles = levels > 2 && builder.tiles_pay(format, std::max({narrow_bytes, wide_bytes, join_bytes}));
+    const PassImage pyramid =
+        builder.create({.name = "pyramid", .format = format, .denominator = 2, .mip_levels = has_tiles ? 3 : levels});
+    builder.loaded_side("bloom_pyramid",
+                        has_tiles ? add_tiles(builder, pyramid, levels, format) : add_kernels(builder, pyramid, levels),
+                        neutral);
 }
 
 bool is_identity(const void* parameters) { return bloom_of(parameters).intensity == 0.0f; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Level i-1 to level i.
-#include "bloom_downsample_taps.glsl"
-
-vec4 shade(Pixel pixel) {
-    return vec4(bloom_by_taps(pixel), 1.0);
+// Levels 1 and 3: taps by the sampler.
+vec3 bloom_tap(int from, vec2 place) {
+    return sample_linear(bloom_above, place * (0.5 / vec2(output_size()))).rgb;
 }
+
+#include "bloom_downsample_pixel.glsl"

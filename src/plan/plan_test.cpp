@@ -263,13 +263,21 @@ TEST_F(ComposePlan, LinearFloatTargetsSkipTheLastSteps) {
     EXPECT_EQ(entries_of(plan(encoded)).size(), 4u);
 }
 
+/// Without what is said of the device, which has a pass for each step of bloom.
+std::vector<std::string> without_fall_backs(std::vector<std::string> remarks) {
+    std::erase_if(remarks,
+                  [](const std::string& remark) { return remark.find("a pass for each step") != remark.npos; });
+    return remarks;
+}
+
 TEST_F(ComposePlan, AWrongDomainIsOneRemarkAndReordersNothing) {
     for (const char* const name : {"tonemap", "bloom", "encode"}) add(composer, name);
     const Plan made = plan();
-    ASSERT_EQ(made.remarks.size(), 1u);
-    EXPECT_NE(made.remarks[0].find("bloom expects a picture that is scene_linear; this one is display_linear"),
+    const auto remarks = without_fall_backs(made.remarks);
+    ASSERT_EQ(remarks.size(), 1u);
+    EXPECT_NE(remarks[0].find("bloom expects a picture that is scene_linear; this one is display_linear"),
               std::string::npos)
-        << made.remarks[0];
+        << remarks[0];
     EXPECT_EQ(entries_of(made), (std::vector<std::string>{"tonemap", "bloom", "encode"}));
 }
 
@@ -288,8 +296,8 @@ TEST_F(ComposePlan, BothShippedOrdersGiveNoRemark) {
         desc.depth.format = VK_FORMAT_D32_SFLOAT;
         desc.has_shadows = true;
         const Plan made = plan(desc);
-        EXPECT_TRUE(made.remarks.empty())
-            << (is_documented ? "documented: " : "scene_linear: ") << made.remarks.front();
+        EXPECT_EQ(without_fall_backs(made.remarks), std::vector<std::string>{})
+            << (is_documented ? "documented" : "scene_linear");
         EXPECT_TRUE(made.left_out.empty()) << made.left_out.front();
     }
 }

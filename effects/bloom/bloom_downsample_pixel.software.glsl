@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// bloom_downsample.glsl by loads of the texels under the taps, where all taps lie on corners.
+// bloom_downsample_pixel.glsl by the 6x6 texels under the taps, where all lie on corners, which the pixels of a quad share.
 #include "bloom_quad.glsl"
-#include "bloom_downsample_taps.glsl"
+#include "bloom_taps.glsl"
 
 struct BloomRow {
     vec3 box;   // weights 0 1 1 1 1 0
@@ -16,7 +16,7 @@ BloomRow bloom_row(ivec2 first) {
     return BloomRow(box, box + outer + centre);
 }
 
-// Along one axis the texels under the taps are 6. The inner taps are a 4x4 box: half
+// The texels under the taps, where all taps lie on corners. Along one axis they are 6. The inner taps are a 4x4 box: half
 // the weight, b x b / 2 with b = (0 1 1 1 1 0) / 4. The outer ones and the centre make four boxes that share their sides:
 // along one axis the pairs count 1 2 1, so they are w x w / 2 with w = (1 1 2 2 1 1) / 8.
 vec3 bloom_by_loads(Pixel pixel) {
@@ -59,5 +59,6 @@ vec3 bloom_by_quads(Pixel pixel) {
 
 vec4 shade(Pixel pixel) {
     if (has_quads && input_is_twice) return vec4(bloom_by_quads(pixel), 1.0);
-    return vec4(input_is_twice ? bloom_by_loads(pixel) : bloom_by_taps(pixel), 1.0);
+    if (input_is_twice) return vec4(bloom_by_loads(pixel), 1.0);
+    return vec4(bloom_mean_of(bloom_taps_of(0, pixel.texel, size(bloom_above))), 1.0);
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
-// bloom_prefilter.glsl by loads of the 6x6 texels under the taps, where all lie on corners, which the pixels of a quad
+// bloom_prefilter_taps.glsl by loads of the 6x6 texels under the taps, where all lie on corners, which the pixels of a quad
 // share.
-#include "shared/sanitize.glsl"
 #include "bloom_quad.glsl"
-#include "bloom_prefilter_taps.glsl"
-#include "bloom_bright_part.glsl"
+
+vec3 bloom_tap(int from, vec2 place) {
+    return sanitize_light(sample_linear(bloom_source, place * (0.5 / vec2(output_size()))).rgb);
+}
+
+#include "bloom_taps.glsl"
 
 // A tap on a corner of texels. What is cleaned is the mean, as after filtering: a texel below 0 takes from its neighbours.
 vec3 bloom_mean(vec3 upper, vec3 lower) {
@@ -36,16 +39,16 @@ BloomTaps bloom_by_loads(Pixel pixel) {
     BloomRow row_4 = bloom_row(first + ivec2(0, 4));
     BloomRow row_5 = bloom_row(first + ivec2(0, 5));
     BloomTaps taps;
-    taps.top_left = bloom_mean(row_0.left, row_1.left);
-    taps.top = bloom_mean(row_0.centre, row_1.centre);
-    taps.top_right = bloom_mean(row_0.right, row_1.right);
-    taps.left = bloom_mean(row_2.left, row_3.left);
-    taps.centre = bloom_mean(row_2.centre, row_3.centre);
-    taps.right = bloom_mean(row_2.right, row_3.right);
-    taps.bottom_left = bloom_mean(row_4.left, row_5.left);
-    taps.bottom = bloom_mean(row_4.centre, row_5.centre);
-    taps.bottom_right = bloom_mean(row_4.right, row_5.right);
-    taps.middle = bloom_mean(row_1.inner_left, row_2.inner_left) + bloom_mean(row_1.inner_right, row_2.inner_right) +
+    taps.left.top = bloom_mean(row_0.left, row_1.left);
+    taps.centre.top = bloom_mean(row_0.centre, row_1.centre);
+    taps.right.top = bloom_mean(row_0.right, row_1.right);
+    taps.left.middle = bloom_mean(row_2.left, row_3.left);
+    taps.centre.middle = bloom_mean(row_2.centre, row_3.centre);
+    taps.right.middle = bloom_mean(row_2.right, row_3.right);
+    taps.left.bottom = bloom_mean(row_4.left, row_5.left);
+    taps.centre.bottom = bloom_mean(row_4.centre, row_5.centre);
+    taps.right.bottom = bloom_mean(row_4.right, row_5.right);
+    taps.inner = bloom_mean(row_1.inner_left, row_2.inner_left) + bloom_mean(row_1.inner_right, row_2.inner_right) +
                   bloom_mean(row_3.inner_left, row_4.inner_left) + bloom_mean(row_3.inner_right, row_4.inner_right);
     return taps;
 }
@@ -74,18 +77,18 @@ BloomTaps bloom_by_quads(Pixel pixel) {
     BloomQuarter a = bloom_quarter(first, inward, 0), b = bloom_quarter(first, inward, 1);
     BloomQuarter c = bloom_quarter(first, inward, 2), d = bloom_quarter(first, inward, 3);
     BloomTaps taps;
-    taps.top_left = bloom_mean(a.outer, b.outer);
-    taps.top = bloom_mean(a.centre, b.centre);
-    taps.left = bloom_mean(c.outer, d.outer);
-    taps.centre = bloom_mean(c.centre, d.centre);
-    taps.top_right = from_beside(taps.top);
-    taps.right = from_beside(taps.centre);
-    taps.bottom_left = from_below(taps.left);
-    taps.bottom = from_below(taps.centre);
-    taps.bottom_right = from_below(taps.right);
+    taps.left.top = bloom_mean(a.outer, b.outer);
+    taps.centre.top = bloom_mean(a.centre, b.centre);
+    taps.left.middle = bloom_mean(c.outer, d.outer);
+    taps.centre.middle = bloom_mean(c.centre, d.centre);
+    taps.right.top = from_beside(taps.centre.top);
+    taps.right.middle = from_beside(taps.centre.middle);
+    taps.left.bottom = from_below(taps.left.middle);
+    taps.centre.bottom = from_below(taps.centre.middle);
+    taps.right.bottom = from_below(taps.right.middle);
     vec3 side = bloom_part(b.last + c.last), lower = bloom_part(d.inner), corner = bloom_part(d.last);
     vec3 edge = corner + from_beside(corner);
-    taps.middle = bloom_mean(b.inner, c.inner) + bloom_mean(side, from_beside(side)) +
+    taps.inner = bloom_mean(b.inner, c.inner) + bloom_mean(side, from_beside(side)) +
                   bloom_mean(lower, from_below(lower)) + bloom_mean(edge, from_below(edge));
     return taps;
 }
@@ -93,9 +96,5 @@ BloomTaps bloom_by_quads(Pixel pixel) {
 BloomTaps bloom_taps(Pixel pixel) {
     if (has_quads && input_is_twice) return bloom_by_quads(pixel);
     if (input_is_twice) return bloom_by_loads(pixel);
-    return bloom_by_taps(pixel);
-}
-
-vec4 shade(Pixel pixel) {
-    return bloom_bright_part(bloom_average(bloom_taps(pixel)));
+    return bloom_taps_of(0, pixel.texel, size(bloom_source));
 }

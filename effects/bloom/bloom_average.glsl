@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the prefilter makes of its taps.
+// From the cleaned taps of the scene to what glows of them. scene_linear.
+// custom[0] = (threshold, knee, limit, scale), custom[1].x = 1 with the firefly filter.
 
 // Brian Karis, "Tone mapping" (2013): average by 1 / (1 + luminance). As in Jorge Jimenez, "Next Generation Post Processing
 // in Call of Duty: Advanced Warfare" (2014), a box is the unit; unlike there, the sum is divided by the sum of weights.
@@ -10,10 +11,11 @@ vec4 bloom_box(vec3 sum, float weight) {
 }
 
 vec3 bloom_average(BloomTaps taps) {
-    vec4 total = bloom_box(taps.middle, 0.5) + bloom_box(taps.top_left + taps.top + taps.left + taps.centre, 0.125) +
-                 bloom_box(taps.top_right + taps.top + taps.right + taps.centre, 0.125) +
-                 bloom_box(taps.bottom_left + taps.bottom + taps.left + taps.centre, 0.125) +
-                 bloom_box(taps.bottom_right + taps.bottom + taps.right + taps.centre, 0.125);
+    vec3 upper_left = taps.left.top + taps.left.middle, lower_left = taps.left.middle + taps.left.bottom;
+    vec3 upper = taps.centre.top + taps.centre.middle, lower = taps.centre.middle + taps.centre.bottom;
+    vec3 upper_right = taps.right.top + taps.right.middle, lower_right = taps.right.middle + taps.right.bottom;
+    vec4 total = bloom_box(taps.inner, 0.5) + bloom_box(upper_left + upper, 0.125) + bloom_box(upper + upper_right, 0.125) +
+                 bloom_box(lower_left + lower, 0.125) + bloom_box(lower + lower_right, 0.125);
     return total.rgb / total.a;
 }
 
