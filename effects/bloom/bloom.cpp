@@ -21,7 +21,7 @@ constexpr auto bloom_rows = describe(
     field<&Bloom::threshold>("Light above this glows; not used in the mode energy_conserving.", {0, 65504}),
     field<&Bloom::soft_threshold>("Width of the soft knee as a part of the threshold: 0 is a hard edge.", {0, 1}),
     field<&Bloom::firefly_filter>("Averages the first level by inverse luminance, so that lone bright pixels do not "
-                                  "flicker."),
+                                  "flicker; not used in the mode energy_conserving, which keeps their light."),
     field<&Bloom::mode>("Whether the glow is added to the picture or mixed with it."),
     field<&Bloom::scatter>("Weight of each wider level relative to the one below it, in the mode energy_conserving.",
                            {0, 1}),
@@ -53,7 +53,8 @@ void prefilter_constants(const void* parameters, const PassContext& context, std
         for (std::uint32_t level = 0; level < levels; ++level, weight *= bloom.scatter) sum += weight;
         out[0] = {0.0f, 0.0f, most, 1.0f / sum};
     }
-    out[1] = {bloom.firefly_filter ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
+    const bool is_filtered = bloom.firefly_filter && bloom.mode == BloomMode::Additive;
+    out[1] = {is_filtered ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
 }
 
 void level_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {

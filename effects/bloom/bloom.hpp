@@ -24,7 +24,8 @@ struct Bloom {
     float threshold = 1.0f;
     /// Width of the soft knee as a part of the threshold: 0 is a hard edge. [0, 1]
     float soft_threshold = 0.5f;
-    /// Averages the first level by inverse luminance, so that lone bright pixels do not flicker.
+    /// Averages the first level by inverse luminance, so that lone bright pixels do not flicker; not used in the mode
+    /// energy_conserving, which keeps their light.
     Toggle firefly_filter = true;
     /// Whether the glow is added to the picture or mixed with it.
     BloomMode mode = BloomMode::Additive;

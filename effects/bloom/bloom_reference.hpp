@@ -96,7 +96,7 @@ inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, cons
     const bool is_additive = bloom.mode == BloomMode::Additive;
     // Whatever halves are rounded to, the sum of all levels stays below 65504.
     const double most = 65504 * (1 - (levels - 1) / 1024.0);
-    std::vector<ReferenceImage> pyramid{bloom_reference_down(source, static_cast<bool>(bloom.firefly_filter))};
+    std::vector<ReferenceImage> pyramid{bloom_reference_down(source, is_additive && bloom.firefly_filter)};
     if (is_additive)
         for (Rgba& color : pyramid[0].pixels) {
             const double factor =

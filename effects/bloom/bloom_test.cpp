@@ -250,6 +250,12 @@ TEST(Bloom, AdditiveGrowsByALevelEachAndTheOtherModeKeepsFlatFields) {
     }
 }
 
+TEST(Bloom, TheConservingModeKeepsTheLightOfALonePixel) {
+    const Bloom bloom{.intensity = 1, .firefly_filter = true, .mode = BloomMode::EnergyConserving, .levels = 3};
+    const ReferenceImage lone = impulse(256, 256, 128, 120, 500);
+    EXPECT_NEAR(red_sum(test::reference_of(bloom, lone)), 500, 1e-6);
+}
+
 TEST(Bloom, GlowDoesNotDependOnTheAspectRatio) {
     ReferenceImage square = impulse(256, 256, 128, 128, 500), wide = impulse(512, 256, 128, 128, 500);
     const ReferenceImage a = test::reference_of(Bloom{}, square), b = test::reference_of(Bloom{}, wide);
@@ -434,6 +440,12 @@ TEST(BloomGpu, WhatIsNoNumberGlowsAsInTheReference) {
                     EXPECT_NEAR(out.at(x, y).b / want.at(x, y).b, 1, 2e-3) << bad << ": " << x << "," << y;
                 }
         }
+}
+
+TEST(BloomGpu, TheConservingModeKeepsTheLightOfALonePixel) {
+    const Bloom bloom{.intensity = 1, .firefly_filter = true, .mode = BloomMode::EnergyConserving, .levels = 3};
+    // Halves that are cut off at each of five writes.
+    EXPECT_NEAR(red_sum(developed(bloom, impulse(256, 256, 128, 120, 500))), 500, 500 * 5 * 0x1p-10);
 }
 
 TEST(BloomGpu, IntensityZeroChangesNothing) {
