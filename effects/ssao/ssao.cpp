@@ -87,10 +87,11 @@ void occlusion_constants(const void* parameters, const PassContext& context, std
               std::bit_cast<float>(ssao.moves ? ssao_tile(context.time, context.frame_index) : 0U)};
 }
 
-void texel_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+void surface_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const auto [ray, flat] = ray_constants(*context.camera, context.frame_extent,
                                            ssao_of(parameters).resolution == SsaoResolution::Half ? 2.0f : 1.0f);
-    out[0] = {ray[0], flat[0], 0, 0};
+    out[0] = ray;
+    out[1] = flat;
 }
 
 void upsample_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
@@ -148,25 +149,31 @@ PassImage add_chain(PassBuilder& builder, PassImage turns) {
                                        .custom_vectors = 7,
                                        .constants = occlusion_constants,
                                        .condition = condition});
-    const PassImage blurred = builder.add({.name = "blur" + suffix,
-                                           .shader = "ssao_blur.glsl",
-                                           .inputs = {{.name = "ssao_raw", .image = raw}},
-                                           .output = create("tile", VK_FORMAT_R32G32_SFLOAT),
-                                           .custom_vectors = 1,
-                                           .constants = texel_constants,
-                                           .condition = condition});
+    const PassImage blurred = builder.add(
+        {.name = "blur" + suffix,
+         .shader = "ssao_blur.glsl",
+         .inputs = {{.name = "ssao_raw", .image = raw}, {.name = "ssao_normals", .image = normals, .is_loaded = true}},
+         .output = create("tile", VK_FORMAT_R32G32_SFLOAT),
+         .custom_vectors = 2,
+         .constants = surface_constants,
+         .condition = condition});
     const PassImage widened = builder.add({.name = "widen" + suffix,
                                            .shader = "ssao_widen.glsl",
-                                           .inputs = {{.name = "ssao_tile", .image = blurred, .is_loaded = true}},
+                                           .inputs = {{.name = "ssao_tile", .image = blurred, .is_loaded = true},
+                                                      {.name = "ssao_normals", .image = normals, .is_loaded = true}},
                                            .output = create("blurred", VK_FORMAT_R32G32_SFLOAT),
-                                           .custom_vectors = 1,
-                                           .constants = texel_constants,
+                                           .custom_vectors = 2,
+                                           .constants = surface_constants,
                                            .condition = condition});
     if (!is_half) return widened;
+    std::vector<KernelPassDesc::Input> inputs{{.name = "ssao_blurred", .image = widened},
+                                              {.name = "ssao_depth", .image = builder.frame_image(FrameImage::Depth)}};
+    if (has_normals)
+        inputs.push_back(
+            {.name = "ssao_frame_normals", .image = builder.frame_image(FrameImage::Normals), .is_loaded = true});
     return builder.add({.name = "upsample",
-                        .shader = "ssao_upsample.glsl",
-                        .inputs = {{.name = "ssao_blurred", .image = widened},
-                                   {.name = "ssao_depth", .image = builder.frame_image(FrameImage::Depth)}},
+                        .shader = has_normals ? "ssao_upsample_by_normals.glsl" : "ssao_upsample.glsl",
+                        .inputs = std::move(inputs),
                         .output = create("upsampled", VK_FORMAT_R16G16B16A16_SFLOAT),
                         .custom_vectors = 2,
                         .constants = upsample_constants,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Nearness, one over the planar distance, with the visibility in its last ten bits; beside it the surface's slope from one
 // texel to the next, as a share of the nearness: two halves of less than 1, whose unused bit makes an ordinary number of
-// them, which no device flushes to zero.
+// them, which no device flushes to zero. The last three bits say how much of the noise's tile the surface covers, in eighths
+// less one.
 
-const uint ssao_ordinary = 0x40000000u;
+const uint ssao_ordinary = 0x40000000u, ssao_cover = 7u;
 
 vec4 ssao_visibility(vec4 packed) { return vec4(floatBitsToInt(packed) & 1023); }
 
@@ -14,8 +15,12 @@ float ssao_with(float near, float visibility) {
     return intBitsToFloat((floatBitsToInt(near) & ~1023) | int(visibility + 0.5));
 }
 
-float ssao_pack_slope(vec2 slope) {
-    return uintBitsToFloat(packHalf2x16(clamp(slope, vec2(-0.999), vec2(0.999))) | ssao_ordinary);
+// `covered`: of the tile's 16 texels, at least the one here.
+float ssao_pack_slope(vec2 slope, float covered) {
+    uint halves = packHalf2x16(clamp(slope, vec2(-0.999), vec2(0.999))) & ~ssao_cover;
+    return uintBitsToFloat(halves | ssao_ordinary | uint(max(covered * 0.5 - 0.25, 0.0)));
 }
 
-vec2 ssao_slope_of(float packed) { return unpackHalf2x16(floatBitsToUint(packed) & ~ssao_ordinary); }
+vec2 ssao_slope_of(float packed) { return unpackHalf2x16(floatBitsToUint(packed) & ~(ssao_ordinary | ssao_cover)); }
+
+vec4 ssao_covered(vec4 packed) { return vec4(floatBitsToUint(packed) & ssao_cover) + 1.0; }

@@ -47,18 +47,25 @@ class SsaoReference {
         const int base_x = std::min(column / 2, width_ - 1), base_y = std::min(row / 2, height_ - 1);
         const int part_x = std::min(column - base_x * 2, 1), part_y = std::min(row - base_y * 2, 1);
         const double planar = input_.depth->clamped(base_x * 2 + part_x, base_y * 2 + part_y).r;
-        return is_surface(planar) ? filter_.upsampled(base_x, base_y, part_x, part_y, planar) : 1;
+        if (!is_surface(planar)) return 1;
+        return filter_.upsampled(base_x, base_y, part_x, part_y, planar, [&](int half_x, int half_y) {
+            if (input_.normals == nullptr) return 1.0;
+            const Rgba& own = input_.normals->clamped(base_x * 2 + part_x, base_y * 2 + part_y);
+            const Rgba& other = input_.normals->clamped(half_x * 2, half_y * 2);
+            return std::max(ssao_turned(own.r * other.r + own.g * other.g + own.b * other.b), 0.001);
+        });
     }
 
     void compute() {
-        std::vector<double> nearness, raw;
+        std::vector<SsaoSurface> surfaces;
+        std::vector<double> raw;
         for (int y = 0; y < height_; ++y)
             for (int x = 0; x < width_; ++x) {
                 const double planar = planar_at(x, y);
-                nearness.push_back(is_surface(planar) ? 1 / planar : 1e-10);
+                surfaces.push_back(surface(x, y, is_surface(planar) ? planar : 1e10));
                 raw.push_back(is_surface(planar) && has_normal(x, y) ? occlusion(x, y, planar) : 1);
             }
-        filter_.compute(std::move(nearness), raw);
+        filter_.compute(std::move(surfaces), raw);
     }
 
   private:
@@ -119,6 +126,16 @@ class SsaoReference {
         const auto last_row = static_cast<int>(input_.depth->height) - 1;
         return normalized(
             cross(slope(0, 1, row == 0, row == last_row), slope(1, 0, column == 0, column == last_column)));
+    }
+
+    [[nodiscard]] SsaoSurface surface(int x, int y, double planar) const {
+        const Double3 up = normal(x, y), ray = sum(position(x, y, 2), position(x, y, 1), -1);
+        const Double3 here = position(x, y, planar);
+        const double toward = std::min(dot(up, ray), -0.02) * planar;
+        return {1 / planar,
+                up,
+                {std::clamp(up[0] * (position(x + 1, y, planar)[0] - here[0]) / toward, -0.999, 0.999),
+                 std::clamp(up[1] * (position(x, y + 1, planar)[1] - here[1]) / toward, -0.999, 0.999)}};
     }
 
     [[nodiscard]] double occlusion(int x, int y, double planar) const {

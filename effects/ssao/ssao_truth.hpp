@@ -72,6 +72,19 @@ class OcclusionTruth {
         return {query.ray.tfar, normal};
     }
 
+    /// Whether a ray of unit length meets anything before it is so long.
+    [[nodiscard]] bool is_met(const Double3& from, const Double3& direction, double distance) const {
+        RTCRay query = ray_of(from, direction, static_cast<float>(distance));
+#if RTC_VERSION_MAJOR >= 4
+        rtcOccluded1(scene_.get(), &query);
+#else
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcOccluded1(scene_.get(), &context, &query);
+#endif
+        return query.tfar < 0;
+    }
+
     /// The share of side * side rays, spread by the cosine over the half ball, that meet nothing within `radius`.
     [[nodiscard]] double visibility(const Double3& point, const Double3& normal, double radius, int side) const {
         const Double3 helper = std::abs(normal[1]) > 0.9 ? Double3{1, 0, 0} : Double3{0, 1, 0};
@@ -113,15 +126,7 @@ class OcclusionTruth {
                                   double radius) const {
         constexpr double lift = 1e-3;  // off the surface that the ray starts from
         const Double3 from{point[0] + normal[0] * lift, point[1] + normal[1] * lift, point[2] + normal[2] * lift};
-        RTCRay query = ray_of(from, ray, static_cast<float>(radius));
-#if RTC_VERSION_MAJOR >= 4
-        rtcOccluded1(scene_.get(), &query);
-#else
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcOccluded1(scene_.get(), &context, &query);
-#endif
-        return query.tfar < 0;
+        return is_met(from, ray, radius);
     }
 
     std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device_;

@@ -1,38 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Visibility of the four full-size pixels of every half-size one. Of the four half-size pixels around, those count whose
-// surface goes on to the full-size pixel (after Kopf et al., "Joint Bilateral Upsampling", 2007). ssao_depth: the host's;
-// custom[0] and [1].x: the constants of planar_distance(); [1].yz: how wide a pixel is, by the distance and beside it.
+// By depth alone, where the frame has no normals.
 #include "shared/planar_distance.glsl"
 #include "ssao_packed.glsl"
+#include "ssao_upsampled.glsl"
 
-// Half-size pixel i holds full-size pixel 2i, and the blur moved its middle by half a half-size pixel back: an even
-// full-size pixel is half way between two, an odd one on the second. The rest is for edges, where that one is unlike.
-const float ssao_rest = 0.05;
-
-float ssao_mean(vec4 visibility, vec4 expected, float near, vec4 bilinear) {
-    vec4 unlike = (expected / near - 1.0) * (2.0 / max(custom[1].y + custom[1].z * near, 4e-4));
-    // Where all are unlike, the nearest counts.
-    vec4 like = 1.0 / (1.0 + unlike * unlike), weight = (bilinear + ssao_rest) * like * like;
-    // The mean of ones shall be one, not what rounding leaves of it.
-    float mean = min(dot(visibility, weight) / dot(weight, vec4(1022.998)), 1.0);
-    return near > 1e-9 && near < 1e6 ? mean : 1.0;
-}
-
-// Order of a gather, of nearness here and of visibilities in the result: (0,1), (1,1), (1,0), (0,0).
-vec4 shade(Pixel pixel) {
-    vec2 corner = (vec2(pixel.texel) + 1.0) / vec2(pixel.size);
-    vec4 packed = gather_red(ssao_blurred, corner);
-    vec4 slopes = gather_green(ssao_blurred, corner);
-    vec4 depth = gather_red(ssao_depth, (vec2(pixel.texel) * 2.0 + 1.0) / vec2(size(ssao_depth)));
-    vec4 near = 1.0 / planar_distance(depth, custom[0], custom[1].x);
-    vec4 visibility = ssao_visibility(packed);
-    // By half a half-size pixel.
-    vec2 low = ssao_slope_of(slopes.w), right = ssao_slope_of(slopes.z);
-    vec2 below = ssao_slope_of(slopes.x), high = ssao_slope_of(slopes.y);
-    vec4 x = 0.5 * packed * vec4(below.x, high.x, right.x, low.x), y = 0.5 * packed * vec4(below.y, high.y, right.y, low.y);
-    vec4 first = packed - 2.0 * (x * vec4(0.0, 1.0, 1.0, 0.0) + y * vec4(1.0, 1.0, 0.0, 0.0));
-    return vec4(ssao_mean(visibility, first + y, near.x, vec4(0.5, 0.5, 0.0, 0.0)),
-                ssao_mean(visibility, first + x + y, near.y, vec4(0.0, 1.0, 0.0, 0.0)),
-                ssao_mean(visibility, first + x, near.z, vec4(0.0, 0.5, 0.5, 0.0)),
-                ssao_mean(visibility, first, near.w, vec4(0.25)));
-}
+vec4 shade(Pixel pixel) { return ssao_upsampled(pixel, mat4(vec4(1.0), vec4(1.0), vec4(1.0), vec4(1.0))); }
