@@ -57,6 +57,10 @@ class ComposeKernelFile : public test::StackTest {
         device.context().shaders->has_compiler = false;
         return device;
     }
+    /// The same device with a compiler; the test device may be another one.
+    static Device plain_device() {
+        return must(Device::create({.cache_folder = ::testing::TempDir() + "darkroom_test_cache"}));
+    }
     static Host host_on(Device& device) {
         return Host(test::random_hdr(extent.width, extent.height, 3), VK_FORMAT_R16G16B16A16_SFLOAT,
                     VK_FORMAT_R8G8B8A8_UNORM, device);
@@ -107,9 +111,9 @@ void expect_same_pictures(const Host& host, Composer& composer, const Host& othe
 
 TEST_F(ComposeKernelFile, GivesTheSameBitsWithoutACompilerWhateverIsSwitched) {
     const std::vector<std::byte> kernels = bake(profile());
-    Device baked = device_with(kernels);
-    const Host host = host_on(baked), other_host = host_on(gpu::test::device());
-    Composer composer(baked, {.max_threads = 0}), other(gpu::test::device(), {.max_threads = 0});
+    Device baked = device_with(kernels), plain = plain_device();
+    const Host host = host_on(baked), other_host = host_on(plain);
+    Composer composer(baked, {.max_threads = 0}), other(plain, {.max_threads = 0});
     fill(composer);
     fill(other);
     must(composer.compile(desc()));
@@ -124,9 +128,9 @@ TEST_F(ComposeKernelFile, GivesTheSameBitsWithoutACompilerWhateverIsSwitched) {
 TEST_F(ComposeKernelFile, TheOtherProfileServesThisDeviceToo) {
     const DeviceProfile other_kind = profile() == DeviceProfile::Gpu ? DeviceProfile::Software : DeviceProfile::Gpu;
     const std::vector<std::byte> kernels = bake(other_kind);
-    Device baked = device_with(kernels);
-    const Host host = host_on(baked), other_host = host_on(gpu::test::device());
-    Composer composer(baked, {.max_threads = 0}), other(gpu::test::device(), {.max_threads = 0});
+    Device baked = device_with(kernels), plain = plain_device();
+    const Host host = host_on(baked), other_host = host_on(plain);
+    Composer composer(baked, {.max_threads = 0}), other(plain, {.max_threads = 0});
     fill(composer);
     fill(other);
     must(composer.compile(desc()));
@@ -151,9 +155,9 @@ TEST_F(ComposeKernelFile, AKernelThatWasNotBakedIsNamedWithItsEntries) {
 // Two switches at once: nobody baked that lean kernel.
 TEST_F(ComposeKernelFile, AMissingLeanKernelIsToldOnceAndTheCompleteOneGivesItsPicture) {
     const std::vector<std::byte> kernels = bake(profile());
-    Device baked = device_with(kernels);
-    const Host host = host_on(baked), other_host = host_on(gpu::test::device());
-    Composer composer(baked, {.max_threads = 0}), other(gpu::test::device(), {.max_threads = 0});
+    Device baked = device_with(kernels), plain = plain_device();
+    const Host host = host_on(baked), other_host = host_on(plain);
+    Composer composer(baked, {.max_threads = 0}), other(plain, {.max_threads = 0});
     for (Composer* const one : {&composer, &other}) {
         fill(*one);
         must(one->compile(desc()));
