@@ -21,7 +21,8 @@ echo "$*" >>"$STUB_LOG"
 if [[ $1 == --build ]]; then
     mkdir -p "$2/bin"
     printf '#!/usr/bin/env bash\nprintf "<%%s>" "$PWD" "$@"\n' >"$2/bin/darkroom"
-    chmod +x "$2/bin/darkroom"
+    cp "$2/bin/darkroom" "$2/bin/darkroom_tests"
+    chmod +x "$2/bin/"*
 fi
 STUB
 cat >"$work/bin/dpkg-query" <<'STUB'
@@ -226,7 +227,8 @@ export HOME=$work/home
     fail ".ci/run: closing lines: $(<"$work/out")"
 : >"$STUB_LOG"
 "$tree/.ci/more" >"$work/out" 2>"$work/said" || fail ".ci/more"
-[[ $(grep -oE 'preset (clang|plain|sanitize|release)' "$STUB_LOG" | cut -d' ' -f2 | xargs) == "clang plain sanitize release" ]] ||
+[[ $(grep -oE 'preset (clang|plain|without-compiler|sanitize|release)' "$STUB_LOG" | cut -d' ' -f2 | xargs) == \
+    "clang plain without-compiler sanitize release" ]] ||
     fail ".ci/more: builds"
 ! STUB_RED=build-ci-thread "$tree/.ci/run" >"$work/out" 2>"$work/said" || fail ".ci/run passes where a test fails"
 [[ $("$tree/.ci/more" --last) == "last ran "*": passed" ]] || fail ".ci/more --last"
@@ -236,5 +238,5 @@ STUB_LACKS=clang "$tree/.ci/more" >"$work/out" 2>"$work/said" </dev/null || fail
 grep -qE '^apt-get .*install .* clang$' "$STUB_LOG" || fail ".ci/more installs no clang"
 status=0
 STUB_FAILS=1 "$tree/.ci/more" >"$work/out" 2>"$work/said" || status=$?
-[[ $status != 0 && $(tail -n 1 "$work/out") == *": failed: clang plain sanitize soak" ]] || fail ".ci/more that failed"
+[[ $status != 0 && $(tail -n 1 "$work/out") == *": failed: clang plain without-compiler sanitize soak" ]] || fail ".ci/more that failed"
 echo "launcher: all as it should be"
