@@ -106,7 +106,7 @@ class SsaoFilterReference {
                 seen += raw[index(x + i, y + j)] * weight;
                 weights += weight;
             }
-        covered_[index(x, y)] = std::floor(weights * 0.5 + 0.75) / 8;
+        covered_[index(x, y)] = std::floor(weights * 4 + 0.5) / 64;
         return seen / weights;
     }
 
@@ -126,7 +126,7 @@ class SsaoFilterReference {
     PixelWidth pixel_width_;
     std::vector<SsaoSurface> surfaces_;
     std::vector<double> blurred_;
-    std::vector<double> covered_;  ///< share of the tile's pixels that the mean is of, in eighths
+    std::vector<double> covered_;  ///< share of the tile's pixels that the mean is of, in quarters of a pixel
     std::vector<std::array<double, 2>> slopes_;
 };
 

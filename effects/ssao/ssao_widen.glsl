@@ -22,7 +22,7 @@ vec4 shade(Pixel pixel) {
     like *= ssao_turned(vec4(dot(load_clamped(ssao_normals, left).xyz, normal), dot(load_clamped(ssao_normals, right).xyz, normal),
                              dot(load_clamped(ssao_normals, above).xyz, normal), dot(load_clamped(ssao_normals, below).xyz, normal)));
     float covered = ssao_covered(own.gggg).r;
-    vec4 weight = mix(like, min(like, like.yxwz), ssao_alike / 8.0 * covered) * ssao_covered(vec4(a.g, b.g, c.g, d.g));
+    vec4 weight = mix(like, min(like, like.yxwz), ssao_alike / 64.0 * covered) * ssao_covered(vec4(a.g, b.g, c.g, d.g));
     float sum = dot(ssao_visibility(sides), weight) + ssao_visibility(own.rrrr).r * covered;
     return vec4(ssao_with(own.r, sum / (dot(weight, vec4(1.0)) + covered)), own.g, 0.0, 0.0);
 }
