@@ -141,7 +141,9 @@ TEST(EffectSsao, ACornerIsDarkerThanThePlane) {
             ASSERT_GT(corners, 3);
             ASSERT_GT(opens, 100);
             EXPECT_GT(open / opens, 0.98);
-            EXPECT_LT(corner / corners, open / opens - 0.05) << int(method) << int(resolution);
+            // A visibility has ten bits, which other drivers than lavapipe may round the other way.
+            const double rounding = gpu::test::is_lavapipe() ? 0 : 0.5 / 1023;
+            EXPECT_LT(corner / corners, open / opens - 0.05 + rounding) << int(method) << int(resolution);
             EXPECT_LT(stronger_corner, corner - 0.05 * corners);
         }
 }
