@@ -98,7 +98,7 @@ void expect_same(const std::filesystem::path& path) {
     }
 }
 
-/// Processes that decode for this one.
+/// Processes that decode for this one. What was killed is gone when the last of its threads is.
 std::vector<pid_t> decoders() {
     std::vector<pid_t> out;
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -106,7 +106,7 @@ std::vector<pid_t> decoders() {
         const std::string status{std::istreambuf_iterator<char>(stream), {}};
         if (status.starts_with("Name:\tdarkroom_decode\n") &&
             status.find("\nPPid:\t" + std::to_string(::getpid()) + "\n") != std::string::npos &&
-            status.find("\nState:\tZ") == std::string::npos)
+            (status.find("\nState:\tZ") == std::string::npos || status.find("\nThreads:\t1\n") == std::string::npos))
             out.push_back(std::stoi(entry.path().filename()));
     }
     return out;
