@@ -179,7 +179,7 @@ TEST(Precedence, AmountsSwitchAndNothingElse) {
     for (const EffectInfo* const effect : all_effects())
         for (const ParamInfo& row : effect->parameters.rows)
             if (const std::string key = flat_key(effect->name, row.name);
-                named.contains(key) || key == "fog_height_falloff" || (effect->flat.is_of_ui && row.is_amount))
+                named.contains(key) || key == "fog_height_falloff")
                 expected.insert(key);
     EXPECT_EQ(switches, expected);
 }
