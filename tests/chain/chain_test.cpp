@@ -15,6 +15,13 @@
 namespace darkroom {
 namespace {
 
+/// What is said of the stack, without what is of the device: which form of bloom pays there.
+std::vector<std::string> remarks_of(const Plan& plan) {
+    std::vector<std::string> out = plan.remarks;
+    std::erase_if(out, [](const std::string& remark) { return remark.find("a pass for each step") != remark.npos; });
+    return out;
+}
+
 using test::add;
 
 class ChainReference : public test::StackTest {};
@@ -257,7 +264,7 @@ TEST_F(ChainEverything, IsPlannedInBothOrders) {
             planned.insert(planned.end(), pass.entries.begin(), pass.entries.end());
         EXPECT_EQ(planned, is_documented ? documented_order : scene_linear_order);
         EXPECT_TRUE(plan->left_out.empty()) << plan->left_out.front();
-        EXPECT_TRUE(plan->remarks.empty()) << plan->remarks.front();
+        EXPECT_EQ(remarks_of(*plan), std::vector<std::string>{});
     }
 }
 
@@ -424,7 +431,7 @@ TEST_F(ChainLooks, TheShippedOrdersGiveNoRemark) {
         test::must(apply(*look, composer));
         const auto plan = composer.plan({.max_extent = {320, 200}});
         ASSERT_TRUE(plan) << plan.error().text;
-        EXPECT_TRUE(plan->remarks.empty()) << order << ": " << plan->remarks.front();
+        EXPECT_EQ(remarks_of(*plan), std::vector<std::string>{}) << order;
     }
 }
 
