@@ -222,7 +222,7 @@ TEST_F(ComposeSchedule, TheDefaultStackHasNoTransientImagesButBlooms) {
             EXPECT_NE(transients[0].find("pyramid"), std::string::npos);
             EXPECT_NE(transients[1].find("wide levels"), std::string::npos);
         } else {
-            EXPECT_EQ(transients.size(), 6u);
+            EXPECT_EQ(transients.size(), 7u);
             EXPECT_LE(together, 0.45 * alone);
         }
     }
