@@ -77,18 +77,12 @@ Result<> UiSource::start(Composer& composer) {
         if (!*is_silent) warn(std::string(line));
     };
     console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print});
-    // Time is no limit here: what is over one on a busy machine would be another picture. Instructions are counted.
     document_.reset();
-    classes_->clear();
-    const auto set_class = [classes = classes_](std::string_view id, std::string_view name, bool is_on) {
-        // As many as a document takes, and of each the last.
-        constexpr std::size_t most = 256;
-        const auto same = std::ranges::find_if(
-            *classes, [&](const auto& one) { return std::get<0>(one) == id && std::get<1>(one) == name; });
-        if (same != classes->end()) std::get<2>(*same) = is_on;
-        if (same == classes->end() && classes->size() < most) classes->emplace_back(id, name, is_on);
-        return same != classes->end() || classes->size() < most;
+    if (Result<> done = load_document(); !done) return done;
+    const auto set_class = [document = document_](std::string_view id, std::string_view name, bool is_on) {
+        return document != nullptr && document->set_class(id, name, is_on);
     };
+    // Time is no limit here: what is over one on a busy machine would be another picture. Instructions are counted.
     auto made = darkroom::Controllers::create(*console_,
                                               {.print = print, .milliseconds_per_frame = 1000, .set_class = set_class});
     if (!made) return failure(std::move(made));
@@ -142,16 +136,19 @@ Result<> UiSource::advance(Composer& composer, double time) {
     return {};
 }
 
+Result<> UiSource::load_document() {
+    if (document_ != nullptr || std::filesystem::path(ui_.document).extension() != ".svg") return {};
+    auto loaded = darkroom::HudDocument::load(ui_.document, {.is_headless = true});
+    if (!loaded) return failure(std::move(loaded));
+    document_ = std::move(*loaded);
+    return {};
+}
+
 Result<std::shared_ptr<const std::vector<std::uint8_t>>> UiSource::picture(VkExtent2D extent) {
     if (ui_.document.empty()) return picture_;
     if (std::filesystem::path(ui_.document).extension() == ".svg") {
-        if (!document_) {
-            auto loaded = darkroom::HudDocument::load(ui_.document, {.is_headless = true});
-            if (!loaded) return failure(std::move(loaded));
-            document_ = std::move(*loaded);
-        }
+        if (Result<> done = load_document(); !done) return failure(std::move(done));
         for (const auto& [name, value] : game_) document_->set(name, hud_value(value));
-        for (const auto& [id, name, is_on] : *classes_) document_->set_class(id, name, is_on);
         const auto drawn = document_->picture(extent.width, extent.height);
         if (drawn == nullptr || !document_->error().empty()) return darkroom::user_error(document_->error());
         picture_ = {drawn, &drawn->rgba};

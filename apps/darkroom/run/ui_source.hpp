@@ -11,8 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -56,6 +54,8 @@ class UiSource {
 
   private:
     [[nodiscard]] darkroom::Vec2 offset_at(double time) const;
+    /// Once, where the interface is a document.
+    [[nodiscard]] darkroom::Result<> load_document();
 
     darkroom::LookUi ui_;
     std::vector<GameEvent> events_;
@@ -64,13 +64,10 @@ class UiSource {
     std::unique_ptr<darkroom::Console> console_;
     std::optional<darkroom::Controllers> controllers_;
     double last_time_ = 0;
-    /// That controllers set, until the document takes them: they outlive a move of this, as what they call does.
-    using Classes = std::vector<std::tuple<std::string, std::string, bool>>;
-    std::shared_ptr<Classes> classes_ = std::make_shared<Classes>();
     std::shared_ptr<bool> is_silent_ = std::make_shared<bool>(false);  ///< what the controllers' sink looks at
 
     VkExtent2D extent_{};
-    std::unique_ptr<darkroom::HudDocument> document_;
+    std::shared_ptr<darkroom::HudDocument> document_;  ///< of controllers as well, which set its classes
     std::shared_ptr<const std::vector<std::uint8_t>> picture_ = std::make_shared<const std::vector<std::uint8_t>>();
 };
 
