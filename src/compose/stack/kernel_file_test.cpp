@@ -45,8 +45,7 @@ class ComposeKernelFile : public test::StackTest {
     }
     /// Of the test device's kind, without a compiler.
     Device device_with(std::span<const std::byte> kernels) {
-        Device device = must(Device::create({.validate = true,
-                                             .log =
+        Device device = must(Device::create({.log =
                                                  [this](Severity severity, std::string_view text) {
                                                      const std::scoped_lock lock(mutex);
                                                      EXPECT_LT(severity, Severity::Warning) << text;
