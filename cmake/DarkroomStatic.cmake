@@ -22,7 +22,7 @@ endif()
 set(objects "")
 foreach(part ${DARKROOM_PARTS})
   # A precompiled header counts among them.
-  list(APPEND objects "$<FILTER:$<TARGET_OBJECTS:darkroom_${part}>,EXCLUDE,\\.gch$>")
+  list(APPEND objects "$<FILTER:$<TARGET_OBJECTS:darkroom_${part}>,EXCLUDE,\\.(gch|pch)$>")
 endforeach()
 
 # Groups are dissolved: the linker would throw a group away where the host has one of the same name, and with it code
