@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <ranges>
 
 #include "core/hash.hpp"
 
@@ -134,11 +133,16 @@ Result<BakedShaders> BakedShaders::read(std::span<const std::byte> file) {
 
 std::optional<std::vector<std::uint32_t>> BakedShaders::find(const Digest& text, ShaderStage stage) const {
     const ShaderKey wanted(text, stage);
-    const auto numbers = std::views::iota(std::size_t{0}, count_);
-    const auto found =
-        std::ranges::lower_bound(numbers, wanted, {}, [&](std::size_t i) { return index_entry(file_, i).key(); });
-    if (found == numbers.end()) return std::nullopt;
-    const IndexEntry entry = index_entry(file_, *found);
+    std::size_t first = 0, last = count_;
+    while (first < last) {
+        const std::size_t middle = first + (last - first) / 2;
+        if (index_entry(file_, middle).key() < wanted)
+            first = middle + 1;
+        else
+            last = middle;
+    }
+    if (first == count_) return std::nullopt;
+    const IndexEntry entry = index_entry(file_, first);
     if (entry.key() != wanted) return std::nullopt;
     std::vector<std::uint32_t> words(entry.words);
     std::size_t place = entry.place;

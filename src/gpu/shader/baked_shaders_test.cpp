@@ -16,18 +16,18 @@ namespace {
 using Bytes = std::vector<std::byte>;
 using Words = std::vector<std::uint32_t>;
 
-constexpr std::uint32_t first_word = 0x07230203;
+constexpr std::uint32_t baked_magic = 0x07230203;
 // Places in the file, as docs/limits.md and the header have them.
 constexpr std::size_t version_at = 8, profile_at = 12, count_at = 16, bytes_at = 20, hash_at = 24, index_at = 40;
 constexpr std::size_t index_size = 44, stage_at = 32, length_at = 36, place_at = 40;
 
-Words words_of(std::uint32_t number) { return {first_word, 0x10500, 0, number, 0, number * 7}; }
+Words words_of(std::uint32_t number) { return {baked_magic, 0x10500, 0, number, 0, number * 7}; }
 
 ShadersToBake three() {
     return {.profile = DeviceProfile::Software,
             .words = {{{sha256("one"), ShaderStage::Compute}, words_of(1)},
                       {{sha256("two"), ShaderStage::Fragment}, words_of(2)},
-                      {{sha256("two"), ShaderStage::Vertex}, {first_word, 0x10500, 0, 9, 0}}}};
+                      {{sha256("two"), ShaderStage::Vertex}, {baked_magic, 0x10500, 0, 9, 0}}}};
 }
 
 void put(Bytes& file, std::size_t place, std::uint32_t value) { std::memcpy(file.data() + place, &value, 4); }
@@ -52,7 +52,7 @@ TEST(BakedShaders, AFileGivesBackWhatWasAdded) {
     EXPECT_EQ(read->profile(), DeviceProfile::Software);
     EXPECT_EQ(read->find(sha256("one"), ShaderStage::Compute), words_of(1));
     EXPECT_EQ(read->find(sha256("two"), ShaderStage::Fragment), words_of(2));
-    EXPECT_EQ(read->find(sha256("two"), ShaderStage::Vertex), (Words{first_word, 0x10500, 0, 9, 0}));
+    EXPECT_EQ(read->find(sha256("two"), ShaderStage::Vertex), (Words{baked_magic, 0x10500, 0, 9, 0}));
     EXPECT_EQ(read->find(sha256("one"), ShaderStage::Vertex), std::nullopt) << "of another stage";
     EXPECT_EQ(read->find(sha256("three"), ShaderStage::Compute), std::nullopt);
     const Result<BakedShaders> nothing = BakedShaders::read(ShadersToBake().bytes());
