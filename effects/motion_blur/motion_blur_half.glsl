@@ -8,8 +8,9 @@ vec4 shade(Pixel pixel) {
     // In the order of a gather: (0,1), (1,1), (1,0), (0,0).
     vec4 depth = gather_red(motion_blur_depth, (vec2(first) + 1.0) / vec2(size(motion_blur_depth)));
     vec4 inverse = (depth * custom[1].z + custom[1].w) / (depth * custom[1].x + custom[1].y);
-    // What is no number compares as unlike.
-    vec4 weight = vec4(lessThan(abs(inverse - inverse.w), 0.1 * inverse));
+    // Sky is like sky, whose inverse may be 0. What is no number compares as unlike.
+    inverse = mix(inverse, vec4(0.0), equal(depth, vec4(custom[0].w)));
+    vec4 weight = vec4(lessThanEqual(abs(inverse - inverse.w), 0.1 * inverse));
     weight.w = 1.0;
     vec4 sum = load(motion_blur_picture, first);
     sum += load(motion_blur_picture, ivec2(first.x, last.y)) * weight.x;

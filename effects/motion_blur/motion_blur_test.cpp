@@ -213,6 +213,52 @@ TEST(EffectMotionBlur, WithoutMotionOrAfterACutThePictureIsAsItWas) {
     EXPECT_FALSE(effect_info(on).is_identity(&on));
 }
 
+// Of a camera that jumped the velocities say nothing, whoever made them. Where the check is off, everything smears.
+TEST(EffectMotionBlur, NothingSmearsWhereTheCameraJumped) {
+    Shot first = scene({16, 8}, {-7, 3}), second = first;
+    first.camera = test::look_at({0, 0, 0}, {0, 0, -1}, 0.9, double{width} / height);
+    second.camera = test::look_at({0, 0, 0}, {1, 0, 0}, 0.9, double{width} / height);
+    for (Shot* const shot : {&first, &second}) shot->camera.depth = DepthKind::Planar;
+    for (const bool is_checked : {true, false}) {
+        if (!is_checked) second.camera.jump_angle = std::numeric_limits<float>::infinity();
+        for (const MotionBlur& blur : {full, half}) {
+            const std::vector<Shot> shots{first, second};
+            for (const auto& out :
+                 {test::developed_sequence(stack_of(blur), shots), test::reference_sequence(stack_of(blur), shots)}) {
+                EXPECT_GT(share_beyond(out[0], first.color, 0x1p-4), 0.3) << "the first frame has none before it";
+                EXPECT_EQ(share_beyond(out[1], second.color, 0x1p-4) > 0.3, !is_checked);
+                if (is_checked) EXPECT_EQ(test::worst_difference(out[1], second.color), 0);
+            }
+        }
+    }
+}
+
+// A sky of columns of one pixel, seen by a camera that turns, its far plane at infinity: at half size a texel is the mean
+// of what it covers, whose depth is 0, or 1, as that of all sky is. With an odd number of columns, too.
+TEST(EffectMotionBlur, TheSkyIsTakenWholeInDeviceDepth) {
+    for (const DepthKind kind : {DepthKind::Standard, DepthKind::Reversed})
+        for (const std::uint32_t columns : {128U, 127U}) {
+            const bool is_reversed = kind == DepthKind::Reversed;
+            ReferenceImage sky(columns, height), depth(columns, height, {is_reversed ? 0.0 : 1.0, 0, 0, 1});
+            for (std::uint32_t y = 0; y < height; ++y)
+                for (std::uint32_t x = 0; x < columns; ++x) sky.at(x, y) = {x % 2 == 0 ? 1.0 : 0.0, 0, 0, 1};
+            const double aspect = double{columns} / height;
+            Camera camera = test::look_at({0, 0, 0}, {0, 0, -1}, 0.9, aspect);
+            camera.depth = kind;
+            camera.far_distance = std::numeric_limits<float>::infinity();
+            // z_clip = near or near - distance, w = distance.
+            camera.projection[10] = is_reversed ? 0.0f : -1.0f;
+            camera.projection[14] = is_reversed ? camera.near_distance : -camera.near_distance;
+            camera.previous_projection = camera.projection;
+            camera.previous_view = test::look_at({0, 0, 0}, {0.01, 0, -1}, 0.9, aspect).view;
+            const ReferenceImage out =
+                test::develop(stack_of(half), sky, {.depth = &depth, .is_depth_planar = false, .camera = camera});
+            ASSERT_EQ(out.pixels.size(), sky.pixels.size());
+            for (std::uint32_t x = 20; x < columns - 20; ++x)
+                ASSERT_NEAR(out.at(x, 200).r, 0.5, 0.02) << columns << " columns, at " << x;
+        }
+}
+
 TEST(EffectMotionBlur, NanAndInfinityStayContained) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     for (const MotionBlur& blur : {full, half}) {

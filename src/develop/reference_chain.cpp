@@ -119,9 +119,9 @@ class Chain {
     void begin_histories() {
         if (input_.histories == nullptr) return;
         ReferenceHistories& kept = *input_.histories;
-        const bool goes_on =
-            !input_.camera.is_cut && input_.delta_time > 0 && !compose::is_camera_jump(kept.camera, input_.camera);
-        if (!goes_on) {
+        const bool is_first = kept.camera == Matrix{};
+        input_.camera.is_cut |= !is_first && compose::is_camera_jump(kept.camera, input_.camera);
+        if (is_first || input_.camera.is_cut || input_.delta_time <= 0) {
             kept.entries.clear();
             kept.outputs.clear();
         }
@@ -415,7 +415,7 @@ class Chain {
     }
 
     const Composer& composer_;
-    const ReferenceChainInput& input_;
+    ReferenceChainInput input_;  ///< its camera is cut after a jump
     const ReferenceImage* const ui_ = input_.images[FrameImage::Ui];
     std::deque<ReferenceImage> pictures_;      // that none moves while others are added
     std::vector<ColorState> states_;           // of each picture

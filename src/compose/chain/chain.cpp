@@ -23,13 +23,15 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     if (auto ok = check_frame(program_of(), desc_.compile, frame); !ok) return ok;
     find_watched(frame);
     const VkExtent2D extent = frame.color.used_region().extent;
+    Camera camera = frame.camera;
+    camera.is_cut |= is_jump(frame);
     const PassContext context{.scene_extent = extent,
                               .frame_extent = extent,
                               .output_extent = extent,
                               .time = frame.time,
                               .delta_time = frame.delta_time,
                               .frame_index = frame.frame_index,
-                              .camera = &frame.camera,
+                              .camera = &camera,
                               .lights = frame.lights};
     StackProgram& program = *desc_.program;
     program.most_unfinished = std::max(program.most_unfinished, desc_.slots);
@@ -46,7 +48,7 @@ Result<> Chain::record(VkCommandBuffer commands, const Frame& frame) {
     note_watch_states();
     write_frame_block(frame);
     lend_images(frame);
-    prepare_histories(commands, frame);
+    prepare_histories(commands, frame, !camera.is_cut && frame.delta_time > 0);
     schedule_->derive(values_.gates(), import_states_, physical_->histories(frame.view).recordings);
 
     const bool is_timed = timers_.pool != VK_NULL_HANDLE;
@@ -178,13 +180,16 @@ gpu::Region Chain::watched_region(const gpu::Region& whole, const Watched& watch
     return out;
 }
 
+bool Chain::is_jump(const Frame& frame) {
+    const graph::HistoryView& view = physical_->histories(frame.view);
+    return view.recordings > 0 && is_camera_jump(view.camera, frame.camera);
+}
+
 /// Histories start from zero where nothing of the last frame of the view can be used, each by itself.
-void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame) {
+void Chain::prepare_histories(VkCommandBuffer commands, const Frame& frame, bool is_related) {
     graph::HistoryView& view = physical_->histories(frame.view);
     before_.view_index = frame.view;
     before_.view = view;
-    const bool is_jump = view.recordings > 0 && is_camera_jump(view.camera, frame.camera);
-    const bool is_related = !frame.camera.is_cut && !is_jump && frame.delta_time > 0;
     view.camera = frame.camera.view;
     for (std::uint32_t i = 0; i < before_.states.size(); ++i) {
         graph::HistoryImages* const history = physical_->history(i, frame.view);

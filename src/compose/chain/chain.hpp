@@ -69,7 +69,8 @@ class Chain final : public Garbage {
     void find_watched(const Frame& frame);
     void note_watch_states();
     [[nodiscard]] gpu::Region watched_region(const gpu::Region& whole, const Watched& watched, VkExtent2D extent) const;
-    void prepare_histories(VkCommandBuffer commands, const Frame& frame);
+    [[nodiscard]] bool is_jump(const Frame& frame);
+    void prepare_histories(VkCommandBuffer commands, const Frame& frame, bool is_related);
     void derive(const PassContext& context, std::span<const plan::Entry* const> entries, std::uint64_t frame);
     [[nodiscard]] plan::Shape expected_shape(std::size_t pass, std::span<const plan::Entry* const> entries) const;
     [[nodiscard]] gpu::Binding bind(const plan::PassInput& input, const Frame& frame) const;
