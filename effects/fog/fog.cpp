@@ -21,6 +21,8 @@ constexpr auto fog_rows = describe(
     field<&Fog::start>("Where it begins.", {0, 1e6}, unit::metres),
     field<&Fog::end>("Where it is full; must lie beyond `start`.", {0.001, 1e9}, unit::metres),
     field<&Fog::height_enabled>("Does it thin with height."),
+    field<&Fog::height_form>(
+        "Whether its height counts along the whole way to the eye, or at the end of the way alone."),
     field<&Fog::height_falloff>("How quickly it thins above `height_origin`.", {0, 1000}, unit::per_metre)
         .as_amount_of<&Fog::height_enabled>(),
     field<&Fog::height_origin>("World height up to which it has its full density.", {-1e6, 1e6}, unit::metres),
@@ -38,7 +40,7 @@ std::string conflict(const void* parameters) {
 }
 
 /// The constants of planar_distance(), then: optical depth is distance * range.y + range.z, from 0 to range.w; full fog
-/// is 1 / more.x of it; height counts from the camera, by more.y from -more.z on.
+/// is 1 / more.x of it; the eye is more.z above the height from which the fog thins.
 void fog_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Fog& fog = fog_of(parameters);
     const double density = fog.density, start = fog.start, span = std::max(double{fog.end} - start, 1e-6);
@@ -47,7 +49,7 @@ void fog_constants(const void* parameters, const PassContext& context, std::span
     out[1][1] = fog.density;
     out[1][2] = static_cast<float>(-density * start);
     out[1][3] = static_cast<float>(density * span);
-    out[2] = {static_cast<float>(-1 / std::expm1(-std::max(density * span, 1e-30))), -fog.height_falloff,
+    out[2] = {static_cast<float>(-1 / std::expm1(-std::max(density * span, 1e-30))), 0,
               static_cast<float>(rise), static_cast<float>(1 / std::max(fog_horizon_sine(fog), 1e-6))};
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Fog in double precision: f = (1 - exp(-density x)) / (1 - exp(-density (end - start))), x the distance behind
-// `start`, times exp(-falloff max(y - origin, 0)) where height counts; the picture is mixed with the colour by f.
+// `start`. Where height counts, x is multiplied by the mean of exp(-falloff max(y - origin, 0)) along it, or f by what
+// that is at the end of the way; the picture is mixed with the colour by f.
 
 #include <algorithm>
 #include <cmath>
@@ -13,17 +14,29 @@
 
 namespace darkroom {
 
-/// How much of the fog's colour there is at a distance from the camera (m) and a world height (m).
-inline double fog_amount(double distance, double height, const Fog& fog) {
+/// How much of the fog's colour there is at a distance from the camera (m), on a way that reaches `height` (m, world)
+/// there and began at the height `eye`.
+inline double fog_amount(double distance, double height, const Fog& fog, double eye) {
     const double span = double{fog.end} - double{fog.start};
     const double x = std::clamp(distance - double{fog.start}, 0.0, span);
-    const double density = double{fog.density};
+    const double density = double{fog.density}, falloff = double{fog.height_falloff}, origin{fog.height_origin};
     if (density == 0) return 0;
-    double amount = std::expm1(-density * x) / std::expm1(-density * span);
-    if (fog.height_enabled.on != 0)
-        amount *= std::exp(-double{fog.height_falloff} * std::max(height - double{fog.height_origin}, 0.0));
-    return amount;
+    const auto thinned = [&](double y) { return std::exp(-falloff * std::max(y - origin, 0.0)); };
+    double depth = density * x, amount = 1;
+    if (fog.height_enabled.on != 0 && fog.height_form == FogHeight::EndPoint) amount = thinned(height);
+    if (fog.height_enabled.on != 0 && fog.height_form == FogHeight::Integral && x > 0) {
+        // The antiderivative of what is left at a height.
+        const auto below = [&](double y) {
+            const double above = std::max(y - origin, 0.0);
+            return std::min(y - origin, 0.0) + (falloff == 0 ? above : -std::expm1(-falloff * above) / falloff);
+        };
+        const double up = (height - eye) / distance, first = eye + up * double{fog.start}, last = first + up * x;
+        depth *= std::abs(last - first) > 1e-6 ? (below(last) - below(first)) / (last - first) : thinned(first);
+    }
+    return amount * std::expm1(-depth) / std::expm1(-density * span);
 }
+/// The same where height does not count.
+inline double fog_amount(double distance, const Fog& fog) { return fog_amount(distance, 0, fog, 0); }
 
 [[nodiscard]] inline double fog_horizon_sine(const Fog& fog) {
     return std::sin(double{fog.horizon} * std::numbers::pi / 180);
@@ -46,11 +59,15 @@ inline ReferenceImage fog_reference(const void* parameters, const ReferenceInput
             const double planar = input.depth->at(x, y).r;
             const bool is_sky = planar >= 1e9;
             const Double3 view = camera.view_position((x + 0.5) / out.width, (y + 0.5) / out.height, planar);
-            const double length = std::hypot(view[0], view[1], view[2]);
+            // Rays that run side by side begin beside the eye.
+            const Double3 first = camera.view_position((x + 0.5) / out.width, (y + 0.5) / out.height, 0);
+            const Double3 ray{view[0] - first[0], view[1] - first[1], view[2] - first[2]};
+            const double length = std::hypot(ray[0], ray[1], ray[2]);
             const double distance = is_sky ? double{fog.end} : length;
-            const double up = camera.world_direction(view)[1] / length;
+            const double eye = camera.eye[1] + camera.world_direction(first)[1];
+            const double up = camera.world_direction(ray)[1] / length;
             const double amount =
-                fog_amount(distance, camera.eye[1] + up * distance, fog) * (is_sky ? fog_share_in_sky(up, fog) : 1);
+                fog_amount(distance, eye + up * distance, fog, eye) * (is_sky ? fog_share_in_sky(up, fog) : 1);
             Rgba& pixel = out.at(x, y);
             pixel.r += (double{fog.color.r} - pixel.r) * amount;
             pixel.g += (double{fog.color.g} - pixel.g) * amount;

@@ -29,24 +29,48 @@ struct Case {
 
 TEST(EffectFog, HasTheDocumentedValues) {
     const Fog fog{.density = 0.02f, .start = 5, .end = 100};
-    EXPECT_EQ(fog_amount(5, 0, fog), 0);
-    EXPECT_NEAR(fog_amount(10, 0, fog), 0.1119, 5e-5);
-    EXPECT_NEAR(fog_amount(50, 0, fog), 0.6978, 5e-5);
-    EXPECT_EQ(fog_amount(100, 0, fog), 1);
-    EXPECT_EQ(fog_amount(1000, 0, fog), 1);
+    EXPECT_EQ(fog_amount(5, fog), 0);
+    EXPECT_NEAR(fog_amount(10, fog), 0.1119, 5e-5);
+    EXPECT_NEAR(fog_amount(50, fog), 0.6978, 5e-5);
+    EXPECT_EQ(fog_amount(100, fog), 1);
+    EXPECT_EQ(fog_amount(1000, fog), 1);
 }
 
 TEST(EffectFog, WithoutAnEndItIsTheExponential) {
     const Fog fog{.density = 0.02f, .start = 5, .end = 1e9f};
     for (const auto& [distance, amount] :
          {std::pair{5.0, 0.0}, {10.0, .0952}, {50.0, .5934}, {100.0, .8504}, {200.0, .9798}})
-        EXPECT_NEAR(fog_amount(distance, 0, fog), amount, 5e-5) << distance;
+        EXPECT_NEAR(fog_amount(distance, fog), amount, 5e-5) << distance;
 }
 
-TEST(EffectFog, ThinsAboveTheOriginAndNotBelow) {
-    const Fog fog{.height_enabled = true, .height_falloff = 0.5f, .height_origin = 1};
-    EXPECT_EQ(fog_amount(40, -7, fog), fog_amount(40, 1, fog));
-    EXPECT_NEAR(fog_amount(40, 3, fog), fog_amount(40, 1, fog) * std::exp(-1.0), 1e-12);
+TEST(EffectFog, TheEndPointThinsAboveTheOriginAndNotBelow) {
+    const Fog fog{.height_enabled = true, .height_form = FogHeight::EndPoint, .height_falloff = 0.5f, .height_origin = 1};
+    EXPECT_EQ(fog_amount(40, -7, fog, 0), fog_amount(40, 1, fog, 0));
+    EXPECT_NEAR(fog_amount(40, 3, fog, 0), fog_amount(40, 1, fog, 0) * std::exp(-1.0), 1e-12);
+}
+
+// Light comes through the fog of the whole way, slice by slice: up out of it, down into it, level, and through the
+// height at which it begins to thin.
+TEST(EffectFog, TheIntegralIsASumOfThinSlices) {
+    const Fog fog{.density = 0.05f, .start = 4, .height_enabled = true, .height_falloff = 0.5f, .height_origin = 1};
+    for (const auto& [eye, height] : {std::pair{0.0, 9.0}, {12.0, -3.0}, {2.0, 2.0}, {-2.0, -1.0}, {6.0, 1.5}}) {
+        constexpr int slices = 100000;
+        constexpr double distance = 40;
+        double left = 1;
+        for (int i = 0; i < slices; ++i) {
+            const double t = 4 + (distance - 4) * (i + 0.5) / slices, y = eye + (height - eye) * t / distance;
+            left *= 1 - 0.05 * std::exp(-0.5 * std::max(y - 1, 0.0)) * (distance - 4) / slices;
+        }
+        EXPECT_NEAR(fog_amount(distance, height, fog, eye), 1 - left, 1e-5) << eye << " to " << height;
+    }
+}
+
+// Air, no wall: what is 100 m away shows through by more than half, and what is 20 m away nearly wholly.
+TEST(EffectFog, TheDefaultsAreAir) {
+    const Fog fog;
+    EXPECT_LT(fog_amount(100, fog), 0.5);
+    EXPECT_GT(fog_amount(100, fog), 0.2);
+    EXPECT_LT(fog_amount(20, fog), 0.1);
 }
 
 TEST(EffectFog, RefusesAnEndThatDoesNotLieBeyondTheStart) {
@@ -63,7 +87,16 @@ TEST(EffectFog, GpuMatchesReference) {
     const Case data;
     for (const Fog& fog : {Fog{}, Fog{.density = 0}, Fog{.density = 1e-5f, .start = 0, .end = 400}, Fog{.density = 3},
                            Fog{.density = 0.1f, .end = 20, .sky = true}, Fog{.horizon = 0}, Fog{.horizon = 60},
-                           Fog{.height_enabled = true, .height_falloff = 0.4f, .height_origin = -2, .sky = true}}) {
+                           Fog{.height_enabled = true, .height_falloff = 0.4f, .height_origin = -2, .sky = true},
+                           Fog{.density = 0.2f, .height_enabled = true, .height_falloff = 3, .height_origin = 3},
+                           Fog{.height_enabled = true, .height_falloff = 0},
+                           Fog{.density = 0.02f,
+                               .end = 100,
+                               .height_enabled = true,
+                               .height_form = FogHeight::EndPoint,
+                               .height_falloff = 0.4f,
+                               .height_origin = -2,
+                               .sky = true}}) {
         const ReferenceImage expected = test::scene_reference_of(fog, data.picture, data.options());
         for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
             test::RunOptions options = data.options();
@@ -96,7 +129,9 @@ TEST(EffectFog, LandAndSkyMeetWithoutALine) {
         return step;
     };
     EXPECT_GT(steepest({.color = {0, 0, 0}, .horizon = 0}), 0.9);
-    EXPECT_LT(steepest({.color = {0, 0, 0}}), 0.06);
+    EXPECT_LT(steepest({.color = {0, 0, 0}, .density = 0.02f, .end = 100}), 0.06);
+    // Thin fog that has no end grows from 0.79 to 0.93 of itself within a row of land: 320 m, and 530 m away.
+    EXPECT_LT(steepest({.color = {0, 0, 0}}), 0.15);
 }
 
 // The same distances as device depth, near to far and reversed.
@@ -138,11 +173,27 @@ TEST(EffectFog, GpuKnowsParallelRaysToo) {
     p[8] = 0.02f;
     p[10] = -0.01f;
     p[15] = 1;
-    const Fog fog{.density = 0.05f, .height_enabled = true, .height_origin = -5};
+    const Fog fog{.density = 0.05f, .end = 400, .height_enabled = true, .height_origin = -5};
     const ReferenceImage expected = test::scene_reference_of(fog, data.picture, options);
     const auto fill = [&](Composer& composer) { composer.add(fog); };
     EXPECT_LE(test::worst_half_ulps(test::develop(fill, data.picture, options), expected), 2);
     EXPECT_GT(test::worst_half_ulps(test::develop(fill, data.picture, data.options()), expected), 20);
+}
+
+// Rays that run side by side are as long as the way from the plane of the eye, wherever in the picture they begin.
+TEST(EffectFog, ParallelRaysOfAFlatWallAreEquallyLong) {
+    const ReferenceImage white = test::uniform(16, 9, {1, 1, 1, 1}), depth = test::uniform(16, 9, {40, 0, 0, 1});
+    Camera camera = test::look_at({0, 2, 0}, {0, 2, -1}, 1, 16.0 / 9);
+    Matrix& p = camera.projection;
+    p = {};
+    p[0] = 0.02f;
+    p[5] = -0.03f;
+    p[10] = -0.01f;
+    p[15] = 1;
+    const Fog fog{.color = {0, 0, 0}, .density = 0.02f, .end = 100};
+    const ReferenceImage out =
+        test::develop([&](Composer& composer) { composer.add(fog); }, white, {.depth = &depth, .camera = camera});
+    for (const Rgba& pixel : out.pixels) EXPECT_NEAR(pixel.r, 1 - fog_amount(40, fog), 1e-6);
 }
 
 TEST(EffectFog, GpuLeavesTheSkyBitForBit) {

@@ -11,6 +11,11 @@ vec3 view_position(vec2 uv, float planar) {
     return vec3(place, -planar);
 }
 
+/// Where the ray of this place leaves the plane of the eye: the eye itself, unless rays run side by side.
+vec3 view_ray_start(vec2 uv) {
+    return rays_meet ? vec3(0.0) : vec3(uv * frame_ray_flat.xy + frame_ray_flat.zw, 0.0);
+}
+
 /// Where a point of view space is in the picture.
 vec2 view_to_uv(vec3 position) {
     float w = frame_projection_offset.w + position.z * frame_projection_offset.z;

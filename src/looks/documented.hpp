@@ -16,6 +16,9 @@ struct DocumentedValue {
 
 inline constexpr std::array documented_values{
     DocumentedValue{"ssao", "method", "hemisphere"},
+    DocumentedValue{"fog", "density", "0.02"},
+    DocumentedValue{"fog", "end", "100"},
+    DocumentedValue{"fog", "height_form", "end_point"},
     DocumentedValue{"fog", "horizon", "0"},
     DocumentedValue{"fxaa", "enabled", "false"},
     DocumentedValue{"dither", "enabled", "false"},
