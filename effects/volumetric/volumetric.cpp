@@ -21,7 +21,9 @@ constexpr auto volumetric_rows = describe(
         .as_amount(),
     field<&Volumetric::samples>("Steps of the march. Brightness does not depend on it, smoothness does.", {1, 256}),
     field<&Volumetric::max_distance>("How far the march goes; the sky is marched as far.", {0.01, 1e6}, unit::metres),
-    field<&Volumetric::decay>("What is left of the light after each thirty-second of the march.", {0.01, 1}));
+    field<&Volumetric::decay>(
+        "What is left of the light after each metre, or after each thirty-second of the march.", {0.01, 1}),
+    field<&Volumetric::decay_form>("What `decay` is a share of."));
 
 const Volumetric& volumetric_of(const void* parameters) { return *static_cast<const Volumetric*>(parameters); }
 
@@ -90,7 +92,8 @@ void march_constants(const void* parameters, const PassContext& context, std::sp
     if (!is_volumetric(light) || context.camera == nullptr) return;
     const Volumetric& volumetric = volumetric_of(parameters);
     const auto samples = static_cast<float>(volumetric.samples);
-    out[0] = {samples, volumetric.max_distance, std::pow(volumetric.decay, 32.0f / samples),
+    const bool is_per_metre = volumetric.decay_form == VolumetricDecay::PerMetre;
+    out[0] = {samples, volumetric.max_distance, is_per_metre ? 1.0f : std::pow(volumetric.decay, 32.0f / samples),
               volumetric.density * 0.01f * light->volumetric_intensity};
     const Ramp world = world_ramp(context);
     const SolvedCamera camera(*context.camera);
@@ -118,6 +121,7 @@ void march_constants(const void* parameters, const PassContext& context, std::sp
         vectors[0][3] = light->splits[cascade];
     }
     out[fixed_vectors + 1][3] = static_cast<float>(cascades);
+    out[fixed_vectors + 2][3] = is_per_metre ? std::log2(volumetric.decay) : 0.0f;
 }
 
 void build(PassBuilder& builder) {

@@ -9,6 +9,11 @@ namespace darkroom {
 
 struct EffectInfo;
 
+enum class VolumetricDecay : std::uint32_t {
+    PerMetre,  ///< of the way from the light's place in the air to the eye
+    PerStep,   ///< of each thirty-second of the march, however long that is
+};
+
 struct Volumetric {
     /// How much light the haze scatters toward the camera, in hundredths a metre. [0, 1000]
     float density = 1.0f;
@@ -16,8 +21,10 @@ struct Volumetric {
     std::int32_t samples = 32;
     /// How far the march goes; the sky is marched as far. [0.01, 1000000] m
     float max_distance = 100.0f;
-    /// What is left of the light after each thirty-second of the march. [0.01, 1]
-    float decay = 0.98f;
+    /// What is left of the light after each metre, or after each thirty-second of the march. [0.01, 1]
+    float decay = 0.994f;
+    /// What `decay` is a share of.
+    VolumetricDecay decay_form = VolumetricDecay::PerMetre;
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const Volumetric&);

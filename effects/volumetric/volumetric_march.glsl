@@ -5,7 +5,8 @@
 // texel 0) of the ray where its planar distance is 1, custom[2] = (cosine to the light times the ray's length: at texel 0, per
 // texel x, y; is first), custom[3] = (color, is perspective), and of cascade c custom[4 + 4c] = (its u, v and depth at
 // distance 0; far distance), custom[5 + 4c] = (the same per distance at texel 0; of the first cascade: how many there are),
-// custom[6 + 4c] and custom[7 + 4c]: per texel x and y, and distance where the camera is perspective.
+// custom[6 + 4c] and custom[7 + 4c]: per texel x and y, and distance where the camera is perspective. custom[6].w: log2 of
+// what a metre leaves.
 
 // Henyey and Greenstein, "Diffuse radiation in the galaxy", 1941, g = 0.8: forward scattering.
 float volumetric_phase(float cosine) {
@@ -17,8 +18,8 @@ float volumetric_phase(float cosine) {
 // The samples of one cascade, `first` to `end` - 1, before the light of those behind them: from the last one on, since each
 // takes its share of what comes from behind. A round is run before it is asked whether it was the last, because the
 // software driver runs one more otherwise.
-float volumetric_lit(float sum, float first, float end, vec3 place, vec3 slope, float cascade) {
-    float left = custom[0].z, i = end - 1.0;
+float volumetric_lit(float sum, float left, float first, float end, vec3 place, vec3 slope, float cascade) {
+    float i = end - 1.0;
     if (i >= first) {
         [[dont_unroll]] do {
             vec3 at = place + slope * i;
@@ -30,11 +31,11 @@ float volumetric_lit(float sum, float first, float end, vec3 place, vec3 slope, 
 }
 
 // The cascade's four vectors, and `at`: texel, length of a step, jitter.
-float volumetric_cascade(float sum, float first, float end, vec4 start, vec4 ray, vec4 per_x, vec4 per_y, vec4 at,
+float volumetric_cascade(float sum, float left, float first, float end, vec4 start, vec4 ray, vec4 per_x, vec4 per_y, vec4 at,
                          float cascade) {
     float perspective = custom[3].w;
     vec3 turn = per_x.xyz * at.x + per_y.xyz * at.y, slope = (ray.xyz + turn * perspective) * at.z;
-    return volumetric_lit(sum, first, end, start.xyz + turn * (1.0 - perspective) + slope * at.w, slope, cascade);
+    return volumetric_lit(sum, left, first, end, start.xyz + turn * (1.0 - perspective) + slope * at.w, slope, cascade);
 }
 
 vec4 shade(Pixel pixel) {
@@ -56,14 +57,17 @@ vec4 shade(Pixel pixel) {
     ends.z = max(ends.y, ends.z);
     ends.w = max(ends.z, ends.w);
     float sum = 0.0;
-    [[dont_unroll]] for (float i = ends.w; i < samples; ++i) sum = sum * march.z + 1.0;
+    // What a step leaves: a share of the march, or of a metre, whose first sample lies a part of a step away, too.
+    float per_step = custom[6].w * step_length * true_of_planar, left = march.z * exp2(per_step);
+    [[dont_unroll]] for (float i = ends.w; i < samples; ++i) sum = sum * left + 1.0;
     vec4 at = vec4(texel, step_length, jitter);
-    sum = volumetric_cascade(sum, ends.z, ends.w, custom[16], custom[17], custom[18], custom[19], at, 3.0);
-    sum = volumetric_cascade(sum, ends.y, ends.z, custom[12], custom[13], custom[14], custom[15], at, 2.0);
-    sum = volumetric_cascade(sum, ends.x, ends.y, custom[8], custom[9], custom[10], custom[11], at, 1.0);
-    sum = volumetric_cascade(sum, 0.0, ends.x, custom[4], custom[5], custom[6], custom[7], at, 0.0);
+    sum = volumetric_cascade(sum, left, ends.z, ends.w, custom[16], custom[17], custom[18], custom[19], at, 3.0);
+    sum = volumetric_cascade(sum, left, ends.y, ends.z, custom[12], custom[13], custom[14], custom[15], at, 2.0);
+    sum = volumetric_cascade(sum, left, ends.x, ends.y, custom[8], custom[9], custom[10], custom[11], at, 1.0);
+    sum = volumetric_cascade(sum, left, 0.0, ends.x, custom[4], custom[5], custom[6], custom[7], at, 0.0);
     float cosine = (custom[2].x + custom[2].y * texel.x + custom[2].z * texel.y) / true_of_planar;
-    float scattered = sum * step_length * true_of_planar * march.w * volumetric_phase(cosine);
+    float scattered =
+        sum * exp2(per_step * jitter) * step_length * true_of_planar * march.w * volumetric_phase(cosine);
     // Four lights must not add up to more than half precision holds.
     return vec4(min(custom[3].rgb * scattered, vec3(16000.0)), custom[2].w * planar);
 }

@@ -31,12 +31,20 @@ inline double volumetric_phase(double cosine) {
     return (1 - g * g) / (4 * pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
-/// What the haze scatters where nothing casts a shadow: a geometric series, for a march of `length` metres.
+/// What a step of this length in metres leaves of the light.
+inline double volumetric_left(const Volumetric& volumetric, double step) {
+    const bool is_per_metre = volumetric.decay_form == VolumetricDecay::PerMetre;
+    return std::pow(double{volumetric.decay}, is_per_metre ? step : 32.0 / volumetric.samples);
+}
+
+/// What the haze scatters where nothing casts a shadow, on `length` metres: the integral of what each metre leaves, or a
+/// geometric series of the steps' shares.
 inline double volumetric_unoccluded(const Volumetric& volumetric, double intensity, double cosine, double length) {
-    const double samples = volumetric.samples, step = length / samples;
-    const double left = std::pow(double{volumetric.decay}, 32 / samples);
-    const double series = left == 1 ? samples : (1 - std::pow(left, samples)) / (1 - left);
-    return intensity * volumetric_phase(cosine) * double{volumetric.density} * 0.01 * step * series;
+    const double samples = volumetric.samples, left = volumetric_left(volumetric, length / samples);
+    const double all = std::pow(left, samples);
+    const double per_step = volumetric.decay_form == VolumetricDecay::PerMetre ? -std::log(left) : 1 - left;
+    const double series = left == 1 ? samples : (1 - all) / per_step;
+    return intensity * volumetric_phase(cosine) * double{volumetric.density} * 0.01 * length / samples * series;
 }
 
 inline bool volumetric_is_lit(const ReferenceLight& light) {
@@ -77,14 +85,14 @@ inline Rgba volumetric_march(const Volumetric& volumetric, const ReferenceInput&
     const double true_of_planar = std::hypot(unit[0], unit[1], unit[2]);
     const Double3 moved = camera.world_direction(first), turned = camera.world_direction(unit);
     const double march = std::min(planar * true_of_planar, double{volumetric.max_distance});
-    const double step = march / volumetric.samples,
-                 left = std::pow(double{volumetric.decay}, 32.0 / volumetric.samples);
+    const double step = march / volumetric.samples, left = volumetric_left(volumetric, step);
+    const bool is_per_metre = volumetric.decay_form == VolumetricDecay::PerMetre;
 
     Rgba out{0, 0, 0, std::min(planar, 60000.0)};
     std::uint32_t number = 0;
     for (const ReferenceLight& light : input.lights) {
         if (light.cascades.empty() || number++ >= max_shadow_lights || !volumetric_is_lit(light)) continue;
-        double sum = 0, transmittance = 1;
+        double sum = 0, transmittance = is_per_metre ? std::pow(left, jitter) : 1;
         for (std::int32_t i = 0; i < volumetric.samples; ++i, transmittance *= left) {
             const double along = (i + jitter) * step / true_of_planar;
             Double3 point{};

@@ -20,6 +20,13 @@ using test::open_light;
 using test::traced_light;
 
 constexpr std::uint32_t width = 64, height = 36;
+/// As in the chapter.
+constexpr Volumetric published{.decay = 0.98f, .decay_form = VolumetricDecay::PerStep};
+constexpr Volumetric with(Volumetric volumetric, float density, std::int32_t samples = 32) {
+    volumetric.density = density;
+    volumetric.samples = samples;
+    return volumetric;
+}
 
 /// A picture of one distance, seen by a narrow camera that looks along -z from the origin.
 struct Flat {
@@ -65,10 +72,12 @@ TEST(EffectVolumetric, UnoccludedIsTheClosedForm) {
     // The documented numbers: 32 steps, each leaving 0.98.
     double by_hand = 0, left = 1;
     for (int i = 0; i < 32; ++i, left *= 0.98) by_hand += left * 2.5 * 0.01 * 3 * volumetric_phase(0.5) * (48.0 / 32);
-    EXPECT_NEAR(volumetric_unoccluded({.density = 2.5f}, 3, 0.5, 48), by_hand, by_hand * 1e-6);
+    EXPECT_NEAR(volumetric_unoccluded(with(published, 2.5f), 3, 0.5, 48), by_hand, by_hand * 1e-6);
     const Flat flat(48);
     for (const Volumetric& volumetric :
-         {Volumetric{}, Volumetric{.density = 3, .samples = 7}, Volumetric{.decay = 0.5f}, Volumetric{.decay = 1}}) {
+         {Volumetric{}, Volumetric{.density = 3, .samples = 64}, Volumetric{.samples = 256, .decay = 0.9f}, published,
+          with(published, 3, 7), Volumetric{.decay = 0.5f, .decay_form = VolumetricDecay::PerStep},
+          Volumetric{.decay = 1}}) {
         const Rgba got = flat.reference(volumetric).at(32, 18);
         const double cosine = cosine_of(flat.lights[0], flat.camera, 32.5 / width, 18.5 / height);
         const double expected = volumetric_unoccluded(volumetric, 1, cosine, 48);
@@ -80,11 +89,29 @@ TEST(EffectVolumetric, UnoccludedIsTheClosedForm) {
 TEST(EffectVolumetric, BrightnessDoesNotDependOnTheNumberOfSamples) {
     double lowest = 1e9, highest = 0;
     for (const std::int32_t samples : {16, 24, 32, 64, 128}) {
-        const double value = volumetric_unoccluded({.samples = samples}, 1, 0.3, 100);
+        const double value = volumetric_unoccluded(with(published, 1, samples), 1, 0.3, 100);
         lowest = std::min(lowest, value);
         highest = std::max(highest, value);
     }
     EXPECT_LT(highest / lowest, 1.02);
+}
+
+// The light of the first two metres is the same before a near wall and before a far one: a roof shades what is behind
+// them. By steps it is not, which is what that form is for.
+TEST(EffectVolumetric, LightNearTheEyeDoesNotDependOnWhereTheRayEnds) {
+    const std::vector<Box> roof{{{-50, 3, -300}, {50, 4, -2}}};
+    const auto of_wall = [&](double distance, const Volumetric& volumetric, bool is_gpu) {
+        Flat flat(distance);
+        flat.lights = {traced_light(roof, {0, 1, 0}, {{{0, 0, -100}, 110, 1000}}, 512)};
+        return mean_red(is_gpu ? flat.developed(volumetric) : flat.reference(volumetric));
+    };
+    for (const bool is_gpu : {false, true}) {
+        const Volumetric metres{.density = 100, .samples = 256, .decay = 0.9f};
+        Volumetric steps = metres;
+        steps.decay_form = VolumetricDecay::PerStep;
+        EXPECT_NEAR(of_wall(10, metres, is_gpu) / of_wall(80, metres, is_gpu), 1, 0.03);
+        EXPECT_LT(of_wall(10, steps, is_gpu) / of_wall(80, steps, is_gpu), 0.9);
+    }
 }
 
 TEST(EffectVolumetric, DensityAndIntensityAreFactors) {
@@ -105,7 +132,7 @@ TEST(EffectVolumetric, OffWithoutDensity) {
 TEST(EffectVolumetric, GpuUnoccludedIsTheClosedForm) {
     const Flat flat(48);
     for (const std::int32_t samples : {1, 16, 32, 128, 256}) {
-        const Volumetric volumetric{.density = 10, .samples = samples};
+        const Volumetric volumetric = with(published, 10, samples);
         const ReferenceImage out = flat.developed(volumetric);
         ASSERT_EQ(out.pixels.size(), flat.picture.pixels.size());
         const double cosine = cosine_of(flat.lights[0], flat.camera, 32.5 / width, 18.5 / height);
@@ -136,7 +163,8 @@ TEST(EffectVolumetric, GpuScattersForward) {
 }
 
 TEST(EffectVolumetric, GpuStopsAtTheMaxDistanceAlsoInTheSky) {
-    const Volumetric volumetric{.density = 10, .max_distance = 50};
+    Volumetric volumetric = with(published, 10);
+    volumetric.max_distance = 50;
     const double at_fifty = mean_red(Flat(50).developed(volumetric));
     for (const double distance : {200.0, 1e10, std::numeric_limits<double>::infinity()})
         EXPECT_NEAR(mean_red(Flat(distance).developed(volumetric)) / at_fifty, 1, 0.005) << distance;
