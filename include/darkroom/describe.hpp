@@ -131,6 +131,12 @@ struct Field {
         static_assert(std::is_same_v<typename detail::Member<Part>::Type, Toggle>);
         return with([&](ParamInfo& row) { row.switched_word = detail::word_of<Part>(); });
     }
+    /// A size in pixels, which may be given in % of the picture's height, too: that sets this member to Reach::Height.
+    template <auto Kept>
+    [[nodiscard]] constexpr Field as_size_of() const {
+        static_assert(std::is_same_v<typename detail::Member<Kept>::Type, Reach>);
+        return with([&](ParamInfo& row) { row.reach_word = detail::word_of<Kept>(); });
+    }
     /// How often a loop of a shader runs: kernels of the present values hold it as a literal, so that compilers can
     /// unroll the loop and fold what follows from its number. For integers of at most 8 bits that are seldom animated.
     [[nodiscard]] constexpr Field as_loop_count() const {

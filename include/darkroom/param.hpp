@@ -64,6 +64,16 @@ struct Resource {
     std::uint32_t id = 0;
 };
 
+/// Which pixels the sizes of an effect are measured in.
+enum class Reach : std::uint32_t {
+    Pixels,  ///< those of the picture, whatever its size
+    Height,  ///< those of a picture of 1080 lines: the same part of the height at every size
+};
+/// A size in pixels of a picture of this height.
+constexpr double pixels_of(Reach reach, double size, double height) {
+    return reach == Reach::Height ? size * height / 1080 : size;
+}
+
 enum class Kind : std::uint8_t { Float, Int, Toggle, Choice, Vec2, Vec3, Vec4, Rgb, Curve, Resource };
 
 /// One row, free of templates: what everything derived from it reads.
@@ -78,6 +88,7 @@ struct ParamInfo {
     bool is_picture = false;                      ///< of Kind::Resource: see field().as_picture()
     bool is_at_compile = false;                   ///< see field().at_compile()
     std::uint32_t switched_word = ~0u;            ///< of a toggle: see field().as_amount_of()
+    std::uint32_t reach_word = ~0u;               ///< of a Reach: see field().as_size_of()
     std::uint32_t word = 0;                       ///< offset in the struct, in 4-byte words
     std::uint32_t words = 1;                      ///< size, in 4-byte words
     std::span<const std::string_view> choices{};  ///< names in snake_case, for Kind::Choice

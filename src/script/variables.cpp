@@ -122,6 +122,8 @@ double variable_number(const ParamInfo& row, std::span<const std::uint32_t> word
 Result<VariableValue> read_value(const ParamInfo& row, std::string_view name, std::string_view text) {
     auto value = parse_text(row, text);
     if (!value) return user_error(fmt::format("{}: {}", name, value.error().text));
+    if (row.kind != Kind::Choice && std::holds_alternative<std::string>(*value))
+        return user_error(fmt::format("{} = {}: allowed here is {} without %", name, printable(text), interval(row)));
     const bool is_clamped = (is_float(row.kind) || row.kind == Kind::Int) && clamp(row.range, *value);
     std::vector<std::uint32_t> words(row.word + row.words);
     if (auto ok = assign(row, words, *value, name); !ok) return failure(std::move(ok));

@@ -65,6 +65,46 @@ bool is_vector(Kind kind) {
     return kind == Kind::Vec2 || kind == Kind::Vec3 || kind == Kind::Vec4 || kind == Kind::Rgb;
 }
 
+constexpr double lines_of_known_height = 1080;
+
+// "2.5%" of the picture's height, in pixels of one of 1080 lines.
+std::optional<double> parse_share(std::string_view text) {
+    if (!text.ends_with('%')) return std::nullopt;
+    text.remove_suffix(1);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    const std::optional<double> number = parse_number(text);
+    return number ? std::optional(*number * lines_of_known_height / 100) : std::nullopt;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> out;
+    for (;;) {
+        const std::size_t end = text.find(separator);
+        std::string_view part = text.substr(0, end);
+        while (!part.empty() && part.front() == ' ') part.remove_prefix(1);
+        while (!part.empty() && part.back() == ' ') part.remove_suffix(1);
+        out.push_back(part);
+        if (end == std::string_view::npos) return out;
+        text.remove_prefix(end + 1);
+    }
+}
+
+// A size whose text has a share in it: the numbers; whole numbers take the nearest. Nothing: it is none.
+std::optional<ParamValue> sizes_of(const ParamInfo& info, const ParamValue& value) {
+    const auto* const text = std::get_if<std::string>(&value);
+    if (text == nullptr || info.reach_word == ~0u || text->find('%') == std::string::npos) return std::nullopt;
+    std::vector<double> numbers;
+    for (const std::string_view part : split(*text, ',')) {
+        std::optional<double> number = parse_share(part);
+        if (!number) number = parse_quantity(part, info.unit.symbol);
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+    }
+    if (is_vector(info.kind)) return ParamValue(std::move(numbers));
+    if (numbers.size() != 1) return std::nullopt;
+    return ParamValue(info.kind == Kind::Int ? std::round(numbers[0]) : numbers[0]);
+}
+
 // Checks one value and turns it into words; the caller knows where they go.
 class Assignment {
   public:
@@ -219,21 +259,9 @@ bool takes_stops(const ParamInfo& info) { return info.unit.symbol == unit::multi
 
 // What else may stand behind a number.
 std::string typed_with(const ParamInfo& info) {
+    if (info.reach_word != ~0u) return ", also in % of the height";
     const std::string suffixes = other_suffixes(info.unit.symbol);
     return suffixes.empty() ? "" : fmt::format(", also in {}", suffixes);
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> out;
-    for (;;) {
-        const std::size_t end = text.find(separator);
-        std::string_view part = text.substr(0, end);
-        while (!part.empty() && part.front() == ' ') part.remove_prefix(1);
-        while (!part.empty() && part.back() == ' ') part.remove_suffix(1);
-        out.push_back(part);
-        if (end == std::string_view::npos) return out;
-        text.remove_prefix(end + 1);
-    }
 }
 
 }  // namespace
@@ -241,8 +269,10 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 std::optional<ParamProblem> try_assign(const ParamInfo& info, std::span<std::uint32_t> words, const ParamValue& value,
                                        std::string_view shown) {
     std::vector<std::uint32_t> out;
-    if (std::optional<ParamProblem> problem = Assignment(info, value, shown).run(out)) return problem;
+    const std::optional<ParamValue> sizes = sizes_of(info, value);
+    if (std::optional<ParamProblem> problem = Assignment(info, sizes ? *sizes : value, shown).run(out)) return problem;
     std::copy(out.begin(), out.end(), words.begin() + info.word);
+    if (sizes && info.reach_word < words.size()) words[info.reach_word] = static_cast<std::uint32_t>(Reach::Height);
     return std::nullopt;
 }
 
@@ -288,6 +318,10 @@ Result<ParamValue> parse_text(const ParamInfo& info, std::string_view text) {
                                       interval(info), typed_with(info)));
     };
     if (info.kind == Kind::Choice) return ParamValue(std::string(text));
+    if (info.reach_word != ~0u && text.find('%') != std::string_view::npos) {
+        ParamValue value = std::string(text);
+        return sizes_of(info, value) ? Result<ParamValue>(std::move(value)) : refuse();
+    }
     if (info.kind == Kind::Toggle) {
         const std::optional<bool> on = parse_toggle(text);
         if (!on) return refuse();
@@ -361,6 +395,7 @@ std::string interval(const ParamInfo& info) {
 
 std::string full_doc(const ParamInfo& info) {
     return std::string(info.doc) + (takes_stops(info) ? " Also in stops: 1ev is 2." : "") +
+           (info.reach_word != ~0u ? " Also in % of the picture's height." : "") +
            (info.is_at_compile ? " A change takes full effect with the next compile." : "");
 }
 

@@ -40,7 +40,8 @@ struct ParamProblem {
                                    std::string_view shown = {});
 
 /// Reads a flag's or console's text: "1.5", "on" or "off", "1,0.5,0.2", a choice's name, "0:0,0.5:0.2,1:1" for a curve;
-/// for multipliers of light also stops, "1.5ev".
+/// for multipliers of light also stops, "1.5ev"; for sizes "2.5%" of the picture's height, which is returned as it is:
+/// assign() sets the row's Reach, too.
 /// Its errors name neither key nor place; ranges are assign's to check.
 [[nodiscard]] Result<ParamValue> parse_text(const ParamInfo& info, std::string_view text);
 /// on/off, true/false, yes/no, 1/0.

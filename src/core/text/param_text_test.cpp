@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/text/param_text.hpp"
+#include <fmt/format.h>
 #include <darkroom/describe.hpp>
 
 #include <gtest/gtest.h>
@@ -45,6 +46,41 @@ std::string after(std::string_view name, const ParamValue& value) {
 std::string from_text(std::string_view name, std::string_view text) {
     const Result<ParamValue> value = parse_text(*table.find(name), text);
     return value ? after(name, *value) : value.error().text;
+}
+
+struct Sized {
+    float wide = 1;
+    std::int32_t radius = 4;
+    Vec2 amplitude{};
+    Reach reach = Reach::Pixels;
+};
+constexpr auto sized_rows = describe(
+    field<&Sized::wide>("Wide.", {0, 200}, unit::pixels).as_size_of<&Sized::reach>(),
+    field<&Sized::radius>("Radius.", {0, 64}, unit::pixels).as_size_of<&Sized::reach>(),
+    field<&Sized::amplitude>("Amplitude.", {-256, 256}).as_size_of<&Sized::reach>(), field<&Sized::reach>("Reach."));
+
+// A hundredth of the height is 10.8 pixels of a picture of 1080 lines; whole numbers take the nearest.
+TEST(ParamText, SizesArePixelsOrPercent) {
+    const ParamTable sized = sized_rows.table();
+    const auto set = [&](std::string_view name, std::string_view text) {
+        std::vector<std::uint32_t> words(sized.defaults.begin(), sized.defaults.end());
+        const ParamInfo& row = *sized.find(name);
+        const Result<ParamValue> value = parse_text(row, text);
+        if (!value) return value.error().text;
+        if (const Result<> done = assign(row, words, *value); !done) return done.error().text;
+        return format(row, words) + " " + format(*sized.find("reach"), words);
+    };
+    EXPECT_EQ(set("wide", "2.5%"), "27.0 \"height\"");
+    EXPECT_EQ(set("wide", "2.5 %"), "27.0 \"height\"");
+    EXPECT_EQ(set("wide", "24"), "24.0 \"pixels\"");
+    EXPECT_EQ(set("wide", "24px"), "24.0 \"pixels\"");
+    EXPECT_EQ(set("radius", "2%"), "22 \"height\"");
+    EXPECT_EQ(set("radius", "9%"), "radius = 97: allowed is [0, 64] px");
+    EXPECT_EQ(set("amplitude", "1%, -2%"), "[10.8, -21.6] \"height\"");
+    for (const char* const wrong : {"%", "x%", "1%%", "1%,2%"})
+        EXPECT_EQ(set("wide", wrong), fmt::format("'{}' is not a number, allowed is [0, 200] px, also in % of the height",
+                                                  wrong));
+    EXPECT_EQ(full_doc(*sized.find("radius")), "Radius. Also in % of the picture's height.");
 }
 
 TEST(ParamText, TakesValuesOfEveryKind) {
