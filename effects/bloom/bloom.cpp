@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cmath>
 #include <darkroom/describe.hpp>
 #include <darkroom/effect.hpp>
 #include <darkroom/effects/bloom.hpp>
 #include <string>
+#include <utility>
 
 #include "bloom/bloom_reference.hpp"
 
@@ -25,53 +30,82 @@ constexpr auto bloom_rows = describe(
     field<&Bloom::mode>("Whether the glow is added to the picture or mixed with it."),
     field<&Bloom::scatter>("Weight of each wider level relative to the one below it, in the mode energy_conserving.",
                            {0, 1}),
-    field<&Bloom::levels>("Most levels of the pyramid that are used; small pictures have fewer.", {1, 5}));
+    field<&Bloom::levels>(
+        "Levels of the pyramid that are used at a height of 1080, each as wide again; by pixels, the most at any.",
+        {1, 5}),
+    field<&Bloom::reach>("Whether the glow keeps its width in parts of the picture's height, or in pixels."));
 
-constexpr std::uint32_t max_levels = 5;
+constexpr std::uint32_t most_by_pixels = 5;
+/// Height at which a glow by height is that by pixels.
+constexpr double known_height = 1080;
+/// Of levels that are finer than the glow: they are stored as a multiple of the first one, which is not 0.
+constexpr double least_weight = 0.125;
 constexpr float half_max = 65504.0f;
 
 const Bloom& bloom_of(const void* parameters) { return *static_cast<const Bloom*>(parameters); }
 
-std::uint32_t used_levels(const Bloom& bloom, VkExtent2D extent) {
-    return std::min(bloom_level_count(extent), static_cast<std::uint32_t>(bloom.levels));
+/// So that the last level is at least 8x8.
+std::uint32_t levels_of_size(VkExtent2D extent) {
+    const auto bits = static_cast<std::uint32_t>(std::bit_width(std::min(extent.width, extent.height)));
+    return std::max(bits, 4u) - 4u;
 }
 
-/// What a level is multiplied by when it is added onto the next finer one.
-float gain(const Bloom& bloom) { return bloom.mode == BloomMode::Additive ? 1.0f : bloom.scatter; }
+/// Of any values in frames of at most this extent.
+std::uint32_t most_levels(VkExtent2D extent) {
+    const std::uint32_t by_height = bloom_weights({.reach = Reach::Height}, extent).count;
+    return std::max(by_height, bloom_level_count(extent));
+}
 
 void prefilter_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Bloom& bloom = bloom_of(parameters);
-    const std::uint32_t levels = std::max(used_levels(bloom, context.frame_extent), 1U);
+    const BloomWeights levels = bloom_weights(bloom, context.frame_extent);
     // The sum of all levels must stay finite in half precision. Of the 2 N - 1 writes on the longest way through the
     // pyramid all but the last may round up by 2^-11, and past 65504 a driver may write an infinity.
-    const float most = half_max * (1.0f - static_cast<float>(levels - 1) * 0x1p-10f);
-    if (bloom.mode == BloomMode::Additive) {
-        out[0] = {bloom.threshold, bloom.threshold * bloom.soft_threshold, most / static_cast<float>(levels), 1.0f};
-    } else {
-        // Everything after this pass is linear, so the sum of the weights 1, s, s^2 ... is divided out here, once.
-        float sum = 0.0f, weight = 1.0f;
-        for (std::uint32_t level = 0; level < levels; ++level, weight *= bloom.scatter) sum += weight;
-        out[0] = {0.0f, 0.0f, most, 1.0f / sum};
-    }
+    const double most = double{half_max} * (1 - (std::max(levels.count, 1u) - 1) * 0x1p-10);
+    const double first = levels.weights[0], total = std::max(levels.total(), 1.0);
+    if (bloom.mode == BloomMode::Additive)
+        out[0] = {bloom.threshold, bloom.threshold * bloom.soft_threshold, static_cast<float>(most / total),
+                  static_cast<float>(std::min(first, 1.0))};
+    else  // Everything after this pass is linear, so the sum of the weights is divided out here, once.
+        out[0] = {0.0f, 0.0f, static_cast<float>(most), static_cast<float>(first / total)};
     const bool is_filtered = bloom.firefly_filter && bloom.mode == BloomMode::Additive;
     out[1] = {is_filtered ? 1.0f : 0.0f, 0.0f, 0.0f, 0.0f};
 }
 
-void level_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
-    const Bloom& bloom = bloom_of(parameters);
-    out[0] = {gain(bloom), static_cast<float>(used_levels(bloom, context.frame_extent)), 0.0f, 0.0f};
+/// Every level is stored with the first one's weight: what the next one is multiplied by when it is added onto this.
+float gain_onto(const BloomWeights& levels, std::uint32_t level) {
+    if (level + 1 >= std::min(levels.count, BloomWeights::capacity) || levels.weights[level] == 0) return 0.0f;
+    return static_cast<float>(levels.weights[level + 1] / levels.weights[level]);
 }
+
+/// (gain onto `level`, levels in use from `base` on, gain onto the level behind `level`).
+template <std::uint32_t level, std::uint32_t base = level>
+void gain_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const BloomWeights levels = bloom_weights(bloom_of(parameters), context.frame_extent);
+    out[0] = {gain_onto(levels, level), static_cast<float>(levels.count) - static_cast<float>(base),
+              gain_onto(levels, level + 1), 0.0f};
+}
+template <std::uint32_t... i>
+constexpr std::array<ConstantsFunction, sizeof...(i)> gains_of(std::integer_sequence<std::uint32_t, i...>) {
+    return {gain_constants<i>...};
+}
+constexpr std::array gains = gains_of(std::make_integer_sequence<std::uint32_t, BloomWeights::capacity>());
+/// Of the wide levels that lie two behind `base`, which is even.
+constexpr std::array<ConstantsFunction, 4> wide_gains{gain_constants<2, 0>, gain_constants<4, 2>, gain_constants<6, 4>,
+                                                      gain_constants<8, 6>};
 
 void end_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Bloom& bloom = bloom_of(parameters);
     const bool is_additive = bloom.mode == BloomMode::Additive;
-    const bool glows = used_levels(bloom, context.frame_extent) > 0;
-    out[0] = {glows ? is_additive ? bloom.intensity : std::min(bloom.intensity, 1.0f) : 0.0f, 0.0f, 0.0f, 0.0f};
+    const BloomWeights levels = bloom_weights(bloom, context.frame_extent);
+    const float weight = is_additive ? bloom.intensity * static_cast<float>(std::max(levels.weights[0], 1.0))
+                                     : std::min(bloom.intensity, 1.0f);
+    out[0] = {levels.count > 0 ? weight : 0.0f, 0.0f, 0.0f, 0.0f};
 }
 
 /// Frames may be smaller than the largest one that the pyramid was made for.
 bool is_level_used(const void* parameters, const PassContext& context, std::uint32_t level) {
-    return level < used_levels(bloom_of(parameters), context.frame_extent);
+    return level < bloom_weights(bloom_of(parameters), context.frame_extent).count;
 }
 
 /// A kernel for each level, on the way down and up again.
@@ -102,7 +136,7 @@ PassImage add_kernels(PassBuilder& builder, PassImage pyramid, std::uint32_t lev
              .output_mip_level = level,
              .is_additive = true,
              .custom_vectors = 1,
-             .constants = level_constants,
+             .constants = gains[level],
              .condition = is_level_used,
              .argument = level + 1});
     return pyramid;
@@ -112,58 +146,80 @@ PassImage add_kernels(PassBuilder& builder, PassImage pyramid, std::uint32_t lev
 constexpr std::uint32_t narrow_bytes = 8 * 38 * 38, wide_bytes = 8 * (34 * 34 + 14 * 14),
                         join_bytes = 8 * (36 * 21 + 22 * 14);
 
-/// The same arithmetic with the levels between in shared memory: levels 1 and 2 are made by one pass, 3 and 4 and their
-/// sum with 2 by another, and the sum with 1 and 0 by a third.
-PassImage add_tiles(PassBuilder& builder, PassImage pyramid, std::uint32_t levels, VkFormat format) {
-    const auto add = [&](ComputePassDesc pass) {
+/// The levels from `base` on, which is there, and their sum in its place: the two behind it are made by one pass, the
+/// sum of the second with two more by another, and the sum with the first and with `base` by a third. Where there are
+/// more, the second one takes the place of `base`.
+PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t base, std::uint32_t levels,
+                         VkFormat format) {
+    const auto name = [&](const char* what, std::uint32_t level) {
+        return base == 0 ? std::string(what) : fmt::format("{} {}", what, level);
+    };
+    const auto add = [&](ComputePassDesc pass, ConstantsFunction constants) {
+        pass.workgroup = {128, 1};
+        pass.custom_vectors = 1;
+        pass.constants = constants;
         pass.condition = is_level_used;
+        pass.argument = base + 1;
         const std::vector<PassImage> made = builder.add_compute(pass);
         return made.empty() ? PassImage{} : made.back();
     };
-    pyramid = add({.name = "prefilter",
-                   .shader = "bloom_prefilter_pairs.glsl",
-                   .inputs = {{.name = "bloom_source", .image = builder.source()}},
-                   .outputs = {{"bloom_level_0", pyramid}},
-                   .workgroup = {8, 16},
-                   .tile = {16, 16},
-                   .custom_vectors = 2,
-                   .constants = prefilter_constants});
-    const auto add_levels = [&](ComputePassDesc pass) {
-        pass.workgroup = {128, 1};
-        pass.custom_vectors = 1;
-        pass.constants = level_constants;
-        pass.argument = 1;
-        return add(std::move(pass));
-    };
-    pyramid = add_levels({.name = "downsample",
-                          .shader = "bloom_narrow.glsl",
-                          .inputs = {{.name = "bloom_level_0", .image = pyramid}},
-                          .outputs = {{"bloom_level_1", pyramid, 1}, {"bloom_level_2", pyramid, 2}},
-                          .shared_bytes = narrow_bytes,
-                          .tile = {32, 32}});
-    KernelPassDesc::Input sum{.name = "bloom_sum", .image = pyramid, .mip_level = 2};
-    if (levels > 3)
+    pyramid = add({.name = name("downsample", base + 1),
+                   .shader = "bloom_narrow.glsl",
+                   .inputs = {{.name = "bloom_level_0", .image = pyramid, .mip_level = base}},
+                   .outputs = {{"bloom_level_1", pyramid, base + 1}, {"bloom_level_2", pyramid, base + 2}},
+                   .shared_bytes = narrow_bytes,
+                   .tile = {32, 32}},
+                  gains[base]);
+    const std::uint32_t behind = levels - base;
+    if (behind > 5) pyramid = add_tiles_from(builder, pyramid, base + 2, levels, format);
+    KernelPassDesc::Input sum{.name = "bloom_sum", .image = pyramid, .mip_level = base + 2};
+    if (behind == 4 || behind == 5) {
+        const PassImage wide =
+            builder.create({.name = name("wide levels", base), .format = format, .denominator = 8u << base});
         sum = {.name = "bloom_sum",
-               .image = add_levels(
-                   {.name = "wide levels",
-                    .shader = "bloom_wide.glsl",
-                    .inputs = {{.name = "bloom_level_2", .image = pyramid, .mip_level = 2}},
-                    .outputs = {{"bloom_sum",
-                                 builder.create({.name = "wide levels", .format = format, .denominator = 8})}},
-                    .shared_bytes = wide_bytes,
-                    .tile = {32, 32}})};
-    return add_levels({.name = "upsample",
-                       .shader = "bloom_join.glsl",
-                       .inputs = {{.name = "bloom_level_1", .image = pyramid, .mip_level = 1}, sum},
-                       .outputs = {{"bloom_level_0", pyramid}},
-                       .shared_bytes = join_bytes,
-                       .tile = {64, 32},
-                       .is_additive = true});
+               .image = add({.name = name("wide levels", base),
+                             .shader = "bloom_wide.glsl",
+                             .inputs = {{.name = "bloom_level_2", .image = pyramid, .mip_level = base + 2}},
+                             .outputs = {{"bloom_sum", wide}},
+                             .shared_bytes = wide_bytes,
+                             .tile = {32, 32}},
+                            wide_gains[base / 2])};
+    }
+    return add({.name = name("upsample", base),
+                .shader = "bloom_join.glsl",
+                .inputs = {{.name = "bloom_level_1", .image = pyramid, .mip_level = base + 1}, sum},
+                .outputs = {{"bloom_level_0", pyramid, base}},
+                .shared_bytes = join_bytes,
+                .tile = {64, 32},
+                .is_additive = true},
+               gains[base]);
+}
+
+/// The same arithmetic with levels between in shared memory.
+PassImage add_tiles(PassBuilder& builder, PassImage pyramid, std::uint32_t levels, VkFormat format) {
+    const std::vector<PassImage> made =
+        builder.add_compute({.name = "prefilter",
+                             .shader = "bloom_prefilter_pairs.glsl",
+                             .inputs = {{.name = "bloom_source", .image = builder.source()}},
+                             .outputs = {{"bloom_level_0", pyramid}},
+                             .workgroup = {8, 16},
+                             .tile = {16, 16},
+                             .custom_vectors = 2,
+                             .constants = prefilter_constants,
+                             .condition = is_level_used});
+    return made.empty() ? PassImage{} : add_tiles_from(builder, made.back(), 0, levels, format);
+}
+
+/// Of those, how many are images?
+std::uint32_t stored_levels(std::uint32_t levels) {
+    std::uint32_t base = 0;
+    while (levels - base > 5) base += 2;
+    return base + 3;
 }
 
 void build(PassBuilder& builder) {
     const PassVector neutral{0.0f, 0.0f, 0.0f, 0.0f};
-    const std::uint32_t levels = builder.from_max_extent(bloom_level_count);
+    const std::uint32_t levels = builder.from_max_extent(most_levels);
     builder.end_constants(1, end_constants);
     if (levels == 0) {
         builder.side("bloom_pyramid", PassImage{}, neutral);
@@ -174,7 +230,7 @@ void build(PassBuilder& builder) {
     // With fewer levels they are no more than so many passes anyway.
     const bool has_tiles = levels > 2 && builder.tiles_pay(format, std::max({narrow_bytes, wide_bytes, join_bytes}));
     const PassImage pyramid =
-        builder.create({.name = "pyramid", .format = format, .denominator = 2, .mip_levels = has_tiles ? 3 : levels});
+        builder.create({.name = "pyramid", .format = format, .denominator = 2, .mip_levels = has_tiles ? stored_levels(levels) : levels});
     builder.loaded_side("bloom_pyramid",
                         has_tiles ? add_tiles(builder, pyramid, levels, format) : add_kernels(builder, pyramid, levels),
                         neutral);
@@ -184,9 +240,32 @@ bool is_identity(const void* parameters) { return bloom_of(parameters).intensity
 
 }  // namespace
 
-std::uint32_t bloom_level_count(VkExtent2D extent) {
-    const auto bits = static_cast<std::uint32_t>(std::bit_width(std::min(extent.width, extent.height)));
-    return std::clamp(bits, 4u, 4u + max_levels) - 4u;
+std::uint32_t bloom_level_count(VkExtent2D extent) { return std::min(levels_of_size(extent), most_by_pixels); }
+
+double BloomWeights::total() const {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < count; ++i) sum += weights[i];
+    return sum;
+}
+
+BloomWeights bloom_weights(const Bloom& bloom, VkExtent2D extent) {
+    const double share = bloom.mode == BloomMode::Additive ? 1 : double{bloom.scatter}, levels = bloom.levels;
+    BloomWeights out{.count = std::min(bloom_level_count(extent), static_cast<std::uint32_t>(bloom.levels))};
+    double finer = 0;  // octaves by which the first level here is wider than that of a picture of the known height
+    if (bloom.reach == Reach::Height && out.count > 0) {
+        finer = std::log2(known_height / extent.height);
+        const auto needed = static_cast<std::uint32_t>(std::ceil(std::max(levels - finer, 1.0) - 1e-9));
+        out.count = std::min({needed, levels_of_size(extent), BloomWeights::capacity});
+    }
+    // What the octaves from a to b count together: at whole numbers the sum of share^i.
+    const auto octaves = [&](double a, double b) {
+        return share == 1 ? b - a : (std::pow(share, a) - std::pow(share, b)) / (1 - share);
+    };
+    for (std::uint32_t i = 0; i < out.count; ++i) {
+        const double from = i == 0 ? 0 : std::clamp(i + finer, 0.0, levels), to = std::clamp(i + 1 + finer, 0.0, levels);
+        out.weights[i] = std::max(octaves(from, to), i + finer < 0 ? least_weight : 0.0);
+    }
+    return out;
 }
 
 const EffectInfo& effect_info(const Bloom&) {

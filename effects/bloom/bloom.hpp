@@ -5,6 +5,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <darkroom/param.hpp>
 
 namespace darkroom {
@@ -31,13 +32,24 @@ struct Bloom {
     BloomMode mode = BloomMode::Additive;
     /// Weight of each wider level relative to the one below it, in the mode energy_conserving. [0, 1]
     float scatter = 0.7f;
-    /// Most levels of the pyramid that are used; small pictures have fewer. [1, 5]
+    /// Levels of the pyramid that are used at a height of 1080, each as wide again; by pixels, the most at any. [1, 5]
     std::int32_t levels = 5;
+    /// Whether the glow keeps its width in parts of the picture's height, or in pixels.
+    Reach reach = Reach::Height;
 };
 
-/// Levels that a picture of `extent` has: floor(log2(shorter side)) - 3 within [0, 5], so that the last one is at least
-/// 8x8. Level i is 2^(i+1) times smaller than the picture.
+/// Levels that a picture of `extent` has by pixels: floor(log2(shorter side)) - 3 within [0, 5], so that the last one is
+/// at least 8x8. Level i is 2^(i+1) times smaller than the picture.
 [[nodiscard]] std::uint32_t bloom_level_count(VkExtent2D extent);
+
+/// What each level counts in the sum of a picture of `extent`, finest first.
+struct BloomWeights {
+    static constexpr std::uint32_t capacity = 10;
+    std::uint32_t count = 0;
+    std::array<double, capacity> weights{};
+    [[nodiscard]] double total() const;
+};
+[[nodiscard]] BloomWeights bloom_weights(const Bloom& bloom, VkExtent2D extent);
 
 [[nodiscard]] const EffectInfo& effect_info(const Bloom&);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The wider levels onto levels 1 and 0. A workgroup makes 64x32 texels of level 0, in their place, for which it makes those
-// of level 1 with their neighbours. custom[0].x = gain.
+// of level 1 with their neighbours. custom[0] = (gain onto level 0, not used, gain onto level
+// 1).
 shared uvec2 bloom_shared[36 * 21 + 22 * 14];
 
 #include "bloom_tile.glsl"
@@ -22,7 +23,7 @@ BloomTile bloom_tile_of(int level) {
 }
 
 void bloom_put(int level, ivec2 texel, vec3 glow) {
-    vec4 light = vec4(glow * custom[0].x, 0.0);
+    vec4 light = vec4(glow * (level == 0 ? custom[0].x : custom[0].z), 0.0);
     if (level == 0)
         store(bloom_level_0, texel, light);
     else

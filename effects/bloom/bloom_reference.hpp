@@ -91,35 +91,26 @@ inline void bloom_reference_add_up(ReferenceImage& fine, const ReferenceImage& c
                 }
 }
 
-/// Level 0 when all is added up: what the picture is given. `levels` is at least 1.
-inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, const Bloom& bloom, std::uint32_t levels) {
+/// Level 0 when all is added up: what the picture is given. There is at least one level.
+inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, const Bloom& bloom,
+                                              const BloomWeights& levels) {
     const bool is_additive = bloom.mode == BloomMode::Additive;
     // Whatever halves are rounded to, the sum of all levels stays below 65504.
-    const double most = 65504 * (1 - (levels - 1) / 1024.0);
+    const double most = 65504 * (1 - (levels.count - 1) / 1024.0), total = levels.total();
+    const double limit = is_additive ? most / std::max(total, 1.0) : most;
     std::vector<ReferenceImage> pyramid{bloom_reference_down(source, is_additive && bloom.firefly_filter)};
-    if (is_additive)
-        for (Rgba& color : pyramid[0].pixels) {
-            const double factor =
-                bloom_reference_threshold(std::max({color.r, color.g, color.b}), bloom.threshold, bloom.soft_threshold);
-            const auto limited = [&](double value) { return std::min(value * factor, most / levels); };
-            color = {limited(color.r), limited(color.g), limited(color.b), 1};
-        }
-    else
-        for (Rgba& color : pyramid[0].pixels)
-            color = {std::min(color.r, most), std::min(color.g, most), std::min(color.b, most), 1};
-    while (pyramid.size() < levels) pyramid.push_back(bloom_reference_down(pyramid.back(), false));
-    if (is_additive) {
-        for (std::size_t level = levels - 1; level-- > 0;)
-            bloom_reference_add_up(pyramid[level], pyramid[level + 1], 1);
-        return pyramid[0];
+    for (Rgba& color : pyramid[0].pixels) {
+        const double brightness = std::max({color.r, color.g, color.b});
+        const double factor =
+            is_additive ? bloom_reference_threshold(brightness, bloom.threshold, bloom.soft_threshold) : 1;
+        const auto limited = [&](double value) { return std::min(value * factor, limit); };
+        color = {limited(color.r), limited(color.g), limited(color.b), 1};
     }
-    // A chain of lerps from the coarsest level: level i weighs scatter^i in the end, the sum of all weights being 1.
-    double coarser = 1;
-    for (std::size_t level = levels - 1; level-- > 0;) {
-        const double sum = 1 + bloom.scatter * coarser;
-        for (Rgba& color : pyramid[level].pixels) color = bloom_reference_sum({0, 0, 0, 1}, color, 1 / sum);
-        bloom_reference_add_up(pyramid[level], pyramid[level + 1], bloom.scatter * coarser / sum);
-        coarser = sum;
+    while (pyramid.size() < levels.count) pyramid.push_back(bloom_reference_down(pyramid.back(), false));
+    for (std::size_t level = levels.count; level-- > 0;) {
+        for (Rgba& color : pyramid[level].pixels)
+            color = bloom_reference_sum({0, 0, 0, 1}, color, levels.weights[level] / (is_additive ? 1 : total));
+        if (level + 1 < levels.count) bloom_reference_add_up(pyramid[level], pyramid[level + 1], 1);
     }
     return pyramid[0];
 }
@@ -127,9 +118,8 @@ inline ReferenceImage bloom_reference_pyramid(const ReferenceImage& source, cons
 inline ReferenceImage bloom_reference(const void* parameters, const ReferenceInput& input) {
     const Bloom& bloom = *static_cast<const Bloom*>(parameters);
     ReferenceImage out = *input.picture;
-    const std::uint32_t levels = std::min(bloom_level_count({input.source->width, input.source->height}),
-                                          static_cast<std::uint32_t>(bloom.levels));
-    if (levels == 0) return out;
+    const BloomWeights levels = bloom_weights(bloom, {input.source->width, input.source->height});
+    if (levels.count == 0) return out;
     const ReferenceImage glow = bloom_reference_pyramid(*input.source, bloom, levels);
     const bool is_additive = bloom.mode == BloomMode::Additive;
     const double intensity = is_additive ? bloom.intensity : std::min(bloom.intensity, 1.0f);

@@ -110,12 +110,18 @@ void expect_the_same(VkExtent2D extent, std::span<const Bloom> blooms, std::span
 }
 
 constexpr std::array blooms{
+    Bloom{.intensity = 1, .threshold = 0.2f, .reach = Reach::Pixels},
+    Bloom{.intensity = 1, .threshold = 0, .firefly_filter = false, .levels = 4, .reach = Reach::Pixels},
+    Bloom{.intensity = 0.7f, .mode = BloomMode::EnergyConserving, .reach = Reach::Pixels},
+    Bloom{.intensity = 1,
+          .mode = BloomMode::EnergyConserving,
+          .scatter = 1,
+          .levels = 3,
+          .reach = Reach::Pixels},
+    Bloom{.intensity = 1, .threshold = 0.1f, .levels = 2, .reach = Reach::Pixels},
+    Bloom{.intensity = 1, .levels = 1, .reach = Reach::Pixels},
     Bloom{.intensity = 1, .threshold = 0.2f},
-    Bloom{.intensity = 1, .threshold = 0, .firefly_filter = false, .levels = 4},
     Bloom{.intensity = 0.7f, .mode = BloomMode::EnergyConserving},
-    Bloom{.intensity = 1, .mode = BloomMode::EnergyConserving, .scatter = 1, .levels = 3},
-    Bloom{.intensity = 1, .threshold = 0.1f, .levels = 2},
-    Bloom{.intensity = 1, .levels = 1},
 };
 
 }  // namespace
@@ -139,6 +145,16 @@ TEST(BloomTilesGpu, MakeThemInRegionsOfSeveralSizes) {
     expect_the_same({300, 270}, blooms, regions);
 }
 
+// A height above 1080 has a sixth level, and one above 2160 a seventh: the wide ones are made as the fine ones are.
+TEST(BloomTilesGpu, MakeTheBitsOfMoreThanFiveLevels) {
+    constexpr std::array<VkRect2D, 2> regions{{{{}, {521, 1101}}, {{1, 2}, {515, 1000}}}};
+    constexpr std::array by_height{Bloom{.intensity = 1, .threshold = 0.2f},
+                                   Bloom{.intensity = 0.7f, .mode = BloomMode::EnergyConserving}};
+    expect_the_same({521, 1101}, by_height, regions);
+    constexpr std::array<VkRect2D, 1> whole{};
+    expect_the_same({1024, 2170}, std::span(by_height).first(1), whole);
+}
+
 TEST(BloomTilesGpu, AreFourPassesBeforeTheJoin) {
     const AsGpu gpu(Form::Tiles, true);
     const auto plan_of = [](VkExtent2D extent) {
@@ -150,6 +166,9 @@ TEST(BloomTilesGpu, AreFourPassesBeforeTheJoin) {
     };
     EXPECT_EQ(plan_of({1920, 1080}), (std::vector<std::string>{"bloom.prefilter", "bloom.downsample",
                                                                "bloom.wide levels", "bloom.upsample", "bloom"}));
+    EXPECT_EQ(plan_of({3840, 2160}),
+              (std::vector<std::string>{"bloom.prefilter", "bloom.downsample", "bloom.downsample 3",
+                                        "bloom.wide levels 2", "bloom.upsample 2", "bloom.upsample", "bloom"}));
     EXPECT_EQ(plan_of({90, 70}),
               (std::vector<std::string>{"bloom.prefilter", "bloom.downsample", "bloom.upsample", "bloom"}));
     EXPECT_EQ(plan_of({40, 40}),

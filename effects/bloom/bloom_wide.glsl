@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Level 2 with all wider levels on it. A workgroup makes 32x32 texels, for which it makes level 3 from level 2, and level 4
-// from level 3, with their neighbours; neither becomes an image. custom[0] = (gain, levels in use).
+// from level 3, with their neighbours; neither becomes an image. custom[0] = (gain onto level 2, levels in
+// use, gain onto level 3).
 shared uvec2 bloom_shared[34 * 34 + 14 * 14];
 
 #include "bloom_taps.glsl"
@@ -30,7 +31,7 @@ vec3 bloom_tap(int from, vec2 place) {
 }
 
 void bloom_put(int level, ivec2 texel, vec3 glow) {
-    vec4 light = vec4(glow * custom[0].x, 0.0);
+    vec4 light = vec4(glow * (level == 2 ? custom[0].x : custom[0].z), 0.0);
     if (level == 2)
         store(bloom_sum, texel, light + load(bloom_level_2, texel));
     else

@@ -18,6 +18,7 @@ inline constexpr std::array documented_values{
     DocumentedValue{"ssao", "method", "hemisphere"},
     DocumentedValue{"volumetric", "decay_form", "per_step"},
     DocumentedValue{"volumetric", "decay", "0.98"},
+    DocumentedValue{"bloom", "reach", "pixels"},
     DocumentedValue{"fog", "density", "0.02"},
     DocumentedValue{"fog", "end", "100"},
     DocumentedValue{"fog", "height_form", "end_point"},
