@@ -12,7 +12,15 @@ namespace {
 
 constexpr auto arena_bloom_rows = describe(
     field<&ArenaBloom::intensity>("How much of the glow is added.", {0, 4}).as_amount(),
-    field<&ArenaBloom::source_kind>("Whether colour is limited to a display's range and alpha masks the glow."));
+    field<&ArenaBloom::source_kind>("Whether colour is limited to a display's range and alpha masks the glow."),
+    field<&ArenaBloom::reach>("Whether the glow keeps its width in pixels, as in the game, or in parts of the height."));
+
+/// Of the bright part and each level, for a glow in parts of the height.
+void weight_constants(const void* /*parameters*/, const PassContext& context, std::span<PassVector> out) {
+    const auto weights = arena_bloom_weights(context.frame_extent.height);
+    for (std::size_t i = 0; i < out.size() * 4; ++i)
+        out[i / 4][i % 4] = i < weights.size() ? static_cast<float>(weights[i]) : 0.0f;
+}
 
 void build(PassBuilder& builder) {
     const auto create = [&](std::string name, std::uint32_t denominator) {
@@ -22,14 +30,22 @@ void build(PassBuilder& builder) {
                                    .shader = "arena_bloom_bright.glsl",
                                    .inputs = {{.name = "arena_bloom_source", .image = builder.source()}},
                                    .output = create("bright part", 4)});
+    const std::uint32_t levels = builder.from_max_extent(arena_bloom_level_count);
     // The 3x3 filter (1 2 1 / 2 4 2 / 1 2 1) / 16 of bilinear taps one texel apart is the tent that halves.
-    KernelPassDesc combine{.name = "combine", .shader = "arena_bloom_combine.glsl", .output = create("combine", 4)};
-    for (std::uint32_t level = 0; level < arena_bloom_levels; ++level) {
+    KernelPassDesc combine{.name = "combine",
+                           .shader = "arena_bloom_combine.glsl",
+                           .inputs = {{.name = "arena_bloom_bright_part", .image = image}},
+                           .output = create("combine", 4),
+                           .custom_vectors = 2,
+                           .constants = weight_constants};
+    for (std::uint32_t level = 0; level < arena_bloom_most_levels; ++level) {
         const std::string number = std::to_string(level);
-        image = builder.add({.name = "halve " + number,
-                             .shader = "shared/halve.glsl",
-                             .inputs = {{.name = "halve_input", .image = image, .is_loaded = true}},
-                             .output = create("level " + number, 8u << level)});
+        // Of those that are not there the weight is 0.
+        if (level < levels)
+            image = builder.add({.name = "halve " + number,
+                                 .shader = "shared/halve.glsl",
+                                 .inputs = {{.name = "halve_input", .image = image, .is_loaded = true}},
+                                 .output = create("level " + number, 8u << level)});
         combine.inputs.push_back({.name = "arena_bloom_level_" + number, .image = image});
     }
     const PassImage glow = builder.add({.name = "double",

@@ -20,6 +20,8 @@ struct ArenaBloom {
     float intensity = 1.0f;
     /// Whether colour is limited to a display's range and alpha masks the glow.
     ArenaBloomSource source_kind = ArenaBloomSource::Masked;
+    /// Whether the glow keeps its width in pixels, as in the game, or in parts of the height.
+    Reach reach = Reach::Pixels;
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const ArenaBloom&);

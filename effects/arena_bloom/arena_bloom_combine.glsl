@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The four levels at a quarter of the size, weighed, and raised to a power that leaves only strong light.
+// The levels at a quarter of the size, weighed, and raised to a power that leaves only strong light. custom: weights of the
+// bright part and of each level, for a glow in parts of the height.
 
 vec4 shade(Pixel pixel) {
-    vec3 sum = 0.32 * sample_linear(arena_bloom_level_0, pixel.uv).rgb +
-               0.10 * sample_linear(arena_bloom_level_1, pixel.uv).rgb +
-               0.20 * sample_linear(arena_bloom_level_2, pixel.uv).rgb +
-               0.25 * sample_linear(arena_bloom_level_3, pixel.uv).rgb;
+    vec4 weights = vec4(0.32, 0.10, 0.20, 0.25);
+    vec3 sum = vec3(0.0);
+    if (arena_bloom_parameters().reach == ArenaBloom_reach_height) {
+        weights = vec4(custom[0].yzw, custom[1].x);
+        sum = custom[0].x * sample_linear(arena_bloom_bright_part, pixel.uv).rgb +
+              custom[1].y * sample_linear(arena_bloom_level_4, pixel.uv).rgb +
+              custom[1].z * sample_linear(arena_bloom_level_5, pixel.uv).rgb;
+    }
+    sum += weights.x * sample_linear(arena_bloom_level_0, pixel.uv).rgb +
+           weights.y * sample_linear(arena_bloom_level_1, pixel.uv).rgb +
+           weights.z * sample_linear(arena_bloom_level_2, pixel.uv).rgb +
+           weights.w * sample_linear(arena_bloom_level_3, pixel.uv).rgb;
     return vec4(pow(clamp(sum, 0.0, 1.0), vec3(2.2)), 1.0);
 }

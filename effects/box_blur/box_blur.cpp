@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <cmath>
 #include <darkroom/describe.hpp>
 #include <darkroom/effect.hpp>
 #include <darkroom/effects/box_blur.hpp>
@@ -12,15 +13,23 @@ namespace {
 
 constexpr auto box_blur_rows =
     describe(field<&BoxBlur::radius>("Half-width of the square; 0 leaves the picture as it is.", {0, 64}, unit::pixels)
+                 .as_size_of<&BoxBlur::reach>()
                  .as_loop_count(),
              field<&BoxBlur::iterations>(
                  "How many times the picture is blurred: 2 make a pyramid, 3 nearly a bell curve.", {1, 4})
-                 .at_compile());
+                 .at_compile(),
+             field<&BoxBlur::reach>("Which pixels the radius is measured in."));
 
 const BoxBlur& blur_of(const void* parameters) { return *static_cast<const BoxBlur*>(parameters); }
 
-void horizontal_constants(const void*, const PassContext&, std::span<PassVector> out) { out[0] = {1, 0, 0, 0}; }
-void vertical_constants(const void*, const PassContext&, std::span<PassVector> out) { out[0] = {0, 1, 0, 0}; }
+/// The direction; then of a radius in parts of the height its whole pixels and what is left.
+template <bool is_horizontal>
+void line_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const BoxBlur& blur = blur_of(parameters);
+    const double radius = pixels_of(blur.reach, blur.radius, context.frame_extent.height);
+    out[0] = {is_horizontal ? 1.0f : 0.0f, is_horizontal ? 0.0f : 1.0f, static_cast<float>(std::floor(radius)),
+              static_cast<float>(radius - std::floor(radius))};
+}
 
 void build(PassBuilder& builder) {
     PassImage image = builder.picture();
@@ -32,7 +41,7 @@ void build(PassBuilder& builder) {
                                  .inputs = {{.name = "box_blur_input", .image = image, .is_loaded = true}},
                                  .output = builder.create({.name = name}),
                                  .custom_vectors = 1,
-                                 .constants = is_horizontal ? horizontal_constants : vertical_constants});
+                                 .constants = is_horizontal ? line_constants<true> : line_constants<false>});
         }
     builder.result(image);
 }

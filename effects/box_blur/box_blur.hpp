@@ -14,6 +14,8 @@ struct BoxBlur {
     std::int32_t radius = 4;
     /// How many times the picture is blurred: 2 make a pyramid, 3 nearly a bell curve. [1, 4]
     std::int32_t iterations = 1;
+    /// Which pixels the radius is measured in.
+    Reach reach = Reach::Pixels;
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const BoxBlur&);

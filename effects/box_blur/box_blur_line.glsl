@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The mean along one direction, custom[0].xy in texels. In the picture's own domain; NaN counts as 0, infinity as 65504.
+// The mean along one direction, custom[0].xy in texels; custom[0].zw: a radius in parts of the height, as whole texels and a
+// share of the next. In the picture's own domain; NaN counts as 0, infinity as 65504.
 #include "shared/finite.glsl"
 #include "shared/sanitize.glsl"
 
@@ -15,9 +16,13 @@ vec3 box_blur_texels(Pixel pixel, ivec2 offset, bool is_clean) {
 #include "box_blur_sides.glsl"
 
 vec3 box_blur_mean(Pixel pixel, vec4 own, bool is_clean) {
-    int radius = box_blur_parameters().radius;
+    BoxBlur blur = box_blur_parameters();
+    bool is_whole = blur.reach == BoxBlur_reach_pixels;
+    int radius = is_whole ? blur.radius : int(custom[0].z);
     vec3 sum = box_blur_sides(pixel, radius, box_blur_clean(own, is_clean), is_clean);
-    return sum / float(2 * radius + 1);
+    if (is_whole) return sum / float(2 * radius + 1);
+    sum += custom[0].w * box_blur_texels(pixel, ivec2(custom[0].xy) * (radius + 1), is_clean);
+    return sum / (2.0 * (custom[0].z + custom[0].w) + 1.0);
 }
 
 vec4 shade(Pixel pixel) {

@@ -16,16 +16,22 @@ constexpr auto classic_bloom_rows = describe(
     field<&ClassicBloom::source_kind>("What glows; the layer is named by the entry's source, for example alpha.")
         .at_compile(),
     field<&ClassicBloom::threshold>("Light above this glows; not used with a layer.", {0, 65504}),
-    field<&ClassicBloom::radius>("Half-width of the glow.", {7, 64}, unit::pixels).as_loop_count());
+    field<&ClassicBloom::radius>("Half-width of the glow.", {7, 64}, unit::pixels)
+        .as_size_of<&ClassicBloom::reach>()
+        .as_loop_count(),
+    field<&ClassicBloom::reach>("Which pixels the radius is measured in."));
 
-constexpr std::uint32_t vectors = (classic_bloom_capacity + 3) / 4;
+/// The weights; the last number of all is that of taps to one side.
+constexpr std::uint32_t vectors = classic_bloom_capacity / 4 + 1;
 
 const ClassicBloom& bloom_of(const void* parameters) { return *static_cast<const ClassicBloom*>(parameters); }
 
-void weight_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
-    const auto weights = classic_bloom_weights(bloom_of(parameters).radius);
+void weight_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const double radius = classic_bloom_radius(bloom_of(parameters), context.frame_extent.height);
+    const auto weights = classic_bloom_weights(radius);
     for (std::size_t i = 0; i < out.size() * 4; ++i)
         out[i / 4][i % 4] = i < weights.size() ? static_cast<float>(weights[i]) : 0.0f;
+    out.back()[3] = static_cast<float>(classic_bloom_taps(radius));
 }
 
 void build(PassBuilder& builder) {

@@ -5,7 +5,8 @@
 vec4 classic_bloom(vec4 color, Pixel pixel, ClassicBloom parameters) {
     float reach = 2.0 / float(size(classic_bloom_wide).y);
     vec3 sum = sample_linear(classic_bloom_wide, pixel.uv).rgb * classic_bloom_custom(0).x;
-    int taps = (parameters.radius + 3) / 4;
+    int taps =
+        parameters.reach == ClassicBloom_reach_pixels ? (parameters.radius + 3) / 4 : int(classic_bloom_custom(16).w);
     for (int i = 1; i <= taps; ++i) {
         vec2 offset = vec2(0.0, float(i) * reach);
         sum += (sample_linear(classic_bloom_wide, pixel.uv - offset).rgb +

@@ -24,6 +24,8 @@ struct ClassicBloom {
     float threshold = 1.0f;
     /// Half-width of the glow. [7, 64] px
     std::int32_t radius = 16;
+    /// Which pixels the radius is measured in.
+    Reach reach = Reach::Pixels;
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const ClassicBloom&);

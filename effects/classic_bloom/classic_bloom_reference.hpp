@@ -13,17 +13,24 @@
 
 namespace darkroom {
 
-/// Texels of the small picture to one side, and the middle one.
-inline constexpr std::size_t classic_bloom_capacity = 17;
+/// Texels of the small picture to one side, and the middle one: of the widest glow of 4320 lines. Of more
+/// lines the widest is no wider.
+inline constexpr std::size_t classic_bloom_capacity = 66;
+
+/// In the picture's own pixels.
+inline double classic_bloom_radius(const ClassicBloom& bloom, std::uint32_t height) {
+    return std::min(pixels_of(bloom.reach, bloom.radius, height), 4.0 * (classic_bloom_capacity - 1));
+}
+inline std::int32_t classic_bloom_taps(double radius) { return static_cast<std::int32_t>(std::ceil(radius / 4)); }
 
 /// Weights of texels 0 .. radius / 4 of the small picture, four pixels apart, to one side: a Gaussian whose variance is
 /// that of the whole, (radius / 3)^2 pixels, less what the other steps add: 5/4 the mean of four pixels, 3 and 3/4
 /// the bilinear filters to half and to full size.
-inline std::array<double, classic_bloom_capacity> classic_bloom_weights(std::int32_t radius) {
+inline std::array<double, classic_bloom_capacity> classic_bloom_weights(double radius) {
     std::array<double, classic_bloom_capacity> weights{};
     const double variance = std::max((radius * radius / 9.0 - 5.0) / 16.0, 0.01);
     double sum = 0;
-    for (std::int32_t i = 0; i <= (radius + 3) / 4; ++i) {
+    for (std::int32_t i = 0; i <= classic_bloom_taps(radius); ++i) {
         double& weight = weights[static_cast<std::size_t>(i)];
         weight = std::exp(-0.5 * i * i / variance);
         sum += i == 0 ? weight : 2 * weight;
@@ -72,12 +79,13 @@ inline ReferenceImage classic_bloom_reference_extract(const ReferenceImage& pict
 /// Taps `step_x`, `step_y` of the picture apart, into one of width x height.
 inline ReferenceImage classic_bloom_reference_line(const ReferenceImage& image, std::uint32_t width,
                                                    std::uint32_t height, double step_x, double step_y,
-                                                   std::int32_t radius) {
+                                                   double radius) {
     const auto weights = classic_bloom_weights(radius);
+    const std::int32_t taps = classic_bloom_taps(radius);
     ReferenceImage out(width, height, {0, 0, 0, 1});
     for (std::uint32_t y = 0; y < height; ++y)
         for (std::uint32_t x = 0; x < width; ++x)
-            for (std::int32_t i = -(radius + 3) / 4; i <= (radius + 3) / 4; ++i)
+            for (std::int32_t i = -taps; i <= taps; ++i)
                 out.at(x, y) = weighed_sum_reference(
                     out.at(x, y),
                     sample_reference(image, (x + 0.5) / width + i * step_x, (y + 0.5) / height + i * step_y),
@@ -88,11 +96,12 @@ inline ReferenceImage classic_bloom_reference_line(const ReferenceImage& image, 
 inline ReferenceImage classic_bloom_reference(const void* parameters, const ReferenceInput& input) {
     const auto& bloom = *static_cast<const ClassicBloom*>(parameters);
     ReferenceImage out = *input.picture;
+    const double radius = classic_bloom_radius(bloom, out.height);
     const ReferenceImage small = classic_bloom_reference_extract(*input.picture, *input.source, bloom);
     const ReferenceImage wide = classic_bloom_reference_line(
-        small, std::max(out.width / 2, 1u), std::max(out.height / 2, 1u), 1.0 / small.width, 0, bloom.radius);
+        small, std::max(out.width / 2, 1u), std::max(out.height / 2, 1u), 1.0 / small.width, 0, radius);
     const ReferenceImage glow =
-        classic_bloom_reference_line(wide, out.width, out.height, 0, 2.0 / wide.height, bloom.radius);
+        classic_bloom_reference_line(wide, out.width, out.height, 0, 2.0 / wide.height, radius);
     for (std::size_t i = 0; i < out.pixels.size(); ++i)
         out.pixels[i] = weighed_sum_reference(out.pixels[i], glow.pixels[i], double{bloom.intensity});
     return out;

@@ -15,11 +15,14 @@ namespace {
 constexpr auto gaussian_blur_rows = describe(
     field<&GaussianBlur::radius>("Half-width of the blur; 0 leaves the picture as it is.", {0, 64}, unit::pixels)
         .at_compile()
+        .as_size_of<&GaussianBlur::reach>()
         .as_loop_count(),
     field<&GaussianBlur::sigma>("Standard deviation of the bell curve; 0 takes a third of the radius.", {0, 64},
                                 unit::pixels)
-        .at_compile(),
-    field<&GaussianBlur::resolution>("Whether a wide blur works on a smaller picture.").at_compile());
+        .at_compile()
+        .as_size_of<&GaussianBlur::reach>(),
+    field<&GaussianBlur::resolution>("Whether a wide blur works on a smaller picture.").at_compile(),
+    field<&GaussianBlur::reach>("Which pixels radius and sigma are measured in.").at_compile());
 
 constexpr std::uint32_t vectors = 1 + GaussianBlurTaps::capacity / 2;
 
@@ -73,7 +76,7 @@ template <bool is_horizontal>
 void line_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const VkExtent2D whole = context.frame_extent, own = context.output_extent;
     const double scale = is_horizontal ? double{1} * whole.width / own.width : double{1} * whole.height / own.height;
-    const GaussianBlurTaps taps = gaussian_blur_taps(blur_of(parameters), scale);
+    const GaussianBlurTaps taps = gaussian_blur_taps(gaussian_blur_in_pixels(blur_of(parameters), whole.height), scale);
     out[0] = {taps.centre_weight, static_cast<float>((taps.count + 1) / 2), is_horizontal ? 1.0f : 0.0f,
               is_horizontal ? 0.0f : 1.0f};
     // Of an odd number of pairs the last vector's second one has weight 0.
@@ -97,7 +100,10 @@ PassImage add_lines(PassBuilder& builder, PassImage picture, std::uint32_t level
 
 void build(PassBuilder& builder) {
     const PassImage picture = builder.picture();
-    const std::uint32_t level = gaussian_blur_level(blur_of(builder.parameters()));
+    const GaussianBlur& blur = blur_of(builder.parameters());
+    const std::uint32_t height =
+        blur.reach == Reach::Height ? builder.from_max_extent([](VkExtent2D extent) { return extent.height; }) : 0;
+    const std::uint32_t level = gaussian_blur_level(gaussian_blur_in_pixels(blur, height));
     PassImage image = picture;
     for (std::uint32_t i = 1; i <= level; ++i) {
         const std::string name = "halve " + std::to_string(i);
@@ -127,6 +133,15 @@ bool is_identity(const void* parameters) { return blur_of(parameters).radius == 
 
 }  // namespace
 
+GaussianBlur gaussian_blur_in_pixels(const GaussianBlur& blur, std::uint32_t height) {
+    if (blur.reach == Reach::Pixels) return blur;
+    GaussianBlur out = blur;
+    out.reach = Reach::Pixels;
+    out.radius = static_cast<std::int32_t>(std::ceil(pixels_of(Reach::Height, blur.radius, height)));
+    out.sigma = static_cast<float>(pixels_of(Reach::Height, sigma_of(blur), height));
+    return out;
+}
+
 GaussianBlurTaps gaussian_blur_taps(const GaussianBlur& blur, double scale) {
     GaussianBlurTaps taps;
     if (blur.radius <= 0) return taps;
@@ -152,8 +167,9 @@ GaussianBlurTaps gaussian_blur_taps(const GaussianBlur& blur, double scale) {
 
 std::uint32_t gaussian_blur_level(const GaussianBlur& blur) {
     const double sigma = sigma_of(blur);
-    if (blur.resolution == GaussianBlurResolution::Full || blur.radius < least_cut_off * sigma) return 0;
     std::uint32_t level = 0;
+    while (blur.radius > static_cast<std::int32_t>(2 * GaussianBlurTaps::capacity) << level) ++level;
+    if (blur.resolution == GaussianBlurResolution::Full || blur.radius < least_cut_off * sigma) return level;
     while (sigma >= least_sigma * (2u << level)) ++level;
     return level;
 }

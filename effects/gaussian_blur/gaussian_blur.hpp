@@ -24,7 +24,14 @@ struct GaussianBlur {
     float sigma = 0.0f;
     /// Whether a wide blur works on a smaller picture.
     GaussianBlurResolution resolution = GaussianBlurResolution::Automatic;
+    /// Which pixels radius and sigma are measured in.
+    Reach reach = Reach::Pixels;
 };
+
+/// The same blur in pixels of a picture of this height.
+[[nodiscard]] GaussianBlur gaussian_blur_in_pixels(const GaussianBlur& blur, std::uint32_t height);
+
+// What follows is about blurs in pixels.
 
 /// One direction of the blur as a shader sums it up: the texel itself, then pairs of texels to both sides. Pair i holds
 /// texels 2i + 1 and 2i + 2, weighed by weights[i] (1 - fractions[i]) and weights[i] fractions[i]: one bilinear tap at
@@ -39,7 +46,7 @@ struct GaussianBlurTaps {
 /// `scale`: how many of the picture's pixels a texel of the blurred picture stands for, along this direction. Above 1,
 /// the curve's variance is what making the picture small and large again leaves of the whole.
 [[nodiscard]] GaussianBlurTaps gaussian_blur_taps(const GaussianBlur& blur, double scale = 1.0);
-/// How often the picture is halved before it is blurred: 0 to 4. A plan keeps what it was compiled with.
+/// How often the picture is halved before it is blurred. A plan keeps what it was compiled with.
 [[nodiscard]] std::uint32_t gaussian_blur_level(const GaussianBlur& blur);
 /// Reads of an image for every pixel of the result, where bilinear taps are used; those of smaller pictures count by
 /// their share of the pixels.

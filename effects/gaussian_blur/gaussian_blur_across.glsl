@@ -7,7 +7,7 @@
 vec4 shade(Pixel pixel) {
     vec4 own = load(gaussian_blur_input, pixel.texel);
     // The radius is a literal of lean kernels: without a loop the software driver takes two thirds of the time.
-    int vectors = (gaussian_blur_parameters().radius + 3) / 4;
+    int vectors = gaussian_blur_vectors();
     vec3 sum = gaussian_blur_sum(pixel, own, vectors, true);
     [[dont_flatten]] if (!is_finite(sum)) sum = gaussian_blur_sum(pixel, own, vectors, false);
     return vec4(clamp(sum, -65504.0, 65504.0), sanitize(own).a);

@@ -5,5 +5,5 @@
 
 vec4 shade(Pixel pixel) {
     vec4 own = load(gaussian_blur_input, pixel.texel);
-    return vec4(gaussian_blur_sum(pixel, own, (gaussian_blur_parameters().radius + 3) / 4, true), own.a);
+    return vec4(gaussian_blur_sum(pixel, own, gaussian_blur_vectors(), true), own.a);
 }

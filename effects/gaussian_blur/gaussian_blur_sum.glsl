@@ -10,6 +10,12 @@ vec3 gaussian_blur_clean(vec4 color, bool is_clean) {
 
 vec3 gaussian_blur_vector(Pixel pixel, int i, bool is_clean);
 
+// At full size. In the picture's own pixels the number is known from the radius.
+int gaussian_blur_vectors() {
+    GaussianBlur blur = gaussian_blur_parameters();
+    return blur.reach == GaussianBlur_reach_pixels ? (blur.radius + 3) / 4 : int(custom[0].y);
+}
+
 vec3 gaussian_blur_sum(Pixel pixel, vec4 own, int vectors, bool is_clean) {
     vec3 sum = gaussian_blur_clean(own, is_clean) * custom[0].x;
     for (int i = 1; i <= vectors; ++i) sum += gaussian_blur_vector(pixel, i, is_clean);

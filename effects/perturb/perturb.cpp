@@ -15,10 +15,12 @@ namespace {
 constexpr auto perturb_rows = describe(
     field<&Perturb::amount>("Scales all displacements.", {0, 8}).as_amount(),
     field<&Perturb::strength>("Amplitude of the sines in x and y, in pixels; then their waves across the picture.",
-                              {-256, 256}),
+                              {-256, 256})
+        .as_size_of<&Perturb::reach>(),
     field<&Perturb::time_distortion>("Phase of the sines in x and y, in turns: 0 and 1 are the same.", {0, 1}),
     field<&Perturb::speed>("Turns of the phases, and of the distortion image, in a second.", {-16, 16}),
-    field<&Perturb::ring_strength>("Amplitude of the ring at its start; below 0 it pulls.", {-256, 256}, unit::pixels),
+    field<&Perturb::ring_strength>("Amplitude of the ring at its start; below 0 it pulls.", {-256, 256}, unit::pixels)
+        .as_size_of<&Perturb::reach>(),
     field<&Perturb::ring_center>("Where the ring starts, in uv.", {-1, 2}),
     field<&Perturb::ring_width>("Half-width of the ring, in heights of the picture.", {0.001, 2}),
     field<&Perturb::ring_speed>("Heights of the picture that the ring runs in a second.", {0, 16}),
@@ -26,9 +28,11 @@ constexpr auto perturb_rows = describe(
                                  unit::seconds),
     field<&Perturb::distortion>("An image whose red and green displace the picture: 0.5 by nothing. It repeats.")
         .as_picture(),
-    field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels),
+    field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels)
+        .as_size_of<&Perturb::reach>(),
     field<&Perturb::evaluation>("Where the displacement is worked out.").at_compile(),
-    warp_grid_field<&Perturb::grid>());
+    warp_grid_field<&Perturb::grid>(),
+    field<&Perturb::reach>("Which pixels amplitudes and displacements are measured in."));
 
 constexpr std::uint32_t own_vectors = 2, most_cpu_vertices = 1000, sine_entries = 256;
 

@@ -40,6 +40,8 @@ struct Perturb {
     PerturbEvaluation evaluation = PerturbEvaluation::Pixel;
     /// Columns and rows of the grid, where its vertices are evaluated. [1, 256]
     Vec2 grid = default_warp_grid;
+    /// Which pixels amplitudes and displacements are measured in.
+    Reach reach = Reach::Height;
 };
 
 /// What the CPU adds to the parameters in a frame.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Perturbation in double precision. With s the strength, t the phases, d_x and d_y the size of a pixel in uv:
+// Perturbation in double precision. With s the strength, t the phases, d_x and d_y the size of a pixel in uv, of one of
+// a picture of 1080 lines where sizes are parts of the height:
 //     u' = u + a d_x (s.x sin 2 pi (s.z v + t.x) + ring + image)
 //     v' = v + a d_y (s.y sin 2 pi (s.w u + t.y) + ring + image)
 // The sum of sines, and an image of displacements: Jason L. Mitchell, Marwan Y. Ansari and Evan Hart, "Advanced Image
@@ -54,7 +55,8 @@ inline PerturbShift perturb_shift(const Perturb& p, const PerturbFrame& frame, d
             shift.y += weight * double{p.distortion_strength} * (2 * texel.g - 1);
         }
     }
-    return {double{p.amount} * shift.x, double{p.amount} * shift.y};
+    const double scale = double{p.amount} * pixels_of(p.reach, 1, height);
+    return {scale * shift.x, scale * shift.y};
 }
 
 inline ReferenceImage perturb_reference(const void* parameters, const ReferenceInput& input) {

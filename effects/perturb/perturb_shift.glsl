@@ -15,7 +15,8 @@ vec2 perturb_sum(vec2 uv, vec2 sines, vec2 image, vec4 frame, vec2 size, Perturb
     float bump = frame.w * perturb_bump((radius - frame.z) / parameters.ring_width);
     shift -= from_center * (bump / max(radius, 1e-6));
     shift += parameters.distortion_strength * (2.0 * image - 1.0);
-    return parameters.amount * shift;
+    float pixel = parameters.reach == Perturb_reach_height ? size.y / 1080.0 : 1.0;
+    return parameters.amount * pixel * shift;
 }
 
 vec2 perturb_turns(vec2 uv, vec4 frame, Perturb parameters) {
