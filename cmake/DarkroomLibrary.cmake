@@ -1,7 +1,7 @@
 # What an engine links: libdarkroom.so, one shared object of core, glsl, gpu, graph, plan, compose, effects and
-# custom, libdarkroom_looks.so, which reads looks (TOML) and table files, and libdarkroom_script.so, a console and
-# controllers in Lua; or libdarkroom.a, which is the first as an archive (DARKROOM_STATIC). In the tree and installed they
-# are Darkroom::darkroom, Darkroom::looks, Darkroom::script and Darkroom::static. Included after the folders they are made
+# custom, libdarkroom_looks.so, which reads looks (TOML) and table files, libdarkroom_script.so, a console and controllers
+# in Lua, and libdarkroom_hud.so, documents of the interface; or libdarkroom.a, which is the first as an archive
+# (DARKROOM_STATIC). In the tree and installed they are Darkroom::darkroom, looks, script, hud and static. Included after the folders they are made
 # of; installed by cmake/install/library.
 
 # Objects, not archives: all of a folder goes in, and what it links comes from the folder's own target. The names of
@@ -12,7 +12,7 @@ function(darkroom_shared_library name)
   foreach(part ${library_PARTS})
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
     target_link_libraries(${name} PRIVATE
-      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|glsl|no_glsl|gpu|graph|plan|compose|effects|custom|toml|tables|looks|script)$>")
+      "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|glsl|no_glsl|gpu|graph|plan|compose|effects|custom|toml|tables|looks|script|confined|hud)$>")
   endforeach()
   set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
     LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
@@ -40,6 +40,10 @@ endif()
 if(TARGET darkroom_script)
   darkroom_shared_library(darkroom_script_shared OUTPUT darkroom_script EXPORT script PARTS script)
   target_link_libraries(darkroom_script_shared PUBLIC darkroom_shared PRIVATE darkroom_fmt)
+endif()
+if(TARGET darkroom_hud)
+  darkroom_shared_library(darkroom_hud_shared OUTPUT darkroom_hud EXPORT hud PARTS confined hud)
+  target_link_libraries(darkroom_hud_shared PUBLIC darkroom_shared PRIVATE darkroom_fmt)
 endif()
 if(DARKROOM_STATIC)
   include(DarkroomStatic)

@@ -14,8 +14,8 @@
 
 namespace darkroom {
 
-/// Where `file` of <library folder>/darkroom is: where it was installed, seen from the running program, so that the
-/// whole may be moved; else where it is in a build folder.
+/// Where `file` of <library folder>/darkroom is: where it was installed, seen from the running program or from the
+/// library that this is linked into, so that the whole may be moved; else where it is in a build folder.
 [[nodiscard]] std::filesystem::path program_module(const char* file);
 
 }  // namespace darkroom

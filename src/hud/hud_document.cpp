@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "hud/hud_document.hpp"
+#include <darkroom/hud_document.hpp>
 
 #include <fmt/format.h>
 
@@ -15,6 +15,8 @@
 
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
+#include "hud/svg_process.hpp"
+#include "hud/svg_text.hpp"
 
 namespace darkroom {
 

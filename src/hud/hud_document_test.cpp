@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "hud/hud_document.hpp"
+#include <darkroom/hud_document.hpp>
 #include "tests/places.hpp"
 
 #include <gtest/gtest.h>

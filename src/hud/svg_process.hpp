@@ -5,28 +5,13 @@
 // brings librsvg down costs no more than that process. Started with the first drawing, again after it was lost.
 
 #include <cstdint>
+#include <darkroom/hud_document.hpp>
 #include <darkroom/result.hpp>
 #include <string_view>
-#include <vector>
 
 #include "confined/process.hpp"
 
 namespace darkroom {
-
-/// Premultiplied, sRGB-encoded, 8 bits a channel, rows from the top.
-struct HudPicture {
-    std::uint32_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba{};
-};
-
-/// Budgets of a document and a drawing; what exceeds them is an error, not a wait.
-struct HudLimits {
-    std::uint32_t document_bytes = 1u << 20;
-    std::uint32_t elements = 20'000;
-    std::uint32_t side = 8192;  ///< of a picture, pixels
-    std::uint32_t pixels = 7680 * 4320;
-    std::uint32_t seconds = 5;  ///< a drawing may take; the first one of a machine may make caches of fonts
-};
 
 class SvgProcess {
   public:

@@ -4,18 +4,16 @@
 // It reads tags and attributes; whether they are well-formed XML, librsvg says.
 
 #include <cstdint>
+#include <darkroom/hud_document.hpp>
 #include <darkroom/result.hpp>
 #include <map>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace darkroom {
 
-/// Of the game: a number is shown in the shortest form that reads back the same, or in the form that its binding names.
-using HudValue = std::variant<double, std::string>;
 using HudValues = std::map<std::string, HudValue, std::less<>>;
 
 /// Of an element, by its id, and a class of it: whether it has it.

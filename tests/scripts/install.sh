@@ -37,6 +37,7 @@ CXXFLAGS=${flags[*]} LDFLAGS=$kept cmake -S "$tree/tests/package" -B "$work/cmak
 cmake --build "$work/cmake" >"$work/log" || { cat "$work/log" && exit 1; }
 "$work/cmake/package"
 [[ ! -x $work/cmake/script ]] || "$work/cmake/script"
+[[ ! -x $work/cmake/hud ]] || "$work/cmake/hud"
 
 export PKG_CONFIG_PATH=$library/pkgconfig
 # pkg-config escapes the blank of the path, and eval reads it so.

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "hud/hud_document.hpp"
+#include <darkroom/hud_document.hpp>
 #include "timeline.hpp"
 
 namespace app {

@@ -11,7 +11,7 @@
 
 #include "apps/darkroom/run/timeline.hpp"
 #include "gpu/resource/resources.hpp"
-#include "hud/hud_document.hpp"
+#include <darkroom/hud_document.hpp>
 
 namespace app {
 

@@ -5,17 +5,34 @@
 // time; off the calling thread unless it is headless. What cannot be drawn leaves the last picture, and says why.
 // Not for what moves smoothly in every frame: a drawing takes milliseconds.
 
+#include <cstdint>
 #include <darkroom/result.hpp>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
-#include "hud/svg_process.hpp"
-#include "hud/svg_text.hpp"
-
 namespace darkroom {
+
+/// Of the game: a number is shown in the shortest form that reads back the same, or in the form that its binding names.
+using HudValue = std::variant<double, std::string>;
+
+/// Premultiplied, sRGB-encoded, 8 bits a channel, rows from the top.
+struct HudPicture {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgba{};
+};
+
+/// Budgets of a document and a drawing; what exceeds them is an error, not a wait.
+struct HudLimits {
+    std::uint32_t document_bytes = 1u << 20;
+    std::uint32_t elements = 20'000;
+    std::uint32_t side = 8192;  ///< of a picture, pixels
+    std::uint32_t pixels = 7680 * 4320;
+    std::uint32_t seconds = 5;  ///< a drawing may take; the first one of a machine may make caches of fonts
+};
 
 struct HudOptions {
     bool is_headless = false;    ///< picture() draws what it returns, and looks at the file each time
