@@ -5,6 +5,8 @@
 #include <cmath>
 #include <darkroom/hud_inertia.hpp>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace darkroom {
 namespace {
@@ -80,6 +82,26 @@ TEST(HudInertia, PushesAddUpAndAJumpStartsAnew) {
     jumper.step(0.001, 0, true, 0);
     const double before = jumper.offset().y;
     EXPECT_NEAR(jumper.step(0.01, 0, false, 5).y, (before + (-0.2 + 18 * before) * 0.01) * std::exp(-0.18), 1e-8);
+}
+
+// Of many pushes, one in every other frame, every step is the sum of what each of them alone has become by then.
+TEST(HudInertia, EveryStepIsTheSumOfAllPushesBefore) {
+    for (const double rate : {10.0, 24.0, 60.0, 144.0, 1000.0}) {
+        HudInertia inertia = standing();
+        std::vector<std::pair<double, double>> pushes;  // when, and by how much
+        double yaw = 0;
+        for (int frame = 0; frame < 200; ++frame) {
+            if (frame % 2 == 0) {
+                const double degrees = (frame % 4 == 0 ? 1 : -1) * (30.0 + frame * 37 % 60);
+                yaw += degrees;
+                pushes.emplace_back(frame / rate, -0.002 * degrees);
+            }
+            const Vec2 offset = inertia.step(1 / rate, yaw, true, 0);
+            double expected = 0;
+            for (const auto& [when, push] : pushes) expected += exact(push, 14, (frame + 1) / rate - when);
+            ASSERT_NEAR(offset.x, expected, 1e-6) << rate << ", frame " << frame;
+        }
+    }
 }
 
 TEST(HudInertia, OnlyLeavingTheGroundUpwardIsAJump) {

@@ -259,18 +259,18 @@ TEST(Console, AnOverrideLeavesTheBaseAlone) {
 }
 
 struct Known {
-    const char *name, *effect, *member, *value;
+    const char *name, *effect, *member, *fresh, *value;
     bool is_archived;
 };
-// The game's names and defaults, and what they are here.
-constexpr std::array known{Known{"r_ui_warp", "ui_warp", "strength", "-0.1", false},
-                           Known{"r_ui_chromatic", "ui_chroma", "strength", "0.003", false},
-                           Known{"r_ui_echo", "ui_echo", "strength", "0", false},
-                           Known{"r_ui_echo_scale", "ui_echo", "size", "1", false},
-                           Known{"r_ui_additive", "ui_composite", "additive", "0", false},
-                           Known{"gamma", "contrast_gamma", "gamma", "0.9", true},
-                           Known{"contrast", "contrast_gamma", "contrast", "1.4", true},
-                           Known{"scr_sbaralpha", "ui_composite", "ui_opacity", "0.75", true}};
+// The game's names, what they are here before anybody sets them, which is neutral, and the game's own defaults.
+constexpr std::array known{Known{"r_ui_warp", "ui_warp", "strength", "0", "-0.1", false},
+                           Known{"r_ui_chromatic", "ui_chroma", "strength", "0", "0.003", false},
+                           Known{"r_ui_echo", "ui_echo", "strength", "0", "0.1", false},
+                           Known{"r_ui_echo_scale", "ui_echo", "size", "1", "1.01", false},
+                           Known{"r_ui_additive", "ui_composite", "additive", "0", "0.2", false},
+                           Known{"gamma", "contrast_gamma", "gamma", "1", "0.9", true},
+                           Known{"contrast", "contrast_gamma", "contrast", "1", "1.4", true},
+                           Known{"scr_sbaralpha", "ui_composite", "ui_opacity", "1", "0.75", true}};
 
 TEST(ConsoleNames, OfTheReferenceAreParametersOfTheInterfacesEffects) {
     const Folder folder;
@@ -283,11 +283,27 @@ TEST(ConsoleNames, OfTheReferenceAreParametersOfTheInterfacesEffects) {
     for (const Known& one : known) {
         SCOPED_TRACE(one.name);
         if (find_effect(one.effect) == nullptr) continue;
+        EXPECT_EQ(console.get(one.name), one.fresh) << "read before anything is set";
         EXPECT_EQ(console.execute(std::string(one.name) + " " + one.value), 0u);
         EXPECT_EQ(console.get(std::string(one.effect) + "." + one.member), one.value);
         EXPECT_EQ(config.find("\"" + std::string(one.name) + "\"") != std::string::npos, one.is_archived);
+        EXPECT_EQ(console.execute("reset " + std::string(one.name)), 0u);
+        EXPECT_EQ(console.get(one.name), one.fresh);
     }
     EXPECT_TRUE(printed.empty()) << printed.front();
+}
+
+// A variable is one value, and a size in % is two.
+TEST(ConsoleNames, SizesArePixels) {
+    if (find_effect("gaussian_blur") == nullptr) GTEST_SKIP();
+    Composer composer(Device::assumed());
+    composer.add(*find_effect("gaussian_blur"), nullptr);
+    std::vector<std::string> printed;
+    Console console(composer, {.print = [&](Severity, std::string_view line) { printed.emplace_back(line); }});
+    console.execute("gaussian_blur.radius 2%");
+    ASSERT_EQ(printed.size(), 1U);
+    EXPECT_EQ(printed[0], "gaussian_blur.radius = 2%: allowed here is [0, 64] px without %");
+    EXPECT_EQ(console.get("gaussian_blur.radius"), "4");
 }
 
 TEST(ConsoleNames, NoNameIsTwoThings) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The interface's chain as a whole: the original's arithmetic, written down once more; what stays untouched; sizes.
 #include <gtest/gtest.h>
+#include <darkroom/look.hpp>
 #include <darkroom/ui_constants.hpp>
 
 #include "compose/test_stacks/host.hpp"
@@ -115,13 +116,15 @@ ReferenceImage encoded(const ReferenceImage& linear) {
 // Two heights, three aspect ratios, both stages. What remains is the encoding's polynomial (3.3e-5), raised by a
 // contrast of up to 2, and the eighth of a bit that a sampler places its texels by.
 TEST_F(ChainUi, IsTheOriginalsArithmetic) {
-    std::vector<DarkroomUiConstants> all(8, plain);
+    std::vector<DarkroomUiConstants> all(10, plain);
     all[1].warp_strength = -0.4F;
     all[2].warp_strength = 0.3F, all[2].chromatic_strength = 0.05F;
     all[3].echo_strength = 0.4F, all[3].echo_scale = 1.2F, all[3].warp_strength = -0.15F;
     all[4].ui_opacity = 0.75F, all[4].ui_additive = 0.5F, all[4].contrast = 1.4F, all[4].gamma = 0.9F;
     all[5].ui_offset_x = 0.03F, all[5].ui_offset_y = -0.02F, all[5].warp_strength = -0.1F;
     all[6].echo_strength = 3, all[6].echo_scale = 0.7F, all[6].ui_opacity = 0;
+    all[8].contrast = 0.5F, all[8].gamma = 0.8F;
+    all[9].contrast = 3.5F;
     all[7] = {0.9F, 1.4F, -0.15F, 0.01F, 0.01F, 0.01F, 0.75F, 0.2F, 1.01F, 0.25F};
     for (const VkExtent2D size : {VkExtent2D{96, 54}, {72, 54}, {120, 51}, {192, 108}}) {
         const ReferenceImage world = encoded_world(size.width, size.height);
@@ -129,7 +132,7 @@ TEST_F(ChainUi, IsTheOriginalsArithmetic) {
         for (std::size_t i = 0; i < all.size(); ++i)
             for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
                 // Of text, white on nothing, a filtered layer and its echo.
-                const double gain = double{all[i].contrast} * (1 + double{all[i].echo_strength});
+                const double gain = std::clamp(double{all[i].contrast}, 1.0, 2.0) * (1 + double{all[i].echo_strength});
                 SCOPED_TRACE(fmt::format("{}x{}, constants {}", size.width, size.height, i));
                 EXPECT_LE(test::worst_difference(composed(world, ui, all[i], {.kernels = stage, .ui_format = float4}),
                                                  original(under, ui, all[i])),
@@ -172,6 +175,93 @@ TEST_F(ChainUi, NeitherSeesTheOthersEffects) {
             ASSERT_EQ(bright.pixels[i].g, dark.pixels[i].g) << "the interface is not exposed";
         }
     EXPECT_GT(test::worst_difference(bright, dark), 0.1);
+}
+
+// Whatever the picture's effects do, and in both orders: they lie before the interface, so what is opaque in it keeps its
+// codes, dither being the last of them.
+TEST_F(ChainUi, OpaquePixelsKeepTheirCodesInBothOrders) {
+    const ReferenceImage world = test::random_hdr(75, 44, 9), ui = interface_of(75, 44);
+    for (const LookOrder order : {LookOrder::Documented, LookOrder::SceneLinear}) {
+        const Look look = test::must(parse_look(
+            fmt::format("[post_process]\norder = \"{}\"\nexposure = 1.7\nvignette_enabled = true\n"
+                        "vignette_intensity = 0.9\ndither_enabled = true\ndither_intensity = 0.1\n"
+                        "chromatic_aberration = 0.02\n[ui]\nui_composite_enabled = true\n",
+                        order == LookOrder::Documented ? "documented" : "scene_linear"),
+            "a look"));
+        const auto run = [&](const ReferenceImage& layer) {
+            return test::develop([&](Composer& composer) { test::must(apply(look, composer)); }, world,
+                                 {.target = VK_FORMAT_R8G8B8A8_UNORM, .ui = &layer});
+        };
+        const ReferenceImage out = run(ui), bare = run(ReferenceImage(75, 44, {0, 0, 0, 0}));
+        ASSERT_EQ(out.pixels.size(), ui.pixels.size());
+        std::size_t seen = 0;
+        for (std::size_t i = 0; i < ui.pixels.size(); ++i) {
+            if (ui.pixels[i].a < 1) continue;
+            for (double Rgba::*channel : {&Rgba::r, &Rgba::g, &Rgba::b})
+                ASSERT_EQ(std::lround(out.pixels[i].*channel * 255), std::lround(ui.pixels[i].*channel * 255)) << i;
+            seen += std::lround(bare.pixels[i].g * 255) != std::lround(out.pixels[i].g * 255);
+        }
+        EXPECT_GT(seen, 500U) << "the picture below is another";
+    }
+}
+
+// Red and blue part by a strength times 1080 / height, and alpha is that of green: the entry itself, not its constants.
+TEST_F(ChainUi, ChannelsPartByTheHeightAndAlphaIsGreens) {
+    for (const std::uint32_t height : {60U, 180U}) {
+        const ReferenceImage world(80, height, {0.2, 0.2, 0.2, 1}), ui = interface_of(80, height);
+        DarkroomUiConstants constants = plain;
+        constants.chromatic_strength = 0.004F * 1080 / static_cast<float>(height);
+        const ReferenceImage out = test::develop(
+            [](Composer& composer) {
+                add_ui(composer, "ui_chroma", {{"strength", 0.004}});
+                add(composer, "encode");
+                add(composer, "ui_composite");
+            },
+            world, {.ui = &ui, .ui_format = float4});
+        EXPECT_LE(test::worst_difference(out, original(encoded(world), ui, constants)),
+                  2e-3 + 2 * gpu::test::filter_step())
+            << height;
+    }
+}
+
+// A bar in the middle, half as wide as its ghost of twice the size: beside the bar lies the ghost alone, whose alpha is
+// the larger one, and on the bar light is added. A ghost that is stronger than what it is of stays a number.
+TEST_F(ChainUi, TheGhostIsAddedAndTheLargerAlphaCounts) {
+    const ReferenceImage world(64, 8, {0.5, 0.5, 0.5, 1});
+    ReferenceImage ui(64, 8, {0, 0, 0, 0});
+    for (std::uint32_t y = 0; y < 8; ++y)
+        for (std::uint32_t x = 24; x < 40; ++x) ui.at(x, y) = {0.3, 0.1, 0, 0.6};
+    const double below = encoded(world).pixels[0].r;
+    for (const float strength : {0.5F, 4.0F}) {
+        const ReferenceImage out = test::develop(
+            [&](Composer& composer) {
+                add_ui(composer, "ui_echo", {{"strength", strength}, {"size", 2}});
+                add(composer, "encode");
+                add(composer, "ui_composite");
+            },
+            world, {.ui = &ui, .ui_format = float4});
+        const double ghost = 0.6 * double{strength}, beside = std::min(ghost, 1.0), on = std::min(std::max(ghost, 0.6), 1.0);
+        EXPECT_NEAR(out.at(20, 4).r, below * (1 - beside) + 0.3 * double{strength}, 1e-3);
+        EXPECT_NEAR(out.at(32, 4).r, below * (1 - on) + 0.3 * (1 + double{strength}), 1e-3);
+        EXPECT_NEAR(out.at(12, 4).r, below, 1e-3) << "beyond twice the bar there is nothing";
+        for (const Rgba& pixel : out.pixels) ASSERT_TRUE(std::isfinite(pixel.r) && std::isfinite(pixel.g));
+    }
+}
+
+// No contrast outside of [1, 2] reaches the picture, by whatever way it comes.
+TEST_F(ChainUi, ContrastBeyondItsBoundsIsRefusedOrTheBound) {
+    const ReferenceImage world = encoded_world(20, 10), ui = interface_of(20, 10);
+    for (const auto& [given, taken] : {std::pair{0.25F, 1.0F}, {-3.0F, 1.0F}, {2.5F, 2.0F}, {1e9F, 2.0F}}) {
+        DarkroomUiConstants beyond = plain, bound = plain;
+        beyond.contrast = given;
+        bound.contrast = taken;
+        EXPECT_EQ(test::worst_difference(composed(world, ui, beyond), composed(world, ui, bound)), 0) << given;
+        Composer composer(Device::assumed());
+        const Handle handle = add(composer, "contrast_gamma");
+        const std::array words{std::bit_cast<std::uint32_t>(given)};
+        EXPECT_FALSE(composer.set(handle, "contrast", words)) << given;
+        EXPECT_FALSE(parse_look(fmt::format("[ui]\ncontrast_gamma_contrast = {}\n", given), "a look")) << given;
+    }
 }
 
 TEST_F(ChainUi, IsOneKernelWithTheTail) {
