@@ -15,7 +15,7 @@ constexpr auto arena_bloom_rows = describe(
     field<&ArenaBloom::source_kind>("Whether colour is limited to a display's range and alpha masks the glow."),
     field<&ArenaBloom::reach>("Whether the glow keeps its width in pixels, as in the game, or in parts of the height."));
 
-/// Of the bright part and each level, for a glow in parts of the height.
+/// Of each level, for a glow in parts of the height.
 void weight_constants(const void* /*parameters*/, const PassContext& context, std::span<PassVector> out) {
     const auto weights = arena_bloom_weights(context.frame_extent.height);
     for (std::size_t i = 0; i < out.size() * 4; ++i)
@@ -34,7 +34,6 @@ void build(PassBuilder& builder) {
     // The 3x3 filter (1 2 1 / 2 4 2 / 1 2 1) / 16 of bilinear taps one texel apart is the tent that halves.
     KernelPassDesc combine{.name = "combine",
                            .shader = "arena_bloom_combine.glsl",
-                           .inputs = {{.name = "arena_bloom_bright_part", .image = image}},
                            .output = create("combine", 4),
                            .custom_vectors = 2,
                            .constants = weight_constants};

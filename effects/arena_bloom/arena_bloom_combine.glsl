@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The levels at a quarter of the size, weighed, and raised to a power that leaves only strong light. custom: weights of the
-// bright part and of each level, for a glow in parts of the height.
+// The levels at a quarter of the size, weighed, and raised to a power that leaves only strong light. custom: the weights of
+// a glow in parts of the height.
 
 vec4 shade(Pixel pixel) {
     vec4 weights = vec4(0.32, 0.10, 0.20, 0.25);
     vec3 sum = vec3(0.0);
     if (arena_bloom_parameters().reach == ArenaBloom_reach_height) {
-        weights = vec4(custom[0].yzw, custom[1].x);
-        sum = custom[0].x * sample_linear(arena_bloom_bright_part, pixel.uv).rgb +
-              custom[1].y * sample_linear(arena_bloom_level_4, pixel.uv).rgb +
-              custom[1].z * sample_linear(arena_bloom_level_5, pixel.uv).rgb;
+        weights = custom[0];
+        sum = custom[1].x * sample_linear(arena_bloom_level_4, pixel.uv).rgb +
+              custom[1].y * sample_linear(arena_bloom_level_5, pixel.uv).rgb;
     }
     sum += weights.x * sample_linear(arena_bloom_level_0, pixel.uv).rgb +
            weights.y * sample_linear(arena_bloom_level_1, pixel.uv).rgb +

@@ -27,13 +27,13 @@ inline std::uint32_t arena_bloom_level_count(VkExtent2D extent) {
     return arena_bloom_levels + std::min(static_cast<std::uint32_t>(more), arena_bloom_most_levels - arena_bloom_levels);
 }
 
-/// Of the bright part, then of each level: the published weights of a picture of 1080 lines, each shared out between the
-/// two levels that are nearest to its width here.
-inline std::array<double, 1 + arena_bloom_most_levels> arena_bloom_weights(std::uint32_t height) {
-    std::array<double, 1 + arena_bloom_most_levels> out{};
-    const double last = arena_bloom_level_count({height, height});
+/// Of each level: the published weights of a picture of 1080 lines, each shared out between the two levels that are
+/// nearest to its width here. None is narrower than the first.
+inline std::array<double, arena_bloom_most_levels> arena_bloom_weights(std::uint32_t height) {
+    std::array<double, arena_bloom_most_levels> out{};
+    const double last = arena_bloom_level_count({height, height}) - 1;
     for (std::size_t level = 0; level < arena_bloom_levels; ++level) {
-        const double place = std::clamp(static_cast<double>(level + 1) + arena_bloom_shift(height), 0.0, last);
+        const double place = std::clamp(static_cast<double>(level) + arena_bloom_shift(height), 0.0, last);
         const auto wide = static_cast<std::size_t>(std::ceil(place)), fine = static_cast<std::size_t>(place);
         out[fine] += arena_bloom_published_weights[level] * (1 - (place - std::floor(place)));
         out[wide] += arena_bloom_published_weights[level] * (place - std::floor(place));
@@ -73,17 +73,17 @@ inline ReferenceImage arena_bloom_reference_quarter(const ReferenceImage& image,
 
 /// What is added to the picture, at a quarter of each side.
 inline ReferenceImage arena_bloom_reference_glow(const ReferenceImage& image, const ArenaBloom& bloom) {
-    std::array<double, 1 + arena_bloom_most_levels> weights{};
-    std::ranges::copy(arena_bloom_published_weights, weights.begin() + 1);
+    std::array<double, arena_bloom_most_levels> weights{};
+    std::ranges::copy(arena_bloom_published_weights, weights.begin());
     if (bloom.reach == Reach::Height) weights = arena_bloom_weights(image.height);
     ReferenceImage level = arena_bloom_reference_quarter(image, bloom.source_kind),
                    out(level.width, level.height, {0, 0, 0, 1});
     for (const double weight : weights) {
+        level = halve_reference(level);
         for (std::uint32_t y = 0; y < out.height; ++y)
             for (std::uint32_t x = 0; x < out.width; ++x)
                 out.at(x, y) = weighed_sum_reference(
                     out.at(x, y), sample_reference(level, (x + 0.5) / out.width, (y + 0.5) / out.height), weight);
-        level = halve_reference(level);
     }
     const auto raised = [](double value) { return std::pow(std::clamp(value, 0.0, 1.0), 2.2); };
     for (Rgba& color : out.pixels) color = {raised(color.r), raised(color.g), raised(color.b), 1};
