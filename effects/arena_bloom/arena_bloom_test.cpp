@@ -6,6 +6,7 @@
 #include <cmath>
 #include <darkroom/effects/arena_bloom.hpp>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -97,6 +98,29 @@ TEST(EffectArenaBloom, GpuMatchesReference) {
         const ReferenceImage hdr = test::round_to_float(test::random_hdr(width, height, 52));
         for (const ArenaBloomSource kind : {masked, plain})
             EXPECT_LE(worst_excess({2.0f, kind}, hdr, developed({2.0f, kind}, hdr)), 1.0) << width << "x" << height;
+    }
+}
+
+// At twice the height each weight is that of the next level, in between two levels share it, and at no height is any lost.
+TEST(EffectArenaBloom, WeightsMoveWithTheHeight) {
+    const auto expect = [](std::uint32_t height, const std::array<double, arena_bloom_most_levels>& weights) {
+        const auto got = arena_bloom_weights(height);
+        for (std::size_t i = 0; i < weights.size(); ++i) EXPECT_NEAR(got[i], weights[i], 1e-9) << height << ", " << i;
+    };
+    expect(1080, {0.32, 0.10, 0.20, 0.25, 0, 0});
+    expect(2160, {0, 0.32, 0.10, 0.20, 0.25, 0});
+    expect(540, {0.42, 0.20, 0.25, 0, 0, 0});
+    const double part = std::log2(1440 / 1080.0);
+    expect(1440, {0.32 * (1 - part), 0.32 * part + 0.10 * (1 - part), 0.10 * part + 0.20 * (1 - part),
+                  0.20 * part + 0.25 * (1 - part), 0.25 * part, 0});
+    for (const std::uint32_t height : {1u, 200u, 777u, 1500u, 4320u, 16384u}) {
+        const auto weights = arena_bloom_weights(height);
+        EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 0.87, 1e-9) << height;
+    }
+    for (const std::uint32_t height : {97u, 1300u}) {
+        const ReferenceImage picture = test::round_to_float(test::random_display(64, height, 51));
+        const ArenaBloom bloom{.reach = Reach::Height};
+        EXPECT_LE(worst_excess(bloom, picture, developed(bloom, picture)), 1.0) << height;
     }
 }
 

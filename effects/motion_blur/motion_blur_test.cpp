@@ -227,7 +227,7 @@ TEST(EffectMotionBlur, NothingSmearsWhereTheCameraJumped) {
                  {test::developed_sequence(stack_of(blur), shots), test::reference_sequence(stack_of(blur), shots)}) {
                 EXPECT_GT(share_beyond(out[0], first.color, 0x1p-4), 0.3) << "the first frame has none before it";
                 EXPECT_EQ(share_beyond(out[1], second.color, 0x1p-4) > 0.3, !is_checked);
-                if (is_checked) EXPECT_EQ(test::worst_difference(out[1], second.color), 0);
+                EXPECT_EQ(test::worst_difference(out[1], second.color) == 0, is_checked);
             }
         }
     }
@@ -242,7 +242,7 @@ TEST(EffectMotionBlur, TheSkyIsTakenWholeInDeviceDepth) {
             ReferenceImage sky(columns, height), depth(columns, height, {is_reversed ? 0.0 : 1.0, 0, 0, 1});
             for (std::uint32_t y = 0; y < height; ++y)
                 for (std::uint32_t x = 0; x < columns; ++x) sky.at(x, y) = {x % 2 == 0 ? 1.0 : 0.0, 0, 0, 1};
-            const double aspect = double{columns} / height;
+            const double aspect = static_cast<double>(columns) / height;
             Camera camera = test::look_at({0, 0, 0}, {0, 0, -1}, 0.9, aspect);
             camera.depth = kind;
             camera.far_distance = std::numeric_limits<float>::infinity();

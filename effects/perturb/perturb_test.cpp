@@ -31,7 +31,8 @@ Perturb strong(Evaluation evaluation) {
             .ring_width = 0.2f,
             .ring_speed = 0.5f,
             .evaluation = evaluation,
-            .grid = {12, 9}};
+            .grid = {12, 9},
+            .reach = Reach::Pixels};
 }
 
 ReferenceImage developed(const Perturb& parameters, const ReferenceImage& picture, test::RunOptions options = {}) {
@@ -103,7 +104,11 @@ TEST(EffectPerturb, TheSinesMoveByTheirStrengthInPixels) {
     for (std::uint32_t y = 0; y < 8; ++y)
         for (std::uint32_t x = 0; x < 64; ++x) ramp.at(x, y) = {x / 64.0, 0, 0, 1};
     // A quarter turn everywhere: sin is 1, so each pixel shows what lies 5 pixels to its right.
-    const Perturb shift{.strength = {5, 0, 0, 0}, .time_distortion = {0.25f, 0}};
+    Perturb shift{.strength = {5, 0, 0, 0}, .time_distortion = {0.25f, 0}, .reach = Reach::Pixels};
+    EXPECT_NEAR(reference(shift, ramp, 0).at(20, 4).r, 25 / 64.0, 1e-6);
+    // Pixels of a picture of 1080 lines: of 8 lines, 5 are 675 of those.
+    shift.strength.x = 5 * 1080 / 8.0f;
+    shift.reach = Reach::Height;
     EXPECT_NEAR(reference(shift, ramp, 0).at(20, 4).r, 25 / 64.0, 1e-6);
 }
 
@@ -142,7 +147,8 @@ TEST(EffectPerturb, AnImageDisplacesAndRepeats) {
                            .time_distortion = {0.3f, 0.1f},
                            .distortion_strength = 4,
                            .evaluation = evaluation,
-                           .grid = {64, 64}};
+                           .grid = {64, 64},
+                           .reach = Reach::Pixels};
         ReferenceImage expected;
         const ReferenceImage out = test::develop(
             [&](Composer& composer) {

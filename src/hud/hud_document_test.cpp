@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <darkroom/hud_document.hpp>
+#include "hud/svg_process.hpp"
 #include "tests/places.hpp"
 
 #include <gtest/gtest.h>
