@@ -278,7 +278,7 @@ TEST_F(Cli, EffectsAreListedForPrograms) {
     if (find_effect("fog") == nullptr) return;
     const std::string fog = run({"effects", "fog", "--json"}).out;
     for (const char* const part :
-         {"\"type\": \"rgb\"", "\"default\": 0.02", "\"unit\": \"1/m\"", "\"min\": 0.001", "\"max\": 1000000000.0",
+         {"\"type\": \"rgb\"", "\"default\": 0.005", "\"unit\": \"1/m\"", "\"min\": 0.001", "\"max\": 1000000000.0",
           "\"depth\"", "\"switches_effect\": true", "\"toggle_key\": 8"})
         EXPECT_NE(fog.find(part), std::string::npos) << part << " is not in " << fog;
     EXPECT_EQ(fog.find("\"vignette\""), std::string::npos);
