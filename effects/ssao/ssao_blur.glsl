@@ -22,11 +22,9 @@ vec2 ssao_slope(vec2 before, vec2 after, vec2 plane) {
 // How far normals count of pixels whose nearness is so much above that of the surface here, in the order of a gather. What
 // lies before it, across a corner of a room, is as dark as the surface is there, and counts in full: without it the corner
 // would lose its shade.
-vec4 ssao_beside(vec4 above, ivec2 low, vec3 normal, float per_width) {
-    vec4 turned = ssao_turned(vec4(dot(load_clamped(ssao_normals, low + ivec2(0, 1)).xyz, normal),
-                                   dot(load_clamped(ssao_normals, low + ivec2(1, 1)).xyz, normal),
-                                   dot(load_clamped(ssao_normals, low + ivec2(1, 0)).xyz, normal),
-                                   dot(load_clamped(ssao_normals, low).xyz, normal)));
+vec4 ssao_beside(vec4 above, ivec2 low, vec3 per_turn, float per_width) {
+    vec4 turned = ssao_turned(load_clamped(ssao_normals, low + ivec2(0, 1)).xyz, load_clamped(ssao_normals, low + ivec2(1, 1)).xyz,
+                              load_clamped(ssao_normals, low + ivec2(1, 0)).xyz, load_clamped(ssao_normals, low).xyz, per_turn);
     return max(turned, clamp(above * per_width, 0.0, 1.0));
 }
 
@@ -38,7 +36,7 @@ vec4 shade(Pixel pixel) {
     vec4 packed_00 = gather_red(ssao_raw, low), packed_10 = gather_red(ssao_raw, vec2(high.x, low.y));
     vec4 packed_01 = gather_red(ssao_raw, vec2(low.x, high.y)), packed_11 = gather_red(ssao_raw, high);
     float own = ssao_near(packed_11.w), per_own = 1.0 / own;
-    vec3 normal = load(ssao_normals, at).xyz;
+    vec3 normal = load(ssao_normals, at).xyz, per_turn = normal * ssao_per_turn;
     vec2 before = vec2(ssao_near(packed_01.z), ssao_near(packed_10.x)), after = vec2(ssao_near(packed_11.z), ssao_near(packed_11.x));
     vec2 slope = ssao_slope(per_own * before, per_own * after, ssao_plane_slope(at, own, normal));
     float tolerance = ssao_tolerance(own, slope), per_width = 2.0 / ssao_width(own);
@@ -47,10 +45,10 @@ vec4 shade(Pixel pixel) {
     vec4 above_10 = packed_10 * per_own - (expected - 2.0 * slope.y);
     vec4 above_01 = packed_01 * per_own - (expected - 2.0 * slope.x);
     vec4 above_11 = packed_11 * per_own - expected;
-    vec4 weight_00 = ssao_weight(above_00, tolerance) * ssao_beside(above_00, at - 2, normal, per_width);
-    vec4 weight_10 = ssao_weight(above_10, tolerance) * ssao_beside(above_10, at - ivec2(0, 2), normal, per_width);
-    vec4 weight_01 = ssao_weight(above_01, tolerance) * ssao_beside(above_01, at - ivec2(2, 0), normal, per_width);
-    vec4 weight_11 = ssao_weight(above_11, tolerance) * ssao_beside(above_11, at, normal, per_width);
+    vec4 weight_00 = ssao_weight(above_00, tolerance) * ssao_beside(above_00, at - 2, per_turn, per_width);
+    vec4 weight_10 = ssao_weight(above_10, tolerance) * ssao_beside(above_10, at - ivec2(0, 2), per_turn, per_width);
+    vec4 weight_01 = ssao_weight(above_01, tolerance) * ssao_beside(above_01, at - ivec2(2, 0), per_turn, per_width);
+    vec4 weight_11 = ssao_weight(above_11, tolerance) * ssao_beside(above_11, at, per_turn, per_width);
     float sum = dot(ssao_visibility(packed_00), weight_00) + dot(ssao_visibility(packed_10), weight_10) +
                 dot(ssao_visibility(packed_01), weight_01) + dot(ssao_visibility(packed_11), weight_11);
     // Its own weight is one.

@@ -52,7 +52,7 @@ class SsaoReference {
             if (input_.normals == nullptr) return 1.0;
             const Rgba& own = input_.normals->clamped(base_x * 2 + part_x, base_y * 2 + part_y);
             const Rgba& other = input_.normals->clamped(half_x * 2, half_y * 2);
-            return std::max(ssao_turned(own.r * other.r + own.g * other.g + own.b * other.b), 0.001);
+            return ssao_turned(own.r * other.r + own.g * other.g + own.b * other.b) + 0.001;
         });
     }
 

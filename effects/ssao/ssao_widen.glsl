@@ -18,9 +18,9 @@ vec4 shade(Pixel pixel) {
     vec4 sides = vec4(a.r, b.r, c.r, d.r);
     vec2 slope = 4.0 * ssao_slope_of(own.g);
     vec4 like = ssao_weight(sides * (1.0 / own.r) - 1.0 - vec4(-slope.x, slope.x, -slope.y, slope.y), ssao_tolerance(own.r, slope));
-    vec3 normal = load(ssao_normals, at).xyz;
-    like *= ssao_turned(vec4(dot(load_clamped(ssao_normals, left).xyz, normal), dot(load_clamped(ssao_normals, right).xyz, normal),
-                             dot(load_clamped(ssao_normals, above).xyz, normal), dot(load_clamped(ssao_normals, below).xyz, normal)));
+    like *= ssao_turned(load_clamped(ssao_normals, left).xyz, load_clamped(ssao_normals, right).xyz,
+                        load_clamped(ssao_normals, above).xyz, load_clamped(ssao_normals, below).xyz,
+                        load(ssao_normals, at).xyz * ssao_per_turn);
     float covered = ssao_covered(own.gggg).r;
     vec4 weight = mix(like, min(like, like.yxwz), ssao_alike / 64.0 * covered) * ssao_covered(vec4(a.g, b.g, c.g, d.g));
     float sum = dot(ssao_visibility(sides), weight) + ssao_visibility(own.rrrr).r * covered;
