@@ -180,6 +180,9 @@ float penumbra_of(Receiver receiver, float blocker) {
     return (receiver.depth - blocker) * receiver.range * sun_tangent / receiver.texel;
 }
 
+/// Of a grid of 4x4, its corners first.
+vec2 search_place(uint i) { return vec2(((i & 1u) * 3u) ^ (i >> 2u & 1u), ((i >> 1u & 1u) * 3u) ^ (i >> 3u)); }
+
 /// Fernando, "Percentage-Closer Soft Shadows", 2005: the mean depth of what blocks the light says how wide the penumbra
 /// is. Where it is wider than the filter of 4x4 texels, a disc of bilinear taps takes that one's place.
 float soften(Receiver receiver, float visibility) {
@@ -188,9 +191,11 @@ float soften(Receiver receiver, float visibility) {
     const float reach = min(penumbra_of(receiver, 0.0), most);
     vec2 blocked = vec2(0.0);  // how many, and the sum of their distances
     float nearest = 1.0;
-    // Loops in place of branches, as below.
-    for (uint i = 0u, end = reach > least_reach ? 16u : 0u; i < end; ++i) {
-        const vec2 offset = (vec2(i & 3u, i >> 2u) - 1.5) * (reach * (2.0 / 3.0));
+    // Loops in place of branches, as below. The four corners come first: where they and the texels in the middle are dark
+    // all over, so is what lies between, and nothing more is looked at.
+    uint looked = 0u;
+    for (uint end = reach > least_reach ? 16u : 0u; looked < end;) {
+        const vec2 offset = (search_place(looked) - 1.5) * (reach * (2.0 / 3.0));
         const float plane = receiver.depth + min(dot(receiver.slope, offset), 0.0) - dot(abs(receiver.slope), vec2(1));
         const vec4 depths = depths_around(receiver, floor(receiver.place + offset + 0.5));
         const vec4 blocks = vec4(lessThan(depths, vec4(plane)));
@@ -198,6 +203,8 @@ float soften(Receiver receiver, float visibility) {
         blocked += vec2(dot(blocks, vec4(1)), dot(blocks, distances));
         const vec4 near = mix(vec4(1), distances, blocks);
         nearest = min(nearest, min(min(near.x, near.y), min(near.z, near.w)));
+        ++looked;
+        end = looked == 4u && visibility <= 0.0 && blocked.x > 15.5 ? 4u : end;
     }
     const float distance = blocked.y / max(blocked.x, 1.0);
     const float penumbra = min(penumbra_of(receiver, receiver.depth - distance), most);
@@ -209,7 +216,7 @@ float soften(Receiver receiver, float visibility) {
     const float dark = dark_share * narrow;
     // Walls that meet darken each other by a part of the disc.
     const float bright = receiver.is_in_tile ? mix(1.0, lit_share, narrow) : 1.0;
-    const bool is_dark = blocked.x > 63.5 && visibility <= 0.0;
+    const bool is_dark = blocked.x > 4.0 * float(looked) - 0.5 && visibility <= 0.0;
     const uint taps = radius > least_reach && !is_dark ? disc_taps : 0u;
     float sum = 0.0;
     for (uint i = 0u; i < taps; ++i) {
