@@ -194,9 +194,10 @@ Picture sky() {
     return out;
 }
 
-/// Four frames of a flame side by side, 64 pixels each, with alpha.
+/// Four frames of a flame side by side, 128 pixels each. Alpha is one half at the outline and changes by a tenth a pixel,
+/// so that what is filtered and cut off at one half has a smooth outline at any size.
 Picture flames() {
-    constexpr std::uint32_t side = 64, frames = 4;
+    constexpr std::uint32_t side = 128, frames = 4;
     Picture out(side * frames, side);
     for (std::uint32_t y = 0; y < side; ++y) {
         for (std::uint32_t x = 0; x < side * frames; ++x) {
@@ -204,14 +205,16 @@ Picture flames() {
             const float u = (static_cast<float>(x % side) + 0.5F) / side * 2 - 1;
             const float v = 1 - (static_cast<float>(y) + 0.5F) / side;
             const float sway = 0.22F * std::sin(v * 5 + frame * 1.6F) * v;
-            const float width = 0.62F * std::pow(v, 0.3F) * (1 - v) * 1.5F;
-            const float inside = 1 - std::abs(u - sway) / std::max(width, 1e-3F);
-            const float heat = glm::clamp(inside * 1.4F, 0.0F, 1.0F);
+            const float rise = std::max(v - 0.02F, 0.0F);
+            const float width = 0.72F * std::sqrt(rise) * (1 - v) * 1.5F;
+            const float away = std::abs(u - sway);
+            const float heat = glm::clamp((1 - away / std::max(width, 1e-3F)) * 1.4F, 0.0F, 1.0F);
+            const float inside = (width - away) * 0.5F * side;  // pixels from the outline
             float* const pixel = out.at(x, y);
             pixel[0] = 1;
             pixel[1] = 0.35F + 0.6F * heat;
             pixel[2] = 0.08F + 0.7F * heat * heat * (1 - v);
-            pixel[3] = inside > 0 && v > 0.02F ? 1.0F : 0.0F;
+            pixel[3] = glm::clamp(0.5F + 0.1F * inside, 0.0F, 1.0F);
         }
     }
     return out;
