@@ -88,7 +88,7 @@ void add_shell(scene::Snapshot& snapshot, vec3 center, float half, float thick) 
 /// The inside of a room from the camera in it.
 constexpr float room_half_width = 2.5F, room_half_height = 1.5F, room_back = -6.5F;
 
-/// Where two walls meet, the filter finds the one before the other, as far as two texels, here 2.4 cm, reach.
+/// Where two walls meet, within two texels of each, here 2.4 cm.
 bool is_in_a_corner(std::uint32_t x, std::uint32_t y) {
     const vec3 ray((static_cast<float>(x) + 0.5F - 80) / 60, (60 - static_cast<float>(y) - 0.5F) / 60, -1);
     const vec3 walls = vec3(room_half_width, room_half_height, -room_back) / glm::abs(ray);
@@ -98,13 +98,19 @@ bool is_in_a_corner(std::uint32_t x, std::uint32_t y) {
     return gaps[1] < 0.048F;
 }
 
-/// Largest difference in sRGB codes, of values below 1, outside corners.
-float codes_apart(const Pixels& a, const Pixels& b) {
+/// Largest differences in sRGB codes, of values below 1.
+struct CodesApart {
+    float in_corners = 0, elsewhere = 0;
+};
+
+CodesApart codes_apart(const Pixels& a, const Pixels& b) {
     const auto code = [](float x) { return 255 * std::pow(std::clamp(x, 0.0F, 1.0F), 1 / 2.2F); };
-    float out = 0;
+    CodesApart out;
     for (std::uint32_t y = 0; y < lamp_extent.height; ++y)
-        for (std::uint32_t x = 0; x < lamp_extent.width; ++x)
-            if (!is_in_a_corner(x, y)) out = std::max(out, std::abs(code(a.at(x, y)[0]) - code(b.at(x, y)[0])));
+        for (std::uint32_t x = 0; x < lamp_extent.width; ++x) {
+            float& most = is_in_a_corner(x, y) ? out.in_corners : out.elsewhere;
+            most = std::max(most, std::abs(code(a.at(x, y)[0]) - code(b.at(x, y)[0])));
+        }
     return out;
 }
 
@@ -219,8 +225,12 @@ TEST(RenderGpuLampShadows, FacesMeetWithoutALine) {
     for (const vec3& place : {vec3(0, 0, -4), vec3(0.7F, -0.6F, -3.1F), vec3(-1.9F, 0.9F, -5.2F)}) {
         snapshot.lights = {point_lamp(place, 2)};
         EXPECT_GT(brightest(shot(snapshot, false)), 0.1F);
-        for (const ShadowFilter filter : {ShadowFilter::Plain, ShadowFilter::Soft})
-            EXPECT_LE(codes_apart(shot(snapshot, true, filter), shot(snapshot, false)), 1.0F) << place.x;
+        for (const ShadowFilter filter : {ShadowFilter::Plain, ShadowFilter::Soft}) {
+            const CodesApart apart = codes_apart(shot(snapshot, true, filter), shot(snapshot, false));
+            EXPECT_LE(apart.elsewhere, 1) << place.x;
+            // The last lamp grazes the wall behind, 16 degrees off it, where it meets the one to the right.
+            EXPECT_LE(apart.in_corners, 7) << place.x << ", " << int(filter);
+        }
     }
 }
 

@@ -29,6 +29,9 @@ const float most_reach = 8.0;                        // texels that a penumbra r
 const float least_reach = 0.75, soft_reach = 1.5;  // the 4x4 texels alone; the disc alone
 // Of a lamp, whose bulb has this radius, metres: a penumbra reaches so many texels, which its tile's border has room for.
 const float bulb_radius = 0.05, most_lamp_reach = 6.0;
+// In a corner of a room the other wall lies before a lamp's receiver, but not as steeply as this many texels a texel beside
+// it: it casts nothing into the corner. The same is lost of what stands on a floor, next to where it stands.
+const float lamp_cone = 4.0;
 // Its tile's depth is the first less the second over the distance, as render/shadow/lamps.cpp has it.
 const float lamp_depth_end = 1.0 / (1.0 - 0.005);
 // What hides the steps of texels, to either side, and how it grows a texel of distance.
@@ -97,6 +100,7 @@ struct Receiver {
     vec2 slope;   // of depth, a texel, along the surface
     float texel;  // world
     float range;  // world, of depth 0 .. 1
+    float cone;   // depth a texel beside it that what casts lies before it at least: nothing, or in a tile see below
 };
 
 /// By how many texels a receiver is moved; `sine` of the angle between its normal and the map's axis.
@@ -116,7 +120,7 @@ Receiver receive(uint light, uint cascade, vec3 world_position, vec3 normal) {
     const vec3 offset = texels_off(normal, sine, depth_row * -range);
     const vec3 position = (world_to_cascade * vec4(world_position + offset * texel, 1)).xyz;
     return Receiver(false, light, cascade, (position.xy * 0.5 + 0.5) * resolution, min(position.z, 1.0),
-                    turned.xy * (texel / (range * max(turned.z, 0.05))), texel, range);
+                    turned.xy * (texel / (range * max(turned.z, 0.05))), texel, range, 0.0);
 }
 
 /// As a lamp's tile has it. Texels grow along the tile's axis, and a plane is one in the tile's depth too, so that what
@@ -133,7 +137,8 @@ Receiver receive_in_tile(uint tile, vec3 world_position, vec3 normal, vec3 towar
     const vec3 down = vec3(world_to_tile[0].y, world_to_tile[1].y, world_to_tile[2].y);
     // Depth is a constant and a share of this over the distance along the axis.
     const float hyperbola = world_to_tile[3].z - dot(depth_row, axis) * world_to_tile[3].w;
-    const float steepness = hyperbola * texel * dot(axis, toward_lamp) / (along * along * max(dot(normal, toward_lamp), 0.05));
+    const float rise = hyperbola * texel * dot(axis, toward_lamp) / (along * along);
+    const float steepness = rise / max(dot(normal, toward_lamp), 0.05);
     const vec3 offset = texels_off(normal, sqrt(max(1.0 - cosine * cosine, 0.0)), toward_lamp);
     const vec4 clip = world_to_tile * vec4(world_position + offset * texel, 1);
     const uint tiles_a_row = uint(shadows.tile_settings.y);
@@ -141,7 +146,7 @@ Receiver receive_in_tile(uint tile, vec3 world_position, vec3 normal, vec3 towar
     const vec2 place = clamp((clip.xy / clip.w * 0.5 + 0.5) * side, most_lamp_reach + 2.0, side - most_lamp_reach - 2.0);
     return Receiver(true, 0u, 0u, place + vec2(tile % tiles_a_row, tile / tiles_a_row) * side,
                     min(clip.z / clip.w, 1.0),
-                    vec2(dot(normal, across), dot(normal, down)) * (steepness * inversesqrt(dot(across, across))), texel, 0.0);
+                    vec2(dot(normal, across), dot(normal, down)) * (steepness * inversesqrt(dot(across, across))), texel, 0.0, lamp_cone * rise);
 }
 
 /// Depths of the four texels that meet at `meeting`, whole texels.
@@ -150,9 +155,12 @@ vec4 depths_around(Receiver receiver, vec2 meeting) {
     return gather_shadow(receiver.light, vec3(meeting * shadows.shadow_settings.z, float(receiver.cascade)));
 }
 
-/// Which of a gather's texels a depth is before, weighed by `u` and `v`.
-float weighed_light(vec4 depths, float depth, vec2 u, vec2 v) {
-    const vec4 lit = vec4(greaterThanEqual(depths, vec4(depth)));
+/// Which of a gather's texels a depth is before, weighed by `u` and `v`. `meeting` is where the texels meet.
+float weighed_light(Receiver receiver, vec4 depths, float depth, vec2 meeting, vec2 u, vec2 v) {
+    const vec2 first = meeting - 0.5 - receiver.place, last = first + 1.0;
+    const vec4 away = sqrt(vec4(first.x, last.x, last.x, first.x) * vec4(first.x, last.x, last.x, first.x) +
+                           vec4(last.y, last.y, first.y, first.y) * vec4(last.y, last.y, first.y, first.y));
+    const vec4 lit = vec4(greaterThanEqual(depths, depth - receiver.cone * away));
     return dot(lit.wz, u) * v.x + dot(lit.xy, u) * v.y;
 }
 
@@ -167,7 +175,8 @@ float filter_texels(Receiver receiver) {
     for (uint i = 0u; i < 4u; ++i) {
         const vec2 side = vec2(i & 1u, i >> 1u);
         const vec2 u = side.x > 0.0 ? across.zw : across.xy, v = side.y > 0.0 ? down.zw : down.xy;
-        sum += weighed_light(depths_around(receiver, corner + side * 2.0), receiver.depth, u, v);
+        const vec2 meeting = corner + side * 2.0;
+        sum += weighed_light(receiver, depths_around(receiver, meeting), receiver.depth, meeting, u, v);
     }
     return clamp((sum - dark_share) * (1.0 / (lit_share - dark_share)), 0.0, 1.0);
 }
@@ -196,7 +205,8 @@ float soften(Receiver receiver, float visibility) {
     uint looked = 0u;
     for (uint end = reach > least_reach ? 16u : 0u; looked < end;) {
         const vec2 offset = (search_place(looked) - 1.5) * (reach * (2.0 / 3.0));
-        const float plane = receiver.depth + min(dot(receiver.slope, offset), 0.0) - dot(abs(receiver.slope), vec2(1));
+        const float plane = receiver.depth + min(dot(receiver.slope, offset), 0.0) - dot(abs(receiver.slope), vec2(1)) -
+                            receiver.cone * length(offset);
         const vec4 depths = depths_around(receiver, floor(receiver.place + offset + 0.5));
         const vec4 blocks = vec4(lessThan(depths, vec4(plane)));
         const vec4 distances = receiver.depth - depths;
@@ -225,8 +235,9 @@ float soften(Receiver receiver, float visibility) {
         const float rise = clamp(dot(receiver.slope, offset), -0.5 * nearest, 0.0);
         const vec2 place = receiver.place + offset - 0.5;
         const vec2 f = fract(place);
-        sum += weighed_light(depths_around(receiver, floor(place) + 1.0), receiver.depth + rise, vec2(1.0 - f.x, f.x),
-                             vec2(1.0 - f.y, f.y));
+        const vec2 meeting = floor(place) + 1.0;
+        sum += weighed_light(receiver, depths_around(receiver, meeting), receiver.depth + rise, meeting,
+                             vec2(1.0 - f.x, f.x), vec2(1.0 - f.y, f.y));
     }
     const float share = taps > 0u ? smoothstep(least_reach, soft_reach, radius) : 0.0;
     const float lit = clamp((sum * (1.0 / float(disc_taps)) - dark) / (bright - dark), 0.0, 1.0);
