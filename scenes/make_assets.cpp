@@ -194,8 +194,8 @@ Picture sky() {
     return out;
 }
 
-/// Four frames of a flame side by side, 128 pixels each. Alpha is one half at the outline and changes by a tenth a pixel,
-/// so that what is filtered and cut off at one half has a smooth outline at any size.
+/// Four frames of a flame side by side, 128 pixels each. Alpha is one half at the outline and changes by a tenth a
+/// pixel, so that what is filtered and cut off at one half has a smooth outline at any size.
 Picture flames() {
     constexpr std::uint32_t side = 128, frames = 4;
     Picture out(side * frames, side);

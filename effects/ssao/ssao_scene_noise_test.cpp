@@ -42,8 +42,8 @@ TEST(SoakGpuSsaoNoise, FloorsAreNearerToRaysThanByTheHemisphere) {
         const ReferenceImage made = test::visibility_of(scene.occlusion, scene.view.options());
         const ReferenceImage points = test::visibility_of(hemisphere, scene.view.options());
         double count = 0, truth = 0, seen = 0, seen_by_points = 0, error = 0, error_of_points = 0;
-        for (std::uint32_t y = 0; y < test::full_hd.height; y += 5)
-            for (std::uint32_t x = 0; x < test::full_hd.width; x += 5) {
+        for (std::uint32_t y = 0; y < test::picture_extent.height; y += 5)
+            for (std::uint32_t x = 0; x < test::picture_extent.width; x += 5) {
                 if (scene.view.normals.at(x, y).g < 0.95) continue;
                 const double expected = scene.truth(x, y);
                 count += 1;

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <darkroom/composer.hpp>
 #include <darkroom/effects/ssao.hpp>
@@ -22,7 +24,16 @@
 
 namespace darkroom::test {
 
-inline constexpr VkExtent2D full_hd{1920, 1080};
+/// 1920x1080, or what DARKROOM_PICTURES_SIZE says (as 960x540).
+inline VkExtent2D scene_view_extent() {
+    VkExtent2D out{1920, 1080};
+    const char* const size = std::getenv("DARKROOM_PICTURES_SIZE");
+    if (size != nullptr &&
+        (std::sscanf(size, "%ux%u", &out.width, &out.height) != 2 || out.width < 64 || out.height < 64))
+        ADD_FAILURE() << "DARKROOM_PICTURES_SIZE = " << size << ": is not WxH of at least 64 pixels";
+    return out;
+}
+inline const VkExtent2D picture_extent = scene_view_extent();
 inline constexpr std::array shipped_scenes{"forge", "courtyard", "dungeon", "showcase", "street", "interior"};
 
 /// Of what is no more transparent than this.
@@ -64,7 +75,7 @@ class SceneView {
           assets_(scene::load_assets(scene_)),
           snapshot_(scene::snapshot(scene_, assets_, {.time = scene_.time, .aspect = 16.0F / 9})),
           renderer_(gpu::test::must(render::Renderer::create(gpu::test::device(), scene_, assets_,
-                                                             {.extent = full_hd, .draw = {.has_grid = false}}))),
+                                                             {.extent = picture_extent, .draw = {.has_grid = false}}))),
           shot_(render::test::shoot(renderer_, snapshot_)),
           look_(gpu::test::must(read_look(path_))),
           rays_(triangles_of(snapshot_, assets_)) {
@@ -77,10 +88,10 @@ class SceneView {
             view.normals.pixels[i] = {normal[0], normal[1], normal[2], 0};
         }
         const ReferenceCamera camera(view.camera);
-        for (std::uint32_t y = 0; y < full_hd.height; ++y)
-            for (std::uint32_t x = 0; x < full_hd.width; ++x)
+        for (std::uint32_t y = 0; y < picture_extent.height; ++y)
+            for (std::uint32_t x = 0; x < picture_extent.width; ++x)
                 points_.push_back(camera.world_direction(camera.view_position(
-                    (x + 0.5) / full_hd.width, (y + 0.5) / full_hd.height, view.depth.at(x, y).r)));
+                    (x + 0.5) / picture_extent.width, (y + 0.5) / picture_extent.height, view.depth.at(x, y).r)));
         Composer composer(gpu::test::device());
         gpu::test::must(apply(look_, composer));
         const std::span<const std::uint32_t> words = composer.words(composer.find("ssao").value());
@@ -90,13 +101,13 @@ class SceneView {
     /// Pixels within three of (x, y) that lie in one surface with it, so within a pixel's width of its plane and turned
     /// by 18 degrees at most; empty where they are few.
     [[nodiscard]] std::vector<Pixel> surface_around(std::uint32_t x, std::uint32_t y) const {
-        const Double3& here = points_[y * full_hd.width + x];
+        const Double3& here = points_[y * picture_extent.width + x];
         const Rgba& normal = view.normals.at(x, y);
-        const double width = 2 * view.depth.at(x, y).r / (double{view.camera.projection[0]} * full_hd.width);
+        const double width = 2 * view.depth.at(x, y).r / (double{view.camera.projection[0]} * picture_extent.width);
         std::vector<Pixel> out;
         for (std::uint32_t v = y - 3; v <= y + 3; ++v)
             for (std::uint32_t u = x - 3; u <= x + 3; ++u) {
-                const Double3& there = points_[v * full_hd.width + u];
+                const Double3& there = points_[v * picture_extent.width + u];
                 const Rgba& other = view.normals.at(u, v);
                 const double over =
                     normal.r * (there[0] - here[0]) + normal.g * (there[1] - here[1]) + normal.b * (there[2] - here[2]);
@@ -108,7 +119,7 @@ class SceneView {
     }
 
     [[nodiscard]] double truth(std::uint32_t x, std::uint32_t y) {
-        float& known = traced_[y * full_hd.width + x];
+        float& known = traced_[y * picture_extent.width + x];
         const Rgba& normal = view.normals.at(x, y);
         if (known < 0)
             known = static_cast<float>(
@@ -139,7 +150,7 @@ class SceneView {
         frame.color = {.image = color.image.handle,
                        .view = color.image.mip_views[0],
                        .format = color.image.info.format,
-                       .extent = full_hd,
+                       .extent = picture_extent,
                        .layout = color.layout,
                        .final_layout = color.layout};
         Developer developer(gpu::test::device(), {.target = DevelopTarget::EncodedFloat});
@@ -158,7 +169,9 @@ class SceneView {
     [[nodiscard]] const Look& look() const { return look_; }
     [[nodiscard]] Frame frame() const { return renderer_.frame(); }
 
-    BoxView view{.depth{full_hd.width, full_hd.height}, .normals{full_hd.width, full_hd.height}, .camera{}};
+    BoxView view{.depth{picture_extent.width, picture_extent.height},
+                 .normals{picture_extent.width, picture_extent.height},
+                 .camera{}};
     Ssao occlusion;  ///< as the scene's look has it
 
   private:
@@ -178,7 +191,7 @@ class SceneView {
 inline double deviation(const std::vector<float>& picture, const Pixel& pixel, const std::vector<Pixel>& around,
                         std::size_t channel) {
     const auto at = [&](const Pixel& p) {
-        return double{picture[(std::size_t{p[1]} * full_hd.width + p[0]) * 4 + channel]};
+        return double{picture[(std::size_t{p[1]} * picture_extent.width + p[0]) * 4 + channel]};
     };
     double mean = 0;
     for (const Pixel& p : around) mean += at(p) / double(around.size());
@@ -211,8 +224,8 @@ inline Noise noise_of(SceneView& scene, Picture* map = nullptr) {
     ReferenceImage true_seen = seen;
     std::vector<Suspect> suspects;
     std::size_t count = 0;
-    for (std::uint32_t y = 3; y + 3 < full_hd.height; ++y)
-        for (std::uint32_t x = 3; x + 3 < full_hd.width; ++x) {
+    for (std::uint32_t y = 3; y + 3 < picture_extent.height; ++y)
+        for (std::uint32_t x = 3; x + 3 < picture_extent.width; ++x) {
             if (const double depth = view.depth.at(x, y).r; !(depth > 1e-6 && depth < 1e9)) continue;
             std::vector<Pixel> around = scene.surface_around(x, y);
             if (around.empty()) continue;
@@ -226,7 +239,7 @@ inline Noise noise_of(SceneView& scene, Picture* map = nullptr) {
         }
     const std::vector<float> made = scene.finished(seen), expected = scene.finished(true_seen);
     std::vector<float> deviations(count, 0.0F);
-    if (map != nullptr) *map = Picture(full_hd.width, full_hd.height);
+    if (map != nullptr) *map = Picture(picture_extent.width, picture_extent.height);
     for (std::size_t i = 0; i < suspects.size(); ++i) {
         const auto& [pixel, around] = suspects[i];
         for (std::size_t channel = 0; channel < 3; ++channel)

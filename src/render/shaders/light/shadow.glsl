@@ -100,7 +100,7 @@ struct Receiver {
     vec2 slope;   // of depth, a texel, along the surface
     float texel;  // world
     float range;  // world, of depth 0 .. 1
-    float cone;   // depth a texel beside it that what casts lies before it at least: nothing, or in a tile see below
+    float cone;   // of depth: what casts lies before it by as much a texel beside it; lamp_cone, nothing in a cascade
 };
 
 /// By how many texels a receiver is moved; `sine` of the angle between its normal and the map's axis.
@@ -146,7 +146,8 @@ Receiver receive_in_tile(uint tile, vec3 world_position, vec3 normal, vec3 towar
     const vec2 place = clamp((clip.xy / clip.w * 0.5 + 0.5) * side, most_lamp_reach + 2.0, side - most_lamp_reach - 2.0);
     return Receiver(true, 0u, 0u, place + vec2(tile % tiles_a_row, tile / tiles_a_row) * side,
                     min(clip.z / clip.w, 1.0),
-                    vec2(dot(normal, across), dot(normal, down)) * (steepness * inversesqrt(dot(across, across))), texel, 0.0, lamp_cone * rise);
+                    vec2(dot(normal, across), dot(normal, down)) * (steepness * inversesqrt(dot(across, across))), texel, 0.0,
+                    lamp_cone * rise);
 }
 
 /// Depths of the four texels that meet at `meeting`, whole texels.
