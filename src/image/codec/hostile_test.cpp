@@ -141,6 +141,16 @@ TEST_F(HostilePictures, OfPngADecoderSeesThePictureAndSmallNumbers) {
     EXPECT_EQ(cleaned(png_chunk("eXIf", exif.substr(0, 30))).size(), plain.size() + 12 + 26) << "cut off: upright";
 }
 
+// A decoder inflates all that there is, for a picture of one pixel, too.
+TEST_F(HostilePictures, PixelsOfPngArePackedInNoMoreThanTheyNeed) {
+    const auto packed = [](std::size_t bytes) {
+        return told(check_png, png_start + png_header(1, 1, 8, 2) + png_chunk("IDAT", std::string(bytes - 9, '\0')) +
+                                   png_chunk("IDAT", std::string(9, '\0')) + png_chunk("IEND", ""));
+    };
+    EXPECT_EQ(packed(65550), "");
+    EXPECT_EQ(packed(65551), "its pixels are packed in 65551 bytes, 65550 are allowed for a picture of 1x1");
+}
+
 TEST_F(HostilePictures, AProfileOfPngIsInflatedHere) {
     const auto with = [](const std::string& profile) {
         return told(check_png, png_start + png_header(1, 1, 8, 2) +

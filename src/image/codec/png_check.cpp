@@ -25,7 +25,9 @@ std::uint32_t big_endian(std::span<const std::byte> bytes) {
     return value;
 }
 
-Result<> check_header(std::span<const std::byte> data, std::size_t file_size) {
+/// The most bytes that the picture may be packed in, since what lies behind its last row is inflated, too: twice what
+/// its rows take unpacked, with a filter for each and what fills them up, in all passes of Adam7.
+Result<std::uint64_t> check_header(std::span<const std::byte> data, std::size_t file_size) {
     if (data.size() != 13) return user_error("malformed header: IHDR must have 13 bytes");
     const std::uint64_t width = big_endian(data);
     const std::uint64_t height = big_endian(data.subspan(4));
@@ -44,7 +46,8 @@ Result<> check_header(std::span<const std::byte> data, std::size_t file_size) {
         return user_error(
             fmt::format("a picture of {}x{} cannot be in a file of {} bytes: truncated, or a damaged header", width,
                         height, file_size));
-    return check_decoded_size(bytes, file_size);
+    if (Result<> checked = check_decoded_size(bytes, file_size); !checked) return failure(std::move(checked));
+    return 2 * (bytes + 4 * height) + (std::uint64_t{1} << 16);
 }
 
 struct Chunk {
@@ -153,7 +156,9 @@ class PngChecker {
         if (is_first != (chunk.type == "IHDR"))
             return user_error("malformed header: the first chunk alone must be IHDR");
         if (is_first) {
-            if (auto checked = check_header(chunk.data, file_.size()); !checked) return checked;
+            const Result<std::uint64_t> most = check_header(chunk.data, file_.size());
+            if (!most) return failure(most.error());
+            most_packed_ = *most;
             std::ranges::copy(chunk.data, header_.begin());
         }
         if (chunk.type == "PLTE") {
@@ -161,6 +166,13 @@ class PngChecker {
             colors_ = chunk.data.size() / 3;
             if (chunk.data.size() % 3 != 0 || colors_ < 1 || colors_ > 256)
                 return user_error(fmt::format("malformed header: a palette of {} bytes", chunk.data.size()));
+        }
+        if (chunk.type == "IDAT") {
+            packed_size_ += chunk.data.size();
+            if (packed_size_ > most_packed_)
+                return user_error(fmt::format(
+                    "its pixels are packed in {} bytes, {} are allowed for a picture of {}x{}", packed_size_,
+                    most_packed_, big_endian(header_), big_endian(std::span(header_).subspan(4))));
         }
         if (chunk.type == "IDAT" && header_[9] == std::byte{3}) append(packed_, chunk.data);
         const bool is_of_picture =
@@ -193,6 +205,7 @@ class PngChecker {
     std::array<std::byte, 13> header_{};
     std::vector<std::string_view> seen_;
     std::size_t colors_ = 0;
+    std::uint64_t packed_size_ = 0, most_packed_ = 0;
     bool is_as_it_was_ = true;
 };
 
