@@ -33,6 +33,7 @@ enum Tag : std::uint32_t {
     tile_offsets = 324,
     tile_byte_counts = 325,
     ycbcr_subsampling = 530,
+    icc_profile = 34675,
 };
 
 // What says how samples lie and what they mean; the rest (texts, profiles, other pictures) no decoder shall see. In the
@@ -77,6 +78,8 @@ class TiffChecker {
         return cleaned();
     }
 
+    std::span<const std::byte> profile() { return read_directory() ? profile_ : std::span<const std::byte>(); }
+
   private:
     [[nodiscard]] std::uint64_t number(std::size_t at, std::size_t size) const {
         std::uint64_t value = 0;
@@ -113,6 +116,7 @@ class TiffChecker {
                         .count = number(at + 4, pointer_bytes()),
                         .values = at + 4 + pointer_bytes(),
                         .at = at};
+            if (entry.tag == icc_profile && profile_.empty()) profile_ = bytes_of(entry);
             // A decoder takes the first of several.
             if (std::ranges::find(kept_tags, entry.tag) == kept_tags.end() || find(entry.tag) != nullptr) continue;
             const std::uint64_t size = size_of_type(entry.type);
@@ -129,6 +133,15 @@ class TiffChecker {
             entries_.push_back(entry);
         }
         return {};
+    }
+
+    /// Nothing, where they do not lie in the file.
+    [[nodiscard]] std::span<const std::byte> bytes_of(const Entry& entry) const {
+        const std::uint64_t size = size_of_type(entry.type);
+        if (size == 0 || entry.count > file_.size() / size) return {};
+        const std::uint64_t bytes = entry.count * size;
+        const std::uint64_t at = bytes > pointer_bytes() ? number(entry.values, pointer_bytes()) : entry.values;
+        return fits(at, bytes) ? file_.subspan(at, bytes) : std::span<const std::byte>();
     }
 
     [[nodiscard]] std::size_t pointer_bytes() const { return is_big_tiff_ ? 8 : 4; }
@@ -295,7 +308,7 @@ class TiffChecker {
         return out;
     }
 
-    std::span<const std::byte> file_;
+    std::span<const std::byte> file_, profile_;
     bool is_little_ = true, is_big_tiff_ = false;
     std::size_t directory_ = 0, tags_end_ = 0;
     std::vector<Entry> entries_;
@@ -306,5 +319,7 @@ class TiffChecker {
 }  // namespace
 
 Result<std::vector<std::byte>> check_tiff(std::span<const std::byte> file) { return TiffChecker(file).run(); }
+
+std::span<const std::byte> profile_of_tiff(std::span<const std::byte> file) { return TiffChecker(file).profile(); }
 
 }  // namespace darkroom

@@ -16,4 +16,7 @@ namespace darkroom {
 /// writes.
 [[nodiscard]] Result<std::vector<std::byte>> check_tiff(std::span<const std::byte> file);
 
+/// The ICC profile of that picture (ICC.1:2022, B.4), as it lies in the file. Empty: there is none.
+[[nodiscard]] std::span<const std::byte> profile_of_tiff(std::span<const std::byte> file);
+
 }  // namespace darkroom

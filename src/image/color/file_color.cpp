@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "image/codec/png_check.hpp"
+#include "image/codec/tiff_check.hpp"
 #include "image/color/icc_profile.hpp"
 #include "image/webp/check.hpp"
 
@@ -190,6 +191,7 @@ Bytes profile_of_jpeg(Bytes file) {
 FileColor file_color(FileKind kind, Bytes file) {
     if (kind == FileKind::Png) return png_color(file);
     if (kind == FileKind::Jpeg) return color_of_profile(profile_of_jpeg(file));
+    if (kind == FileKind::Tiff) return color_of_profile(profile_of_tiff(file));
     if (kind == FileKind::WebP)
         if (const auto picture = check_webp(file)) return color_of_profile(picture->profile);
     return {};

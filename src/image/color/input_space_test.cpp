@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <string>
 
+#include "image/codec/tiff_check.hpp"
 #include "image/color/file_color.hpp"
 #include "image/color/icc_profile.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
+#include "image/test_bytes.hpp"
 #include "image/test_files.hpp"
 
 namespace darkroom {
@@ -183,6 +186,32 @@ TEST_F(ImageInputSpace, ProfilesOfJpegAreNamed) {
     EXPECT_NEAR(red[0], 1.2249F, 0.03F);
     EXPECT_NEAR(red[1], -0.0421F, 0.005F);
     EXPECT_EQ(first_warning(jpeg("Display P3")), "");
+}
+
+TEST_F(ImageInputSpace, ProfilesOfTiffAreNamed) {
+    using namespace std::string_literals;
+    const auto tiff = [&](const std::string& name) {
+        std::string profile = profile_with("desc\0\0\0\0\0\0\0"s + static_cast<char>(name.size() + 1) + name + '\0');
+        profile.resize((profile.size() + 3) / 4 * 4);
+        TestTiff test = TestTiff::gray(16, 16);
+        std::vector<std::uint32_t>& numbers = test.tags[34675];
+        numbers.resize(profile.size() / 4);
+        std::memcpy(numbers.data(), profile.data(), profile.size());
+        put(file("a.tif"), test.text());
+        return test.text();
+    };
+    tiff("sRGB IEC61966-2.1");
+    EXPECT_EQ(first_warning(file("a.tif")), "");
+    const std::string whole = tiff("Adobe RGB (1998)");
+    EXPECT_EQ(first_warning(file("a.tif")),
+              "its ICC profile 'Adobe RGB (1998)' is not read: taken as sRGB, --input-space says otherwise");
+    // Wherever a damaged directory says that it lies.
+    for (const char byte : {'\x00', '\x7f', '\xff'})
+        for (std::size_t i = 8; i < 8 + 2 + 12 * 10; ++i) {
+            std::string damaged = whole;
+            damaged[i] = byte;
+            static_cast<void>(profile_of_tiff(std::as_bytes(std::span(damaged))));
+        }
 }
 
 TEST(ImageColor, UnknownSpacesAreTold) {
