@@ -72,6 +72,19 @@ std::optional<ParamValue> value_of_table(const toml::table& table) {
     return std::nullopt;
 }
 
+/// Of a line like `exposure = 2ev`, which is no TOML: what to type instead.
+std::string unit_hint(std::string_view text, std::size_t line) {
+    for (; line > 1; --line) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+    text = text.substr(0, text.find_first_of("\r\n"));
+    const std::size_t equals = std::min(text.find('='), text.size());
+    text.remove_prefix(std::min(text.find_first_not_of("= \t", equals), text.size()));
+    text = text.substr(0, text.find_first_of(" \t#,]}"));
+    const std::size_t unit = std::min(text.find_first_not_of("+-.0123456789"), text.size());
+    constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    if (unit == 0 || unit == text.size() || text.find_first_not_of(letters, unit) != std::string_view::npos) return {};
+    return fmt::format("; a number with a unit is a text: \"{}\"", printable(text));
+}
+
 }  // namespace
 
 Result<toml::table> parse_toml(std::string_view text, std::string_view shown_name) {
@@ -92,8 +105,8 @@ Result<toml::table> parse_toml(std::string_view text, std::string_view shown_nam
     toml::parse_result parsed = toml::parse(text);
     if (!parsed) {
         const toml::source_region& place = parsed.error().source();
-        return user_error(fmt::format("{}:{}:{}: {}", shown_name, place.begin.line, place.begin.column,
-                                      printable(parsed.error().description())));
+        return user_error(fmt::format("{}:{}:{}: {}{}", shown_name, place.begin.line, place.begin.column,
+                                      printable(parsed.error().description()), unit_hint(text, place.begin.line)));
     }
     return std::move(parsed).table();
 }
@@ -106,6 +119,15 @@ std::optional<ParamValue> value_of(const toml::node& node) {
     if (const auto* array = node.as_array()) return value_of_array(*array);
     if (const auto* table = node.as_table()) return value_of_table(*table);
     return std::nullopt;
+}
+
+Result<std::optional<ParamValue>> value_for(const ParamInfo& row, const toml::node& node) {
+    const auto* const text = node.as_string();
+    const bool is_number = row.kind != Kind::Choice && row.kind != Kind::Toggle;
+    if (!is_number || text == nullptr || parse_number(text->get())) return value_of(node);
+    Result<ParamValue> parsed = parse_text(row, text->get());
+    if (!parsed) return failure(std::move(parsed));
+    return std::optional<ParamValue>(std::move(*parsed));
 }
 
 std::string show(const toml::node& node) {

@@ -21,6 +21,8 @@ inline constexpr std::size_t most_toml_bytes = std::size_t{4} << 20;
 [[nodiscard]] Result<toml::table> parse_toml(std::string_view text, std::string_view shown_name);
 /// Nothing for what no parameter can hold: dates, mixed arrays, other tables than {x, y, z, w} and {r, g, b}.
 [[nodiscard]] std::optional<ParamValue> value_of(const toml::node& node);
+/// The same as a value for `row`, of whose numbers a text may hold units: "2ev". Errors: a text that does not.
+[[nodiscard]] Result<std::optional<ParamValue>> value_for(const ParamInfo& row, const toml::node& node);
 /// A short text for messages: "1.5", "\"yes\"", "an array", "a table".
 [[nodiscard]] std::string show(const toml::node& node);
 

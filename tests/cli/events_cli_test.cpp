@@ -31,7 +31,7 @@ class CliEvents : public test::CliFixture {
               "[[layer]]\nname = \"night\"\nvalues = { exposure = 0.5 }\n");
         write("events.toml",
               "[[event]]\ntime = 0.2\nfire = \"hit\"\n"
-              "[[event]]\ntime = 0.6\nset = { \"exposure.exposure\" = 4 }\n"
+              "[[event]]\ntime = 0.6\nset = { \"exposure.exposure\" = \"2ev\" }\n"
               "[[event]]\ntime = 0.8\nlayer = { night = 1 }\nover = 0.4\n"
               "[[event]]\ntime = 0.9\nset = { exposure = 2, \"vignette.intensity\" = 1 }\n");
     }
@@ -179,6 +179,7 @@ TEST_F(CliEvents, SlipsAreOneLineWithTheirPlace) {
     refused(event + "fire = \"hti\"\n", "did you mean 'hit'? known are hit");
     refused(event + "set = { exposur = 1 }\n", "wrong.toml:3:19: exposur: no effect has this parameter");
     refused(event + "set = { exposure = 5000 }\n", "wrong.toml:3:20: exposure = 5000: ");
+    refused(event + "set = { exposure = \"2eV!\" }\n", "exposure = \"2eV!\": '2eV!' is not a number, allowed is");
     refused(event + "set = { \"exposure.scale\" = 2 }\n", "it belongs to the plan");
     refused(event + "layer = { nigth = 1 }\n", "did you mean 'night'? known are night");
     refused(event + "layer = { night = 2 }\n", "night = 2");

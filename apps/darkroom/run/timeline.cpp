@@ -89,7 +89,7 @@ class TimelineReader {
             const Result<float> number = read_number(is_time ? time_row : over_row, node, key.str());
             if (!number) return failure(number.error());
             // Times are kept as they are written: a float has no milliseconds left after some hours.
-            (is_time ? event.time : event.over) = *node.value<double>();
+            (is_time ? event.time : event.over) = node.value<double>().value_or(double{*number});
             return {};
         }
         if (key.str() == "fire") return read_fire(node, event);
@@ -115,7 +115,9 @@ class TimelineReader {
     }
     Result<> read_words(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node,
                         std::string_view key) {
-        const std::optional<darkroom::ParamValue> value = darkroom::value_of(node);
+        const Result<std::optional<darkroom::ParamValue>> read = darkroom::value_for(row, node);
+        if (!read) return failure(at(node, fmt::format("{} = {}: {}", key, show(node), read.error().text)));
+        const std::optional<darkroom::ParamValue>& value = *read;
         if (!value)
             return failure(at(node, fmt::format("{} = {}: expected {}, allowed is {}", key, show(node),
                                                 darkroom::expected_kind(row.kind), darkroom::interval(row))));

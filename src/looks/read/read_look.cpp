@@ -41,17 +41,12 @@ void LookReader::read_top(const toml::table& file) {
 
 bool LookReader::take(const ParamInfo& row, std::span<std::uint32_t> words, const toml::node& node,
                       std::string_view key) {
-    std::optional<ParamValue> value = value_of(node);
-    const auto* const text = node.as_string();
-    const bool is_number = row.kind != Kind::Choice && row.kind != Kind::Toggle;
-    if (is_number && text != nullptr && !parse_number(text->get())) {
-        Result<ParamValue> parsed = parse_text(row, text->get());
-        if (!parsed) {
-            report(node, Weight::Wrong, fmt::format("{} = {}: {}", key, show(node), parsed.error().text));
-            return false;
-        }
-        value = std::move(*parsed);
+    const Result<std::optional<ParamValue>> read = value_for(row, node);
+    if (!read) {
+        report(node, Weight::Wrong, fmt::format("{} = {}: {}", key, show(node), read.error().text));
+        return false;
     }
+    const std::optional<ParamValue>& value = *read;
     if (!value) {
         report(node, Weight::Wrong,
                fmt::format("{} = {}: expected {}, allowed is {}", key, show(node), expected_kind(row.kind),
