@@ -38,6 +38,12 @@ inline constexpr std::array<WireInfo, 6> wires{{{"name", &LookEntry::name, false
                                                 {"mask", &LookEntry::mask, true, &EntryDesc::mask, FileUse::Numbers},
                                                 {"output", &LookEntry::output, false}}};
 
+/// Is the key, which nothing has, what people type for the amount of an effect: "EFFECT_intensity", or "intensity"?
+[[nodiscard]] constexpr bool stands_for_amount(std::string_view key, std::string_view effect) {
+    if (key.starts_with(effect) && key.substr(effect.size()).starts_with('_')) key.remove_prefix(effect.size() + 1);
+    return key == "intensity" || key == "amount" || key == "strength";
+}
+
 /// Is this a wire's name of a file, and not of an output?
 [[nodiscard]] bool is_file_name(std::string_view wire);
 

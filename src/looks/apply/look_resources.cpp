@@ -53,6 +53,10 @@ Result<> ResourceFiles::put(LookEntry& entry, std::string_view parameter, const 
 
 Result<std::shared_ptr<const ResourceData>> ResourceFiles::load(const std::filesystem::path& path, FileUse use) {
     if (const auto found = loaded_.find({path, use}); found != loaded_.end()) return found->second;
+    // The first that is too much is told; those behind it are not read.
+    if (numbers_ > options_.most_resource_numbers)
+        return user_error(fmt::format("{}: is not read, the look's tables and pictures before it hold too much",
+                                      printable(path.string())));
     const auto read = [&]() -> Result<ResourceData> {
         if (options_.load_resource) return options_.load_resource(path, use);
         if (use != FileUse::Table)

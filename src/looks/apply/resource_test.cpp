@@ -155,6 +155,23 @@ TEST_F(LookResources, ErrorsNameTheLookTheFileAndItsLine) {
     EXPECT_EQ(error_of(stack_of_two, {.most_resource_numbers = 6}), "accepted") << "each file counts once";
 }
 
+TEST_F(LookResources, BehindWhatIsTooMuchNothingIsRead) {
+    std::string text;
+    for (int i = 0; i < 9; ++i) text += "[[stack]]\neffect = \"lut\"\nlut = \"" + std::to_string(i) + ".cube\"\n";
+    int reads = 0;
+    const std::string error =
+        error_of(text, {.load_resource = [&](const std::filesystem::path&, FileUse) -> Result<ResourceData> {
+                            ++reads;
+                            return ResourceData(ColorTable{.shaper_size = 2, .shaper = {0, 0, 0, 1, 1, 1}});
+                        },
+                        .most_resource_numbers = 12});
+    EXPECT_EQ(reads, 3) << error;
+    EXPECT_NE(error.find("2.cube: the look's tables and pictures hold 18 numbers with it, allowed are 12"),
+              std::string::npos)
+        << error;
+    EXPECT_NE(error.find("8.cube: is not read"), std::string::npos) << error;
+}
+
 TEST_F(LookResources, FlagsNameFilesOfTheirOwn) {
     Look look = default_look();
     const std::string path = file("tables/a.cube").string();

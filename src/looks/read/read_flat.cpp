@@ -129,10 +129,13 @@ class FlatReader {
     }
 
     void read_unknown(const toml::key& key, const toml::node& node) {
-        // An effect's own name stands for how much of it there is.
+        // An effect's own name stands for how much of it there is, and where that is the key, so may other words.
         std::string meant;
-        for (const auto& [name, target] : targets_)
-            if (target.entry->effect->name == key.str() && target.row->is_amount) meant = name;
+        for (const auto& [name, target] : targets_) {
+            const std::string_view effect = target.entry->effect->name;
+            const bool is_own = name == effect && key.str().starts_with(effect) && stands_for_amount(key.str(), effect);
+            if (is_own || (effect == key.str() && target.row->is_amount)) meant = name;
+        }
         reader_.report_unknown(
             key, node, names_, [&](const std::string& near) { return allowed(near); }, meant);
     }

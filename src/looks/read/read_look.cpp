@@ -89,7 +89,9 @@ void LookReader::report_unknown(const toml::key& key, const toml::node& node, st
                                 const std::function<std::string(const std::string&)>& allowed,
                                 const std::string& meant) {
     std::string text = fmt::format("unknown key '{}' = {}", printable(key.str()), show(node));
-    const std::string near = meant.empty() ? nearest(key.str(), known) : meant;
+    // Looking for names is slow, and no more problems than these are shown.
+    const bool is_sought = meant.empty() && problems_.size() < most_suggestions;
+    const std::string near = is_sought ? nearest(key.str(), known) : meant;
     if (!near.empty()) text += fmt::format(", did you mean '{}', which takes {}?", near, allowed(near));
     report(key.source().begin, Weight::Slip, std::move(text));
 }

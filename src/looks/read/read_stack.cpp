@@ -16,6 +16,9 @@ namespace darkroom {
 
 namespace {
 
+/// The work of a plan grows with the square of them.
+constexpr std::size_t most_entries = 4096;
+
 class StackReader {
   public:
     explicit StackReader(LookReader& reader) : reader_(reader) {}
@@ -135,7 +138,8 @@ class StackReader {
         std::string meant;
         for (const ParamInfo& row : effect.parameters.rows) {
             known.emplace_back(row.name);
-            if (key.str() == flat_key(effect.name, row.name)) meant = row.name;
+            const bool is_own = row.name == effect.name && stands_for_amount(key.str(), effect.name);
+            if (is_own || key.str() == flat_key(effect.name, row.name)) meant = row.name;
         }
         const auto allowed = [&](const std::string& near) {
             const ParamInfo* row = effect.parameters.find(near);
@@ -160,8 +164,11 @@ class StackReader {
 }  // namespace
 
 Look read_stack(LookReader& reader, const toml::node& node) {
-    if (const toml::array* const array = node.as_array()) return StackReader(reader).read(*array);
-    reader.report(node, Weight::Wrong, fmt::format("stack = {}: expected [[stack]] entries", show(node)));
+    const toml::array* const array = node.as_array();
+    if (array != nullptr && array->size() <= most_entries) return StackReader(reader).read(*array);
+    reader.report(node, Weight::Wrong,
+                  array == nullptr ? fmt::format("stack = {}: expected [[stack]] entries", show(node))
+                                   : fmt::format("{} entries of stack: allowed are {}", array->size(), most_entries));
     return Look{.is_flat = false};
 }
 
