@@ -101,6 +101,8 @@ TEST_F(Cli, SeveralInputsGoToAFolderOrANumberedName) {
     fs::create_directory(path("pictures"));
     EXPECT_EQ(run({"develop", path("shot.0007.exr"), path("frame.exr"), "-o", path("pictures")}).code, 0);
     EXPECT_TRUE(fs::exists(path("pictures/frame.png")) && fs::exists(path("pictures/shot.0007.png")));
+    EXPECT_EQ(run({"develop", path("frame.exr"), "-o", path("{name} of {name}.png")}).code, 0);
+    EXPECT_TRUE(fs::exists(path("frame of frame.png")));
     expect_refused({"develop", path("shot.0007.exr"), path("frame.exr"), "-o", path("one.png")}, 1, "2 inputs need");
     expect_refused({"develop", path("frame.exr"), path("frame.exr"), "-o", path("{name}.png")}, 1, "would be made of");
 }
@@ -108,7 +110,11 @@ TEST_F(Cli, SeveralInputsGoToAFolderOrANumberedName) {
 TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     const std::string frame = path("frame.exr"), out = path("x.png");
     expect_refused({}, 1, "a command is needed");
-    expect_refused({"devlop"}, 1, "did you mean 'develop'?");
+    expect_refused({"devlop"}, 1, "unknown command 'devlop', did you mean 'develop'? allowed is render, develop, ");
+    expect_refused({"qqqqqqqq"}, 1, "unknown command 'qqqqqqqq': allowed is render, develop, ");
+    expect_refused({"farm", "status", ".", "--jsn"}, 1,
+                   "farm status: unknown argument '--jsn', did you mean '--json'?");
+    expect_refused({"farm"}, 1, "farm: a command is needed: slurm, task, status");
     expect_refused({"develop", frame, "-o", out, "--chromatic-aberration-intensity", "1"}, 1,
                    "did you mean '--chromatic-aberration'?");
     expect_refused({"develop"}, 1, "INPUT");
@@ -116,6 +122,7 @@ TEST_F(Cli, WrongRequestsAreOneLineAndOne) {
     expect_refused({"develop", path("none.exr"), "-o", out}, 1, "none.exr");
     expect_refused({"develop", path(""), "-o", out}, 1, "folder");
     expect_refused({"develop", write("text.exr", "hello"), "-o", out}, 1, "text.exr");
+    expect_refused({"develop", frame, "--vignette", "0.5", "-o", out}, 1, "0.5: there is no such file");
     expect_refused({"develop", frame, "-o", path("none/x.png")}, 1, "none");
     expect_refused({"develop", frame, "-o", path("x.xyz")}, 1, ".xyz");
     expect_refused({"develop", frame, "-o", frame}, 1, "would be overwritten");

@@ -267,6 +267,22 @@ TEST_F(CliSequence, MissingFoldersAreMadeWhereAsked) {
         EXPECT_EQ(outcome.code, 0) << outcome.err;
     }
     EXPECT_TRUE(fs::exists(path("new/deep/f.0002.png")) && fs::exists(path("also/f.0002.png")));
+    put(path("a.cube"), "LUT_1D_SIZE 2\n0 0 0\n1 1 1\n");
+    const std::vector<std::vector<std::string>> others{
+        {"compare", path(in(1)), path(in(1)), "--diff", path("d1/d/diff.png")},
+        {"compare", path(in(1)), path(in(1)), "--sheet", path("d2/d/sheet.png")},
+        {"lut", "convert", path("a.cube"), "-o", path("d3/d/b.cube")},
+        {"lut", "export", "--exposure", "2", "-o", path("d4/d/c.cube")},
+        {"bake", path("look.toml"), "--profile", "gpu", "-o", path("d5/d/k.dkb")}};
+    put(path("look.toml"), "[[stack]]\neffect = \"exposure\"\n");
+    for (std::vector<std::string> words : others) {
+        expect_refused(words, 1, "no such folder, nothing can be written there; --mkdir makes it");
+        words.emplace_back("--mkdir");
+        const Outcome outcome = run(words);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+    }
+    for (const char* const made : {"d1/d/diff.png", "d2/d/sheet.png", "d3/d/b.cube", "d4/d/c.cube", "d5/d/k.dkb"})
+        EXPECT_TRUE(fs::exists(path(made))) << made;
     put(path("file"), "no folder");
     expect_refused({"develop", path(in(1)), "--mkdir", "-o", path("file/x/y.png")}, 1, "cannot be made");
 }

@@ -10,6 +10,7 @@
 #include "apps/darkroom/flags/device_flags.hpp"
 #include "apps/darkroom/flags/look_flags.hpp"
 #include "apps/darkroom/flags/run_flags.hpp"
+#include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
@@ -34,6 +35,7 @@ struct Options {
     std::array<std::string, frame_inputs.size()> inputs;  ///< empty: frames lack it
     std::string out, profile;
     bool is_depth_planar = false, is_velocity_plain = false, has_shadows = false, keeps_what_is_off = false;
+    bool makes_folder = false;
 };
 
 Result<darkroom::DeviceProfile> profile_of(const std::string& text) {
@@ -109,6 +111,8 @@ Result<darkroom::Look> look_of(Options& options, const std::string& file) {
 Result<> bake(Options& options) {
     const Result<darkroom::DeviceProfile> profile = profile_of(options.profile);
     if (!profile) return failure(profile.error());
+    const MissingFolders folders = options.makes_folder ? MissingFolders::Made : MissingFolders::Told;
+    if (Result<> done = check_folder(std::filesystem::path(options.out).parent_path(), folders); !done) return done;
     Result<darkroom::CompileDesc> desc = desc_of(options);
     if (!desc) return failure(std::move(desc));
     darkroom::KernelFile file;
@@ -151,6 +155,7 @@ Command add_bake(CommandFlags program, std::span<const darkroom::LookEntry> name
     const auto options = std::make_shared<Options>();
     command.add_option("LOOK", options->looks, "Look files or scenes (TOML)").type_name("LOOK").required();
     command.add_option("-o,--output,--out", options->out, "The file: .dkb").type_name("OUT").required();
+    command.add_flag("--mkdir", options->makes_folder, "Makes the folder of the file where it is not there");
     command.add_option("--profile", options->profile, "The kind of device that will run them")
         .type_name("gpu|software")
         .required();

@@ -31,7 +31,7 @@ constexpr int exit_differ = 3;
 
 struct Options {
     std::string a, b, diff, sheet, layers = "color";
-    bool is_json = false;
+    bool is_json = false, makes_folders = false;
     NumberFlag fail_max{"--fail-max", {.least = 0, .most = 1e30}};
     NumberFlag fail_psnr{"--fail-psnr", {.least = -1000, .most = 1000, .unit = "dB"}};
     NumberFlag fail_flip{"--fail-flip", {.least = 0, .most = 1}};
@@ -71,11 +71,12 @@ Result<CompareRequest> request_of(const Options& options) {
 }
 
 // Before any work is done.
-Result<> check_picture(const std::string& path, const FilePairs& pairs) {
+Result<> check_picture(const std::string& path, const FilePairs& pairs, bool makes_folders) {
     if (path.empty()) return {};
     std::vector<std::filesystem::path> inputs;
     for (const FilePairs::Pair& pair : pairs.pairs) inputs.insert(inputs.end(), {pair.reference, pair.test});
-    if (Result<> done = check_output(path, FileSet(inputs)); !done) return done;
+    const MissingFolders folders = makes_folders ? MissingFolders::Made : MissingFolders::Told;
+    if (Result<> done = check_output(path, FileSet(inputs), folders); !done) return done;
     if (const auto kind = darkroom::sample_kind(path, {}); !kind) return failure(kind.error());
     return {};
 }
@@ -157,7 +158,7 @@ int run(const Options& options) {
         return fail_user(
             fmt::format("--diff {}: is of two pictures; --sheet shows the worst of many", printable(options.diff)));
     for (const std::string& path : {options.diff, options.sheet})
-        if (const Result<> done = check_picture(path, *pairs); !done) return fail(done.error());
+        if (const Result<> done = check_picture(path, *pairs, options.makes_folders); !done) return fail(done.error());
     return pairs->is_single ? compare_one(pairs->pairs.front(), *request, options)
                             : compare_many(*pairs, *request, options);
 }
@@ -186,6 +187,7 @@ Command add_compare(CommandFlags program) {
         .type_name("OUT.png");
     command.add_option("--sheet", options->sheet, "Writes the worst: reference, test and FLIP errors side by side")
         .type_name("OUT.png");
+    command.add_flag("--mkdir", options->makes_folders, "Makes the folders of these pictures where they are not there");
     command.add_flag("--json", options->is_json, "For programs");
     return {command, [options] { return run(*options); }};
 }

@@ -131,7 +131,7 @@ Result<FarmWork> FarmFlags::work() const {
         return user_error(fmt::format("{}: {} frames, a farm takes {} at once; --frames says which", printable(input_),
                                       frames->size(), most_frames));
     const fs::path picture = frames->front().picture, folder = picture.parent_path();
-    const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Refused;
+    const MissingFolders missing = makes_folder_ ? MissingFolders::Made : MissingFolders::Told;
     if (Result<> done = check_folder(folder, missing); !done) return failure(std::move(done));
     const auto made = [&](std::int64_t number) {
         return output_path(darkroom::numbered(input_, number), number, out_, is_output_folder(out_));

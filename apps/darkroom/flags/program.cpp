@@ -28,6 +28,13 @@ std::vector<std::string> known_names(const CLI::App& command) {
     return names;
 }
 
+// "lut info": a command and whose it is.
+std::string full_name(const CLI::App& command) {
+    const CLI::App* const above = command.get_parent();
+    const bool is_below_another = above != nullptr && above->get_parent() != nullptr;
+    return is_below_another ? fmt::format("{} {}", above->get_name(), command.get_name()) : command.get_name();
+}
+
 std::string unknown_argument(const CLI::App& command, const std::string& argument) {
     const std::string name = argument.substr(0, argument.find('='));
     const std::vector<std::string> known = known_names(command);
@@ -35,24 +42,33 @@ std::string unknown_argument(const CLI::App& command, const std::string& argumen
     for (const std::string_view amount : {"-intensity", "-amount", "-strength"}) {
         const std::string effect = name.ends_with(amount) ? name.substr(0, name.size() - amount.size()) : "";
         if (std::ranges::find(known, effect) != known.end())
-            return fmt::format("{}: unknown argument '{}', did you mean '{}'?", command.get_name(), printable(argument),
+            return fmt::format("{}: unknown argument '{}', did you mean '{}'?", full_name(command), printable(argument),
                                effect);
     }
-    return fmt::format("{}: unknown argument '{}'{}", command.get_name(), printable(argument),
+    return fmt::format("{}: unknown argument '{}'{}", full_name(command), printable(argument),
                        darkroom::suggestion(name, known));
+}
+
+// Of the commands that were typed, and theirs, the one with an argument that nobody took.
+const CLI::App* command_with_rest(const CLI::App& program) {
+    for (const CLI::App* const command : program.get_subcommands()) {
+        if (const CLI::App* const inner = command_with_rest(*command)) return inner;
+        if (!command->remaining().empty()) return command;
+    }
+    return nullptr;
 }
 
 // The first argument nobody took.
 std::string unknown_argument(const CLI::App& program) {
-    for (const CLI::App* const command : program.get_subcommands())
-        if (const std::vector<std::string> rest = command->remaining(); !rest.empty())
-            return unknown_argument(*command, rest.front());
+    if (const CLI::App* const command = command_with_rest(program))
+        return unknown_argument(*command, command->remaining().front());
     std::vector<std::string> commands;
     for (const CLI::App* const command : program.get_subcommands({})) commands.push_back(command->get_name());
     const std::vector<std::string> rest = program.remaining();
     if (rest.empty()) return fmt::format("a command is needed: {}", fmt::join(commands, ", "));
-    return fmt::format("unknown command '{}': allowed is {}{}", printable(rest.front()), fmt::join(commands, ", "),
-                       darkroom::suggestion(rest.front(), known_names(program)));
+    const std::string near = darkroom::suggestion(rest.front(), known_names(program));
+    return fmt::format("unknown command '{}'{} allowed is {}", printable(rest.front()), near.empty() ? ":" : near,
+                       fmt::join(commands, ", "));
 }
 
 darkroom::Failure value_needed(std::string_view flag) {

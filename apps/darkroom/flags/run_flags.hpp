@@ -70,7 +70,7 @@ class RunFlags {
     [[nodiscard]] darkroom::Result<> check_stream() const;
     /// What --mkdir says.
     [[nodiscard]] MissingFolders missing_folders() const {
-        return makes_folders_ ? MissingFolders::Made : MissingFolders::Refused;
+        return makes_folders_ ? MissingFolders::Made : MissingFolders::Told;
     }
     /// From here on the work is reported as --progress says.
     [[nodiscard]] darkroom::Result<> start_report() const;

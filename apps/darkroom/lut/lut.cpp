@@ -6,6 +6,7 @@
 
 #include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/flags/look_flags.hpp"
+#include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
@@ -20,9 +21,17 @@ using darkroom::printable;
 using darkroom::Result;
 using darkroom::user_error;
 
-Result<> check_output(const std::string& path) {
-    if (std::filesystem::path(path).extension() == ".cube") return {};
-    return user_error(fmt::format("-o {}: tables are written as .cube", printable(path)));
+/// Where a command of `lut` writes its table.
+struct Output {
+    std::string path;
+    bool makes_folder = false;
+};
+
+Result<> check(const Output& to) {
+    const std::filesystem::path path = to.path;
+    if (path.extension() != ".cube")
+        return user_error(fmt::format("-o {}: tables are written as .cube", printable(to.path)));
+    return check_folder(path.parent_path(), to.makes_folder ? MissingFolders::Made : MissingFolders::Told);
 }
 
 Result<> write(const std::string& path, const darkroom::TableFile& file) {
@@ -32,14 +41,15 @@ Result<> write(const std::string& path, const darkroom::TableFile& file) {
     return darkroom::write_file(path, std::as_bytes(std::span(*text)));
 }
 
-CommandFlags add(CommandFlags lut, const char* name, const char* help, std::string& out) {
+CommandFlags add(CommandFlags lut, const char* name, const char* help, Output& out) {
     const CommandFlags command = lut.add_command(name, help);
-    command.add_option("-o,--output,--out", out, "The table: .cube").type_name("OUT").required();
+    command.add_option("-o,--output,--out", out.path, "The table: .cube").type_name("OUT").required();
+    command.add_flag("--mkdir", out.makes_folder, "Makes the folder of the table where it is not there");
     return command;
 }
 
-Result<> convert(const std::string& from, const std::string& to) {
-    if (Result<> done = check_output(to); !done) return done;
+Result<> convert(const std::string& from, const Output& to) {
+    if (Result<> done = check(to); !done) return done;
     Result<darkroom::FoundTable> found = darkroom::read_table_file(from);
     if (!found) return failure(std::move(found));
     darkroom::TableFile& file = found->file;
@@ -47,12 +57,13 @@ Result<> convert(const std::string& from, const std::string& to) {
     if (found->error)
         file.comments.push_back(
             fmt::format("Sampled from {}; largest difference on random colours: {:.6g}", found->format, *found->error));
-    return write(to, file);
+    return write(to.path, file);
 }
 
 Command add_convert(CommandFlags lut) {
     struct Options {
-        std::string from, to;
+        std::string from;
+        Output to;
     };
     const auto options = std::make_shared<Options>();
     const CommandFlags command = add(lut, "convert", "Writes a table of any kind as .cube", options->to);
@@ -64,19 +75,19 @@ Command add_convert(CommandFlags lut) {
             }};
 }
 
-Result<> export_to(const std::string& to, const LookFlags& flags) {
-    if (Result<> done = check_output(to); !done) return done;
+Result<> export_to(const Output& to, const LookFlags& flags) {
+    if (Result<> done = check(to); !done) return done;
     const Result<darkroom::Look> look = flags.look();
     if (!look) return failure(look.error());
     const Result<ExportedLook> exported = export_look(*look);
     if (!exported) return failure(exported.error());
     for (const std::string& line : exported->left_out) warn(fmt::format("left out: {}", line));
-    return write(to, exported->file);
+    return write(to.path, exported->file);
 }
 
 Command add_export(CommandFlags lut, std::span<const darkroom::LookEntry> named) {
     struct Options {
-        std::string to;
+        Output to;
         LookFlags look;
     };
     const auto options = std::make_shared<Options>();

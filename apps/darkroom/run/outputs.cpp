@@ -47,9 +47,9 @@ bool is_there(const fs::path& picture) {
 Result<> check_folder(const fs::path& folder, MissingFolders missing) {
     std::error_code error;
     if (folder.empty() || fs::is_directory(folder, error)) return {};
-    if (missing == MissingFolders::Refused)
-        return user_error(fmt::format("{}: no such folder, pictures cannot be written; --mkdir makes it",
-                                      printable(folder.string())));
+    if (missing != MissingFolders::Made)
+        return user_error(fmt::format("{}: no such folder, nothing can be written there{}", printable(folder.string()),
+                                      missing == MissingFolders::Told ? "; --mkdir makes it" : ""));
     fs::create_directories(folder, error);
     if (!error) return {};
     return user_error(fmt::format("{}: cannot be made: {}", printable(folder.string()), error.message()));
@@ -74,8 +74,9 @@ bool is_output_folder(const std::string& out) {
 fs::path output_path(const fs::path& input, long long number, const std::string& out, bool is_folder) {
     if (is_folder) return fs::path(out) / fs::path(input.filename()).replace_extension(".png");
     std::string text = out;
-    if (const std::size_t name_at = out.find(name_pattern); name_at != std::string::npos)
-        text.replace(name_at, name_pattern.size(), input.stem().string());
+    const std::string name = input.stem().string();
+    for (std::size_t at = 0; (at = text.find(name_pattern, at)) != std::string::npos; at += name.size())
+        text.replace(at, name_pattern.size(), name);
     return darkroom::has_number_pattern(out) ? darkroom::numbered(text, number) : fs::path(text);
 }
 
@@ -87,9 +88,14 @@ Result<std::vector<fs::path>> output_paths(std::span<const darkroom::NumberedFil
     const bool has_name = darkroom::has_number_pattern(out) || out.find(name_pattern) != std::string::npos;
     if (is_folder)
         if (Result<> done = check_folder(out, folders); !done) return failure(std::move(done));
-    if (inputs.size() > 1 && !is_folder && !has_name)
+    if (inputs.size() > 1 && !is_folder && !has_name) {
+        // Such as a value behind a flag that takes none: --vignette 0.5.
+        for (const darkroom::NumberedFile& input : inputs)
+            if (std::error_code error; !fs::exists(input.path, error))
+                return user_error(fmt::format("{}: there is no such file", printable(input.path.string())));
         return user_error(fmt::format("-o {}: {} inputs need a folder, or a name with %04d, #### or {{name}}",
                                       printable(out), inputs.size()));
+    }
     std::vector<fs::path> outputs;
     std::map<fs::path, fs::path> makers;
     std::vector<fs::path> read(also_read.begin(), also_read.end());

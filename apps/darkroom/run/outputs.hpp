@@ -32,7 +32,11 @@ class FileSet {
 /// Is this picture made already? An empty file is none.
 [[nodiscard]] bool is_there(const std::filesystem::path& picture);
 
-enum class MissingFolders { Refused, Made };
+enum class MissingFolders {
+    Refused,  ///< by a command that makes none
+    Told,     ///< refused, and told that --mkdir makes them
+    Made
+};
 
 /// Is there a folder for pictures, or can there be one? An empty path is the working folder.
 [[nodiscard]] darkroom::Result<> check_folder(const std::filesystem::path& folder, MissingFolders missing);
