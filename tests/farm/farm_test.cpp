@@ -105,7 +105,7 @@ TEST_F(FarmFiles, EveryPathOfAScriptReachesItsTask) {
 }
 
 TEST_F(FarmFiles, AScenesFramesAreThoseThatAreAskedFor) {
-    write("scene.toml", "format = 1\n");
+    write("scene.toml", "[scene]\n");
     write("out/a.0003.png", "made");
     const Outcome script = farm("slurm scene.toml --frames 2-9 -o 'out/a.####.png' --chunk 3 --dry-run -- --size 8x8");
     ASSERT_EQ(script.code, 0) << script.err;
@@ -137,12 +137,12 @@ TEST_F(FarmFiles, WhatTasksWouldRefuseIsRefusedOnce) {
                         "model (.glb, .gltf)");
     expect_farm_refuses("slurm 'shot.####.exr[1-3]' -o out/", 1, "shot.####.exr[1-3]: --frames says which");
     expect_farm_refuses("slurm 'shot.####.exr' -o none/", 1,
-                        "none: no such folder, pictures cannot be written; --mkdir makes it");
+                        "none: no such folder, nothing can be written there; --mkdir makes it");
     expect_farm_refuses("slurm 'shot.####.exr' -o -", 1, "-o -: a farm writes files");
     expect_farm_refuses("slurm 'shot.####.exr' -o a.png", 1,
                         "-o a.png: expected a folder, or a name with %04d or ####");
     expect_farm_refuses("task 'shot.####.exr' -o out/", 1, "farm task: --frames A-B is needed");
-    write("scene.toml", "format = 1\n");
+    write("scene.toml", "[scene]\n");
     expect_farm_refuses("slurm scene.toml --frames 0-1999 --chunk 1 -o 'out/a.##.png'", 1,
                         "--chunk 1: 2000 chunks, an array job holds 1000: --chunk 2 is enough");
 }
@@ -262,6 +262,33 @@ TEST_F(FarmFiles, AChangedInputIsNoticed) {
     for (int number = 1; number <= 12; ++number) fs::remove(path(fmt::format("out/shot.{:04}.png", number)));
     EXPECT_EQ(farm("slurm" + work + more).out,
               "job 17: 12 of 12 pictures in 2 chunks; darkroom farm status out/shot.farm\n");
+}
+
+// Files that are read when frames are, and not with the flags.
+TEST_F(FarmFiles, AChangedPrefabOrCameraIsNoticed) {
+    write_program("sbatch", "echo 17");
+    write_program("squeue", "exit 1");
+    fs::create_directory(path("prefabs"));
+    write("prefabs/lamp.prefab.toml", "[entities.a.bounds]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n");
+    write("a.scene.toml", "[prefabs.lamp]\ntemplate = \"lamp\"\n");
+    write("view.toml", "camera_to_world = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nfov = 40\n");
+    const std::string scene = "slurm a.scene.toml --frames 1-12 -o 'out/shot.####.png'";
+    const std::string frames = "slurm 'shot.####.exr' -o out/ -- --camera view.toml";
+    for (const auto& [work, name] : {std::pair(scene, "prefabs/lamp.prefab.toml"), std::pair(frames, "view.toml"),
+                                     std::pair(scene, "a.scene.toml")}) {
+        fs::remove_all(path("out"));
+        fs::create_directory(path("out"));
+        ASSERT_EQ(farm(work).code, 0) << farm(work).err;
+        for (int number = 1; number <= 12; ++number) put_picture(number);
+        EXPECT_EQ(farm(work).out, "all 12 pictures are there, nothing is submitted\n");
+        write(name, content(path(name)) + "\n");
+        EXPECT_EQ(farm(work).err, fmt::format("darkroom: out/shot.farm: {} has changed since job 17 was submitted; "
+                                              "remove its pictures, or write elsewhere with -o\n",
+                                              name));
+    }
+    fs::remove_all(path("out/shot.farm"));
+    write("view.toml", "fov = 1000\n");
+    EXPECT_NE(farm(frames).err.find("view.toml"), std::string::npos) << "what is wrong is told at once";
 }
 
 TEST_F(FarmFiles, StatusIsToldFromRecordsAlone) {

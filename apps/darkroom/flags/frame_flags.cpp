@@ -43,6 +43,9 @@ Result<darkroom::FrameOptions> FrameFlags::options(const std::string& configurat
     for (const std::string& map : maps_)
         if (Result<> added = darkroom::add_mapping(out.names, map); !added) return failure(std::move(added));
     out.camera_file = camera_;
+    // What is wrong with it is told once, and before any work.
+    if (!camera_.empty())
+        if (const auto camera = darkroom::read_camera(camera_); !camera) return failure(camera.error());
     if (!input_space_.empty() && !configuration.empty()) {
         Result<std::shared_ptr<const darkroom::ColorChain>> chain =
             darkroom::space_of_configuration(configuration, input_space_);

@@ -81,6 +81,9 @@ class Render {
 
     Result<> check() {
         if (Result<> done = read_flags(); !done) return done;
+        // Its prefabs are read with it; what a scene only warns of, each run tells.
+        if (!scene::is_model_path(flags_.scene))
+            if (const Result<scene::Scene> scene = read_scene(); !scene) return failure(scene.error());
         return read_look();
     }
 
@@ -130,13 +133,17 @@ class Render {
         return {};
     }
 
+    Result<scene::Scene> read_scene(std::vector<std::string>* warnings = nullptr) const {
+        return scene::read_scene(
+            flags_.scene,
+            {.is_strict = flags_.look.is_strict(), .warnings = warnings, .named_files = flags_.drawn.named_files()});
+    }
+
     // Everything that needs no device: a slip is told before one is made.
     Result<> read() {
         if (Result<> done = read_flags(); !done) return done;
         std::vector<std::string> warnings;
-        Result<scene::Scene> scene = scene::read_scene(
-            flags_.scene,
-            {.is_strict = flags_.look.is_strict(), .warnings = &warnings, .named_files = flags_.drawn.named_files()});
+        Result<scene::Scene> scene = read_scene(&warnings);
         for (const std::string& warning : warnings) warn(warning);
         if (!scene) return failure(std::move(scene));
         scene_ = std::move(*scene);
