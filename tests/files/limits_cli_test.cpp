@@ -104,6 +104,11 @@ TEST_F(CliLimits, Pictures) {
     };
     expect_told(described(65537), 1, "65537x1, [1, 65536] a side is allowed");
     expect_silent(described(65536), "allowed");
+    const std::string wide = png_start + png_header(16385, 16384, 8, 0) +
+                             png_chunk("IDAT", std::string(std::size_t{1} << 19, '\0')) + png_chunk("IEND", "");
+    std::ofstream(path("wide.png"), std::ios::binary) << wide;
+    expect_told({"develop", path("wide.png"), "-o", path("out.png")}, 1,
+                "the picture is 16385x16384, at most 268435456 pixels are allowed");
 }
 
 TEST_F(CliLimits, TextsOfScenes) {
@@ -158,6 +163,9 @@ TEST_F(CliLimits, DocumentsAndModels) {
     expect_told(shown(repeated(20000, "<g/>")), 1, "a.svg:1: more than 20000 elements");
     expect_silent(shown(repeated(19999, "<g/>")), "elements");
     expect_told(shown(repeated(201, "<g>") + repeated(201, "</g>")), 1, "a.svg:1: elements in more than 200 others");
+    const std::string plain = write("a.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+    expect_told({"develop", path("frame.exr"), "--ui", plain, "--size", "8193x2:stretch", "-q", "-o", path("out.png")},
+                1, "8193x2");
     expect_row("depth of the JSON | 64 |");
     const std::string model = write(
         "a.gltf", "{\"asset\":{\"version\":\"2.0\"},\"extras\":" + std::string(64, '[') + std::string(64, ']') + "}");
@@ -235,6 +243,9 @@ const std::vector<HeldRow>& held_rows() {
          {"HostilePictures, TiffAsksForNoMoreThanIsAllowed"}},
         {"scans of JPEG, alone or in TIFF | 100; scans times pixels 2^31", {"HostilePictures, ScansOfJpegAreCounted"}},
         {"profile of colours in PNG | 4 MiB", {"HostilePictures, AProfileOfPngIsInflatedHere"}},
+        {"bytes that the pixels of PNG are packed in | twice what they take unpacked, and 64 KiB",
+         {"HostilePictures, PixelsOfPngArePackedInNoMoreThanTheyNeed"}},
+        {"pixels of a frame | 2^28", {"CliLimits, Pictures"}},
         {"side of a picture in WebP, all in one chunk | 16384",
          {"ImageWebp, PixelsAreThoseThatWerePacked", "ImageWebp, WhatItsChunksDoNotHoldIsRefused"}},
         {"display window of OpenEXR | 64 times the largest data window; up to 2^25 pixels always",
@@ -261,6 +272,10 @@ const std::vector<HeldRow>& held_rows() {
          {"SceneGltfRefuse, CountsOutOfProportionAreToldBeforeTheyAreMade"}},
         {"element of an array of the root: node, accessor, texture, ... | 1024; material: 3072",
          {"SceneGltfRefuse, CountsOutOfProportionAreToldBeforeTheyAreMade"}},
+        {"vertex, skinned vertex while it is read, vertex of a morph target | 60, 88, 24",
+         {"SceneGltfRefuse, WhatIsMadeOfAPrimitiveIsToldWithItsBytes"}},
+        {"corner of a triangle | 4, and 12 while it is read",
+         {"SceneGltfRefuse, WhatIsMadeOfAPrimitiveIsToldWithItsBytes"}},
         {"number of an accessor, each time it is read | 4",
          {"SceneGltfRefuse, CountsOutOfProportionAreToldBeforeTheyAreMade"}},
         {"bytes of all files of a model | 4 GiB", {"CliLimits, LengthsOfFiles"}},
@@ -270,6 +285,22 @@ const std::vector<HeldRow>& held_rows() {
         {"joint that a vertex names | 65535", {"CliLimits, DocumentsAndModels"}},
         {"an SVG document, its values in place | 1 MiB, 20000 elements, 200 in one another",
          {"CliLimits, LengthsOfFiles", "CliLimits, DocumentsAndModels"}},
+        {"instance: a primitive of a node, or a box (with its material) | 1024 (1536)",
+         {"SceneSnapshotBudget, BytesAreThoseOfThePage"}},
+        {"material of a model | 512", {"SceneSnapshotBudget, BytesAreThoseOfThePage"}},
+        {"node, once for each animation and speed; again as work for each entity | 256",
+         {"SceneSnapshotBudget, BytesAreThoseOfThePage"}},
+        {"joint of a skin, for each node that has it | 384", {"SceneSnapshotBudget, BytesAreThoseOfThePage"}},
+        {"weight of a morph target, for each node | 32", {"SceneSnapshotBudget, BytesAreThoseOfThePage"}},
+        {"light, sprite | 256", {"SceneSnapshotBudget, BytesAreThoseOfThePage"}},
+        {"particle | 256", {"SceneSnapshotBudget, BytesAreThoseOfThePage"}},
+        {"work: vertex of a skin or with morph targets (times their number and one), for each node | 32",
+         {"SceneSnapshotBudget, WorkIsThatOfThePage"}},
+        {"work: triangle | 4", {"SceneSnapshotBudget, WorkIsThatOfThePage"}},
+        {"work: parent, for each material and particle below it | 8", {"SceneSnapshotBudget, WorkIsThatOfThePage"}},
+        {"work: emitter | 512 KiB", {"SceneSnapshotBudget, WorkIsThatOfThePage"}},
+        {"its picture | 8192 pixels a side", {"CliLimits, DocumentsAndModels"}},
+        {"a drawing | 5 s, 4 GiB", {"HudDocuments, WhatTakesTooLongIsGivenUp"}},
         {"scene, prefab, look or camera file | 4 MiB", {"CliLimits, LengthsOfFiles"}},
         {"nesting of values; dots of one line; dots of all keys | 16; 64; 262144",
          {"CliLimits, TextsOfScenes", "CliBombs, Scenes"}},
@@ -284,12 +315,14 @@ const std::vector<HeldRow>& held_rows() {
          {"CustomCompute, ErrorsNameTheLineTheThingAndWhatIsAllowed"}},
         {"invocations of a workgroup, and groups where their number is given; bytes of `shared` variables;",
          {"CustomCompute, ErrorsNameTheLineTheThingAndWhatIsAllowed"}},
+        {"size of an image, of the picture's | 1/64 to 2", {"CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed"}},
         {"texels of a table | 4096", {"CustomPasses, TablesAreReadAndCounted"}},
         {"frames before the first that a history asks for | 1000",
          {"CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed"}},
         {"words and marks of a statement; characters of the value of a `#define` | 2000; 120",
          {"CustomPasses, CodeDeclaresNothingOfTheKernel"}},
         {"file of kernels; kernels in it | 16 MiB; 65536", {"BakedShaders, EveryNumberIsCheckedBeforeItIsUsed"}},
+        {"entries of a look's stack | 4096", {"LookSlips, WhatAFileHoldsManyOfIsBounded"}},
         {"entries in a fused kernel; entries of a plan that join a kernel begun by another | 16; 96;",
          {"ComposePlan, ALongStackHasKernelsAndPicturesWithinBounds"}},
         {"kernels of a plan that do not run while their entries are off, as each keeps a picture | 32;",
@@ -305,25 +338,12 @@ const std::vector<HeldRow>& held_rows() {
 /// Those that no file of a test goes beyond: counts of bytes that suites of hostile files hold as a whole (CliBombs,
 /// ScenePackedDraco), numbers that would take gigabytes, and what no file asks for.
 constexpr std::array rows_held_together{"numbers of the layers that `--keep-layers` keeps |",
-                                        "vertex, skinned vertex while it is read,",
-                                        "corner of a triangle |",
                                         "joint of a skin | 128 |",
                                         "triangle that Draco unpacks,",
                                         "byte that meshoptimizer unpacks |",
                                         "number of an attribute that Draco unpacks,",
                                         "pixels of a model's textures together |",
-                                        "its picture | 8192 pixels",
-                                        "a drawing | 5 s, 4 GiB",
-                                        "instance: a primitive of a node,",
-                                        "material of a model |",
-                                        "node, once for each animation",
-                                        "joint of a skin, for each node",
-                                        "weight of a morph target, for each",
-                                        "light, sprite |",
-                                        "particle | 256 |",
-                                        "work: ",
                                         "keys of all paths |",
-                                        "size of an image, of the picture's |",
                                         "entries of a folder in the file browser |",
                                         "messages, lines that the console keeps,",
                                         "frames of a sequence that are held decoded |",

@@ -112,6 +112,34 @@ TEST_F(SceneGltfRefuse, CountsOutOfProportionAreToldBeforeTheyAreMade) {
     });
 }
 
+// The table of docs/limits.md, by counts that the budget has no room for.
+TEST_F(SceneGltfRefuse, WhatIsMadeOfAPrimitiveIsToldWithItsBytes) {
+    const auto zeros = [](TestModel& test, std::size_t count, const char* type, int component) {
+        test.json["accessors"].push_back({{"componentType", component}, {"count", count}, {"type", type}});
+        return test.json["accessors"].size() - 1;
+    };
+    const auto with = [&](std::size_t count, const std::function<void(TestModel&, nlohmann::json&)>& more) {
+        return [&zeros, count, more](TestModel& test) {
+            nlohmann::json& primitive = test.json["meshes"][0]["primitives"][0];
+            primitive = {{"attributes", {{"POSITION", zeros(test, count, "VEC3", 5126)}}}};
+            more(test, primitive);
+        };
+    };
+    const auto nothing = [](TestModel&, nlohmann::json&) {};
+    expect("2000000 vertices of 60 bytes, ", with(2'000'000, nothing));
+    expect("1800000 corners of 4 bytes, ", with(1'800'000, nothing));
+    expect("1600000 corners of 12 bytes, ", with(1'600'000, nothing));
+    expect("1000000 skinned vertices of 88 bytes, ", with(1'000'000, [&](TestModel& test, nlohmann::json& primitive) {
+               primitive["attributes"]["JOINTS_0"] = zeros(test, 1'000'000, "VEC4", 5121);
+               primitive["attributes"]["WEIGHTS_0"] = zeros(test, 1'000'000, "VEC4", 5126);
+           }));
+    expect("1000000 vertices of morph targets of 24 bytes, ",
+           with(1'000'000, [](TestModel&, nlohmann::json& primitive) {
+               const nlohmann::json target{{"POSITION", primitive["attributes"]["POSITION"]}};
+               primitive["targets"] = {target, target};
+           }));
+}
+
 TEST_F(SceneGltfRefuse, Indices) {
     expect("is 7, there are 3 vertices", [](TestModel& test) {
         test.json["meshes"][0]["primitives"][0]["indices"] = test.accessor<std::uint8_t>({0, 1, 7}, "SCALAR");
@@ -202,6 +230,16 @@ TEST_F(SceneGltfRefuse, DeepJson) {
     EXPECT_NE(model.error().text.find("nested"), std::string::npos);
     put(file("model.gltf"), R"({"asset":{"version":"2.0","generator":")" + std::string(200, '[') + R"("}})");
     EXPECT_TRUE(read_model(file("model.gltf")));
+}
+
+TEST_F(SceneGltfRefuse, WordsOfTheJsonLibraryAreOurs) {
+    for (const char* const text : {R"({"scene":1e400})", R"({"scene":})", "{\"a\":\"\xff\"}"}) {
+        put(file("model.gltf"), text);
+        const auto model = read_model(file("model.gltf"));
+        ASSERT_FALSE(model);
+        EXPECT_EQ(model.error().text.find("json.exception"), std::string::npos) << model.error().text;
+        EXPECT_NE(model.error().text.find("is no JSON: "), std::string::npos) << model.error().text;
+    }
 }
 
 TEST_F(SceneGltfRefuse, EveryCutOfAGlb) {
