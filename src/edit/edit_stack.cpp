@@ -44,16 +44,32 @@ std::string fresh_name(const Look& look, const std::string& like) {
     }
 }
 
-/// The entry of a look that adding this effect switches on; null: none.
-LookEntry* sleeping(Look& look, const EffectInfo& effect) {
+/// The place that a look has for this effect without being another: in a flat table, or the interface's.
+LookEntry* own_place(Look& look, const EffectInfo& effect) {
     const auto found = std::ranges::find_if(look.entries, [&](const LookEntry& entry) {
-        return entry.effect == &effect && entry.state.enabled.on == 0 &&
+        return entry.effect == &effect &&
                (entry.is_of_ui || (look.is_flat && look.is_enabled && flat_rank(effect, look.order) >= 0));
     });
     return found == look.entries.end() ? nullptr : &*found;
 }
 
+/// The entry of a look that adding this effect switches on; null: none.
+LookEntry* sleeping(Look& look, const EffectInfo& effect) {
+    LookEntry* const found = own_place(look, effect);
+    return found == nullptr || found->state.enabled.on != 0 ? nullptr : found;
+}
+
 }  // namespace
+
+Addition addition_of(const Look& look, const EffectInfo& effect) {
+    Look copy = look;
+    if (effect.flat.is_of_ui && !copy.ui) add_ui(copy);
+    const LookEntry* const own = own_place(copy, effect);
+    if (own == nullptr) return {.kind = look.is_flat ? Addition::Kind::MakesStack : Addition::Kind::Inserts};
+    const bool is_there = own->state.enabled.on != 0 && (!effect.flat.is_of_ui || look.ui);
+    return {.kind = is_there ? Addition::Kind::IsThere : Addition::Kind::SwitchesOn,
+            .entry = entry_names(copy)[static_cast<std::size_t>(own - copy.entries.data())]};
+}
 
 Result<> move_entry(Look& look, std::string_view entry, std::string_view before) {
     Result<LookEntry*> found = restructured(look, entry);
@@ -107,6 +123,7 @@ Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view befo
         return user_error(fmt::format("{}: the interface has it already", entry.effect->name));
     entry.id = made_id;
     if (before.empty()) {
+        if (look.is_flat) become_stack(look);
         if (Result<> done = place_entry(look, std::move(entry)); !done) return failure(std::move(done));
         return name_of_made(look);
     }

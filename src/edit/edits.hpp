@@ -2,8 +2,8 @@
 #pragma once
 // What editors do to a look, each for LookDocument::edit. Entries are named as darkroom::entry_names has them. A flat
 // look holds values and switches alone: what changes its order, or something of an entry that the flat table has no key
-// for, makes it the stack that it stands for, without what is off. Errors name the entry, the value and what is
-// allowed.
+// for, makes it the stack that it stands for, with what is off where a hand or a file has set it. Errors name the
+// entry, the value and what is allowed.
 
 #include <cstdint>
 #include <darkroom/look.hpp>
@@ -29,6 +29,19 @@ Result<> set_wire(Look& look, std::string_view entry, std::string_view wire, con
 /// Gives a parameter of kind Resource a file, relative to the options' folder; an empty name takes it away.
 Result<> set_file(Look& look, std::string_view entry, std::string_view parameter, const std::string& file,
                   const LookOptions& options);
+
+/// What add_effect() without a `before` would do.
+struct Addition {
+    enum class Kind : std::uint8_t {
+        SwitchesOn,  ///< the look has a place for it, and it is off there
+        IsThere,     ///< the same, and it is on
+        Inserts,     ///< into the stack
+        MakesStack,  ///< a flat table, which has no place for it, becomes a stack
+    };
+    Kind kind{};
+    std::string entry{};  ///< of the first two: its name
+};
+[[nodiscard]] Addition addition_of(const Look& look, const EffectInfo& effect);
 
 /// Puts an entry in front of another; an empty `before`: behind the last of the picture's chain.
 Result<> move_entry(Look& look, std::string_view entry, std::string_view before);

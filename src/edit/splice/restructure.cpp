@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/text/param_text.hpp"
+#include "edit/effect_uses.hpp"
 
 namespace darkroom::edit {
 
@@ -17,6 +18,31 @@ Result<LookEntry*> entry_at(Look& look, std::string_view name) {
         fmt::format("{}: {} has no such entry, it has {}", printable(name), look.shown_name, fmt::join(names, ", ")));
 }
 
+namespace {
+
+/// Has somebody set more of it than its switch, or written it into the file?
+bool is_set(const Look& look, const LookEntry& entry) {
+    return entry.words != flat_entry(*entry.effect, look.order).words ||
+           std::ranges::count(look.written, entry.effect, &WrittenValue::effect) > 0;
+}
+
+}  // namespace
+
+void become_stack(Look& look) {
+    std::vector<const EffectInfo*> off;
+    for (LookEntry& entry : look.entries) {
+        if (!look.is_enabled || entry.is_of_ui || entry.state.enabled.on != 0 || !is_set(look, entry)) continue;
+        entry.state.enabled = true;
+        off.push_back(entry.effect);
+    }
+    make_stack(look);
+    for (LookEntry& entry : look.entries) {
+        if (entry.is_of_ui) continue;
+        if (std::ranges::count(off, entry.effect) > 0) entry.state.enabled = false;
+        if (!uses_of(*entry.effect).reads_source) entry.source.clear();
+    }
+}
+
 Result<LookEntry*> restructured(Look& look, std::string_view name) {
     Result<LookEntry*> entry = entry_at(look, name);
     if (!entry) return entry;
@@ -25,7 +51,7 @@ Result<LookEntry*> restructured(Look& look, std::string_view name) {
     if (!look.is_flat) return entry;
     const EffectInfo* const effect = (*entry)->effect;
     const Toggle was_enabled = std::exchange((*entry)->state.enabled, true);
-    make_stack(look);
+    become_stack(look);
     const auto found = std::ranges::find(look.entries, effect, &LookEntry::effect);
     if (found == look.entries.end())
         return user_error(fmt::format("{}: the look is off, so that it has no place", printable(name)));

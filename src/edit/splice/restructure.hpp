@@ -7,6 +7,9 @@
 namespace darkroom::edit {
 
 [[nodiscard]] Result<LookEntry*> entry_at(Look& look, std::string_view name);
+/// Makes a flat look the stack that it stands for. What is off keeps its place where a hand or a file has set it, and
+/// each entry is wired as its effect needs.
+void become_stack(Look& look);
 /// The entry of this name in a look that is no flat one any more; it has a place although it may be off.
 [[nodiscard]] Result<LookEntry*> restructured(Look& look, std::string_view name);
 
