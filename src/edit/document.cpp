@@ -32,7 +32,7 @@ std::size_t bytes_of_rest(const Look& look, const Look& but) {
 LookDocument::LookDocument(Look look, LookOptions options) : options_(std::move(options)) {
     options_.warnings = nullptr;
     give_ids(look);
-    saved_ = look;
+    saved_ = read_ = look;
     take(std::move(look));
 }
 

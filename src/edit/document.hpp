@@ -11,6 +11,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "edit/watch.hpp"
 
@@ -52,8 +53,9 @@ class LookDocument {
     [[nodiscard]] bool is_changed() const { return is_changed_; }
     /// Empty: there is none.
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-    /// Writes what changed into the text that was read, all else as it stands there. Errors: there is no file; it has
-    /// been changed by others since; something cannot be written there. The file is then as it was.
+    /// Writes what changed into the text that was read, all else as it stands there: whatever was saved in between, the
+    /// same look gives the same bytes. Errors: there is no file; it has been changed by others since; something cannot
+    /// be written there. The file is then as it was.
     Result<> save();
     /// The same into another file, which becomes the document's, and is overwritten. In another folder it is that of a
     /// look, whatever the document's was. Errors: the look names files, which are relative to the folder that it is in.
@@ -63,6 +65,10 @@ class LookDocument {
     Result<bool> reload_if_changed();
     /// Did the last reading of a change fail?
     [[nodiscard]] bool is_broken() const { return is_broken_; }
+    /// What the reading of the file passed over, "file:line:column: ...".
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    /// The files that the last change on disk was in.
+    [[nodiscard]] const std::vector<std::filesystem::path>& changed_files() const { return changed_files_; }
 
   private:
     struct Step {
@@ -77,18 +83,25 @@ class LookDocument {
     Result<> check(const Look& next) const;
     void watch_files();
     Result<bool> reload();
-    /// Splices what changed into a text; into none, all is written.
-    Result<> write(const std::filesystem::path& file, std::string_view into);
+    /// `is_spliced`: into the text that was read; else all is written anew.
+    Result<> write(const std::filesystem::path& file, bool is_spliced);
+    Result<Look> read(std::string_view text, const Look& ids_of);
 
     std::filesystem::path file_;
     LookOptions options_;
     std::string text_;  ///< of the file, as it was read or written last
+    /// The text that others wrote last, and its look: what is saved is spliced into that, not into what was saved
+    /// before, so that a way back through the steps is one through the bytes, too.
+    std::string read_text_;
+    Look read_;
     Look saved_, look_;
     std::uint64_t version_ = 1;
     std::uint64_t last_id_ = 0;
     std::deque<Step> undo_, redo_;
     std::string merge_;
     bool is_changed_ = false, is_broken_ = false;
+    std::vector<std::string> warnings_;
+    std::vector<std::filesystem::path> changed_files_;
     Watch watch_;
 };
 

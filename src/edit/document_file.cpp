@@ -101,11 +101,15 @@ Result<LookDocument> LookDocument::open(const std::filesystem::path& file, LookO
     if (options.folder.empty()) options.folder = file.parent_path();
     Result<std::string> text = read_look_text(file);
     if (!text) return failure(std::move(text));
+    std::vector<std::string> warnings;
+    std::vector<std::string>* const told = std::exchange(options.warnings, &warnings);
     Result<Look> look = parse_look(*text, file.string(), options);
+    if (told != nullptr) told->insert(told->end(), warnings.begin(), warnings.end());
     if (!look) return failure(std::move(look));
     LookDocument out(std::move(*look), std::move(options));
     out.file_ = file;
-    out.text_ = std::move(*text);
+    out.text_ = out.read_text_ = std::move(*text);
+    out.warnings_ = std::move(warnings);
     out.watch_files();
     return out;
 }
@@ -129,40 +133,49 @@ Result<> LookDocument::save() {
     if (*now != text_)
         return user_error(fmt::format("{}: it has been changed by others since it was read; it is not overwritten",
                                       printable(file_.string())));
-    return write(file_, text_);
+    return write(file_, true);
 }
 
 Result<> LookDocument::save_as(const std::filesystem::path& file) {
     const bool is_near =
         !file_.empty() && file.parent_path().lexically_normal() == file_.parent_path().lexically_normal();
-    if (is_near) return write(file, text_);
+    if (is_near) return write(file, true);
     if (names_files(look_) && file.parent_path().lexically_normal() != options_.folder.lexically_normal())
         return user_error(fmt::format("{}: the look names files in relation to {}, so it is to lie there",
                                       printable(file.string()), printable(options_.folder.string())));
-    return write(file, {});
+    return write(file, false);
 }
 
-Result<> LookDocument::write(const std::filesystem::path& file, std::string_view into) {
+Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced) {
     LookOptions options = options_;
     options.folder = file.parent_path();
-    options.is_scene &= !into.empty();
-    const Result<std::string> text =
-        into.empty() ? Result<std::string>(write_look(look_)) : splice_look(into, saved_, look_);
-    if (!text) return failure(text.error());
+    options.is_scene &= is_spliced;
     const std::string shown = file.string();
     LookOptions checking = options;
     checking.load_resource = stand_in;
-    const Result<Look> read = parse_look(*text, shown, checking);
-    // A custom effect that is wrong just now is no reason to keep the look from its file.
-    const bool is_readable = read || (!into.empty() && parse_look(into, shown, checking));
-    if (is_readable && !read) return failure(read.error());
-    if (is_readable && !says(*read, look_))
-        return user_error(fmt::format("{}: the look cannot be written so that it reads as the same", printable(shown)));
+    const auto checked = [&](Result<std::string> text) -> Result<std::string> {
+        if (!text) return text;
+        const Result<Look> read = parse_look(*text, shown, checking);
+        // A custom effect that is wrong just now is no reason to keep the look from its file.
+        const bool is_readable = read || (is_spliced && parse_look(text_, shown, checking));
+        if (is_readable && !read) return failure(read.error());
+        if (is_readable && !says(*read, look_))
+            return user_error(
+                fmt::format("{}: the look cannot be written so that it reads as the same", printable(shown)));
+        return text;
+    };
+    Result<std::string> text = checked(is_spliced ? splice_look(read_text_, read_, look_) : write_look(look_));
+    if (!text && is_spliced) text = checked(splice_look(text_, saved_, look_));
+    if (!text) return failure(text.error());
     if (Result<> done = write_file(file, std::as_bytes(std::span(*text)), true); !done) return done;
     file_ = file;
     text_ = *text;
     options_ = std::move(options);
     saved_ = look_;
+    if (!is_spliced) {
+        read_text_ = text_;
+        read_ = look_;
+    }
     is_changed_ = false;
     watch_.take(file);
     end_merge();
@@ -170,10 +183,22 @@ Result<> LookDocument::write(const std::filesystem::path& file, std::string_view
 }
 
 Result<bool> LookDocument::reload_if_changed() {
-    if (!watch_.take_change()) return false;
+    std::vector<std::filesystem::path> changed = watch_.take_changes();
+    if (changed.empty()) return false;
+    changed_files_ = std::move(changed);
     Result<bool> is_new = reload();
     is_broken_ = !is_new;
     return is_new;
+}
+
+/// Entries are those of `ids_of` that they are the counterparts of.
+Result<Look> LookDocument::read(std::string_view text, const Look& ids_of) {
+    Result<Look> read = parse_look(text, file_.string(), options_);
+    if (!read) return read;
+    const std::vector<const LookEntry*> others = counterparts(*read, ids_of);
+    for (std::size_t i = 0; i < others.size(); ++i) read->entries[i].id = others[i] == nullptr ? 0 : others[i]->id;
+    give_ids(*read);
+    return read;
 }
 
 Result<bool> LookDocument::reload() {
@@ -185,14 +210,14 @@ Result<bool> LookDocument::reload() {
         if (now->empty() && !text_.empty()) return false;
         text = std::move(*now);
     }
+    warnings_.clear();
     Look saved = saved_, next = look_;
     if (!file_.empty()) {
-        Result<Look> read = parse_look(text, file_.string(), options_);
-        if (!read) return failure(std::move(read));
-        saved = std::move(*read);
-        const std::vector<const LookEntry*> others = counterparts(saved, look_);
-        for (std::size_t i = 0; i < others.size(); ++i) saved.entries[i].id = others[i] == nullptr ? 0 : others[i]->id;
-        give_ids(saved);
+        options_.warnings = &warnings_;
+        Result<Look> now = read(text, look_);
+        options_.warnings = nullptr;
+        if (!now) return failure(std::move(now));
+        saved = std::move(*now);
         keep_loaded(saved, look_);
     }
     if (!file_.empty() && (text != text_ || !is_changed_)) {
@@ -205,6 +230,10 @@ Result<bool> LookDocument::reload() {
         }
         keep_loaded(next, look_);
     }
+    // An effect of a file that the text names may have other parameters now: its look is read again, too.
+    Result<Look> base = text == text_ && !file_.empty() ? read(read_text_, read_) : Result<Look>(saved);
+    if (text != text_ || !base) read_text_ = text;
+    read_ = base ? std::move(*base) : saved;
     saved_ = std::move(saved);
     text_ = std::move(text);
     watch_files();

@@ -261,5 +261,19 @@ TEST_F(Document, NamedFilesAreReadAgain) {
     EXPECT_NE(text_of(path).find("exposure = 2.0\n"), std::string::npos);
 }
 
+TEST_F(Document, TellsWhatItsFilePassedOver) {
+    const fs::path path = write("a.toml", "[post_process]\nexposure = 2\nbogus = 3\n");
+    LookDocument document = open(path);
+    ASSERT_EQ(document.warnings().size(), 1U);
+    EXPECT_NE(document.warnings()[0].find("a.toml:3:1: unknown key 'bogus'"), std::string::npos);
+    write("a.toml", "[post_process]\nexposure = 2\n");
+    EXPECT_EQ(reloaded(document), "same");
+    EXPECT_TRUE(document.warnings().empty());
+    EXPECT_EQ(document.changed_files(), std::vector{path});
+    write("a.toml", "[post_process]\nnothing = 1\nbogus = 1\nexposure = 2\n");
+    EXPECT_EQ(reloaded(document), "same");
+    EXPECT_EQ(document.warnings().size(), 2U);
+}
+
 }  // namespace
 }  // namespace darkroom::edit

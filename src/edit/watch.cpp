@@ -3,15 +3,15 @@
 
 namespace darkroom::edit {
 
-bool Watch::take_change() {
-    bool is_any = false;
+std::vector<std::filesystem::path> Watch::take_changes() {
+    std::vector<std::filesystem::path> changed;
     for (auto& [file, stamp] : files_) {
         const FileStamp now = stamp_of(file);
         if (now == stamp || now == FileStamp{}) continue;
         stamp = now;
-        is_any = true;
+        changed.push_back(file);
     }
-    return is_any;
+    return changed;
 }
 
 }  // namespace darkroom::edit

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <vector>
 
 #include "core/files.hpp"
 
@@ -17,9 +18,10 @@ class Watch {
     }
     /// Takes a file as it is now.
     void take(const std::filesystem::path& file) { files_[file] = stamp_of(file); }
-    /// Is any of them another than it was? They are then taken as they are now. One that is gone counts as unchanged
+    /// Those that are others than they were, which are then taken as they are now. One that is gone counts as unchanged
     /// until it is there again: editors replace files.
-    [[nodiscard]] bool take_change();
+    [[nodiscard]] std::vector<std::filesystem::path> take_changes();
+    [[nodiscard]] bool take_change() { return !take_changes().empty(); }
 
   private:
     std::map<std::filesystem::path, FileStamp> files_;
