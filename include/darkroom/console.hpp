@@ -58,8 +58,10 @@ class Console {
     Result<std::string> set(std::string_view name, std::string_view value);
     /// The same for this frame's value: Composer::set_override.
     Result<std::string> set_override(std::string_view name, std::string_view owner, std::string_view value);
-    /// All names that begin with `prefix`, in alphabetical order: what a host completes words with.
+    /// All names that begin with `prefix`, in alphabetical order.
     [[nodiscard]] std::vector<std::string> names(std::string_view prefix = {}) const;
+    /// The same with the commands among them: what a host completes words with.
+    [[nodiscard]] std::vector<std::string> words(std::string_view prefix = {}) const;
 
     /// Makes the present base values those that `reset` goes back to: after a look was applied. Entries that came later
     /// go back to their effect's defaults.

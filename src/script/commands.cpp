@@ -28,15 +28,16 @@ class Run {
     void text(std::string_view commands_text, const std::string& place);
     std::uint32_t end();
 
-  private:
     using Function = Result<> (Run::*)(Words);
     struct Known {
         std::string_view name, arguments;
         std::size_t least, most;  ///< words behind the name
         Function function;
+        std::string_view doc;
     };
-    static const std::array<Known, 11> commands;
+    static const std::array<Known, 12> commands;
 
+  private:
     Result<> command(Words words);
     Result<> get(Words arguments);
     Result<> set(Words arguments);
@@ -49,6 +50,7 @@ class Run {
     Result<> reset_config(Words) { return reset_where(true); }
     Result<> list(Words arguments);
     Result<> exec(Words arguments);
+    Result<> help(Words arguments);
 
     Result<> write(std::string_view name, const Variable& variable, std::string_view value);
     /// Sets the value behind the present one in a list, the first if it is not in it.
@@ -71,18 +73,19 @@ class Run {
     bool is_over_ = false;
 };
 
-constexpr std::array<Run::Known, 11> Run::commands{{
-    {"get", "NAME", 1, 1, &Run::get},
-    {"set", "NAME VALUE", 2, most_words, &Run::set},
-    {"seta", "NAME VALUE", 2, most_words, &Run::seta},
-    {"toggle", "NAME [VALUE [OTHER]]", 1, 3, &Run::toggle},
-    {"cycle", "NAME [VALUE...]", 1, most_words, &Run::cycle},
-    {"inc", "NAME [AMOUNT]", 1, 2, &Run::inc},
-    {"reset", "NAME", 1, 1, &Run::reset},
-    {"resetall", "", 0, 0, &Run::reset_all},
-    {"resetcfg", "", 0, 0, &Run::reset_config},
-    {"cvarlist", "[PREFIX]", 0, 1, &Run::list},
-    {"exec", "FILE", 1, 1, &Run::exec},
+constexpr std::array<Run::Known, 12> Run::commands{{
+    {"get", "NAME", 1, 1, &Run::get, "Prints a variable; its name alone does, too."},
+    {"set", "NAME VALUE", 2, most_words, &Run::set, "Sets a variable; NAME VALUE does, too."},
+    {"seta", "NAME VALUE", 2, most_words, &Run::seta, "Sets a variable, and archives it from now on."},
+    {"toggle", "NAME [VALUE [OTHER]]", 1, 3, &Run::toggle, "Goes between 0 and 1, or two values."},
+    {"cycle", "NAME [VALUE...]", 1, most_words, &Run::cycle, "Goes to the value behind the present one."},
+    {"inc", "NAME [AMOUNT]", 1, 2, &Run::inc, "Adds an amount, or 1."},
+    {"reset", "NAME", 1, 1, &Run::reset, "Goes back to the default."},
+    {"resetall", "", 0, 0, &Run::reset_all, "The same for all variables."},
+    {"resetcfg", "", 0, 0, &Run::reset_config, "The same for those that are archived."},
+    {"cvarlist", "[PREFIX]", 0, 1, &Run::list, "Lists variables and their values."},
+    {"exec", "FILE", 1, 1, &Run::exec, "Runs a file of the console's folder."},
+    {"help", "[NAME]", 0, 1, &Run::help, "Explains a variable or a command, or lists the commands."},
 }};
 
 void Run::print(Severity severity, std::string_view line) {
@@ -281,7 +284,37 @@ Result<> Run::exec(Words arguments) {
     return {};
 }
 
+Result<> Run::help(Words arguments) {
+    const auto tell = [&](const Known& one) {
+        const std::string usage = fmt::format("{}{}{}", one.name, one.arguments.empty() ? "" : " ", one.arguments);
+        print(Severity::Info, fmt::format("{:<28}{}", usage, one.doc));
+    };
+    if (arguments.empty()) {
+        for (const Known& one : commands) tell(one);
+        print(Severity::Info, "help NAME explains a variable; cvarlist lists them.");
+        return {};
+    }
+    const auto known = std::ranges::find(commands, arguments[0], &Known::name);
+    if (known != commands.end()) {
+        tell(*known);
+        return {};
+    }
+    const auto variable = look_up(arguments[0]);
+    if (!variable) return failure(variable.error());
+    const ParamInfo& row = *variable->row;
+    print(Severity::Info, fmt::format("{}: {} It takes {}, by default {}, now {}.", printable(arguments[0]), row.doc,
+                                      interval(row), default_text(*variable), state_.text(*variable)));
+    return {};
+}
+
 }  // namespace
+
+std::vector<std::string> command_names(std::string_view prefix) {
+    std::vector<std::string> out;
+    for (const Run::Known& one : Run::commands)
+        if (one.name.starts_with(prefix)) out.emplace_back(one.name);
+    return out;
+}
 
 std::uint32_t run_commands(Console::State& state, std::string_view text, const RunOptions& options) {
     Run run(state, options);

@@ -116,6 +116,13 @@ std::vector<std::string> Console::names(std::string_view prefix) const {
     return out;
 }
 
+std::vector<std::string> Console::words(std::string_view prefix) const {
+    std::vector<std::string> out = names(prefix);
+    std::ranges::copy(script::command_names(prefix), std::back_inserter(out));
+    std::ranges::sort(out);
+    return out;
+}
+
 void Console::take_defaults() {
     const Composer& composer = *state_->composer;
     state_->entry_defaults.clear();

@@ -36,6 +36,8 @@ struct RunOptions {
     std::string place{};  ///< of the text, for messages; empty: it was typed
     std::map<std::string, std::string>* kept = nullptr;
 };
+/// In the order of their list.
+[[nodiscard]] std::vector<std::string> command_names(std::string_view prefix);
 /// Returns how many commands were refused.
 std::uint32_t run_commands(Console::State& state, std::string_view text, const RunOptions& options);
 

@@ -76,6 +76,20 @@ TEST(Console, AVariableIsAParameterUnderBothItsNames) {
     EXPECT_EQ(bed.console->number("nothing"), std::nullopt);
 }
 
+TEST(Console, ExplainsItselfAndHasWordsToComplete) {
+    ConsoleBed bed;
+    EXPECT_NE(bed.run("help").find("exec FILE"), std::string::npos);
+    EXPECT_NE(bed.run("help exec").find("Runs a file"), std::string::npos);
+    const std::string told = bed.run("help r_ui_warp");
+    EXPECT_TRUE(told.starts_with("r_ui_warp: ")) << told;
+    EXPECT_NE(told.find("now -0.15"), std::string::npos) << told;
+    EXPECT_NE(bed.run("help nothing").find("nothing"), std::string::npos);
+    const std::vector<std::string> words = bed.console->words("r");
+    EXPECT_TRUE(std::ranges::is_sorted(words));
+    for (const char* const word : {"r_ui_warp", "reset", "resetall"}) EXPECT_EQ(std::ranges::count(words, word), 1);
+    EXPECT_EQ(bed.console->words("help"), std::vector<std::string>{"help"});
+}
+
 TEST(Console, OtherNamesAreThoseOfTheFirstEntryThatHasThem) {
     ConsoleBed bed;
     bed.composer.add(test::Warp{.strength = 0.75f});
