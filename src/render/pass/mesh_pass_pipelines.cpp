@@ -114,6 +114,7 @@ void MeshPipelines::describe_lines(gpu::PipelineDesc& desc, const MeshVariant& v
     if (are_arrows) return;
     desc.specialization[0] = word(variant.kind == MeshKind::Overlay);
     desc.specialization[1] = word(setup_.output == Output::Display && !variant.is_debug_view);
+    desc.specialization[2] = word(are_all);
     if (variant.kind == MeshKind::RoomEdges) return;
     desc.polygon_mode = VK_POLYGON_MODE_LINE;
     if (variant.kind == MeshKind::Overlay) {

@@ -285,6 +285,14 @@ TEST(RenderGpuMesh, TheViewOfEdgesShowsNoSurface) {
         for (std::uint32_t x = 18; x < 46; ++x) lit += picture.at(x, y)[0] > 0.5F ? 1 : 0;
     EXPECT_GT(lit, 20);
     EXPECT_LT(lit, 200);
+    // What is black is seen, too.
+    snapshot = snapshot_of(small);
+    add_wall(snapshot, 4, 3, plain({0, 0, 0, 1}));
+    const Pixels black = shoot(renderer, snapshot).color;
+    lit = 0;
+    for (std::uint32_t y = 8; y < 40; ++y)
+        for (std::uint32_t x = 18; x < 46; ++x) lit += black.at(x, y)[0] > 0.3F ? 1 : 0;
+    EXPECT_GT(lit, 20);
 }
 
 TEST(RenderGpuMesh, TexturesAreDecodedByTheirUse) {
