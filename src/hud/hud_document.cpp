@@ -170,7 +170,14 @@ struct HudDocument::State {
             const Wish wish = *std::exchange(job, std::nullopt);
             const Shown with = std::move(job_shown);
             lock.unlock();
-            Outcome outcome{wish, draw(wish, with)};
+            // Whatever a document makes this thread do, it goes on.
+            Outcome outcome{wish, [&]() -> Result<std::shared_ptr<const HudPicture>> {
+                                try {
+                                    return draw(wish, with);
+                                } catch (const std::exception& exception) {
+                                    return machine_error(placed(exception.what()));
+                                }
+                            }()};
             lock.lock();
             done = std::move(outcome);
         }
