@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 namespace darkroom::window {
 
@@ -41,7 +43,8 @@ struct Window::State {
     std::vector<KeyPress> pressed;
     std::array<double, 2> cursor{}, moved{};
     double wheel = 0;
-    bool is_captured = false;
+    bool is_captured = false, is_news = true;
+    std::set<int> held;             ///< keys; buttons as -1 and below
     std::array<int, 4> windowed{};  ///< place and size before it became fullscreen
 
     void begin() {
@@ -52,7 +55,12 @@ struct Window::State {
         std::array<double, 2> now{};
         glfwGetCursorPos(window.get(), &now[0], &now[1]);
         moved = {now[0] - cursor[0], now[1] - cursor[1]};
+        is_news = is_news || moved[0] != 0 || moved[1] != 0;
         cursor = now;
+    }
+    void hold(int what, int action) {
+        is_news = true;
+        action == GLFW_RELEASE ? static_cast<void>(held.erase(what)) : static_cast<void>(held.insert(what));
     }
     static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
 };
@@ -79,9 +87,23 @@ Result<Window> Window::create(const WindowDesc& desc) {
     glfwSetWindowUserPointer(window, state.get());
     glfwSetWindowSizeLimits(window, 64, 64, GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int modifiers) {
-        if (action == GLFW_PRESS) State::of(of).pressed.push_back({key, modifiers});
+        State& own = State::of(of);
+        if (action == GLFW_PRESS) own.pressed.push_back({key, modifiers});
+        own.hold(key, action);
     });
-    glfwSetScrollCallback(window, [](GLFWwindow* of, double, double y) { State::of(of).wheel += y; });
+    glfwSetMouseButtonCallback(
+        window, [](GLFWwindow* of, int button, int action, int) { State::of(of).hold(-1 - button, action); });
+    glfwSetScrollCallback(window, [](GLFWwindow* of, double, double y) {
+        State::of(of).wheel += y;
+        State::of(of).is_news = true;
+    });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* of) { State::of(of).is_news = true; });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* of, int, int) { State::of(of).is_news = true; });
+    glfwSetWindowCloseCallback(window, [](GLFWwindow* of) { State::of(of).is_news = true; });
+    // The lists of ImGui call these in turn.
+    glfwSetWindowFocusCallback(window, [](GLFWwindow* of, int) { State::of(of).is_news = true; });
+    glfwSetCursorEnterCallback(window, [](GLFWwindow* of, int) { State::of(of).is_news = true; });
+    glfwSetCharCallback(window, [](GLFWwindow* of, unsigned) { State::of(of).is_news = true; });
     glfwGetCursorPos(window, &state->cursor[0], &state->cursor[1]);
     Window out(std::move(state));
     if (desc.is_fullscreen) out.set_fullscreen(true);
@@ -153,6 +175,7 @@ void Window::capture_cursor(bool is_captured) {
 }
 
 bool Window::is_cursor_captured() const { return state_->is_captured; }
+bool Window::take_news() { return std::exchange(state_->is_news, false) || !state_->held.empty(); }
 const std::vector<KeyPress>& Window::pressed() const { return state_->pressed; }
 bool Window::is_down(int key) const { return glfwGetKey(handle(), key) == GLFW_PRESS; }
 bool Window::is_button_down(int button) const { return glfwGetMouseButton(handle(), button) == GLFW_PRESS; }

@@ -57,6 +57,8 @@ class Window {
     void capture_cursor(bool is_captured);
     [[nodiscard]] bool is_cursor_captured() const;
 
+    /// Has anything happened since this was last asked, or is a key or a button held?
+    [[nodiscard]] bool take_news();
     /// Keys that went down since the last poll, in order.
     [[nodiscard]] const std::vector<KeyPress>& pressed() const;
     [[nodiscard]] bool is_down(int key) const;
