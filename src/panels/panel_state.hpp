@@ -42,8 +42,9 @@ struct PanelState {
 
     std::string renamed{}, new_name{};  ///< the entry whose name is being typed
     bool is_renaming_new = false;
-    std::string filter{};  ///< of the list of effects to add
-    std::string wanted{};  ///< the entry that an edit has made, to be selected
+    std::string filter{};     ///< of the list of effects to add
+    std::size_t add_row = 0;  ///< of that list, where the keyboard is
+    std::string wanted{};     ///< the entry that an edit has made, to be selected
 
     struct Edit {
         std::string what;
@@ -51,6 +52,18 @@ struct PanelState {
         std::string merge;
     };
     std::optional<Edit> pending{};
+
+    /// What is asked before something is done that nobody would expect.
+    struct Question {
+        std::string text;
+        std::vector<std::pair<std::string, std::function<void()>>> answers;  ///< beside "Cancel"
+    };
+    std::optional<Question> question{};
+    bool is_question_new = false;
+    void ask(Question wanted_question) {
+        question = std::move(wanted_question);
+        is_question_new = true;
+    }
 
     [[nodiscard]] const Look& look() const { return document->look(); }
     /// Done when the panel is drawn: until then, what it draws from stays.
@@ -80,5 +93,7 @@ void draw_part_panel(PanelState& state);
 void draw_plan_panel(const Plan* plan, bool is_compiling);
 /// The popup that lists what can be added, while it is open.
 void draw_add_menu(PanelState& state);
+/// What is asked, over everything else.
+void draw_question(PanelState& state);
 
 }  // namespace darkroom::panels

@@ -11,6 +11,7 @@
 #include "panels/panel_state.hpp"
 #include "panels/widgets/fitting_text.hpp"
 #include "panels/widgets/icons.hpp"
+#include "panels/widgets/text_field.hpp"
 #include "panels/widgets/theme.hpp"
 
 namespace darkroom::panels {
@@ -44,7 +45,7 @@ bool bar_button(PanelState& state, const char* name, Icon icon, const std::strin
 }
 
 std::string step_text(const char* verb, std::string_view step) {
-    return step.empty() ? fmt::format("Nothing to {}", verb) : fmt::format("{}: {}", verb, step);
+    return step.empty() ? fmt::format("There is nothing to {}.", verb) : fmt::format("Can {}: {}.", verb, step);
 }
 
 }  // namespace
@@ -52,8 +53,10 @@ std::string step_text(const char* verb, std::string_view step) {
 void PanelState::settle() {
     if (!pending) return;
     const Edit now = *std::exchange(pending, std::nullopt);
+    const bool was_flat = look().is_flat;
     wanted.clear();
     if (messages.settle("edit", document->edit(now.what, now.change, now.merge)) && !wanted.empty()) select(wanted);
+    if (was_flat && !look().is_flat) messages.note(fmt::format("{}: the flat table is a stack now", now.what));
 }
 
 void PanelState::select(std::string_view entry) {
@@ -95,6 +98,44 @@ std::string_view left_out(const Plan* plan, std::string_view entry) {
     return {};
 }
 
+void draw_question(PanelState& state) {
+    if (!state.question) return;
+    constexpr const char* popup = "##question";
+    const bool is_new = std::exchange(state.is_question_new, false);
+    if (is_new) ImGui::OpenPopup(popup);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    const float width = std::min(32 * ImGui::GetFontSize(), display.x * 0.9f);
+    ImGui::SetNextWindowPos({display.x / 2, display.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({width, 0});
+    constexpr ImGuiWindowFlags flags =
+        ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoTitleBar;
+    if (!ImGui::BeginPopupModal(popup, nullptr, flags)) {
+        state.question.reset();
+        return;
+    }
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(state.question->text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Spacing();
+    std::function<void()> chosen;
+    bool is_done = is_pressed(ImGuiKey_Escape, false);
+    for (std::size_t i = 0; i < state.question->answers.size(); ++i) {
+        const auto& [label, act] = state.question->answers[i];
+        if (ImGui::Button(label.c_str())) chosen = act;
+        state.note(fmt::format("question/{}", i));
+        ImGui::SameLine();
+    }
+    // The key that led here is no answer yet.
+    if (!is_new && is_pressed(ImGuiKey_Enter, false)) chosen = state.question->answers.front().second;
+    is_done |= ImGui::Button("Cancel") || chosen != nullptr;
+    state.note("question/cancel");
+    if (is_done) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+    if (!is_done) return;
+    state.question.reset();
+    if (chosen) chosen();
+}
+
 LookPanels::LookPanels(edit::LookDocument& document) : state_(std::make_unique<PanelState>()) { show(document); }
 LookPanels::LookPanels(LookPanels&&) noexcept = default;
 LookPanels& LookPanels::operator=(LookPanels&&) noexcept = default;
@@ -117,12 +158,13 @@ void LookPanels::draw_bar() {
     PanelState& state = *state_;
     const edit::LookDocument& document = *state.document;
     ImGui::PushID("bar");
-    if (bar_button(state, "undo", Icon::Undo, step_text("Undo", document.undo_name()), document.can_undo())) undo();
-    if (bar_button(state, "redo", Icon::Redo, step_text("Redo", document.redo_name()), document.can_redo())) redo();
+    if (bar_button(state, "undo", Icon::Undo, step_text("undo", document.undo_name()), document.can_undo())) undo();
+    if (bar_button(state, "redo", Icon::Redo, step_text("redo", document.redo_name()), document.can_redo())) redo();
     const bool can_save = document.is_changed() || document.file().empty();
-    if (bar_button(state, "save", Icon::Save, can_save ? "Save" : "Nothing to save", can_save)) save();
-    if (bar_button(state, "save_as", Icon::Folder, "Save as...", true)) save_as();
-    if (bar_button(state, "revert", Icon::Reset, "Back to what the file says", document.is_changed())) revert();
+    if (bar_button(state, "save", Icon::Save, can_save ? "Saves the look." : "There is nothing to save.", can_save))
+        save();
+    if (bar_button(state, "save_as", Icon::Folder, "Saves the look under another name.", true)) save_as();
+    if (bar_button(state, "revert", Icon::Reset, "Goes back to what the file says.", document.is_changed())) revert();
     ImGui::SameLine();
     const float radius = ImGui::GetFontSize() * 0.2f;
     const std::string file = document.file().empty() ? "not saved yet" : printable(document.file().string());
@@ -139,12 +181,18 @@ void LookPanels::draw_bar() {
     ImGui::PopID();
 }
 
-void LookPanels::draw_messages() { state_->messages.draw(); }
+void LookPanels::draw_messages() {
+    state_->messages.draw([this](std::string_view name) { state_->note(name); });
+}
+void LookPanels::draw_history() {
+    state_->messages.draw_history([this](std::string_view name) { state_->note(name); });
+}
 void LookPanels::draw_stack() { draw_stack_panel(*state_); }
 void LookPanels::draw_entry() { state_->part ? draw_part_panel(*state_) : draw_entry_panel(*state_); }
 void LookPanels::draw_plan() { draw_plan_panel(state_->plan, state_->is_compiling); }
 void LookPanels::draw_popups() {
     state_->files.draw();
+    draw_question(*state_);
     state_->settle();
 }
 

@@ -46,13 +46,15 @@ class LookPanels {
     void draw_bar();
     /// Takes no room where there is nothing to say; messages().height() says how much it takes.
     void draw_messages();
+    /// All that was said, newest first.
+    void draw_history();
     /// The entries in their order, the interface's chain apart.
     void draw_stack();
     /// Parameters, opacity, blend mode and wires of the selected entry.
     void draw_entry();
     /// Passes and what they hold, remarks, memory.
     void draw_plan();
-    /// The file browser, while a file is being chosen.
+    /// The file browser, while a file is being chosen; what is asked.
     void draw_popups();
 
     // What the bar's buttons do, for a host's keys. What goes wrong becomes a message.

@@ -74,7 +74,8 @@ void draw_parameter(PanelState& state, const LookEntry& entry, const std::string
 
 void draw_head(PanelState& state, const LookEntry& entry, const std::string& name) {
     const bool is_on = entry.state.enabled.on != 0;
-    if (icon_button("##enabled", is_on ? Icon::Shown : Icon::Hidden, is_on ? "Switch it off" : "Switch it on", !is_on))
+    if (icon_button("##enabled", is_on ? Icon::Shown : Icon::Hidden, is_on ? "Switches it off." : "Switches it on.",
+                    !is_on))
         state.edit(fmt::format("{} {}", name, is_on ? "off" : "on"), [=](Look& look) {
             const std::uint32_t on = is_on ? 0 : 1;
             return edit::set_state(look, name, "enabled", {&on, 1});
@@ -85,7 +86,7 @@ void draw_head(PanelState& state, const LookEntry& entry, const std::string& nam
     const float room = ImGui::GetContentRegionAvail().x - ImGui::GetFrameHeight() - ImGui::GetStyle().ItemSpacing.x;
     ImGui::TextUnformatted(fitting(shown_name(name), room, KeptPart::Start).c_str());
     ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::GetFrameHeight());
-    if (icon_button("##reset", Icon::Reset, "All of its parameters to their defaults"))
+    if (icon_button("##reset", Icon::Reset, "Sets all of its parameters to their defaults."))
         state.edit(fmt::format("{} reset", name), [=](Look& look) { return edit::reset_entry(look, name); });
     state.note(name + ".reset");
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));

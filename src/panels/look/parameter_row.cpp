@@ -107,7 +107,7 @@ void draw_file_choice(PanelState& state, const std::string& what, const std::str
     if (is_chosen) state.browse(fmt::format("A file for {}", what), kind, file, put);
     if (!file.empty()) {
         ImGui::SameLine(0, gap);
-        if (icon_button("##clear", Icon::Remove, "No file")) put({});
+        if (icon_button("##clear", Icon::Remove, "Takes the file away.")) put({});
     }
     ImGui::EndGroup();
 }

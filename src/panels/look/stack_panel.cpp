@@ -91,10 +91,11 @@ class StackList {
         ImGui::SameLine(ImGui::GetContentRegionMax().x - add_width());
         if (ImGui::Button(add_text)) {
             state_.filter.clear();
+            state_.add_row = 0;
             ImGui::OpenPopup("add");
         }
         state_.note("stack/add");
-        tooltip("Add an effect, where the picture is one that it takes");
+        tooltip("Adds an effect, where the picture is one that it takes.");
         draw_add_menu(state_);
         ImGui::Spacing();
     }
@@ -106,7 +107,9 @@ class StackList {
     void draw_table() {
         const bool is_on = look_.is_enabled;
         if (icon_button("##table", is_on ? Icon::Shown : Icon::Hidden,
-                        is_on ? "All off but tone mapping and encoding" : "All as they are switched", !is_on))
+                        is_on ? "Switches all off but tone mapping and encoding."
+                              : "Switches all on that are on by themselves.",
+                        !is_on))
             state_.edit(is_on ? "all off" : "all on", [is_on](Look& look) {
                 look.is_enabled = !is_on;
                 return Result<>();
@@ -116,8 +119,8 @@ class StackList {
         ImGui::AlignTextToFramePadding();
         ImGui::TextDisabled("Flat table");
         tooltip(
-            "Every effect of the flat table, in its fixed order. Adding, moving, copying or removing one makes it a "
-            "stack, without what is off.");
+            "Every effect of the flat table, in its fixed order. Moving or copying one makes it a stack, with what is "
+            "off where it was set.");
         ImGui::SameLine();
         const float room = ImGui::GetContentRegionAvail().x - add_width() - ImGui::GetStyle().ItemSpacing.x;
         ImGui::SetNextItemWidth(std::min(9 * ImGui::GetFontSize(), room));
@@ -167,7 +170,7 @@ class StackList {
     }
 
     void draw_switch(const LookEntry& entry, const std::string& name, bool is_on) {
-        const char* const help = is_on ? "Switch it off; alt: all others off" : "Switch it on";
+        const char* const help = is_on ? "Switches it off; with Alt, all others." : "Switches it on.";
         if (icon_button("##enabled", is_on ? Icon::Shown : Icon::Hidden, help, !is_on)) {
             if (ImGui::GetIO().KeyAlt)
                 switch_others_off(entry.id, name);
@@ -211,6 +214,20 @@ class StackList {
         ImGui::GetWindowDrawList()->AddText({corner.x + pad, corner.y + ImGui::GetStyle().FramePadding.y},
                                             ImGui::GetColorU32(is_on ? ImGuiCol_Text : ImGuiCol_TextDisabled),
                                             fitted.c_str());
+        const float needed = ImGui::CalcTextSize(fitted.c_str()).x + ImGui::CalcTextSize(neutral).x + 4 * pad;
+        if (!is_on || !is_neutral(entry) || needed > width) return;
+        ImGui::GetWindowDrawList()->AddText(
+            {corner.x + width - pad - ImGui::CalcTextSize(neutral).x, corner.y + ImGui::GetStyle().FramePadding.y},
+            ImGui::GetColorU32(ImGuiCol_TextDisabled), neutral);
+        state_.note(fmt::format("stack/{}.neutral", name));
+    }
+
+    static constexpr const char* neutral = "neutral";
+    /// On, and of values that change nothing, unless something moves them.
+    [[nodiscard]] bool is_neutral(const LookEntry& entry) const {
+        const std::string& name = names_[static_cast<std::size_t>(&entry - look_.entries.data())];
+        return entry.effect->is_identity != nullptr && entry.effect->is_identity(entry.words.data()) &&
+               !is_moved(look_, name);
     }
 
     /// A line shows where it would go: before the entry under the mouse, or behind it.
@@ -285,9 +302,9 @@ class StackList {
         ImGui::PopStyleVar();
         if (ImGui::IsItemActivated()) state_.document->end_merge();
         state_.note(fmt::format("stack/{}.opacity", name));
-        tooltip("How much of its result goes over its input: drag, or double-click and type");
+        tooltip("How much of its result goes over its input: drag, or double-click and type.");
         ImGui::SameLine(0, 0);
-        if (icon_button("##duplicate", Icon::Duplicate, "Duplicate", true))
+        if (icon_button("##duplicate", Icon::Duplicate, "Puts a copy behind it.", true))
             state_.edit(fmt::format("duplicate {}", name), [&state = state_, name](Look& look) -> Result<> {
                 const Result<std::string> made = edit::duplicate_entry(look, name);
                 if (!made) return failure(made.error());
@@ -296,7 +313,7 @@ class StackList {
             });
         state_.note(fmt::format("stack/{}.duplicate", name));
         ImGui::SameLine(0, 0);
-        if (icon_button("##remove", Icon::Remove, "Remove", true))
+        if (icon_button("##remove", Icon::Remove, "Takes it out of the stack.", true))
             state_.edit(fmt::format("remove {}", name), [name](Look& look) { return edit::remove_entry(look, name); });
         state_.note(fmt::format("stack/{}.remove", name));
     }

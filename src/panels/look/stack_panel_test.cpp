@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include "edit/edits.hpp"
 #include "panels/look/test_look_panels.hpp"
 #include "panels/panel_state.hpp"
 
@@ -142,6 +143,66 @@ TEST(PanelStack, AddsWhatIsSearchedFor) {
     EXPECT_EQ(own.document.undo_name(), fmt::format("add {}", wanted->name));
     own.panels.undo();
     EXPECT_EQ(own.panels.selected(), "");
+}
+
+// Every effect but one has a place in the flat table.
+TEST(PanelStack, AddingKeepsAFlatTableOrAsks) {
+    for (const EffectInfo* const effect : all_effects()) {
+        if (effect->flat.is_of_ui) continue;
+        TestPanels own(default_look(), tall_panel);
+        const Look before = own.document.look();
+        const auto add = [&] {
+            own.click("stack/add");
+            own.gui.frame(2);
+            own.gui.type(effect->doc.substr(0, effect->doc.size() - 1));
+            own.gui.key(ImGuiKey_Enter);
+            own.gui.frame(2);
+        };
+        const auto kind = edit::addition_of(before, *effect).kind;
+        EXPECT_NE(kind, edit::Addition::Kind::Inserts) << effect->name;
+        add();
+        if (kind == edit::Addition::Kind::SwitchesOn) {
+            EXPECT_TRUE(own.document.look().is_flat) << effect->name;
+            EXPECT_EQ(own.entry(effect->name).state.enabled.on, 1U) << effect->name;
+            EXPECT_EQ(own.panels.selected(), effect->name);
+            continue;
+        }
+        EXPECT_TRUE(own.has("question/0")) << effect->name << " becomes a stack without a question";
+        EXPECT_FALSE(own.document.is_changed()) << effect->name;
+        own.click("question/cancel");
+        EXPECT_FALSE(own.document.is_changed()) << effect->name;
+        add();
+        own.click(kind == edit::Addition::Kind::IsThere ? "question/1" : "question/0");
+        own.gui.frame(2);
+        EXPECT_FALSE(own.document.look().is_flat) << effect->name;
+    }
+}
+
+TEST(PanelStack, ArrowsAndEnterAdd) {
+    TestPanels own(stack_of_all(), tall_panel);
+    const std::size_t before = own.names().size();
+    own.click("stack/add");
+    own.gui.frame(2);
+    own.gui.key(ImGuiKey_DownArrow);
+    own.gui.key(ImGuiKey_DownArrow);
+    own.gui.key(ImGuiKey_UpArrow);
+    own.gui.key(ImGuiKey_Enter);
+    own.gui.frame(2);
+    EXPECT_EQ(own.names().size(), before + 1);
+    EXPECT_NE(own.panels.selected(), "");
+}
+
+TEST(PanelStack, SaysWhatChangesNothing) {
+    TestPanels own(default_look(), tall_panel);
+    std::size_t neutral = 0;
+    for (const LookEntry& entry : own.document.look().entries) {
+        if (entry.is_of_ui) continue;
+        const bool is_neutral = entry.state.enabled.on != 0 && entry.effect->is_identity != nullptr &&
+                                entry.effect->is_identity(entry.words.data());
+        EXPECT_EQ(own.has(fmt::format("stack/{}.neutral", entry.effect->name)), is_neutral) << entry.effect->name;
+        neutral += is_neutral ? 1 : 0;
+    }
+    EXPECT_GT(neutral, 0U);
 }
 
 TEST(PanelStack, TellsWhatIsLeftOutAndWhy) {

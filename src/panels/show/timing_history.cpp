@@ -64,6 +64,14 @@ TimingHistory::Statistics TimingHistory::of_frames() const {
     return statistics(std::move(values));
 }
 
+float TimingHistory::most_shown() const {
+    std::vector<float> values;
+    for (const Frame& frame : frames_) values.push_back(frame.milliseconds);
+    if (values.empty()) return 0;
+    std::ranges::sort(values);
+    return std::min(1.5f * values[(values.size() - 1) * 9 / 10], 1.05f * values.back());
+}
+
 TimingHistory::Statistics TimingHistory::of_recording() const {
     std::vector<float> values;
     for (const Frame& frame : frames_) values.push_back(frame.record_microseconds);

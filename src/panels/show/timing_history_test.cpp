@@ -58,6 +58,17 @@ TEST(PanelTimingHistory, NumbersThatAreNoneCountAsNothing) {
     EXPECT_EQ(history.frames().back().record_microseconds, 0);
 }
 
+TEST(PanelTimingHistory, AFewSlowFramesScaleNothing) {
+    TimingHistory history;
+    EXPECT_EQ(history.most_shown(), 0);
+    for (std::uint64_t frame = 0; frame < 100; ++frame) add(history, frame, {{"a", 2}});
+    EXPECT_NEAR(history.most_shown(), 2.1, 1e-6);
+    for (std::uint64_t frame = 100; frame < 105; ++frame) add(history, frame, {{"a", 400}});
+    EXPECT_NEAR(history.most_shown(), 3, 1e-6);
+    for (std::uint64_t frame = 200; frame < 240; ++frame) add(history, frame, {{"a", 400}});
+    EXPECT_NEAR(history.most_shown(), 420, 1e-3) << "many are no spike";
+}
+
 TEST(PanelTimingHistory, StaysSmallWhateverPassesAreCalled) {
     TimingHistory history;
     std::vector<std::string> names;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "panels/widgets/plot.hpp"
+#include "panels/widgets/theme.hpp"
 
 namespace darkroom::panels {
 
@@ -100,13 +101,18 @@ void TimingsPanel::draw_column(const Plot& plot, const TimingHistory::Frame& fra
 
 void TimingsPanel::draw_history(const TimingHistory& history, float height) {
     const Plot plot = begin_plot("history", {ImGui::GetContentRegionAvail().x, height});
-    const float most = std::max(history.of_frames().worst * 1.05f, 1e-3f);
+    const float most = std::max(history.most_shown(), 1e-3f);
     // The newest at the right.
     std::size_t column = TimingHistory::most_frames - history.frames().size();
     const auto column_under_mouse = static_cast<std::size_t>(std::max(plot.mouse.x, 0.0f) * TimingHistory::most_frames);
     const TimingHistory::Frame* under_mouse = nullptr;
     for (const TimingHistory::Frame& frame : history.frames()) {
         draw_column(plot, frame, static_cast<float>(column), most);
+        if (frame.milliseconds > most) {
+            const float left = static_cast<float>(column) / TimingHistory::most_frames;
+            const float top = 3 / (plot.max.y - plot.min.y);
+            plot.fill(left, 1 - top, left + 1.0f / TimingHistory::most_frames, 1, ImGui::GetColorU32(accent_color));
+        }
         if (plot.is_hovered && column == column_under_mouse) under_mouse = &frame;
         ++column;
     }

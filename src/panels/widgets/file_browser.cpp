@@ -22,8 +22,6 @@ namespace {
 
 constexpr const char* popup = "files";
 
-bool is_pressed(ImGuiKey key) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key)); }
-
 }  // namespace
 
 void FileBrowser::open(FileRequest request) {
@@ -129,7 +127,7 @@ void FileBrowser::press_keys(const std::vector<std::size_t>& seen) {
 }
 
 void FileBrowser::draw_head() {
-    if (icon_button("##up", Icon::Up, "The folder above (Backspace)")) enter(folder_.parent_path());
+    if (icon_button("##up", Icon::Up, "Goes to the folder above (Backspace).")) enter(folder_.parent_path());
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// ImGui's text field over a std::string, which its core leaves to its users.
+// ImGui's text field over a std::string, which its core leaves to its users, and keys beside it.
 
 #include <imgui.h>
 
@@ -10,6 +10,7 @@ namespace darkroom::panels {
 
 inline bool text_field(const char* label, const char* hint, std::string& text, ImGuiInputTextFlags flags = 0) {
     const auto grow = [](ImGuiInputTextCallbackData* data) {
+        if (data->EventFlag != ImGuiInputTextFlags_CallbackResize) return 0;
         auto& own = *static_cast<std::string*>(data->UserData);
         own.resize(static_cast<std::size_t>(data->BufTextLen));
         data->Buf = own.data();
@@ -17,6 +18,11 @@ inline bool text_field(const char* label, const char* hint, std::string& text, I
     };
     return ImGui::InputTextWithHint(label, hint, text.data(), text.capacity() + 1,
                                     flags | ImGuiInputTextFlags_CallbackResize, grow, &text);
+}
+
+/// Went down in this frame, or is held and repeats.
+inline bool is_pressed(ImGuiKey key, bool repeats = true) {
+    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), repeats);
 }
 
 }  // namespace darkroom::panels
