@@ -2,12 +2,14 @@
 #include "edit_panels.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 
 #include "panels/show/plan_picture.hpp"
+#include "panels/widgets/fitting_text.hpp"
 #include "panels/widgets/slider.hpp"
 #include "panels/widgets/theme.hpp"
 
@@ -51,21 +53,23 @@ EditPanels::Layout EditPanels::layout(VkExtent2D window, float scale, bool has_t
     const auto pixels = [&](float at_one) { return static_cast<std::uint32_t>(at_one * scale); };
     const std::uint32_t width = window.width, height = window.height;
     const std::uint32_t row = std::min(pixels(38), height), side = std::min(pixels(296), width / 3);
-    const std::uint32_t below = std::min(std::max(height * 3 / 10, pixels(200)), (height - row) / 2);
-    const std::uint32_t middle = width - 2 * side;
+    const std::uint32_t status = std::min(pixels(26), height - row);
+    const std::uint32_t below = std::min(std::max(height * 3 / 10, pixels(200)), (height - row - status) / 2);
+    const std::uint32_t middle = width - 2 * side, inner = height - row - status;
     const std::uint32_t timeline = has_timeline ? row : 0;
-    const std::uint32_t picture = height - std::min(height, 2 * row + timeline + below);
+    const std::uint32_t picture = height - std::min(height, 2 * row + timeline + below + status);
     const auto rect = [](std::uint32_t x, std::uint32_t y, std::uint32_t w, std::uint32_t h) {
         return VkRect2D{{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
                         {std::max(w, 1U), std::max(h, 1U)}};
     };
     return {.bar = rect(0, 0, width, row),
-            .stack = rect(0, row, side, height - row),
-            .entry = rect(width - side, row, side, height - row),
+            .stack = rect(0, row, side, inner),
+            .entry = rect(width - side, row, side, inner),
             .view_bar = rect(side, row, middle, row),
             .picture = rect(side, 2 * row, middle, picture),
             .timeline = rect(side, 2 * row + picture, middle, timeline),
-            .below = rect(side, height - below, middle, below)};
+            .below = rect(side, height - status - below, middle, below),
+            .status = rect(0, height - status, width, status)};
 }
 
 const darkroom::PlanImage* EditPanels::watched(const darkroom::Plan* plan) const {
@@ -80,6 +84,7 @@ void EditPanels::draw(const Input& input, PictureView& picture) {
     look_.set_plan(input.composer.current_plan(), input.composer.pending().is_pending);
     times_.add(input.composer.times(), input.composer.record_microseconds());
     begin("##bar", area.bar, ImGuiWindowFlags_NoScrollbar);
+    draw_open_button();
     look_.draw_bar();
     ImGui::End();
     begin("##stack", area.stack);
@@ -99,6 +104,12 @@ void EditPanels::draw(const Input& input, PictureView& picture) {
     begin("##below", area.below);
     draw_below(input, picture);
     ImGui::End();
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * input.scale, 3 * input.scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+    begin("##status", area.status, ImGuiWindowFlags_NoScrollbar);
+    ImGui::PopStyleVar(2);
+    draw_status(input, picture);
+    ImGui::End();
     const float room = static_cast<float>(area.picture.extent.width);
     const float height = look_.messages().height(room);
     if (height > 0) {
@@ -116,7 +127,7 @@ void EditPanels::draw_view_bar(PictureView& picture) {
     const float em = ImGui::GetFontSize();
     ImGui::Checkbox("A/B", &is_comparing_);
     look_.note_place("view/compare");
-    tip("Compares two of: the look, the look as it was saved, all off. The divider can be dragged.");
+    tip("Compares two of the look, the look as it was saved, and none. The divider can be dragged.");
     ImGui::SameLine();
     ImGui::BeginDisabled(!is_comparing_);
     combo("##left", left_, sides, 4.8F);
@@ -129,37 +140,94 @@ void EditPanels::draw_view_bar(PictureView& picture) {
     if (darkroom::panels::draw_slider("##exposure", exposure_row, 0, stops).is_changed)
         pane.exposure = static_cast<float>(std::clamp(stops, exposure_row.range.min, exposure_row.range.max));
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) pane.exposure = 0;
-    tip("Brightens what is shown here, and nothing else. Double-click: 0.");
+    tip("Brightens what is shown here, and nothing else. A double click sets it to 0.");
     ImGui::SameLine();
     combo("##channels", pane.channels, channels, 5.5F);
     ImGui::SameLine();
     ImGui::Checkbox("False colours", &pane.is_false_color);
     look_.note_place("view/false_colors");
-    tip("False colours by level; the legend is beside the scopes.");
+    tip("Shows levels as colours; the scopes have the legend.");
     ImGui::SameLine();
     ImGui::Checkbox("Clipping", &pane.is_clipping_marked);
     look_.note_place("view/clipping");
-    tip("Stripes where it is black (blue) or white (red); magenta: not a number.");
+    tip("Stripes mark what is black (blue), white (red) or not a number (magenta).");
     ImGui::SameLine();
     bool is_fitted = picture.zoom() == 0;
     if (ImGui::Checkbox("Fit", &is_fitted)) is_fitted ? picture.fit() : picture.set_zoom(1);
-    tip("All of the picture, or a pixel on a pixel. The wheel zooms where no camera wants it.");
+    tip("Shows all of the picture, or a pixel on a pixel. The wheel zooms where no camera wants it.");
+}
+
+void EditPanels::draw_open_button() {
+    const ImVec2 begin = ImGui::GetCursorPos();
+    constexpr const char* open = "Open...";
+    const float width = ImGui::CalcTextSize(open).x + 2 * ImGui::GetStyle().FramePadding.x;
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - width);
+    if (ImGui::Button(open))
+        look_.files().open({.title = "A scene, a model, a frame or a picture",
+                            .extensions = {".toml", ".glb", ".gltf", ".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tif",
+                                           ".tiff", ".webp"},
+                            .then = [this](const std::filesystem::path& file) { opened_ = file; }});
+    look_.note_place("view/open");
+    tip("Opens another scene, model, frame or picture to see through the look.");
+    ImGui::SetCursorPos(begin);
+}
+
+void EditPanels::draw_status(const Input& input, const PictureView& picture) {
+    const darkroom::Plan* const plan = input.composer.current_plan();
+    const darkroom::panels::TimingHistory::Statistics gpu = times_.of_frames();
+    std::vector<std::string> parts;
+    parts.push_back(input.frames_a_second > 0 ? fmt::format("{:.3g} frames/s", input.frames_a_second) : "at rest");
+    if (!times_.frames().empty()) parts.push_back(fmt::format("GPU {:.2f} ms", static_cast<double>(gpu.median)));
+    parts.push_back(fmt::format("{}x{}", input.extent.width, input.extent.height));
+    if (picture.zoom() > 0) parts.push_back(fmt::format("{:.0f} %", static_cast<double>(picture.zoom() * 100)));
+    if (!input.camera.empty()) parts.emplace_back(input.camera);
+    if (input.is_paused) parts.emplace_back("paused");
+    if (input.composer.pending().is_pending)
+        parts.emplace_back("planning...");
+    else if (plan != nullptr)
+        parts.push_back(fmt::format("{} pass{}", plan->passes.size(), plan->passes.size() == 1 ? "" : "es"));
+    const darkroom::panels::Messages& messages = look_.messages();
+    const auto counted = [](std::size_t count, const char* one) {
+        return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+    };
+    const std::size_t errors = messages.count(darkroom::Severity::Error);
+    const std::size_t warnings = messages.count(darkroom::Severity::Warning);
+    ImGui::TextUnformatted(fmt::format("{}", fmt::join(parts, "   ")).c_str());
+    ImGui::SameLine(0, 2 * ImGui::GetFontSize());
+    std::string said;
+    if (errors > 0) said += counted(errors, "error") + "   ";
+    if (warnings > 0) said += counted(warnings, "warning") + "   ";
+    said += input.last_line;
+    if (errors + warnings > 0) ImGui::PushStyleColor(ImGuiCol_Text, darkroom::panels::accent_color);
+    const float room = std::max(ImGui::GetContentRegionAvail().x, 1.0F);
+    ImGui::TextUnformatted(darkroom::panels::fitting(said, room, darkroom::panels::KeptPart::Start).c_str());
+    if (errors + warnings > 0) ImGui::PopStyleColor();
+    look_.note_place("status/said");
+    if (ImGui::IsItemClicked()) is_messages_wanted_ = true;
+    tip("What was said last. A click lists all of it.");
 }
 
 void EditPanels::draw_timeline(const Input& input) {
     if (ImGui::Button(input.is_paused ? "Play" : "Pause", {4.5F * ImGui::GetFontSize(), 0})) is_pause_wanted_ = true;
     ImGui::SameLine();
     int number = static_cast<int>(input.number);
-    ImGui::SetNextItemWidth(-1);
-    const std::string shown = input.source.shown_frame(input.number);
-    if (ImGui::SliderInt("##frame", &number, 0, static_cast<int>(input.source.frames()) - 1, shown.c_str()))
+    const std::string shown =
+        fmt::format("{} of {}  {}", input.number + 1, input.source.frames(), input.source.shown_frame(input.number));
+    ImGui::SetNextItemWidth(-ImGui::CalcTextSize(shown.c_str()).x - 2 * ImGui::GetStyle().ItemSpacing.x);
+    const bool is_moved = ImGui::SliderInt("##frame", &number, 0, static_cast<int>(input.source.frames()) - 1, "");
+    look_.note_place("view/frame");
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(shown.c_str());
+    if (is_moved)
         number_ = static_cast<std::size_t>(std::clamp(number, 0, static_cast<int>(input.source.frames()) - 1));
 }
 
 void EditPanels::draw_below(const Input& input, PictureView& picture) {
     if (!ImGui::BeginTabBar("##tabs")) return;
     const auto tab = [&](const char* name, Tab which, const auto& draw) {
-        const bool is_open = ImGui::BeginTabItem(name);
+        const bool is_wanted = which == Tab::Messages && std::exchange(is_messages_wanted_, false);
+        const bool is_open = ImGui::BeginTabItem(name, nullptr, is_wanted ? ImGuiTabItemFlags_SetSelected : 0);
         look_.note_place(fmt::format("tab/{}", name));
         if (!is_open) return;
         tab_ = which;
@@ -190,6 +258,7 @@ void EditPanels::draw_below(const Input& input, PictureView& picture) {
     });
     tab("Images", Tab::Images, [&] { draw_images(input); });
     tab("Pixel", Tab::Pixel, [&] { draw_pixel(input); });
+    tab("Messages", Tab::Messages, [&] { look_.draw_history(); });
     ImGui::EndTabBar();
 }
 
@@ -199,6 +268,8 @@ void EditPanels::draw_images(const Input& input) {
     ImGui::BeginChild("##list", {20 * ImGui::GetFontSize(), 0});
     if (ImGui::Selectable("the finished picture", image_.empty())) image_.clear();
     for (const darkroom::PlanImage& image : plan->images) {
+        // One texel that stands in for what is not there.
+        if (image.name.starts_with("neutral") && image.extent.width == 1 && image.extent.height == 1) continue;
         for (std::uint32_t level = 0; level < image.mip_levels; ++level) {
             const std::string name = image.mip_levels > 1 ? fmt::format("{}, level {}", image.name, level) : image.name;
             const std::string row = fmt::format("{}  {}x{}", name, std::max(image.extent.width >> level, 1U),

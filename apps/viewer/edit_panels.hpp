@@ -3,6 +3,7 @@
 // The panels of `edit`: the stack to the left, the selected effect to the right, what can be seen of a frame below.
 
 #include <darkroom/composer.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -26,7 +27,7 @@ class EditPanels {
 
     /// Areas of a window, in pixels.
     struct Layout {
-        VkRect2D bar, stack, entry, view_bar, picture, timeline, below;
+        VkRect2D bar, stack, entry, view_bar, picture, timeline, below, status;
     };
     [[nodiscard]] Layout layout(VkExtent2D window, float scale, bool has_timeline) const;
 
@@ -40,6 +41,10 @@ class EditPanels {
         bool is_paused = false;
         const darkroom::Inspection* inspection = nullptr;  ///< of the pixel that was chosen
         darkroom::WatchState watch_state = darkroom::WatchState::NotInPlan;
+        VkExtent2D extent{};              ///< of the picture
+        std::string_view camera;          ///< how it moves; empty: there is none
+        double frames_a_second = 0;       ///< 0: nothing changes
+        std::string_view last_line = {};  ///< that was said
     };
     void draw(const Input& input, PictureView& picture);
     void measure(const darkroom::panels::ScopePicture& picture) { scopes_.set(darkroom::panels::measure(picture)); }
@@ -62,12 +67,16 @@ class EditPanels {
     /// How it is shown; the image is whoever's has it.
     [[nodiscard]] const darkroom::window::PaneView& watched_view() const { return image_view_; }
     [[nodiscard]] std::optional<std::size_t> take_number() { return std::exchange(number_, std::nullopt); }
+    /// The file that is to be shown in place of the present scene or frame.
+    [[nodiscard]] std::optional<std::filesystem::path> take_opened() { return std::exchange(opened_, std::nullopt); }
     [[nodiscard]] bool take_pause() { return std::exchange(is_pause_wanted_, false); }
 
   private:
-    enum class Tab : std::uint8_t { Plan, Times, Scopes, Images, Pixel };
+    enum class Tab : std::uint8_t { Plan, Times, Scopes, Images, Pixel, Messages };
     void draw_view_bar(PictureView& picture);
     void draw_timeline(const Input& input);
+    void draw_status(const Input& input, const PictureView& picture);
+    void draw_open_button();
     void draw_below(const Input& input, PictureView& picture);
     void draw_images(const Input& input);
     void draw_pixel(const Input& input) const;
@@ -77,6 +86,8 @@ class EditPanels {
     darkroom::panels::TimingsPanel timings_;
     darkroom::panels::ScopesPanel scopes_;
     Tab tab_ = Tab::Plan;
+    bool is_messages_wanted_ = false;  ///< their tab comes to the front
+    std::optional<std::filesystem::path> opened_;
     bool is_comparing_ = false, is_pause_wanted_ = false;
     Side left_ = Side::Look, right_ = Side::Off;
     std::string image_;

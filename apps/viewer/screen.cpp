@@ -4,7 +4,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 
 #include "apps/darkroom/run/report.hpp"
 
@@ -13,7 +12,7 @@ namespace app {
 namespace {
 
 constexpr double shown_for = 2;  ///< seconds
-constexpr std::size_t most_lines = 4, most_printed = 500, longest_command = 512;
+constexpr std::size_t most_lines = 4, most_printed = 500;
 constexpr ImGuiWindowFlags plain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
                                    ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
@@ -38,25 +37,46 @@ VkRect2D Screen::picture_area(VkExtent2D window, float scale, bool has_timeline)
 
 void Screen::tell(std::string line) {
     if (!lines_.empty() && lines_.back().text == line) lines_.pop_back();
-    lines_.push_back({std::move(line), now_ + shown_for});
+    messages().note(line);
+    last_line_ = line;
+    const auto shown = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(shown_for));
+    lines_.push_back({std::move(line), now_ + shown_for, Clock::now() + shown});
+    is_changed_ = true;
     if (lines_.size() > most_lines) lines_.pop_front();
 }
 
-void Screen::tell_error(std::string_view source, std::string line) {
-    std::string& said = said_[std::string(source)];
-    if (said == line) return;
-    said = line;
-    print(line);
-    complain(line);
-    (panels_ ? panels_->look().messages() : messages_)
-        .report(source, darkroom::Error{darkroom::Fault::User, std::move(line)});
+void Screen::say(std::string_view source, std::span<const darkroom::panels::Messages::Said> all) {
+    messages().say(source, all);
+    print_new();
 }
 
-void Screen::clear_error(std::string_view source) {
-    if (said_.erase(std::string(source)) > 0) (panels_ ? panels_->look().messages() : messages_).clear(source);
+void Screen::tell_error(std::string_view source, std::string line) {
+    messages().report(source, darkroom::Error{darkroom::Fault::User, std::move(line)});
+    print_new();
+}
+
+// Panels report by themselves, too.
+void Screen::print_new() {
+    for (const darkroom::panels::Messages::Said& said : messages().take_new()) {
+        const bool is_warning = said.severity == darkroom::Severity::Warning;
+        print(is_warning ? "warning: " + said.text : said.text);
+        is_warning ? warn(said.text) : complain(said.text);
+        last_line_ = said.text;
+    }
+}
+
+bool Screen::take_change() {
+    const bool is_new = std::exchange(seen_messages_, messages().version()) != messages().version();
+    return std::exchange(is_changed_, false) || is_new;
+}
+
+bool Screen::is_over() const {
+    const Clock::time_point now = Clock::now();
+    return std::ranges::any_of(lines_, [&](const Line& line) { return line.over <= now; });
 }
 
 void Screen::print(std::string line) {
+    is_changed_ = true;
     printed_.push_back(std::move(line));
     if (printed_.size() > most_printed) printed_.pop_front();
 }
@@ -72,12 +92,17 @@ void Screen::draw(const Input& input) {
                      .number = input.number,
                      .is_paused = input.is_paused,
                      .inspection = input.inspection,
-                     .watch_state = input.view.watch_state()},
+                     .watch_state = input.view.watch_state(),
+                     .extent = input.extent,
+                     .camera = input.camera,
+                     .frames_a_second = input.frames_a_second,
+                     .last_line = last_line_},
                     picture_);
     draw_picture(input, area);
     draw_errors(input, area);
-    if (has_console_) draw_console(area);
+    if (has_console_) draw_console(area, input.console);
     draw_lines(input, area);
+    print_new();
 }
 
 void Screen::draw_picture(const Input& input, const VkRect2D& area) {
@@ -102,7 +127,9 @@ void Screen::draw_picture(const Input& input, const VkRect2D& area) {
 }
 
 void Screen::draw_lines(const Input& input, const VkRect2D& area) {
-    std::erase_if(lines_, [&](const Line& line) { return line.until < now_; });
+    std::erase_if(lines_, [&, now = Clock::now()](const Line& line) {
+        return input.is_counted ? line.until < now_ : line.over <= now;
+    });
     if (lines_.empty()) return;
     const float margin = 12 * input.scale;
     const ImVec2 corner = corner_of(area);
@@ -114,19 +141,18 @@ void Screen::draw_lines(const Input& input, const VkRect2D& area) {
 
 void Screen::draw_errors(const Input& input, const VkRect2D& area) {
     if (panels() != nullptr) return;  // they show them
-    darkroom::panels::Messages& messages = panels_ ? panels_->look().messages() : messages_;
-    if (messages.is_empty()) return;
+    if (messages().is_empty()) return;
     const float margin = 12 * input.scale;
     const ImVec2 corner = corner_of(area);
     const float width = size_of(area).x - 2 * margin;
     ImGui::SetNextWindowPos({corner.x + margin, corner.y + margin});
-    ImGui::SetNextWindowSize({width, messages.height(width - 2 * margin) + 2 * margin});
+    ImGui::SetNextWindowSize({width, messages().height(width - 2 * margin) + 2 * margin});
     ImGui::Begin("##errors", nullptr, plain & ~ImGuiWindowFlags_AlwaysAutoResize);
-    messages.draw();
+    messages().draw();
     ImGui::End();
 }
 
-void Screen::draw_console(const VkRect2D& area) {
+void Screen::draw_console(const VkRect2D& area, darkroom::Console* console) {
     ImGui::SetNextWindowPos(corner_of(area));
     ImGui::SetNextWindowSize({size_of(area).x, size_of(area).y * 0.5F});
     ImGui::Begin("##console", nullptr,
@@ -135,15 +161,14 @@ void Screen::draw_console(const VkRect2D& area) {
     for (const std::string& text : printed_) ImGui::TextWrapped("%s", text.c_str());
     ImGui::SetScrollHereY(1);
     ImGui::EndChild();
-    std::array<char, longest_command> text{};
-    typed_.copy(text.data(), text.size() - 1);
     ImGui::SetNextItemWidth(-1);
     // An open console has the keyboard, also after a click elsewhere, unless somebody types into another widget.
     if (ImGui::IsWindowAppearing() || !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
-    const bool is_entered =
-        ImGui::InputText("##command", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-    typed_ = text.data();
-    if (is_entered && !typed_.empty()) commands_.push_back(std::exchange(typed_, {}));
+    const auto names = [console](std::string_view begin) {
+        return console != nullptr ? console->words(begin) : std::vector<std::string>();
+    };
+    if (std::optional<std::string> entered = typed_.draw(names, [this](std::string line) { print(std::move(line)); }))
+        commands_.push_back(std::move(*entered));
     ImGui::End();
 }
 

@@ -3,12 +3,15 @@
 // What a viewer's window shows: the picture, messages, the console, and the panels of `edit`. It is drawn anew in every
 // frame.
 
+#include <chrono>
+#include <darkroom/console.hpp>
 #include <deque>
-#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "apps/viewer/input/command_line.hpp"
 #include "apps/viewer/source/look_view.hpp"
 #include "edit_panels.hpp"
 
@@ -27,10 +30,14 @@ class Screen {
         VkExtent2D extent{};  ///< of the picture
         VkExtent2D window{};
         float scale = 1;
-        double passed = 0;  ///< seconds since the last frame
+        double passed = 0;        ///< seconds since the last frame
+        bool is_counted = false;  ///< it is these that lines are shown for, and not those of a clock
         std::size_t number = 0;
         bool is_paused = false;
         const darkroom::Inspection* inspection = nullptr;
+        std::string_view camera;               ///< how it moves, in a word
+        double frames_a_second = 0;            ///< 0: nothing changes
+        darkroom::Console* console = nullptr;  ///< whose names are completed
     };
     void draw(const Input& input);
     /// Where the picture lies in a window of this extent.
@@ -38,10 +45,16 @@ class Screen {
 
     /// A short line for two seconds.
     void tell(std::string line);
-    /// A line that stays until it is dealt with, or until its source has nothing to say.
+    /// All that is wrong with a source now; what is new is printed, once.
+    void say(std::string_view source, std::span<const darkroom::panels::Messages::Said> all);
     void tell_error(std::string_view source, std::string line);
-    void clear_error(std::string_view source);
+    void clear_error(std::string_view source) { messages().clear(source); }
+    [[nodiscard]] darkroom::panels::Messages& messages() { return panels_ ? panels_->look().messages() : messages_; }
     void print(std::string line);  ///< to the console
+    /// Has something been said, or stopped to be true, since this was last asked?
+    [[nodiscard]] bool take_change();
+    /// Has a line been seen for long enough, so that it goes with the next frame?
+    [[nodiscard]] bool is_over() const;
 
     void toggle_panels() { has_panels_ = !has_panels_; }
     void toggle_console() { has_console_ = !has_console_; }
@@ -63,21 +76,26 @@ class Screen {
     void draw_picture(const Input& input, const VkRect2D& area);
     void draw_lines(const Input& input, const VkRect2D& area);
     void draw_errors(const Input& input, const VkRect2D& area);
-    void draw_console(const VkRect2D& area);
+    void draw_console(const VkRect2D& area, darkroom::Console* console);
+    void print_new();
 
+    using Clock = std::chrono::steady_clock;
     struct Line {
         std::string text;
         double until = 0;
+        Clock::time_point over{};  ///< the same for who looks at a clock
     };
     std::optional<EditPanels> panels_;
     bool has_panels_ = true, has_console_ = false;
     PictureView picture_;
-    darkroom::panels::Messages messages_;      ///< where no panels show them
-    std::map<std::string, std::string> said_;  ///< by source: what is told once, however often it is found
+    darkroom::panels::Messages messages_;  ///< where no panels show them
     std::deque<Line> lines_;
+    std::string last_line_;
+    bool is_changed_ = true;
+    std::uint64_t seen_messages_ = 0;
     std::deque<std::string> printed_;
     std::vector<std::string> commands_;
-    std::string typed_;
+    CommandLine typed_;
     double now_ = 0;
 };
 

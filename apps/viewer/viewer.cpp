@@ -22,7 +22,6 @@ using darkroom::window::PresentFrame;
 
 namespace {
 
-constexpr std::uint32_t frames_in_flight = 2;
 /// A longer frame was none: the machine slept, or a driver compiled.
 constexpr double longest_frame = 0.25;
 
@@ -44,6 +43,7 @@ Result<> Viewer::run() {
         if (is_fixed() && shown_frames_ >= *job_.frames_to_show) break;
     }
     if (Result<> done = presenter_->wait(); !done) return done;
+    write_config();
     finish_stores(true);
     return failed_.empty() ? Result<>() : darkroom::user_error(failed_);
 }
@@ -72,7 +72,10 @@ Result<> Viewer::open() {
     camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
     interface_ = std::make_unique<LiveInterface>(
         *device_, is_fixed(), frames_in_flight,
-        [this](darkroom::Severity, std::string_view line) { print(std::string(line)); });
+        [this](darkroom::Severity, std::string_view line) { print(std::string(line)); },
+        has_config() ? config_file().parent_path() : std::filesystem::path());
+    tell_warnings();
+    screen_.messages().set_folder(document_->options().folder);
     const Result<LookView*> look = view(Side::Look);
     if (!look) return failure(look.error());
     if (Result<> done = start_interface(); !done) return done;
@@ -116,33 +119,11 @@ Result<> Viewer::start_interface() {
     darkroom::Look look = document_->look();
     if (look.ui) interface_files_ = {look.ui->document, look.ui->controllers};
     resolve_ui(look, document_->file().parent_path());
-    return interface_->start(look, job_.timeline, views_[static_cast<std::size_t>(Side::Look)]->composer());
-}
-
-Result<> Viewer::make_source() {
-    if (!job_.scene.empty()) {
-        SceneSource::Desc& desc = job_.scene_desc;
-        desc.render.frames_in_flight = frames_in_flight;
-        desc.render.extent = picture_extent();
-        Result<std::unique_ptr<SceneSource>> made = SceneSource::create(*device_, job_.scene, desc);
-        if (!made) return failure(std::move(made));
-        take_scene(std::move(*made));
-    } else {
-        Result<std::unique_ptr<FrameSource>> made = FrameSource::create(*device_, job_.frames, job_.frame_desc);
-        if (!made) return failure(std::move(made));
-        frames_ = made->get();
-        source_ = std::move(*made);
-    }
-    watch_source();
-    is_cut_ = true;
-    return {};
-}
-
-void Viewer::take_scene(std::unique_ptr<SceneSource> scene) {
-    scene_ = scene.get();
-    source_ = std::move(scene);
-    if (!job_.is_edit) ground_.emplace(scene_->scene(), scene_->assets());
-    is_cut_ = true;
+    if (Result<> done =
+            interface_->start(look, job_.timeline, views_[static_cast<std::size_t>(Side::Look)]->composer());
+        !done)
+        return done;
+    return read_config();
 }
 
 darkroom::Look Viewer::look_of(Side side) const {
@@ -171,16 +152,19 @@ VkExtent2D Viewer::picture_extent() const {
 }
 
 Result<> Viewer::turn() {
-    window_->poll();
+    rest();
     obey_keys();
+    obey_input();
     finish_stores(false);
     finish_seeing();
     reload();
     follow_document();
+    is_resting_ = !is_due();
+    if (is_resting_) return {};
     const Result<std::optional<PresentFrame>> frame = presenter_->begin(window_->extent());
     if (!frame) return failure(frame.error());
     if (!*frame) {
-        window_->wait(0.02);
+        is_resting_ = true;
         return {};
     }
     const Result<> shown = show(**frame);
@@ -219,7 +203,9 @@ LiveMoment Viewer::moment() const {
 Result<> Viewer::show(const PresentFrame& frame) {
     frame_number_ = frame.number;
     const Clock::time_point now = Clock::now();
-    move_time(std::chrono::duration<double>(now - std::exchange(last_turn_, now)).count());
+    passed_ = std::chrono::duration<double>(now - std::exchange(last_turn_, now)).count();
+    move_time(passed_);
+    name_window();
     const VkExtent2D wanted = picture_extent();
     if (scene_ != nullptr && shown_frames_ > 0) {
         if (job_.turns && !is_paused_) camera_->turn(static_cast<float>(20 * delta_time_), scene_->snapshot());
@@ -231,9 +217,13 @@ Result<> Viewer::show(const PresentFrame& frame) {
                        .ground = ground_ ? &*ground_ : nullptr},
                       scene_->snapshot());
     }
+    // The first frame, too, has what the game says and controllers set.
+    const bool is_menu_open = screen_.has_console() || gui_->has_popup();
+    settle("interface", interface_->advance(time_, camera_->head(), is_menu_open));
     if (Result<> done = prepare(frame, wanted); !done) return done;
-    settle("interface", interface_->advance(time_, camera_->head()));
-    for (const std::string& warning : source_->take_warnings()) screen_.tell_error("source", warning);
+    for (std::size_t side = 0; side < side_count; ++side)
+        if (views_[side]) settle(fmt::format("plan {}", side), views_[side]->planned());
+    tell_source_warnings();
     store_picture(frame);
     if (Result<> done = gui_->begin(window_->scale()); !done) return done;
     draw_screen(frame);
@@ -261,16 +251,21 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .extent = look.extent(),
                   .window = frame.extent,
                   .scale = window_->scale(),
-                  .passed = delta_time_,
+                  .passed = is_fixed() ? delta_time_ : passed_,
+                  .is_counted = is_fixed(),
                   .number = number,
                   .is_paused = is_paused_,
-                  .inspection = inspection_ ? &*inspection_ : nullptr});
+                  .inspection = inspection_ ? &*inspection_ : nullptr,
+                  .camera = camera_word(),
+                  .frames_a_second = frames_a_second(),
+                  .console = interface_->console()});
     list_places();
     for (const std::string& command : screen_.take_commands()) run_command(command);
-    obey_input();
+    if (const auto place = screen_.messages().take_chosen()) open_place(*place);
     EditPanels* const panels = screen_.panels();
     if (panels == nullptr) return;
     if (panels->take_pause()) is_paused_ = !is_paused_;
+    if (const auto file = panels->take_opened()) open_subject(*file);
     if (const std::optional<std::size_t> chosen = panels->take_number(); chosen && *chosen != number)
         played_ = static_cast<double>(*chosen) / job_.frame_desc.frames_per_second.value_or(1 / job_.step);
 }
@@ -293,7 +288,7 @@ Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
     const std::array<bool, side_count> is_shown = shown_sides();
     for (std::size_t side = 0; side < side_count; ++side) {
         if (!is_shown[side] || !views_[side] || views_[side]->most().width == 0) continue;
-        settle("look", views_[side]->fit(*source_, wanted, interface_->format()));
+        settle(fmt::format("fit {}", side), views_[side]->fit(*source_, wanted, interface_->format()));
         extent = least_of(extent, views_[side]->most());
     }
     const LiveMoment now = moment();
@@ -355,7 +350,8 @@ Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom
     if (Result<> done = of.resize(extent); !done) return done;
     if (is_fixed()) of.composer().wait_for_kernels();
     // A plan that does not fit yet is on its way: the picture stays what it was.
-    settle("frame", of.record(commands, frame));
+    const Result<> recorded = of.record(commands, frame);
+    if (recorded || !of.is_coming()) settle(fmt::format("frame {}", static_cast<int>(side)), recorded);
     return {};
 }
 

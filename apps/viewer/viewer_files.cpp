@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: MIT
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
 #include <functional>
 #include <utility>
 
 #include "apps/darkroom/run/frames.hpp"
+#include "apps/darkroom/run/report.hpp"
 #include "core/srgb.hpp"
 #include "core/text/param_text.hpp"
+#include "edit/edits.hpp"
 #include "gpu/device/context.hpp"
 #include "image/picture/write.hpp"
 #include "viewer_state.hpp"
@@ -33,42 +39,69 @@ void Viewer::reload() {
     const Result<bool> is_new = document_->reload_if_changed();
     if (!is_new) screen_.tell_error("reload", is_new.error().text);
     if (!document_->is_broken()) screen_.clear_error("reload");
-    if (is_new && *is_new) tell(fmt::format("read {} again", document_->file().filename().string()));
+    tell_warnings();
+    if (is_new && *is_new)
+        for (const std::filesystem::path& file : document_->changed_files())
+            tell(fmt::format("read {} again", darkroom::printable(file.filename().string())));
     reload_source();
 }
 
-void Viewer::watch_source() {
-    source_files_ = {};
-    if (scene_ != nullptr)
-        for (const std::filesystem::path& file : source_->files()) source_files_.add(file);
+void Viewer::tell_warnings() {
+    std::vector<darkroom::panels::Messages::Said> all;
+    for (const std::string& warning : document_->warnings()) all.push_back({darkroom::Severity::Warning, warning});
+    screen_.say("look's file", all);
 }
 
-// The new one is made beside the frames, which go on with the old one.
-void Viewer::reload_source() {
-    if (!coming_.valid()) {
-        if (!source_files_.take_change()) return;
-        coming_ = std::async(std::launch::async, [this, desc = job_.scene_desc] {
-            return SceneSource::create(*device_, job_.scene, desc);
-        });
-        return;
-    }
-    if (coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    Result<std::unique_ptr<SceneSource>> made = coming_.get();
-    if (!made) return screen_.tell_error("scene", made.error().text);
-    if (Result<> done = presenter_->wait(); !done) return settle("scene", done);
-    take_scene(std::move(*made));
-    watch_source();
-    screen_.clear_error("scene");
-    screen_.clear_error("source");
-    tell(fmt::format("read {} again", job_.scene.filename().string()));
+// Of a source that was read again they are others.
+void Viewer::tell_source_warnings() {
+    const std::vector<std::string> more = source_->take_warnings();
+    if (more.empty()) return;
+    // A scene passes over what it does not know; a frame that is not shown is missing.
+    const darkroom::Severity severity = scene_ != nullptr ? darkroom::Severity::Warning : darkroom::Severity::Error;
+    for (const std::string& warning : more) source_warnings_.push_back({severity, warning});
+    screen_.say("source", source_warnings_);
+}
+
+// The same command gives the same picture, whatever somebody has set; and what is edited is the look's own.
+bool Viewer::has_config() const { return !job_.is_edit && !is_fixed() && !config_file().empty(); }
+
+std::filesystem::path Viewer::config_file() {
+    const auto variable = [](const char* name) {
+        const char* const value = std::getenv(name);
+        return std::filesystem::path(value != nullptr ? value : "");
+    };
+    const std::filesystem::path own = variable("XDG_CONFIG_HOME"), home = variable("HOME");
+    if (own.is_absolute()) return own / "darkroom" / "console.cfg";
+    return home.is_absolute() ? home / ".config" / "darkroom" / "console.cfg" : std::filesystem::path();
+}
+
+Result<> Viewer::read_config() {
+    darkroom::Console& console = *interface_->console();
+    console.take_defaults();
+    if (!has_config()) return {};
+    settle("configuration", console.read_config(config_file()));
+    return document_->edit("the configuration",
+                           [&](darkroom::Look& look) { return darkroom::edit::take_values(look, console.composer()); });
+}
+
+void Viewer::write_config() {
+    if (!has_config()) return;
+    std::error_code error;
+    std::filesystem::create_directories(config_file().parent_path(), error);
+    if (const Result<> done = interface_->console()->write_config(config_file()); !done) warn(done.error().text);
 }
 
 void Viewer::follow_document() {
+    if (document_->file() != saved_as_) {
+        if (shown_frames_ > 0) tell(fmt::format("saved {}", shown(document_->file().filename())));
+        saved_as_ = document_->file();
+        screen_.messages().set_folder(document_->options().folder);
+    }
     if (followed_ == document_->version()) return;
     followed_ = document_->version();
     for (const Side side : {Side::Look, Side::Saved}) {
         const auto& view = views_[static_cast<std::size_t>(side)];
-        if (view) settle("look", view->show(look_of(side)));
+        if (view) settle(fmt::format("look {}", static_cast<int>(side)), view->show(look_of(side)));
     }
     const darkroom::LookUi ui = document_->look().ui.value_or(darkroom::LookUi{});
     if (ui.document != interface_files_.first || ui.controllers != interface_files_.second)
@@ -79,7 +112,11 @@ void Viewer::follow_document() {
 std::filesystem::path Viewer::free_name(const std::string& stem, const std::string& extension) {
     for (int number = 1; number < 10000; ++number) {
         std::filesystem::path path = fmt::format("{}-{:04}{}", stem, number, extension);
-        if (!std::filesystem::exists(path)) return path;
+        // The name is taken at once, so that no other picture gets it while this one is on its way.
+        const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file < 0 && errno == EEXIST) continue;
+        if (file >= 0) ::close(file);
+        return path;
     }
     return stem + extension;
 }
@@ -161,8 +198,14 @@ void Viewer::finish_stores(bool waits) {
                      path = store.path] { return darkroom::write_frame(path, *frame); };
         }
         writing_.push_back(std::async(std::launch::async, [write = std::move(write), path = store.path] {
-            const Result<> done = write();
-            return std::pair(done ? "stored " + shown(path) : done.error().text, !done);
+            try {
+                const Result<> done = write();
+                std::error_code error;
+                if (!done && std::filesystem::is_empty(path, error) && !error) std::filesystem::remove(path, error);
+                return std::pair(done ? "stored " + shown(path) : done.error().text, !done);
+            } catch (const std::exception& exception) {
+                return std::pair(fmt::format("{}: cannot be written: {}", shown(path), exception.what()), true);
+            }
         }));
     }
     while (!writing_.empty() &&

@@ -33,6 +33,7 @@ Result<> Viewer::inspect(VkCommandBuffer commands, const darkroom::Frame& frame)
         inspection_.reset();
         return {};
     }
+    if (is_echo_) return {};
     LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
     if (!inspector_) inspector_ = std::make_unique<darkroom::Inspector>(*device_);
     darkroom::CompileDesc compiled = look.compile_desc();
@@ -48,7 +49,7 @@ Result<> Viewer::inspect(VkCommandBuffer commands, const darkroom::Frame& frame)
 
 Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
     const EditPanels* const panels = screen_.panels();
-    if (panels == nullptr || !panels->wants_scopes() || scope_frame_) return {};
+    if (panels == nullptr || !panels->wants_scopes() || scope_frame_ || is_echo_) return {};
     darkroom::gpu::Context& context = device_->context();
     const LookView& look = *views_[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)];
     const darkroom::ImageRef picture = look.picture();
@@ -85,7 +86,10 @@ Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
 void Viewer::finish_seeing() {
     while (!inspected_.empty() && presenter_->is_finished(inspected_.front().frame)) {
         if (inspector_)
-            if (auto result = inspector_->result(inspected_.front().recording)) inspection_ = std::move(result);
+            if (auto result = inspector_->result(inspected_.front().recording)) {
+                inspection_ = std::move(result);
+                has_measured_ = true;
+            }
         inspected_.pop_front();
     }
     if (!scope_frame_ || !presenter_->is_finished(*scope_frame_)) return;
@@ -95,6 +99,7 @@ void Viewer::finish_seeing() {
         panels->measure({.width = extent.width, .height = extent.height, .bytes = bytes});
     scope_read_.reset();
     scope_frame_.reset();
+    has_measured_ = true;
 }
 
 }  // namespace app

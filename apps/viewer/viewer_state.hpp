@@ -21,6 +21,8 @@
 
 namespace app {
 
+inline constexpr std::uint32_t frames_in_flight = 2;
+
 class Viewer {
   public:
     explicit Viewer(ViewerJob job) : job_(std::move(job)) {}
@@ -34,8 +36,6 @@ class Viewer {
 
     // viewer.cpp
     [[nodiscard]] darkroom::Result<> open();
-    [[nodiscard]] darkroom::Result<> make_source();
-    void take_scene(std::unique_ptr<SceneSource> scene);
     [[nodiscard]] darkroom::Result<> make_device();
     [[nodiscard]] bool is_high_range() const;
     [[nodiscard]] darkroom::Result<> start_interface();
@@ -68,6 +68,8 @@ class Viewer {
     /// In the window, and on standard output.
     void tell(std::string line);
     void list_places();
+    void open_place(const darkroom::panels::TextPlace& place);
+    [[nodiscard]] std::string_view camera_word() const;
     /// Reports what went wrong with `source`, or clears what it said before.
     void settle(std::string_view source, const darkroom::Result<>& done) {
         done ? screen_.clear_error(source) : screen_.tell_error(source, done.error().text);
@@ -79,11 +81,41 @@ class Viewer {
     [[nodiscard]] darkroom::Result<> read_scopes(const darkroom::window::PresentFrame& frame);
     void finish_seeing();
 
-    // viewer_files.cpp
-    void reload();
+    // viewer_source.cpp
+    /// Another scene, or frames, in place of those that are shown.
+    struct Opened {
+        std::filesystem::path file;
+        std::unique_ptr<SceneSource> scene;
+        std::vector<darkroom::NumberedFile> files;
+        std::unique_ptr<FrameSource> frames;
+    };
+    [[nodiscard]] darkroom::Result<> make_source();
+    void take_scene(std::unique_ptr<SceneSource> scene);
+    void take_frames(std::unique_ptr<FrameSource> frames);
     void watch_source();
     void reload_source();
+    void open_subject(const std::filesystem::path& file);
+    void take_opened();
+    void name_window();
+
+    // viewer_idle.cpp
+    /// Waits where there was nothing to draw, and takes what has happened meanwhile.
+    void rest();
+    [[nodiscard]] bool is_due();
+    [[nodiscard]] bool is_time_running() const;
+    /// Is there something to draw that comes by itself, such as a plan?
+    [[nodiscard]] bool is_coming() const;
+    [[nodiscard]] double frames_a_second();
+
+    // viewer_files.cpp
+    void reload();
     void follow_document();
+    void tell_warnings();
+    void tell_source_warnings();
+    [[nodiscard]] bool has_config() const;
+    [[nodiscard]] static std::filesystem::path config_file();
+    [[nodiscard]] darkroom::Result<> read_config();
+    void write_config();
     void store_picture(const darkroom::window::PresentFrame& frame);
     void store_window(const darkroom::window::PresentFrame& frame);
     void finish_stores(bool waits);
@@ -94,8 +126,7 @@ class Viewer {
     std::unique_ptr<darkroom::Device> device_;
     std::optional<darkroom::window::Presenter> presenter_;
     std::unique_ptr<LiveSource> source_;
-    SceneSource* scene_ = nullptr;   ///< the source, if it is one
-    FrameSource* frames_ = nullptr;  ///< the same
+    SceneSource* scene_ = nullptr;  ///< the source, if it is one
     std::optional<darkroom::edit::LookDocument> document_;
     std::uint64_t followed_ = 0;  ///< version of the document that is on the screen
     std::array<std::unique_ptr<LookView>, side_count> views_;
@@ -106,6 +137,12 @@ class Viewer {
     std::optional<darkroom::scene::Ground> ground_;  ///< that is walked on
 
     darkroom::render::DrawOptions draw_;
+    Clock::time_point busy_until_{};  ///< its user has just done something
+    std::deque<Clock::time_point> shown_at_;
+    std::uint32_t frames_due_ = 0;
+    std::uint64_t drawn_version_ = 0;  ///< of the document
+    bool is_resting_ = false, is_echo_ = false, has_measured_ = false;
+    double passed_ = 0;  ///< seconds since the frame before
     bool is_post_on_ = true, is_paused_ = false, is_leaving_ = false;
     double time_ = 0, previous_time_ = 0, delta_time_ = 0;
     double played_ = 0;  ///< seconds of a sequence
@@ -113,7 +150,11 @@ class Viewer {
     std::optional<darkroom::scene::OrbitOverride> last_orbit_;
     darkroom::edit::Watch source_files_;
     std::future<darkroom::Result<std::unique_ptr<SceneSource>>> coming_;  ///< the scene, read again
-    std::pair<std::string, std::vector<std::string>> interface_files_;    ///< document and controllers, as it started
+    std::future<darkroom::Result<Opened>> opening_;
+    std::filesystem::path saved_as_;  ///< the document's file, when it was last looked at
+    std::string titled_;              ///< what the window is called by
+    std::vector<darkroom::panels::Messages::Said> source_warnings_;
+    std::pair<std::string, std::vector<std::string>> interface_files_;  ///< document and controllers, as it started
     LineInput input_;
     std::optional<std::string> places_;                  ///< widgets that were asked for, by how their names begin
     Clock::time_point sure_until_{};                     ///< who leaves again before then means it

@@ -200,7 +200,7 @@ TEST_F(CliViewer, SlidersAndTheOrderOfTheStackFollowTheMouse) {
     drag({first[0] + 20, (first[1] + first[3]) / 2}, {last[0] + 20, last[3] - 4});
     EXPECT_TRUE(wait_until([&] { return difference(slid, shot()) > 0; }, 60))
         << "exposure after the curve is another picture";
-    press("Escape", "not saved: once more to leave");
+    press("Escape", "Unsaved changes: press again to quit");
     press("ctrl+s", "saved my.toml");
     const std::string saved = content(look);
     const std::size_t tonemap = saved.find("tonemap"), exposure = saved.find("exposure");

@@ -37,6 +37,8 @@ class CameraRig {
     /// For the next frame, and for the one before it.
     [[nodiscard]] darkroom::scene::OrbitOverride orbit(const darkroom::scene::Snapshot& seen) const;
     [[nodiscard]] HeadMotion head() const { return head_; }
+    /// Does it move although nobody touches it?
+    [[nodiscard]] bool is_falling() const { return walk_ && !walk_->is_on_ground; }
 
   private:
     /// The camera as it is, taken over from the scene's where that one was used so far.

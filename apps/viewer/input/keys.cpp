@@ -34,10 +34,10 @@ constexpr std::array table{
     Key{GLFW_KEY_Y, GLFW_MOD_CONTROL, KeyAction::Redo, "Ctrl+Y", "the same", false, true},
     Key{GLFW_KEY_P, 0, KeyAction::Pause, "P", "stops the time, and lets it go on"},
     Key{GLFW_KEY_SPACE, 0, KeyAction::ResetCamera, "Space", "the scene's own camera", false, true},
-    Key{GLFW_KEY_F, 0, KeyAction::FrameAll, "F", "looks at everything", false, true},
+    Key{GLFW_KEY_F, 0, KeyAction::FrameAll, "F", "frames all", false, true},
     Key{GLFW_KEY_V, 0, KeyAction::CameraKind, "V", "the camera orbits, or flies", false, true},
     Key{GLFW_KEY_B, 0, KeyAction::Compare, "B", "compares two looks at a divider", false, true},
-    Key{GLFW_KEY_ESCAPE, 0, KeyAction::Leave, "Esc", "frees the mouse, then leaves; twice where edits would be lost"},
+    Key{GLFW_KEY_ESCAPE, 0, KeyAction::Leave, "Esc", "frees the mouse, then quits; twice where changes would be lost"},
 };
 
 }  // namespace

@@ -11,7 +11,9 @@
 #include "apps/darkroom/run/ui_source.hpp"
 #include "core/text/param_text.hpp"
 #include "image/frame/sequence.hpp"
+#include "scene/read/scene_file.hpp"
 #include "scene/scene.hpp"
+#include "toml/toml_text.hpp"
 
 namespace app {
 
@@ -27,12 +29,33 @@ constexpr double usual_frames_per_second = 60;
 
 bool is_scene(const std::string& input) { return input.ends_with(".toml") || darkroom::scene::is_model_path(input); }
 
+/// Is it a look, and no scene that may have one? What cannot be read is said by who reads it.
+bool is_look(const std::string& input) {
+    if (!input.ends_with(".toml")) return false;
+    const Result<std::string> text = darkroom::scene::reading::read_scene_text(input);
+    if (!text) return false;
+    const Result<toml::table> file = darkroom::parse_toml(*text, input);
+    return file && darkroom::scene::reading::has_look(*file) && !darkroom::scene::reading::is_scene(*file);
+}
+
+/// The frame that ships: beside the sources that the program was built from, or installed with it. Empty: neither.
+std::filesystem::path shipped_sample() {
+    std::error_code error;
+    std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    for (; !folder.empty() && folder != folder.root_path(); folder = folder.parent_path())
+        for (const char* const name : {"samples/window.exr", "share/darkroom/samples/window.exr"})
+            if (std::filesystem::is_regular_file(folder / name, error)) return folder / name;
+    return {};
+}
+
 }  // namespace
 
 void ViewFlags::add_to(CommandFlags command, bool is_edit, std::span<const darkroom::LookEntry> named) {
     is_edit_ = is_edit;
-    command.add_option("INPUT", inputs_,
-                       "A scene (.toml), a model (.glb, .gltf), a frame or picture, or a sequence: shot.####.exr");
+    command.add_option(
+        "INPUT", inputs_,
+        "A scene (.toml), a model (.glb, .gltf), a frame or picture, or a sequence: shot.####.exr; a look "
+        "(.toml) is shown on a frame that ships, or on what stands beside it");
     const std::string group = "The window";
     command.add_flag("--fullscreen", is_fullscreen_, "The whole screen").group(group);
     command.add_option("--present", presentation_, "With the display; with it, the newest frame; at once")
@@ -83,17 +106,42 @@ void ViewFlags::add_to(CommandFlags command, bool is_edit, std::span<const darkr
 
 Result<ViewerJob> ViewFlags::job() const {
     ViewerJob job{.is_edit = is_edit_};
-    if (inputs_.empty()) return user_error("a scene, a model or a frame is needed");
-    if (Result<> done = read_subject(job); !done) return failure(std::move(done));
-    if (Result<> done = read_look(job); !done) return failure(std::move(done));
+    const Result<Named> named = this->named();
+    if (!named) return failure(named.error());
+    if (Result<> done = read_subject(job, named->inputs); !done) return failure(std::move(done));
+    if (Result<> done = read_look(job, named->look); !done) return failure(std::move(done));
     if (Result<> done = read_window(job); !done) return failure(std::move(done));
     return job;
 }
 
-Result<> ViewFlags::read_subject(ViewerJob& job) const {
-    const bool has_scene = std::ranges::any_of(inputs_, is_scene);
-    if (has_scene && inputs_.size() > 1)
-        return user_error(fmt::format("{}: one scene or model at a time", printable(inputs_[1])));
+Result<ViewFlags::Named> ViewFlags::named() const {
+    Named out{.look = look_.file};
+    for (const std::string& input : inputs_) {
+        if (!is_look(input)) {
+            out.inputs.push_back(input);
+            continue;
+        }
+        if (!out.look.empty())
+            return user_error(fmt::format("{}: one look at a time, and {} is one, too", printable(input),
+                                          printable(out.look.string())));
+        out.look = input;
+    }
+    if (!out.inputs.empty()) return out;
+    if (inputs_.empty()) return user_error("a scene, a model or a frame is needed");
+    const std::filesystem::path sample = shipped_sample();
+    if (sample.empty())
+        return user_error(
+            fmt::format("{}: it is a look, and the frame that ships to try one on is not there: a scene, a "
+                        "model or a frame is needed beside it",
+                        printable(out.look.string())));
+    out.inputs.push_back(sample.string());
+    return out;
+}
+
+Result<> ViewFlags::read_subject(ViewerJob& job, const std::vector<std::string>& inputs) const {
+    const bool has_scene = std::ranges::any_of(inputs, is_scene);
+    if (has_scene && inputs.size() > 1)
+        return user_error(fmt::format("{}: one scene or model at a time", printable(inputs[1])));
     const Result<darkroom::render::RenderDesc> desc = drawn_.desc();
     if (!desc) return failure(desc.error());
     const Result<std::uint64_t> seed = drawn_.seed();
@@ -108,10 +156,10 @@ Result<> ViewFlags::read_subject(ViewerJob& job) const {
     job.step = 1 / job.frame_desc.frames_per_second.value_or(usual_frames_per_second);
     drawn_.warn_of_what_is_ignored();
     if (has_scene) {
-        job.scene = inputs_.front();
+        job.scene = inputs.front();
         return {};
     }
-    Result<std::vector<darkroom::NumberedFile>> files = darkroom::expand_inputs(inputs_);
+    Result<std::vector<darkroom::NumberedFile>> files = darkroom::expand_inputs(inputs);
     if (!files) return failure(std::move(files));
     job.frames = std::move(*files);
     for (const std::string& map : maps_)
@@ -121,9 +169,8 @@ Result<> ViewFlags::read_subject(ViewerJob& job) const {
     return {};
 }
 
-Result<> ViewFlags::read_look(ViewerJob& job) const {
+Result<> ViewFlags::read_look(ViewerJob& job, std::filesystem::path path) const {
     // Models hold no look.
-    std::filesystem::path path = look_.file;
     if (path.empty() && !job.scene.empty() && !darkroom::scene::is_model_path(job.scene)) path = job.scene;
     std::vector<std::string> warnings;
     job.look_options = look_.options(nullptr);
@@ -133,7 +180,9 @@ Result<> ViewFlags::read_look(ViewerJob& job) const {
         job.document.emplace(darkroom::default_look(), job.look_options);
     } else {
         Result<darkroom::edit::LookDocument> opened = darkroom::edit::LookDocument::open(path, options);
-        for (const std::string& warning : warnings) warn(warning);
+        // The window tells those of a look that it shows.
+        if (!opened)
+            for (const std::string& warning : warnings) warn(warning);
         if (!opened) return failure(std::move(opened));
         job.document.emplace(std::move(*opened));
     }

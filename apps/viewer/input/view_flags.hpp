@@ -2,6 +2,7 @@
 #pragma once
 // The flags of `play` and `edit`: what is shown, how the window is, and all of the look.
 
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,8 +24,14 @@ class ViewFlags {
     [[nodiscard]] bool asks_for_keys() const { return asks_for_keys_; }
 
   private:
-    [[nodiscard]] darkroom::Result<> read_subject(ViewerJob& job) const;
-    [[nodiscard]] darkroom::Result<> read_look(ViewerJob& job) const;
+    /// What is named: files to be shown, and the look that they are shown through.
+    struct Named {
+        std::vector<std::string> inputs;
+        std::filesystem::path look;
+    };
+    [[nodiscard]] darkroom::Result<Named> named() const;
+    [[nodiscard]] darkroom::Result<> read_subject(ViewerJob& job, const std::vector<std::string>& inputs) const;
+    [[nodiscard]] darkroom::Result<> read_look(ViewerJob& job, std::filesystem::path path) const;
     [[nodiscard]] darkroom::Result<> read_window(ViewerJob& job) const;
 
     bool is_edit_ = false;

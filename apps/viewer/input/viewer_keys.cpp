@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "apps/darkroom/run/report.hpp"
+#include "apps/viewer/input/open_place.hpp"
 #include "apps/viewer/viewer_state.hpp"
 #include "edit/edits.hpp"
 
@@ -76,10 +77,12 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             screen_.toggle_console();
             return tell(fmt::format("console: {}", on_off(screen_.has_console())));
         case KeyAction::Panels:
-            return screen_.toggle_panels();
+            screen_.toggle_panels();
+            return tell(fmt::format("Tab panels: {}", on_off(screen_.panels() != nullptr)));
         case KeyAction::Save: {
             if (edit == nullptr) return;
             edit->look().save();
+            if (document_->file().empty()) return tell("the look has no name yet: choose one");
             if (!document_->is_changed()) tell(fmt::format("saved {}", document_->file().filename().string()));
             return;
         }
@@ -99,7 +102,7 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             const VkExtent2D extent = picture_extent();
             camera_->frame_all(scene_->snapshot(),
                                static_cast<float>(extent.width) / static_cast<float>(extent.height));
-            return tell("F: everything");
+            return tell("F: frame all");
         }
         case KeyAction::CameraKind: {
             const bool flies = camera_->kind() == CameraRig::Kind::Fly;
@@ -107,8 +110,9 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             return tell(flies ? "V: the camera orbits" : "V: the camera flies");
         }
         case KeyAction::Compare:
-            if (edit != nullptr) edit->toggle_compare();
-            return;
+            if (edit == nullptr) return;
+            edit->toggle_compare();
+            return tell(fmt::format("B compare: {}", on_off(edit->is_comparing())));
         case KeyAction::Leave:
             if (window_->is_cursor_captured()) return window_->capture_cursor(false);
             if (screen_.has_console()) return screen_.toggle_console();
@@ -127,7 +131,7 @@ void Viewer::leave() {
     }
     window_->stay_open();
     sure_until_ = now + to_think;
-    tell("not saved: once more to leave, Ctrl+S to save");
+    tell("Unsaved changes: press again to quit, Ctrl+S to save");
 }
 
 // All entries of the effects that have the key: on if any is off.
@@ -149,8 +153,24 @@ void Viewer::toggle_effects(std::uint32_t number) {
             if (Result<> set = darkroom::edit::set_state(look, name, "enabled", {&word, 1}); !set) return set;
         return {};
     });
-    settle("look", done);
+    settle("switch", done);
     if (done) tell(what);
+}
+
+std::string_view Viewer::camera_word() const {
+    if (scene_ == nullptr) return {};
+    if (camera_->kind() == CameraRig::Kind::Walk) return "walk";
+    return camera_->kind() == CameraRig::Kind::Fly ? "fly" : "orbit";
+}
+
+void Viewer::open_place(const darkroom::panels::TextPlace& place) {
+    const Result<bool> is_open = open_in_editor(place);
+    settle("editor", is_open ? Result<>() : failure(is_open.error()));
+    if (!is_open) return;
+    if (*is_open) return tell(fmt::format("opened {}", editor_command("$VISUAL", place)));
+    const std::string command = editor_command({}, place);
+    ImGui::SetClipboardText(command.c_str());
+    tell(fmt::format("copied, as $VISUAL names no editor: {}", command));
 }
 
 void Viewer::tell(std::string line) {
@@ -194,6 +214,17 @@ void Viewer::run_command(const std::string& command) {
     constexpr std::string_view places = "places";
     if (command.starts_with(places)) {
         places_ = command.substr(std::min(places.size() + 1, command.size()));
+        return;
+    }
+    if (command == "messages") {
+        const darkroom::panels::Messages& messages = screen_.messages();
+        std::vector<std::string> lines;
+        for (const auto& entry : messages.history())
+            if (!entry.sources.empty())
+                lines.push_back(fmt::format(
+                    "{}: {}", entry.severity == darkroom::Severity::Warning ? "warning" : "error", entry.text));
+        print(fmt::format("messages: {}", lines.size()));
+        for (std::string& line : lines) print(std::move(line));
         return;
     }
     console->execute(command);

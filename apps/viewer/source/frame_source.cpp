@@ -36,7 +36,8 @@ Result<std::unique_ptr<FrameSource>> FrameSource::create(darkroom::Device& devic
     return out;
 }
 
-Result<std::shared_ptr<FrameSource::Decoded>> FrameSource::decode(std::size_t number) const {
+// Whatever a file makes a decoder do, the thread that reads goes on.
+Result<std::shared_ptr<FrameSource::Decoded>> FrameSource::decode(std::size_t number) const try {
     Result<darkroom::FrameFile> file = darkroom::read_frame(files_[number].path, desc_.options);
     if (!file) return failure(std::move(file));
     auto out = std::make_shared<Decoded>();
@@ -51,6 +52,9 @@ Result<std::shared_ptr<FrameSource::Decoded>> FrameSource::decode(std::size_t nu
         out->input.delta_time = 1 / *desc_.frames_per_second;
     }
     return out;
+} catch (const std::exception& exception) {
+    return darkroom::machine_error(
+        fmt::format("{}: cannot be read: {}", darkroom::printable(files_[number].path.string()), exception.what()));
 }
 
 std::vector<std::filesystem::path> FrameSource::files() const {
@@ -69,8 +73,9 @@ void FrameSource::work() {
     std::unique_lock lock(mutex_);
     while (!is_ending_) {
         const std::size_t after = (wanted_ + 1) % files_.size();
-        const bool is_missing = find(wanted_) == nullptr && failed_ != wanted_;
-        if (!is_missing && (find(after) != nullptr || failed_ == after)) {
+        const auto is_known = [&](std::size_t number) { return find(number) != nullptr || failed_.contains(number); };
+        const bool is_missing = !is_known(wanted_);
+        if (!is_missing && is_known(after)) {
             changed_.wait(lock);
             continue;
         }
@@ -82,7 +87,7 @@ void FrameSource::work() {
             kept_.push_front(std::move(*made));
             if (kept_.size() > most_kept) kept_.pop_back();
         } else {
-            failed_ = number;
+            failed_.insert(number);
             warnings_.push_back(made.error().text);
         }
         changed_.notify_all();
@@ -98,12 +103,12 @@ std::vector<std::string> FrameSource::take_warnings() {
 
 bool FrameSource::is_up_to_date() const {
     const std::lock_guard lock(mutex_);
-    return shown_->number == wanted_ || failed_ == wanted_;
+    return shown_->number == wanted_ || failed_.contains(wanted_);
 }
 
 void FrameSource::wait() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return find(wanted_) != nullptr || failed_ == wanted_; });
+    changed_.wait(lock, [&] { return find(wanted_) != nullptr || failed_.contains(wanted_); });
 }
 
 bool FrameSource::must_wait(const LiveMoment& moment, VkExtent2D) const {

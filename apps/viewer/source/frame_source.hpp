@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <list>
 #include <mutex>
+#include <set>
 #include <thread>
 
 #include "apps/darkroom/run/frames.hpp"
@@ -41,6 +42,7 @@ class FrameSource final : public LiveSource {
     [[nodiscard]] bool is_up_to_date() const;
     /// Waits until it can be.
     void wait();
+    [[nodiscard]] bool is_coming() const override { return !is_up_to_date(); }
 
   private:
     /// A frame in main memory.
@@ -65,7 +67,7 @@ class FrameSource final : public LiveSource {
     std::condition_variable changed_;
     std::list<std::shared_ptr<Decoded>> kept_;
     std::size_t wanted_ = 0;
-    std::optional<std::size_t> failed_;
+    std::set<std::size_t> failed_;  ///< not tried again
     std::vector<std::string> warnings_;
     bool is_ending_ = false;
 

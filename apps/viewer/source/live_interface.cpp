@@ -13,8 +13,13 @@ namespace app {
 namespace gpu = darkroom::gpu;
 using darkroom::Result;
 
-LiveInterface::LiveInterface(darkroom::Device& device, bool is_headless, std::uint32_t slots, darkroom::LogSink print)
-    : device_(device), is_headless_(is_headless), print_(std::move(print)), staging_(slots) {}
+LiveInterface::LiveInterface(darkroom::Device& device, bool is_headless, std::uint32_t slots, darkroom::LogSink print,
+                             std::filesystem::path folder)
+    : device_(device),
+      is_headless_(is_headless),
+      print_(std::move(print)),
+      folder_(std::move(folder)),
+      staging_(slots) {}
 
 Result<> LiveInterface::start(const darkroom::Look& look, const Timeline& timeline, darkroom::Composer& composer) {
     controllers_.reset();
@@ -26,7 +31,7 @@ Result<> LiveInterface::start(const darkroom::Look& look, const Timeline& timeli
     ui_ = interface_of(look);
     events_ = timeline.game();
     composer_ = &composer;
-    console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print_});
+    console_ = std::make_unique<darkroom::Console>(composer, darkroom::ConsoleDesc{.print = print_, .folder = folder_});
     if (std::filesystem::path(ui_.document).extension() == ".svg") {
         auto loaded = darkroom::HudDocument::load(ui_.document, {.is_headless = is_headless_});
         if (!loaded) return failure(std::move(loaded));
@@ -44,7 +49,7 @@ Result<> LiveInterface::start(const darkroom::Look& look, const Timeline& timeli
     return {};
 }
 
-Result<> LiveInterface::advance(double time, const HeadMotion& motion) {
+Result<> LiveInterface::advance(double time, const HeadMotion& motion, bool is_menu_open) {
     if (composer_ == nullptr || (!is_given() && !controllers_)) return {};
     game_ = ui_.game;
     for (const GameEvent& event : events_)
@@ -54,9 +59,10 @@ Result<> LiveInterface::advance(double time, const HeadMotion& motion) {
     const darkroom::Vec2 offset =
         inertia_.step(motion.delta_time, -motion.yaw, motion.is_on_ground, motion.velocity_up);
     if (Result<> done = move_interface(*composer_, offset); !done) return done;
-    if (controllers_) controllers_->frame({.time = time, .game = &game_});
+    if (controllers_) controllers_->frame({.time = time, .is_hud_visible = !is_menu_open, .game = &game_});
     if (document_ != nullptr) {
         for (const auto& [name, value] : game_) document_->set(name, hud_value(value));
+        told_error_ = document_->error();
         if (!document_->error().empty()) return darkroom::user_error(document_->error());
     }
     return failed_.empty() ? Result<>() : darkroom::user_error(failed_);
@@ -69,6 +75,15 @@ void LiveInterface::reload_changed() {
 bool LiveInterface::must_wait(VkExtent2D extent) const {
     return image_.handle != VK_NULL_HANDLE &&
            (image_.info.extent.width != extent.width || image_.info.extent.height != extent.height);
+}
+
+// Asking makes the document begin a drawing that is due.
+bool LiveInterface::is_new() const {
+    if (document_ == nullptr || recorded_extent_.width == 0) return false;
+    const auto drawn = document_->picture(recorded_extent_.width, recorded_extent_.height, recorded_scale_);
+    if (document_->error() != told_error_) return true;
+    return drawn != nullptr && Bytes(drawn, &drawn->rgba) != uploaded_ && drawn->width == recorded_extent_.width &&
+           drawn->height == recorded_extent_.height;
 }
 
 Result<LiveInterface::Bytes> LiveInterface::picture(VkExtent2D& extent, float scale) {
@@ -110,6 +125,8 @@ Result<> LiveInterface::resize(VkExtent2D extent) {
 Result<darkroom::ImageRef> LiveInterface::record(VkCommandBuffer commands, std::uint32_t slot, VkExtent2D extent,
                                                  float scale) {
     if (Result<> done = resize(extent); !done) return failure(std::move(done));
+    recorded_extent_ = extent;
+    recorded_scale_ = scale;
     VkExtent2D drawn = extent;
     const Result<Bytes> read = picture(drawn, scale);
     if (!read) failed_ = read.error().text;

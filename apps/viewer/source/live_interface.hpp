@@ -24,15 +24,17 @@ struct HeadMotion {
 class LiveInterface {
   public:
     /// `is_headless`: the document is drawn before it is shown, so that frames can be repeated. `print`: of scripts.
-    LiveInterface(darkroom::Device& device, bool is_headless, std::uint32_t slots, darkroom::LogSink print);
+    /// `folder`: that the console's files are in.
+    LiveInterface(darkroom::Device& device, bool is_headless, std::uint32_t slots, darkroom::LogSink print,
+                  std::filesystem::path folder);
 
     /// The interface of this look, over this Composer, which outlives it. Errors are those of its files; what was there
     /// before is gone.
     [[nodiscard]] darkroom::Result<> start(const darkroom::Look& look, const Timeline& timeline,
                                            darkroom::Composer& composer);
-    /// Before a frame: what the game says, one call of each controller, the offset. An error is why the picture is not
-    /// that of its files; what was there before stays.
-    [[nodiscard]] darkroom::Result<> advance(double time, const HeadMotion& motion);
+    /// Before a frame: what the game says, one call of each controller, the offset. `is_menu_open`: the keys are not
+    /// the game's. An error is why the picture is not that of its files; what was there before stays.
+    [[nodiscard]] darkroom::Result<> advance(double time, const HeadMotion& motion, bool is_menu_open);
     /// What the game says at first, from now on.
     void set_game(const darkroom::GameTable& game) { ui_.game = game; }
     /// Reads scripts again that have changed. Documents do so by themselves.
@@ -42,6 +44,9 @@ class LiveInterface {
     [[nodiscard]] darkroom::Result<darkroom::ImageRef> record(VkCommandBuffer commands, std::uint32_t slot,
                                                               VkExtent2D extent, float scale);
     [[nodiscard]] bool must_wait(VkExtent2D extent) const;
+    /// Is there another picture of it than the one that was recorded last, or another error than advance() told?
+    [[nodiscard]] bool is_new() const;
+    [[nodiscard]] bool has_controllers() const { return controllers_.has_value(); }
     [[nodiscard]] bool is_given() const { return !ui_.document.empty(); }
     /// UNDEFINED: there is none.
     [[nodiscard]] VkFormat format() const { return is_given() ? image_format : VK_FORMAT_UNDEFINED; }
@@ -56,6 +61,7 @@ class LiveInterface {
     darkroom::Device& device_;
     bool is_headless_;
     darkroom::LogSink print_;
+    std::filesystem::path folder_;
     darkroom::LookUi ui_;
     std::vector<GameEvent> events_;
     darkroom::GameTable game_;
@@ -67,6 +73,9 @@ class LiveInterface {
     std::string failed_;  ///< why its picture could not be read
 
     Bytes shown_, uploaded_;  ///< of a file; on the device
+    std::string told_error_;
+    VkExtent2D recorded_extent_{};
+    float recorded_scale_ = 1;
     VkExtent2D shown_extent_{};
     darkroom::gpu::Image image_;
     std::vector<darkroom::gpu::Buffer> staging_;  ///< one a slot

@@ -51,6 +51,8 @@ class LiveSource {
     /// Frames of a sequence; 0: there is nothing to scrub through.
     [[nodiscard]] virtual std::size_t frames() const { return 0; }
     [[nodiscard]] virtual std::string shown_frame(std::size_t) const { return {}; }
+    /// Is the frame that was asked for still being read?
+    [[nodiscard]] virtual bool is_coming() const { return false; }
     [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
     /// What went wrong with frames since the last call; empty: nothing.
     [[nodiscard]] virtual std::vector<std::string> take_warnings() { return {}; }

@@ -69,6 +69,7 @@ Result<> LookView::fit(const LiveSource& source, VkExtent2D extent, VkFormat ui)
     frames_alike_ = is_equal(extent, last_extent_) ? frames_alike_ + 1 : 0;
     last_extent_ = extent;
     const bool is_settled = is_equal(extent, had) || (fits && frames_alike_ < frames_to_settle);
+    is_settling_ = !is_equal(extent, had);
     if (is_compiled_ && is_settled && is_same(wanted, compiled_)) return {};
     // While sizes come and go a plan only grows.
     wanted.max_extent = frames_alike_ < frames_to_settle ? most_of(extent, had) : extent;
@@ -221,9 +222,9 @@ darkroom::ImageRef LookView::reference() const {
             .last_access = VK_ACCESS_2_MEMORY_READ_BIT};
 }
 
-std::string LookView::error() const {
+Result<> LookView::planned() const {
     const darkroom::PendingCompile pending = composer_.pending();
-    return pending.error ? pending.error->text : std::string();
+    return pending.error ? Result<>(failure(*pending.error)) : Result<>();
 }
 
 }  // namespace app

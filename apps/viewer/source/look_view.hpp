@@ -52,8 +52,10 @@ class LookView {
     /// What its numbers mean.
     [[nodiscard]] darkroom::window::PaneTransfer transfer() const { return transfer_; }
     [[nodiscard]] VkExtent2D extent() const { return {picture_.info.extent.width, picture_.info.extent.height}; }
-    /// Why the look on the screen is not the newest; empty: it is, or will be.
-    [[nodiscard]] std::string error() const;
+    /// An error: why the look on the screen is not the newest.
+    [[nodiscard]] darkroom::Result<> planned() const;
+    /// Will the same frame make another picture: does it wait for a plan of its size, or of its look?
+    [[nodiscard]] bool is_coming() const { return is_settling_ || composer_.pending().is_pending; }
     [[nodiscard]] darkroom::Composer& composer() { return composer_; }
     [[nodiscard]] const darkroom::CompileDesc& compile_desc() const { return compiled_; }
 
@@ -71,6 +73,7 @@ class LookView {
     VkExtent2D last_extent_{};
     VkExtent2D least_pending_{};  ///< of what was asked for since no plan was under way
     std::uint32_t frames_alike_ = 0;
+    bool is_settling_ = false;  ///< the plan is for another extent
     darkroom::gpu::Image picture_, watched_;
     bool is_drawn_ = false;
     darkroom::window::PaneTransfer transfer_ = darkroom::window::PaneTransfer::Encoded;
