@@ -124,22 +124,23 @@ std::filesystem::path Viewer::free_name(const std::string& stem, const std::stri
 // Copies are recorded behind what made the picture, and written to files once the frame has finished.
 void Viewer::store_picture(const PresentFrame& frame) {
     if (is_fixed() && shown_frames_ + 1 == *job_.frames_to_show) {
-        wanted_.picture = job_.screenshot;
+        if (!job_.screenshot.empty()) wanted_.pictures = {job_.screenshot};
         wanted_.window = job_.window_screenshot;
     }
     darkroom::gpu::Context& context = device_->context();
     const LookView& view = *views_[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)];
     // Where there is none yet, the next frame is stored.
-    if (!wanted_.picture.empty() && view.picture().is_given()) {
+    while (!wanted_.pictures.empty() && view.picture().is_given()) {
+        std::filesystem::path path = std::move(wanted_.pictures.back());
+        wanted_.pictures.pop_back();
         Result<darkroom::Readback> read = darkroom::Readback::create(context, view.picture());
         if (!read) return screen_.tell_error("store", read.error().text);
         read->record(frame.commands);
         stores_.push_back({.frame = frame.number,
-                           .path = std::move(wanted_.picture),
+                           .path = std::move(path),
                            .picture = std::move(*read),
                            .transfer = view.transfer(),
                            .has_floats = is_high_range()});
-        wanted_.picture.clear();
     }
     if (!wanted_.frame.empty()) {
         const darkroom::Frame of = source_->frame();

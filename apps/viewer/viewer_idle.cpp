@@ -39,7 +39,7 @@ bool Viewer::is_due() {
     const bool is_changed = screen_.take_change() || drawn_version_ != document_->version();
     drawn_version_ = document_->version();
     if (is_changed) frames_due_ = frames_after_change;
-    const bool is_wanted = !wanted_.picture.empty() || !wanted_.window.empty() || !wanted_.frame.empty() || places_;
+    const bool is_wanted = !wanted_.pictures.empty() || !wanted_.window.empty() || !wanted_.frame.empty() || places_;
     is_echo_ = false;
     if (is_time_running() || camera_->is_falling() || now < busy_until_ || is_wanted || frames_due_ > 0) {
         if (frames_due_ > 0) --frames_due_;

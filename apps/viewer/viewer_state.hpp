@@ -173,7 +173,8 @@ class Viewer {
         bool has_floats = false;                    ///< likewise
     };
     struct Wanted {
-        std::filesystem::path picture, window, frame;
+        std::vector<std::filesystem::path> pictures;  ///< as often as it was asked for
+        std::filesystem::path window, frame;
     } wanted_;  ///< of the next frame
     std::deque<Store> stores_;
 

@@ -65,13 +65,13 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
         case KeyAction::Fullscreen:
             return window_->set_fullscreen(!window_->is_fullscreen());
         case KeyAction::Screenshot:
-            wanted_.picture = free_name("darkroom", ".png");
+            wanted_.pictures.push_back(free_name("darkroom", ".png"));
             return;
         case KeyAction::WindowScreenshot:
-            wanted_.window = free_name("darkroom-window", ".png");
+            if (wanted_.window.empty()) wanted_.window = free_name("darkroom-window", ".png");
             return;
         case KeyAction::Capture:
-            wanted_.frame = free_name("frame", ".exr");
+            if (wanted_.frame.empty()) wanted_.frame = free_name("frame", ".exr");
             return;
         case KeyAction::Console:
             screen_.toggle_console();
