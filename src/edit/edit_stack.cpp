@@ -112,8 +112,12 @@ Result<std::string> add_effect(Look& look, const EffectInfo& effect, std::string
 
 Result<std::string> add_entry(Look& look, LookEntry entry, std::string_view before) {
     if (entry.effect->flat.is_of_ui) {
-        if (!look.ui) add_ui(look);
+        const bool is_new = !look.ui;
+        if (is_new) add_ui(look);
         before = {};
+        // It comes with all of its entries on.
+        LookEntry* const own = own_place(look, *entry.effect);
+        if (is_new && own != nullptr) return entry_names(look)[static_cast<std::size_t>(own - look.entries.data())];
     }
     if (LookEntry* const there = before.empty() ? sleeping(look, *entry.effect) : nullptr) {
         there->state.enabled = true;

@@ -153,7 +153,8 @@ TEST_F(DocumentHistory, WhatOthersWroteStaysOnEveryWay) {
     saved.edit(glow);
     ASSERT_TRUE(saved.save());
     const fs::path file = saved.document().file();
-    std::ofstream(file, std::ios::binary) << saved.text() + "# and this\n";
+    const std::string more = saved.text() + "# and this\n";
+    std::ofstream(file, std::ios::binary) << more;
     fs::last_write_time(file, fs::file_time_type::clock::now() + std::chrono::seconds(5));
     ASSERT_TRUE(saved.document().reload_if_changed());
     saved.undo();

@@ -171,6 +171,7 @@ void draw_add_menu(PanelState& state) {
     if (is_pressed(ImGuiKey_DownArrow)) ++state.add_row;
     if (is_pressed(ImGuiKey_UpArrow) && state.add_row > 0) --state.add_row;
     state.add_row = std::min(state.add_row, wanted.empty() ? 0 : wanted.size() - 1);
+    if (is_pressed(ImGuiKey_Escape, false)) ImGui::CloseCurrentPopup();
     const bool is_taken = is_pressed(ImGuiKey_Enter) || is_pressed(ImGuiKey_KeyPadEnter);
     const bool takes_files = state.document->options().allows_custom_effects;
     ImGui::BeginChild("effects", {0, takes_files ? -ImGui::GetFrameHeightWithSpacing() : 0});

@@ -183,6 +183,12 @@ TEST(PanelStack, ArrowsAndEnterAdd) {
     const std::size_t before = own.names().size();
     own.click("stack/add");
     own.gui.frame(2);
+    own.gui.key(ImGuiKey_Escape);
+    own.gui.frame(2);
+    own.gui.key(ImGuiKey_Enter);
+    EXPECT_EQ(own.names().size(), before) << "Escape closes it";
+    own.click("stack/add");
+    own.gui.frame(2);
     own.gui.key(ImGuiKey_DownArrow);
     own.gui.key(ImGuiKey_DownArrow);
     own.gui.key(ImGuiKey_UpArrow);
