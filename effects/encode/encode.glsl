@@ -19,8 +19,7 @@ vec4 encode(vec4 color, Pixel pixel, Encode parameters) {
         color.rgb = clamp(nits, -parameters.peak_nits, parameters.peak_nits) / 80.0;
     } else if (transfer == Encode_transfer_hlg) {
         vec3 nits = color_state_rec2020 * sanitize(color).rgb * parameters.white_nits;
-        float ootf = 1.2 + 0.42 * log2(parameters.peak_nits / 1000.0) * 0.30102999566;
-        color.rgb = hlg_encode(nits / parameters.peak_nits, ootf);
+        color.rgb = hlg_encode(nits / parameters.peak_nits, hlg_ootf(parameters.peak_nits));
     } else if (transfer == Encode_transfer_p3) {
         color.rgb = srgb_encode(color_state_p3 * sanitize(color).rgb);
     }

@@ -122,5 +122,26 @@ TEST(EffectEncode, GpuMatchesReference) {
     }
 }
 
+// The exponent of the OOTF would be 0 at 1.4 cd/m2 and -0.06 at 1, by the formula for displays of 400 to 2000 cd/m2.
+TEST(EffectEncode, HlgIsForDisplaysOfEveryPeak) {
+    ReferenceImage picture = test::random_display(64, 64, 3);
+    picture.pixels[0] = {0, 0, 0, 1};
+    picture.pixels[1] = {1e-6, 0, 1e-6, 1};
+    picture = test::round_to_float(picture);
+    for (const float peak : {1.0F, 1.38949F, 1.5F, 100.0F, 399.0F, 400.0F, 2000.0F, 2001.0F}) {
+        SCOPED_TRACE(peak);
+        const Encode hlg{.transfer = TransferFunction::Hlg, .white_nits = peak, .peak_nits = peak};
+        EXPECT_EQ(encoded_grey(hlg, 0), 0.0);
+        EXPECT_NEAR(encoded_grey(hlg, 1), 1.0, 1e-6);
+        double before = 0;
+        for (double light = 1e-5; light < 1; light *= 1.01) {
+            const double value = encoded_grey(hlg, light);
+            EXPECT_GT(value, before) << light;
+            before = value;
+        }
+        test::expect_gpu_matches_reference(hlg, picture);
+    }
+}
+
 }  // namespace
 }  // namespace darkroom

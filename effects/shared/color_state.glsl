@@ -18,6 +18,12 @@ const mat3 color_state_from_p3 = mat3(1.224940176, -0.042056955, -0.019637555, -
                                       0.0, 1.098273600);
 const vec3 color_state_luminance = vec3(0.2627, 0.6780, 0.0593);
 
+// The exponent of HLG's OOTF for a display of this peak: ITU-R BT.2100, table 5, note 5f. Beyond its range the extended
+// formula of ITU-R BT.2390, which stays above 0.
+float hlg_ootf(float peak_nits) {
+    float octaves = log2(peak_nits / 1000.0);
+    return peak_nits >= 400.0 && peak_nits <= 2000.0 ? 1.2 + 0.42 * 0.30102999566 * octaves : 1.2 * pow(1.111, octaves);
+}
 // ITU-R BT.2100: light relative to the display's peak, through the OOTF backwards and the OETF.
 vec3 hlg_encode(vec3 light, float ootf) {
     light = clamp(light, 0.0, 1.0);

@@ -57,8 +57,11 @@ inline double luminance(const Color& c) { return 0.2627 * c[0] + 0.6780 * c[1] +
 
 }  // namespace color_state_detail
 
-/// ITU-R BT.2100, table 5: the exponent of HLG's OOTF for a display of this peak.
-inline double hlg_ootf_reference(double peak_nits) { return 1.2 + 0.42 * std::log10(peak_nits / 1000); }
+/// The exponent of HLG's OOTF for a display of this peak: ITU-R BT.2100, table 5, and beyond its range ITU-R BT.2390.
+inline double hlg_ootf_reference(double peak_nits) {
+    const bool is_in_range = peak_nits >= 400 && peak_nits <= 2000;
+    return is_in_range ? 1.2 + 0.42 * std::log10(peak_nits / 1000) : 1.2 * std::pow(1.111, std::log2(peak_nits / 1000));
+}
 
 /// Light in cd/m2 and Rec. 709 of the numbers of a picture in this state.
 inline std::array<double, 3> nits_of(std::array<double, 3> v, const ColorState& state) {

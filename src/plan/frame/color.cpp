@@ -16,9 +16,11 @@ std::uint32_t word_of(const ColorState& state) {
     return 1u | static_cast<std::uint32_t>(state.transfer) << 1u | static_cast<std::uint32_t>(state.primaries) << 4u;
 }
 
-/// ITU-R BT.2100, table 5, note 5f.
+/// As hlg_ootf of effects/shared/color_state.glsl has it.
 float ootf_of(const ColorState& state) {
-    return state.transfer == Transfer::Hlg ? 1.2f + 0.42f * std::log10(state.peak_nits / 1000) : 1.0f;
+    if (state.transfer != Transfer::Hlg) return 1.0f;
+    const float peak = state.peak_nits / 1000;
+    return peak >= 0.4f && peak <= 2.0f ? 1.2f + 0.42f * std::log10(peak) : 1.2f * std::pow(1.111f, std::log2(peak));
 }
 
 /// What a kernel writes: an SRGB format encodes by itself.

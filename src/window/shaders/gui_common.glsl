@@ -41,7 +41,10 @@ vec3 pq_encode(vec3 nits) {
 }
 vec3 hlg_encode(vec3 light) {
     light = clamp(light, 0.0, 1.0);
-    float ootf = 1.2 + 0.42 * log(target_peak / 1000.0) / log(10.0);
+    // Table 5, and beyond its range the extended formula of ITU-R BT.2390.
+    float octaves = log2(target_peak / 1000.0);
+    bool is_in_range = target_peak >= 400.0 && target_peak <= 2000.0;
+    float ootf = is_in_range ? 1.2 + 0.42 * log(2.0) / log(10.0) * octaves : 1.2 * pow(1.111, octaves);
     vec3 scene = light * pow(max(dot(light, vec3(0.2627, 0.6780, 0.0593)), 1e-9), (1.0 - ootf) / ootf);
     vec3 power = 0.17883277 * log(max(12.0 * scene - 0.28466892, vec3(1e-6))) + 0.55991073;
     return mix(power, sqrt(3.0 * scene), lessThanEqual(scene, vec3(1.0 / 12.0)));
