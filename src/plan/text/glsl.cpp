@@ -8,19 +8,11 @@
 #include <utility>
 
 #include "gpu/shader/glsl_scan.hpp"
+#include "plan/text/effect_files.hpp"
 
 namespace darkroom::plan {
 
 namespace {
-
-const EffectFile* find_file(std::span<const EffectFile> files, std::string_view name) {
-    const auto found = std::ranges::find(files, name, &EffectFile::name);
-    return found == files.end() ? nullptr : &*found;
-}
-std::string_view file_text(std::span<const EffectFile> files, std::string_view name) {
-    const EffectFile* const file = find_file(files, name);
-    return file == nullptr ? std::string_view{} : file->text;
-}
 
 struct Scalar {
     gpu::BlockMember::Type type;
@@ -79,74 +71,6 @@ const char* glsl_type(Kind kind) {
 
 std::string block_prefix(const EffectInfo& info, std::uint32_t place) {
     return fmt::format("{}{}_", info.name, place_suffix(place));
-}
-
-/// The name in a line `#include "NAME"`, else nothing.
-std::string_view included_name(std::string_view line) {
-    constexpr std::string_view directive = "#include \"";
-    if (!line.starts_with(directive)) return {};
-    return line.substr(directive.size(), line.rfind('"') - directive.size());
-}
-
-/// Calls visit(line, number) for each line, without its end.
-template <class Visit>
-void for_each_line(std::string_view text, const Visit& visit) {
-    std::size_t number = 1;
-    for (std::size_t i = 0; i < text.size(); ++number) {
-        const std::size_t end = std::min(text.find('\n', i), text.size());
-        visit(text.substr(i, end - i), number);
-        i = end + 1;
-    }
-}
-
-Result<void> append_with_includes(std::string& out, std::string_view text, const std::string& shown_name, int depth) {
-    out += fmt::format("#line 1 \"{}\"\n", shown_name);
-    Result<void> result;
-    for_each_line(text, [&](std::string_view line, std::size_t number) {
-        const std::string_view name = included_name(line);
-        if (!result) return;
-        if (name.empty()) {
-            out.append(line).push_back('\n');
-            return;
-        }
-        const std::string_view included = file_text(shared_files(), name);
-        if (included.empty() || depth > 8) {
-            result = user_error(fmt::format("{}:{}: #include \"{}\": there is no such file in effects/shared",
-                                            shown_name, number, name));
-            return;
-        }
-        result = append_with_includes(out, included, fmt::format("effects/{}", name), depth + 1);
-        out += fmt::format("#line {} \"{}\"\n", number + 1, shown_name);
-    });
-    return result;
-}
-
-/// Where the device is a CPU: the form of a file for such, if it has one. Names of a user's files have no dot.
-std::string form_of(const EffectInfo& info, std::string_view file, bool is_software) {
-    std::string other = fmt::format("{}.software.glsl", file.substr(0, file.rfind('.')));
-    const bool is_there = find_file(info.files, other) != nullptr || find_file(shared_files(), other) != nullptr;
-    return is_software && is_there ? std::move(other) : std::string(file);
-}
-
-/// Lines that include a file of the effect's own folder, replaced by it, and those of the others in the right form.
-std::string with_own_files(const EffectInfo& info, std::string_view text, std::string_view shown_name, bool is_software,
-                           int depth = 0) {
-    std::string out;
-    for_each_line(text, [&](std::string_view line, std::size_t number) {
-        if (included_name(line).empty()) {
-            out.append(line).push_back('\n');
-            return;
-        }
-        const std::string name = form_of(info, included_name(line), is_software);
-        const std::string_view included = file_text(info.files, name);
-        const std::string shown = fmt::format("effects/{}/{}", info.name, name);
-        if (included.empty() || depth > 8)
-            out += fmt::format("#include \"{}\"\n", name);
-        else
-            out += fmt::format("#line 1 \"{}\"\n{}\n#line {} \"{}\"\n", shown,
-                               with_own_files(info, included, shown, is_software, depth + 1), number + 1, shown_name);
-    });
-    return out;
 }
 
 /// Names in the shared files keep theirs, even where they begin with an effect's name.
@@ -302,14 +226,8 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::s
 
 Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, std::uint32_t place,
                                std::span<const std::string> images, bool is_software) {
-    const std::string file = form_of(info, name, is_software);
-    const EffectFile* const own = find_file(info.files, file);
-    const std::string_view text = own != nullptr ? own->text : file_text(shared_files(), file);
-    const bool is_shared = own == nullptr && !text.empty();
-    std::string shown = is_shared ? fmt::format("effects/{}", file) : fmt::format("effects/{}/{}", info.name, file);
-    if (own != nullptr && !own->shown.empty()) shown = own->shown;
-    const std::string expanded = with_own_files(info, text, shown, is_software);
-    if (expanded.empty()) return user_error(fmt::format("{}: there is no such file", shown));
+    const OwnText own = own_text(info, name, is_software);
+    if (own.glsl.empty()) return user_error(fmt::format("{}: there is no such file", own.shown));
 
     EffectText out;
     std::set<std::string_view> members;
@@ -318,7 +236,7 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, st
     const std::string choice_prefix = std::string(type) + "_";
     std::string renamed;
     std::string_view function, before;
-    gpu::GlslScanner scanner(expanded);
+    gpu::GlslScanner scanner(own.glsl);
     for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next()) {
         renamed += token.text;
         if (token.kind == gpu::Token::Kind::Blank) continue;
@@ -342,7 +260,7 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, st
         const bool may_be_literal = row.is_loop_count || row.kind == Kind::Choice || row.kind == Kind::Toggle;
         if (may_be_literal && members.contains(row.name)) out.literal_rows.push_back(&row);
     }
-    if (auto ok = append_with_includes(out.glsl, renamed, shown, 0); !ok) return failure(std::move(ok));
+    if (auto ok = append_with_includes(out.glsl, renamed, own.shown); !ok) return failure(std::move(ok));
     out.asks_rays_meet = out.glsl.find("rays_meet") != std::string::npos;
     return out;
 }
@@ -473,7 +391,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
 
     std::string helpers;
     const auto include = [&](std::string_view name) {
-        return append_with_includes(helpers, file_text(shared_files(), name), fmt::format("effects/{}", name), 0);
+        return append_with_includes(helpers, fmt::format("#include \"{}\"\n", name), "fused kernel");
     };
     if (has_merge)
         if (auto ok = include("shared/merge.glsl"); !ok) return failure(std::move(ok));

@@ -56,8 +56,7 @@ struct EffectText {
     bool loads_picture_alone = true;  ///< names it in load(), load_clamped() and size(), and nowhere else
     bool asks_parameters = false;     ///< calls <effect>_parameters(); a pass that does not has none in its block
 };
-/// `is_software`: of a file with another form for drivers on the CPU, "NAME.software.glsl" beside "NAME.glsl", that
-/// form is taken, whoever includes it.
+/// `name`, `is_software`: as own_text of plan/text/effect_files.hpp takes them.
 [[nodiscard]] Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, std::uint32_t place,
                                              std::span<const std::string> images, bool is_software);
 

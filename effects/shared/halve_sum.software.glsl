@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
-// shared/halve.glsl by its sixteen texels.
-#include "shared/finite.glsl"
-#include "shared/sanitize.glsl"
-
+// The sum of shared/halve.glsl by its sixteen texels.
 vec4 halve_weights(float f) {
     return 0.25 * vec4(1.0 - f, 2.0 - f, 1.0 + f, f);
 }
@@ -23,13 +20,4 @@ vec3 halve_sum(vec2 b, vec2 f, bool is_clean) {
     vec4 y = halve_weights(f.y);
     return halve_row(a, x, is_clean) * y.x + halve_row(a + ivec2(0, 1), x, is_clean) * y.y +
            halve_row(a + ivec2(0, 2), x, is_clean) * y.z + halve_row(a + ivec2(0, 3), x, is_clean) * y.w;
-}
-
-vec4 shade(Pixel pixel) {
-    vec2 position = pixel.uv * vec2(size(halve_input)) - 0.5;
-    vec2 b = floor(position);
-    vec2 f = position - b;
-    vec3 sum = halve_sum(b, f, true);
-    [[dont_flatten]] if (!is_finite(sum)) sum = halve_sum(b, f, false);
-    return vec4(clamp(sum, -65504.0, 65504.0), 1.0);
 }
