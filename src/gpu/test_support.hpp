@@ -51,6 +51,11 @@ class SharedDevice : public ::testing::Environment {
         if (smallest_ == nullptr) smallest_ = std::make_unique<SmallestDevice>(must(create()));
         return smallest_->device();
     }
+    /// The smallest device once more, as a ComputeQueue lets it look.
+    Device smallest_again() {
+        static_cast<void>(smallest());
+        return smallest_->adopted();
+    }
     static bool is_smallest() {
         const char* const variable = std::getenv("DARKROOM_TEST_DEVICE");
         return variable != nullptr && std::string_view(variable) == "smallest";

@@ -297,6 +297,9 @@ Result<> check_images(const gpu::Context& context, const CompileDesc& desc) {
                                           gpu::format_name(use.format), input.allowed));
         if (auto ok = check_input(context, input.name, use); !ok) return ok;
     }
+    // Where a frame has no cascades a map of ones is read, and only graphics clears an image of depth.
+    if (desc.has_shadows && !context.traits.has_graphics)
+        return user_error("compile: has_shadows: allowed where the device's queue family has graphics");
     if (auto ok = check_target(context, "target", desc.target); !ok) return ok;
     return check_watches(context, desc);
 }

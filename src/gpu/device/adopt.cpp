@@ -102,14 +102,8 @@ std::vector<std::string> missing_capabilities(const Context& context, const Adop
     if (desc.queue_family >= families.size()) {
         missing.push_back(
             fmt::format("queue family {} (the device has 0 to {})", desc.queue_family, families.size() - 1));
-    } else {
-        const VkQueueFlags flags = families[desc.queue_family].queueFlags;
-        if ((flags & VK_QUEUE_GRAPHICS_BIT) == 0) {
-            missing.push_back(fmt::format("graphics in queue family {}", desc.queue_family));
-        }
-        if ((flags & VK_QUEUE_COMPUTE_BIT) == 0) {
-            missing.push_back(fmt::format("compute in queue family {}", desc.queue_family));
-        }
+    } else if ((families[desc.queue_family].queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) {
+        missing.push_back(fmt::format("compute in queue family {}", desc.queue_family));
     }
     const char* const where = desc.enabled_features == nullptr ? " (enabled_features is null)" : "";
     if (!enabled.has_synchronization2) missing.push_back(fmt::format("the feature synchronization2{}", where));

@@ -124,7 +124,13 @@ Result<> Context::check(VkResult result, std::string_view what) const {
 
 VkFormatFeatureFlags Context::features_of(VkFormat format) const {
     if (is_assumed) return assumed_features(format);
-    const auto planned = [&](VkFormatFeatureFlags own) { return profile ? planned_features(format, own) : own; };
+    constexpr VkFormatFeatureFlags of_graphics = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT |
+                                                 VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT |
+                                                 VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+    const auto planned = [&](VkFormatFeatureFlags own) {
+        if (!traits.has_graphics) own &= ~of_graphics;
+        return profile ? planned_features(format, own) : own;
+    };
     {
         const std::shared_lock lock(formats_mutex_);
         if (const auto known = formats_.find(format); known != formats_.end()) return planned(known->second);
@@ -216,6 +222,8 @@ Result<> Context::finish(std::span<const std::byte> baked) {
 
     const std::vector<VkQueueFamilyProperties> families = queue_families(vk, physical_device);
     traits.timestamp_valid_bits = queue_family < families.size() ? families[queue_family].timestampValidBits : 0;
+    traits.has_graphics =
+        queue_family >= families.size() || (families[queue_family].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
     traits.timestamp_period_ns = traits.timestamp_valid_bits > 0 ? static_cast<double>(limits.timestampPeriod) : 0.0;
 
     shaders = std::make_unique<ShaderCompiler>(cache_folder.empty() ? cache_folder : cache_folder / "shaders");

@@ -30,6 +30,7 @@ class ShaderCompiler;
 
 struct Traits {
     bool is_software = false;
+    bool has_graphics = true;                   ///< the queue family; without, no image is rendered to or blitted
     bool has_extended_storage_formats = false;  ///< shaderStorageImageExtendedFormats: r8, rg16f, r11f_g11f_b10f ...
     bool has_storage_write_without_format = false;
     bool has_debug_labels = false;

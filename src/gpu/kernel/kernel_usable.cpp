@@ -71,12 +71,14 @@ Result<> can_render(const Context& context, const KernelSpec& spec, std::size_t 
     return {};
 }
 
-Result<> can_compute(const Context& context, const KernelSpec& spec, Stage stage) {
+Result<> can_run(const Context& context, const KernelSpec& spec, Stage stage) {
     const auto refuse = [&](const std::string& why) -> Result<> {
         return user_error(fmt::format("kernel \"{}\" ({}): {}", spec.name, stage_name(stage), why));
     };
+    const bool is_raster = stage == Stage::Raster;
+    if (is_raster && !context.traits.has_graphics) return refuse("the device's queue family has no graphics");
     const bool is_written = std::ranges::any_of(spec.buffers, &KernelBuffer::is_written);
-    if (stage == Stage::Raster && (spec.compute || is_written)) return refuse("a compute pass runs in compute alone");
+    if (is_raster && (spec.compute || is_written)) return refuse("a compute pass runs in compute alone");
     if (!spec.compute) return {};
     const Traits& traits = context.traits;
     const auto [width, height] = spec.workgroup;
@@ -98,7 +100,7 @@ Result<> usable(const Context& context, const KernelSpec& spec, Stage stage) {
         return user_error(
             fmt::format("kernel \"{}\": {} outputs, but an additive kernel has 1", spec.name, spec.outputs.size()));
     }
-    if (auto checked = can_compute(context, spec, stage); !checked) return checked;
+    if (auto checked = can_run(context, spec, stage); !checked) return checked;
     for (const KernelImage& image : spec.images) {
         if (image.storage_format == VK_FORMAT_UNDEFINED) continue;
         if (Result<> checked = can_load(context, spec, stage, image); !checked) return checked;

@@ -124,7 +124,42 @@ void dispatch(VkCommandBuffer commands, std::uint32_t x, std::uint32_t y, std::u
     smallest().real.CmdDispatch(commands, x, y, z);
 }
 
+/// Refuses what only a queue with graphics can do, where it has none.
+bool is_graphics_refused(VkCommandBuffer commands, std::string_view what) {
+    if (smallest().has_graphics) return false;
+    refuse(commands, fmt::format("{} on a queue without graphics", what));
+    return true;
+}
+
+void bind_pipeline(VkCommandBuffer commands, VkPipelineBindPoint point, VkPipeline pipeline) {
+    if (point == VK_PIPELINE_BIND_POINT_GRAPHICS && is_graphics_refused(commands, "a graphics pipeline")) return;
+    smallest().real.CmdBindPipeline(commands, point, pipeline);
+}
+
+void clear_depth(VkCommandBuffer commands, VkImage image, VkImageLayout layout, const VkClearDepthStencilValue* value,
+                 std::uint32_t count, const VkImageSubresourceRange* ranges) {
+    if (is_graphics_refused(commands, "clearing depth")) return;
+    smallest().real.CmdClearDepthStencilImage(commands, image, layout, value, count, ranges);
+}
+
+void pipeline_barrier(VkCommandBuffer commands, const VkDependencyInfo* info) {
+    constexpr VkPipelineStageFlags2 others =
+        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT |
+        VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT |
+        VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT;
+    VkPipelineStageFlags2 stages = 0;
+    for (const auto& barrier : std::span(info->pMemoryBarriers, info->memoryBarrierCount))
+        stages |= barrier.srcStageMask | barrier.dstStageMask;
+    for (const auto& barrier : std::span(info->pBufferMemoryBarriers, info->bufferMemoryBarrierCount))
+        stages |= barrier.srcStageMask | barrier.dstStageMask;
+    for (const auto& barrier : std::span(info->pImageMemoryBarriers, info->imageMemoryBarrierCount))
+        stages |= barrier.srcStageMask | barrier.dstStageMask;
+    if ((stages & ~others) != 0 && is_graphics_refused(commands, "a barrier with stages of graphics")) return;
+    smallest().real.CmdPipelineBarrier2(commands, info);
+}
+
 void begin_rendering(VkCommandBuffer commands, const VkRenderingInfo* info) {
+    if (is_graphics_refused(commands, "rendering")) return;
     const VkPhysicalDeviceLimits& limits = smallest().limits;
     const VkRect2D& area = info->renderArea;
     if (info->colorAttachmentCount > limits.maxColorAttachments)
@@ -151,6 +186,7 @@ void set_viewport(VkCommandBuffer commands, std::uint32_t first, std::uint32_t c
 
 void blit(VkCommandBuffer commands, VkImage source, VkImageLayout source_layout, VkImage target,
           VkImageLayout target_layout, std::uint32_t count, const VkImageBlit* regions, VkFilter filter) {
+    if (is_graphics_refused(commands, "a blit")) return;
     const bool is_linear = filter != VK_FILTER_NEAREST;
     if (!can(source, VK_FORMAT_FEATURE_BLIT_SRC_BIT) || !can(target, VK_FORMAT_FEATURE_BLIT_DST_BIT))
         return refuse(commands, fmt::format("a blit from format {} to {}", format_name(format_of(source)),
@@ -174,6 +210,9 @@ void replace_commands(Replacements& functions) {
     functions["vkCmdPushConstants"] = as_void(push_constants);
     functions["vkCmdDispatch"] = as_void(dispatch);
     functions["vkCmdBeginRendering"] = as_void(begin_rendering);
+    functions["vkCmdBindPipeline"] = as_void(bind_pipeline);
+    functions["vkCmdClearDepthStencilImage"] = as_void(clear_depth);
+    functions["vkCmdPipelineBarrier2"] = as_void(pipeline_barrier);
     functions["vkCmdSetViewport"] = as_void(set_viewport);
     functions["vkCmdBlitImage"] = as_void(blit);
     functions["vkCmdWriteTimestamp2"] = as_void(write_timestamp);

@@ -12,6 +12,15 @@
 
 namespace darkroom::gpu::test {
 
+/// While it lives, the queue of the smallest device has no graphics, and a device adopted then knows it.
+class ComputeQueue {
+  public:
+    ComputeQueue();
+    ComputeQueue(const ComputeQueue&) = delete;
+    ComputeQueue& operator=(const ComputeQueue&) = delete;
+    ~ComputeQueue();
+};
+
 /// One at a time.
 class SmallestDevice {
   public:
@@ -22,6 +31,8 @@ class SmallestDevice {
     ~SmallestDevice();
     /// Adopted, with the queue that tests submit to.
     [[nodiscard]] Device& device() { return *adopted_; }
+    /// Once more, by who looks at another queue.
+    [[nodiscard]] Device adopted() const;
     /// Messages of the validation layer so far.
     [[nodiscard]] std::uint64_t validation_messages() const { return real_.validation_messages(); }
 

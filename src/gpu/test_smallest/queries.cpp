@@ -51,6 +51,7 @@ void get_queue_families(VkPhysicalDevice device, std::uint32_t* count, VkQueueFa
     smallest().real.GetPhysicalDeviceQueueFamilyProperties(device, count, families);
     for (std::uint32_t family = 0; families != nullptr && family < *count; ++family) {
         families[family].timestampValidBits = 0;
+        if (!smallest().has_graphics) families[family].queueFlags &= ~VkQueueFlags{VK_QUEUE_GRAPHICS_BIT};
     }
 }
 

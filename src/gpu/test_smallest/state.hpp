@@ -21,6 +21,7 @@ struct SmallestState {
     Dispatch real;  ///< of the driver
     VkPhysicalDeviceLimits limits{};
     LogSink log;
+    bool has_graphics = true;                   ///< its queue
     std::array<std::uint32_t, 2> real_types{};  ///< the driver's memory type for each of its two
 
     std::mutex mutex;  ///< guards what follows
