@@ -26,15 +26,19 @@ constexpr auto motion_blur_rows =
 
 const MotionBlur& blur_of(const void* parameters) { return *static_cast<const MotionBlur*>(parameters); }
 
+/// Where the distances come from: the frame's depth, or half_depth().
+enum class Distances : std::uint8_t { Frame, Half };
+
 /// How far velocities reach, and how depths are distances; see the shaders. After a cut nothing has a velocity.
-template <std::uint32_t denominator>
+template <std::uint32_t denominator, Distances from>
 void reach_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const MotionBlur& blur = blur_of(parameters);
-    const DepthConstants depth = depth_constants(*context.camera);
+    const DepthConstants depth = from == Distances::Half ? DepthConstants{} : depth_constants(*context.camera);
     constexpr float pixels{denominator};
     const float open = context.camera->is_cut ? 0.0f : blur.shutter_angle / 360.0f;
     const float limit = blur.max_radius / 100.0f * static_cast<float>(context.frame_extent.height);
-    out[0] = {open / 2 / pixels, std::max(limit / pixels, 1e-3f), pixels, depth.sky};
+    out[0] = {open / 2 / pixels, std::max(limit / pixels, 1e-3f), from == Distances::Half ? -pixels : pixels,
+              depth.sky};
     out[1] = depth.distance;
 }
 
@@ -68,10 +72,10 @@ Rows inverse_of(const Rows& view) {
 }
 
 /// From view space to x, y (down) and w of the clip space of a moment ago.
-template <std::uint32_t denominator>
+template <std::uint32_t denominator, Distances from>
 void camera_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
     const Camera& camera = *context.camera;
-    reach_constants<denominator>(parameters, context, out);
+    reach_constants<denominator, from>(parameters, context, out);
     const Rows before = product(rows_of(camera.previous_projection),
                                 product(rows_of(camera.previous_view), inverse_of(rows_of(camera.view))));
     const double down = camera.is_y_down ? 1 : -1;
@@ -86,19 +90,27 @@ void camera_constants(const void* parameters, const PassContext& context, std::s
 }
 
 /// By what its velocity image says, else by the camera's motion.
-template <std::uint32_t denominator>
-PassImage add_motion(PassBuilder& builder) {
+template <std::uint32_t denominator, Distances from>
+PassImage add_motion(PassBuilder& builder, PassImage depth) {
     const bool is_given = builder.has_frame_image(FrameImage::Velocity);
     KernelPassDesc desc{
         .name = is_given ? "motion" : "motion of the camera",
         .shader = is_given ? "motion_blur_given.glsl" : "motion_blur_camera.glsl",
-        .inputs = {{.name = "motion_blur_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
+        .inputs = {{.name = "motion_blur_depth", .image = depth, .is_loaded = true}},
         .output = builder.create({.name = "motion", .denominator = denominator}),
         .custom_vectors = is_given ? 2u : 6u,
-        .constants = is_given ? reach_constants<denominator> : camera_constants<denominator>};
+        .constants = is_given ? reach_constants<denominator, from> : camera_constants<denominator, from>};
     if (is_given)
         desc.inputs.push_back({.name = "motion_blur_velocity", .image = velocity(builder), .is_loaded = true});
     return builder.add(desc);
+}
+
+PassImage add_motion(PassBuilder& builder, bool is_half) {
+    const PassImage depth = builder.frame_image(FrameImage::Depth);
+    if (!is_half) return add_motion<1, Distances::Frame>(builder, depth);
+    const PassImage half = half_depth_if_made(builder);
+    const bool is_made = half.index != PassImage{}.index;
+    return is_made ? add_motion<2, Distances::Half>(builder, half) : add_motion<2, Distances::Frame>(builder, depth);
 }
 
 /// The picture as it is smeared.
@@ -110,7 +122,7 @@ PassImage add_color(PassBuilder& builder, bool is_half) {
     if (is_half) {
         desc.inputs.push_back({.name = "motion_blur_depth", .image = builder.frame_image(FrameImage::Depth)});
         desc.custom_vectors = 2;
-        desc.constants = reach_constants<2>;
+        desc.constants = reach_constants<2, Distances::Frame>;
     }
     return builder.add(desc);
 }
@@ -131,7 +143,7 @@ PassImage add_tiles(PassBuilder& builder, PassImage motion) {
 
 void build(PassBuilder& builder) {
     const bool is_half = blur_of(builder.parameters()).resolution == MotionBlurResolution::Half;
-    const PassImage motion = is_half ? add_motion<2>(builder) : add_motion<1>(builder);
+    const PassImage motion = add_motion(builder, is_half);
     builder.side(
         "motion_blur_smeared",
         builder.add({.name = "smear",

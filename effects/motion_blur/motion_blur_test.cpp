@@ -91,6 +91,48 @@ TEST(EffectMotionBlur, GpuMatchesReferenceWhereTheCameraMoves) {
     }
 }
 
+// Occlusion of no strength, before it in the stack, asks for the distances of half the size. Some pixels are sprites,
+// whose normals have no length: such distances have a sign.
+TEST(EffectMotionBlur, TheDistancesOfAnotherEffectGiveTheSamePicture) {
+    const EffectInfo* const ssao = find_effect("ssao");
+    if (ssao == nullptr) GTEST_SKIP() << "this build has no ssao";
+    const auto numbers = [](const ReferenceImage& image, std::size_t channels) {
+        std::vector<float> out;
+        for (const Rgba& p : image.pixels)
+            for (std::size_t i = 0; i < channels; ++i)
+                out.push_back(static_cast<float>(std::array{p.r, p.g, p.b, p.a}[i]));
+        return out;
+    };
+    for (const bool has_velocity : {false, true}) {
+        Shot shot = has_velocity ? scene({16, 8}, {-7, 3}) : walk();
+        for (std::uint32_t x = 0; x < width; ++x) shot.depth.at(x, 0) = {1e10, 0, 0, 1};
+        shot.depth.at(20, 60) = {std::numeric_limits<double>::quiet_NaN(), 0, 0, 1};
+        ReferenceImage normals(width, height);
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x) normals.at(x, y) = {0, 0, y % 32 < 8 ? 0.0 : 1.0, 1};
+        const std::vector<float> color = numbers(shot.color, 4), depth = numbers(shot.depth, 1),
+                                 normal = numbers(normals, 3), velocity = numbers(shot.velocity, 2);
+        const auto develop = [&](bool has_ssao, bool has_normals) {
+            Composer composer(gpu::test::device(), {.frames_in_flight = 1});
+            if (has_ssao) gpu::test::must(composer.set(composer.add(*ssao, nullptr), "intensity", 0.0));
+            composer.add(half);
+            Developer developer(gpu::test::device(), {.target = DevelopTarget::SceneLinear});
+            DevelopInput input{.extent = {width, height}, .color = color, .depth = depth, .camera = shot.camera};
+            if (has_normals) input.normals = normal;
+            if (has_velocity) input.velocity = velocity;
+            return gpu::test::must(developer.develop(composer, input)).pixels;
+        };
+        const auto alone = develop(false, false);
+        for (const bool has_normals : {false, true}) {
+            const auto shared = develop(true, has_normals);
+            ASSERT_EQ(shared.size(), alone.size());
+            float worst = 0;
+            for (std::size_t i = 0; i < alone.size(); ++i) worst = std::max(worst, std::abs(shared[i] - alone[i]));
+            EXPECT_LE(worst, 0x1p-10F) << has_velocity << has_normals;
+        }
+    }
+}
+
 TEST(EffectMotionBlur, TheCamerasMotionIsAVelocity) {
     Shot by_camera = walk(), given = by_camera;
     given.velocity = ReferenceImage(width, height);

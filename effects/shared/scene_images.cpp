@@ -25,6 +25,29 @@ PassImage make_half_depth(PassBuilder& builder) {
          .constants = depth_vectors});
 }
 
+template <std::uint32_t step>
+PassImage make_surface_distance(PassBuilder& builder) {
+    const char* const name = step == 1 ? "surface distance" : "half surface distance";
+    return builder.add(
+        {.name = name,
+         .shader = "shared/surface_distance.glsl",
+         .inputs = {{.name = "shared_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true},
+                    {.name = "shared_normals", .image = builder.frame_image(FrameImage::Normals), .is_loaded = true}},
+         .output = builder.create({.name = name, .format = VK_FORMAT_R32_SFLOAT, .denominator = step}),
+         .custom_vectors = 2,
+         .constants = [](const void* parameters, const PassContext& context, std::span<PassVector> out) {
+             depth_vectors(parameters, context, out);
+             out[1][1] = step == 1 ? 0.0f : 1.0f;
+         }});
+}
+
+/// An image that an effect before asked for; else none.
+PassImage if_made(PassBuilder& builder, std::string_view name, ConditionFunction condition) {
+    return builder.shared(
+        name, [](PassBuilder&) { return PassImage{}; }, condition);
+}
+bool is_given(PassImage image) { return image.index != PassImage{}.index; }
+
 void velocity_constants(const void*, const PassContext& context, std::span<PassVector> out) {
     const Camera& camera = *context.camera;
     const VelocityKind& kind = camera.velocity;
@@ -136,7 +159,21 @@ PassImage linear_depth(PassBuilder& builder) {
 }
 
 PassImage half_depth(PassBuilder& builder, ConditionFunction condition) {
-    return builder.shared("half depth", make_half_depth, condition);
+    const PassImage surface = if_made(builder, "half surface distance", condition);
+    return is_given(surface) ? surface : builder.shared("half depth", make_half_depth, condition);
+}
+
+PassImage half_depth_if_made(PassBuilder& builder) {
+    const PassImage surface = if_made(builder, "half surface distance", nullptr);
+    return is_given(surface) ? surface : if_made(builder, "half depth", nullptr);
+}
+
+PassImage surface_distance(PassBuilder& builder, ConditionFunction condition) {
+    return builder.shared("surface distance", make_surface_distance<1>, condition);
+}
+
+PassImage half_surface_distance(PassBuilder& builder, ConditionFunction condition) {
+    return builder.shared("half surface distance", make_surface_distance<2>, condition);
 }
 
 PassImage velocity(PassBuilder& builder, ConditionFunction condition) {

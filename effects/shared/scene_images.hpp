@@ -9,8 +9,16 @@ namespace darkroom {
 
 /// Planar distance, R32F; 1e10 is sky.
 [[nodiscard]] PassImage linear_depth(PassBuilder& builder);
-/// The same of every second pixel of every second row: half the size, floored.
+/// The same of every second pixel of every second row: half the size, floored. Its sign is as in surface_distance, so
+/// that frames have one such image.
 [[nodiscard]] PassImage half_depth(PassBuilder& builder, ConditionFunction condition = nullptr);
+/// half_depth, where an effect before asked for it; else none, for whoever reads the frame's depth as cheaply.
+[[nodiscard]] PassImage half_depth_if_made(PassBuilder& builder);
+
+/// The distance, negative where the frame's normal has no length: no surface is there. For effects that know that the
+/// frame has normals. Half: of the pixels of half_depth.
+[[nodiscard]] PassImage surface_distance(PassBuilder& builder, ConditionFunction condition = nullptr);
+[[nodiscard]] PassImage half_surface_distance(PassBuilder& builder, ConditionFunction condition = nullptr);
 
 /// For what reads the depth image itself, by planar_distance.glsl: a depth d is at the planar distance
 /// (d x + y) / (d z + w). One number a pixel costs less so than an image of distances.

@@ -102,12 +102,6 @@ void upsample_constants(const void* parameters, const PassContext& context, std:
 }
 
 template <SsaoResolution resolution>
-void distance_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
-    depth_vectors(parameters, context, out);
-    out[1][1] = resolution == SsaoResolution::Half ? 1.0f : 0.0f;
-}
-
-template <SsaoResolution resolution>
 bool is_size_used(const void* parameters, const PassContext&, std::uint32_t) {
     return ssao_of(parameters).resolution == resolution;
 }
@@ -124,22 +118,8 @@ PassImage add_chain(PassBuilder& builder, PassImage turns) {
     const auto create = [&](const char* name, VkFormat format) {
         return builder.create({.name = name + suffix, .format = format, .denominator = is_half ? 2u : 1u});
     };
-    const auto add_distance = [&] {
-        return builder.add(
-            {.name = "distance" + suffix,
-             .shader = "ssao_distance.glsl",
-             .inputs = {{.name = "ssao_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true},
-                        {.name = "ssao_frame_normals",
-                         .image = builder.frame_image(FrameImage::Normals),
-                         .is_loaded = true}},
-             .output = create("distance", VK_FORMAT_R32_SFLOAT),
-             .custom_vectors = 2,
-             .constants = distance_constants<resolution>,
-             .condition = condition});
-    };
-    const PassImage distance = has_normals ? add_distance()
-                               : is_half   ? half_depth(builder, condition)
-                                           : linear_depth(builder);
+    const auto distance_of = has_normals ? (is_half ? half_surface_distance : surface_distance) : half_depth;
+    const PassImage distance = is_half || has_normals ? distance_of(builder, condition) : linear_depth(builder);
     const PassImage raw = builder.add({.name = "occlusion" + suffix,
                                        .shader = "ssao_occlusion.glsl",
                                        .inputs = {{.name = "ssao_distance", .image = distance, .is_loaded = true},

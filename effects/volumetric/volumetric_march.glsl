@@ -39,7 +39,7 @@ float volumetric_cascade(float sum, float left, float first, float end, vec4 sta
 }
 
 vec4 shade(Pixel pixel) {
-    float planar = load(volumetric_distance, pixel.texel).r;
+    float planar = abs(load(volumetric_distance, pixel.texel).r);
     // NaN counts as sky, which lies where half precision ends.
     planar = planar < 60000.0 ? max(planar, 0.0) : 60000.0;
     float jitter = load(volumetric_noise, pixel.texel & 63).r;

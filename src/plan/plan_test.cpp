@@ -319,6 +319,42 @@ TEST_F(ComposePlan, EveryImageThatIsReadCounts) {
     }
 }
 
+/// How many passes of a plan make the distances of half the size.
+std::size_t half_distances(const Plan& made) {
+    return static_cast<std::size_t>(std::ranges::count_if(made.passes, [](const PlanPass& pass) {
+        return pass.name.find("half depth") != pass.name.npos ||
+               pass.name.find("half surface distance") != pass.name.npos;
+    }));
+}
+
+TEST_F(ComposePlan, WhatReadsHalfTheDepthSharesOnePass) {
+    for (const char* const name : {"ssao", "volumetric", "motion_blur"})
+        if (find_effect(name) == nullptr) GTEST_SKIP() << "this build has no " << name;
+    CompileDesc desc = hd(VK_FORMAT_R16G16B16A16_SFLOAT);
+    desc.depth.format = VK_FORMAT_D32_SFLOAT;
+    desc.has_shadows = true;
+    const auto bytes_of = [](const Plan& made, std::string_view name) {
+        const auto pass = std::ranges::find(made.passes, name, &PlanPass::name);
+        return pass == made.passes.end() ? 0 : pass->bytes_read;
+    };
+    constexpr std::uint64_t depth = 4 * 1920 * 1080, half = depth / 4;
+    for (const VkFormat normals : {VK_FORMAT_UNDEFINED, VK_FORMAT_R16G16B16A16_SFLOAT}) {
+        desc.normals.format = normals;
+        composer.clear();
+        const Handle blur = add(composer, "motion_blur");
+        const Plan alone = plan(desc);
+        EXPECT_EQ(half_distances(alone), 0u) << "reading the depth itself costs no more: " << passes_of(alone);
+        EXPECT_EQ(bytes_of(alone, "motion_blur.motion of the camera"), depth);
+        EXPECT_TRUE(composer.remove(blur));
+        add(composer, "ssao");
+        add(composer, "volumetric");
+        add(composer, "motion_blur");
+        const Plan together = plan(desc);
+        EXPECT_EQ(half_distances(together), 1u) << passes_of(together);
+        EXPECT_EQ(bytes_of(together, "motion_blur.motion of the camera"), half);
+    }
+}
+
 TEST_F(ComposePlan, PassesThatThePresentValuesSwitchOffAreNotListed) {
     if (find_effect("ssao") == nullptr) GTEST_SKIP() << "this build has no effect with two ways to run";
     const Handle ssao = add(composer, "ssao"), blur = add(composer, "gaussian_blur", {{"radius", 5}});

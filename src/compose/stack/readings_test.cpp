@@ -37,7 +37,7 @@ TEST_F(ComposeReadings, ALookOfManyPairsOfMapAndLayerIsDrawn) {
     const gpu::test::Picture ui =
         gpu::test::upload(host.device.context(), test::pixels_of(test::uniform(20, 12, {0, 0, 0, 0})),
                           VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    for (const std::uint32_t pictures : {7U, 16U}) {
+    for (const std::uint32_t pictures : {7U, 20U}) {
         SCOPED_TRACE(pictures);
         ReferenceImage unfused;
         for (const bool is_fused : {false, true}) {

@@ -128,7 +128,10 @@ PassImage Builder::shared(std::string_view name, PassImage (*make)(PassBuilder&)
         const PassImage made = make(*this);
         shared_toggle_ = outer;
         const std::vector<std::int32_t> needs = std::exchange(shared_needs_, outer_needs);
-        if (made.index >= images_.size()) return {};
+        if (made.index >= images_.size()) {
+            planner_.program_.gates.resize(static_cast<std::size_t>(own));
+            return {};
+        }
         const Image& written = images_[made.index];
         found = planner_.shared_
                     .emplace(key, Planner::Shared{.version = written.version,

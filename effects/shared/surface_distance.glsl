@@ -5,7 +5,7 @@
 
 vec4 shade(Pixel pixel) {
     ivec2 texel = pixel.texel << int(custom[1].y);
-    vec3 normal = load(ssao_frame_normals, texel).xyz;
-    float planar = planar_distance(load(ssao_depth, texel).r, custom[0], custom[1].x);
+    vec3 normal = load(shared_normals, texel).xyz;
+    float planar = planar_distance(load(shared_depth, texel).r, custom[0], custom[1].x);
     return vec4(dot(normal, normal) > 0.0 ? planar : -planar, 0.0, 0.0, 0.0);
 }
