@@ -1,117 +1,64 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "graph/graph.hpp"
 
 namespace darkroom::graph {
 
-bool is_write(Use use) {
-    switch (use) {
-        case Use::StorageWrite:
-        case Use::StorageReadWrite:
-        case Use::ColorWrite:
-        case Use::ColorBlend:
-        case Use::BufferWrite:
-        case Use::BufferReadWrite:
-            return true;
-        default:
-            return false;
-    }
-}
+namespace {
 
-bool keeps_content(Use use) {
-    return use == Use::StorageReadWrite || use == Use::ColorBlend || use == Use::BufferReadWrite;
-}
+struct UseFacts {
+    VkPipelineStageFlags2 stages;
+    VkAccessFlags2 access;
+    VkImageLayout layout;
+    VkImageUsageFlags usage;
+    bool is_write = false, keeps_content = false;
+};
 
+/// In the order of Use.
+constexpr auto use_table = [] {
+    constexpr VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                    fragment = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                    attachment = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+    constexpr VkAccessFlags2 sampled = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                             loaded = VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
+                             stored = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                             blended = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
+                             drawn = VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, uniform = VK_ACCESS_2_UNIFORM_READ_BIT;
+    constexpr VkImageLayout read_only = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, general = VK_IMAGE_LAYOUT_GENERAL,
+                            target = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, no_layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    constexpr VkImageUsageFlags as_sampled = VK_IMAGE_USAGE_SAMPLED_BIT, as_storage = VK_IMAGE_USAGE_STORAGE_BIT,
+                                as_target = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    return std::array<UseFacts, use_count>{
+        {{compute, sampled, read_only, as_sampled},
+         {fragment, sampled, read_only, as_sampled},
+         {compute, sampled, general, as_sampled},
+         {fragment, sampled, general, as_sampled},
+         {compute, loaded, general, as_storage},
+         {fragment, loaded, general, as_storage},
+         {compute, stored, general, as_storage, true},
+         {compute, loaded | stored, general, as_storage, true, true},
+         {attachment, drawn, target, as_target, true},
+         {attachment, blended | drawn, target, as_target, true, true},
+         {compute, loaded | uniform, no_layout, 0},
+         {fragment, loaded | uniform, no_layout, 0},
+         {compute, stored, no_layout, 0, true},
+         {compute, loaded | stored, no_layout, 0, true, true},
+         {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT, no_layout, 0}}};
+}();
+const UseFacts& facts_of(Use use) { return use_table[static_cast<std::size_t>(use)]; }
+
+}  // namespace
+
+bool is_write(Use use) { return facts_of(use).is_write; }
+bool keeps_content(Use use) { return facts_of(use).keeps_content; }
 bool is_of_buffers(Use use) { return use >= Use::BufferRead; }
-
-VkPipelineStageFlags2 stages_of(Use use) {
-    switch (use) {
-        case Use::SampledCompute:
-        case Use::SampledGeneralCompute:
-        case Use::StorageRead:
-        case Use::StorageWrite:
-        case Use::StorageReadWrite:
-        case Use::BufferRead:
-        case Use::BufferWrite:
-        case Use::BufferReadWrite:
-            return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-        case Use::SampledFragment:
-        case Use::SampledGeneralFragment:
-        case Use::StorageReadFragment:
-        case Use::BufferReadFragment:
-            return VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-        case Use::BufferCopy:
-            return VK_PIPELINE_STAGE_2_COPY_BIT;
-        case Use::ColorWrite:
-        case Use::ColorBlend:
-            return VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
-    }
-    return VK_PIPELINE_STAGE_2_NONE;
-}
-
-VkAccessFlags2 access_of(Use use) {
-    switch (use) {
-        case Use::SampledCompute:
-        case Use::SampledFragment:
-        case Use::SampledGeneralCompute:
-        case Use::SampledGeneralFragment:
-            return VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-        case Use::StorageRead:
-        case Use::StorageReadFragment:
-            return VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
-        case Use::StorageWrite:
-        case Use::BufferWrite:
-            return VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-        case Use::BufferRead:
-        case Use::BufferReadFragment:
-            return VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
-        case Use::BufferCopy:
-            return VK_ACCESS_2_TRANSFER_READ_BIT;
-        case Use::BufferReadWrite:
-        case Use::StorageReadWrite:
-            return VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
-        case Use::ColorWrite:
-            return VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-        case Use::ColorBlend:
-            return VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-    }
-    return VK_ACCESS_2_NONE;
-}
-
-VkImageLayout layout_of(Use use) {
-    switch (use) {
-        case Use::SampledCompute:
-        case Use::SampledFragment:
-            return VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-        case Use::ColorWrite:
-        case Use::ColorBlend:
-            return VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-        default:
-            return is_of_buffers(use) ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_GENERAL;
-    }
-}
-
-VkImageUsageFlags usage_of(Use use) {
-    switch (use) {
-        case Use::SampledCompute:
-        case Use::SampledFragment:
-        case Use::SampledGeneralCompute:
-        case Use::SampledGeneralFragment:
-            return VK_IMAGE_USAGE_SAMPLED_BIT;
-        case Use::StorageRead:
-        case Use::StorageReadFragment:
-        case Use::StorageWrite:
-        case Use::StorageReadWrite:
-            return VK_IMAGE_USAGE_STORAGE_BIT;
-        case Use::ColorWrite:
-        case Use::ColorBlend:
-            return VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-        default:
-            return 0;
-    }
-}
+VkPipelineStageFlags2 stages_of(Use use) { return facts_of(use).stages; }
+VkAccessFlags2 access_of(Use use) { return facts_of(use).access; }
+VkImageLayout layout_of(Use use) { return facts_of(use).layout; }
+VkImageUsageFlags usage_of(Use use) { return facts_of(use).usage; }
 
 VkExtent2D Size::of(const Extents& extents) const {
     const VkExtent2D frame = extents.of(extent);

@@ -14,59 +14,32 @@ namespace darkroom::plan {
 
 namespace {
 
-struct Scalar {
-    gpu::BlockMember::Type type;
-    const char* suffix;
+/// How a row's value stands in shaders, and which scalars of a block it is.
+struct Form {
+    Kind kind{};
+    std::string_view type;
+    gpu::BlockMember::Type scalar{};
+    std::string_view components{};  ///< none: it is one scalar
 };
-std::span<const Scalar> scalars_of(Kind kind) {
-    using enum gpu::BlockMember::Type;
-    static constexpr Scalar real[] = {{Float, ""}}, integer[] = {{Int, ""}}, natural[] = {{Uint, ""}};
-    static constexpr Scalar vector[] = {{Float, "_x"}, {Float, "_y"}, {Float, "_z"}, {Float, "_w"}};
-    static constexpr Scalar rgb[] = {{Float, "_r"}, {Float, "_g"}, {Float, "_b"}};
-    switch (kind) {
-        case Kind::Float:
-            return real;
-        case Kind::Int:
-            return integer;
-        case Kind::Toggle:
-        case Kind::Choice:
-            return natural;
-        case Kind::Vec2:
-            return std::span(vector).first(2);
-        case Kind::Vec3:
-            return std::span(vector).first(3);
-        case Kind::Vec4:
-            return vector;
-        case Kind::Rgb:
-            return rgb;
-        case Kind::Curve:
-        case Kind::Resource:
-            break;
-    }
-    return {};
-}
+constexpr std::array forms{Form{Kind::Float, "float", gpu::BlockMember::Type::Float},
+                           Form{Kind::Int, "int", gpu::BlockMember::Type::Int},
+                           Form{Kind::Toggle, "uint", gpu::BlockMember::Type::Uint},
+                           Form{Kind::Choice, "uint", gpu::BlockMember::Type::Uint},
+                           Form{Kind::Vec2, "vec2", gpu::BlockMember::Type::Float, "xy"},
+                           Form{Kind::Vec3, "vec3", gpu::BlockMember::Type::Float, "xyz"},
+                           Form{Kind::Vec4, "vec4", gpu::BlockMember::Type::Float, "xyzw"},
+                           Form{Kind::Rgb, "vec3", gpu::BlockMember::Type::Float, "rgb"}};
 
-const char* glsl_type(Kind kind) {
-    switch (kind) {
-        case Kind::Float:
-            return "float";
-        case Kind::Int:
-            return "int";
-        case Kind::Toggle:
-        case Kind::Choice:
-            return "uint";
-        case Kind::Vec2:
-            return "vec2";
-        case Kind::Vec3:
-        case Kind::Rgb:
-            return "vec3";
-        case Kind::Vec4:
-            return "vec4";
-        case Kind::Curve:
-        case Kind::Resource:
-            break;
-    }
-    return "";
+/// Of a curve the effect makes vectors (PassBuilder::end_constants), of a resource tables.
+bool is_in_block(const ParamInfo& row) { return row.kind != Kind::Curve && row.kind != Kind::Resource; }
+const Form& form_of(const ParamInfo& row) { return *std::ranges::find(forms, row.kind, &Form::kind); }
+
+/// Calls visit(name) for each scalar of a row.
+template <class Visit>
+void for_each_scalar(const ParamInfo& row, const std::string& prefix, const Visit& visit) {
+    const std::string name = fmt::format("{}{}", prefix, row.name);
+    if (form_of(row).components.empty()) visit(name);
+    for (const char component : form_of(row).components) visit(fmt::format("{}_{}", name, component));
 }
 
 std::string block_prefix(const EffectInfo& info, std::uint32_t place) {
@@ -86,9 +59,6 @@ const std::set<std::string_view>& shared_words() {
     }();
     return words;
 }
-
-/// Of a curve the effect makes vectors (PassBuilder::end_constants), of a resource tables.
-bool is_in_block(const ParamInfo& row) { return row.kind != Kind::Curve && row.kind != Kind::Resource; }
 
 }  // namespace
 
@@ -177,10 +147,11 @@ void append_header_members(const FusedStep& step, std::vector<gpu::BlockMember>&
 
 void append_parameter_members(const EffectInfo& info, std::uint32_t place, std::vector<gpu::BlockMember>& out) {
     const std::string prefix = block_prefix(info, place);
-    for (const ParamInfo& row : info.parameters.rows) {
-        const std::string name = fmt::format("{}{}", prefix, row.name);
-        for (const Scalar& scalar : scalars_of(row.kind)) out.push_back({scalar.type, name + scalar.suffix});
-    }
+    for (const ParamInfo& row : info.parameters.rows)
+        if (is_in_block(row))
+            for_each_scalar(row, prefix, [&](std::string name) {
+                out.push_back({form_of(row).scalar, std::move(name)});
+            });
 }
 
 namespace {
@@ -192,7 +163,7 @@ std::string parameter_struct(const ParamTable& table, std::uint32_t place) {
     std::string members, constants;
     for (const ParamInfo& row : table.rows) {
         if (!is_in_block(row)) continue;
-        members += fmt::format("    {} {};\n", glsl_type(row.kind), row.name);
+        members += fmt::format("    {} {};\n", form_of(row).type, row.name);
         for (std::size_t i = 0; i < row.choices.size(); ++i)
             constants +=
                 fmt::format("const uint {}_{}_{}{} = {}u;\n", table.struct_name, row.name, row.choices[i], suffix, i);
@@ -209,13 +180,14 @@ std::string parameter_loader(const EffectInfo& info, std::uint32_t place, std::s
         if (!is_in_block(row)) continue;
         if (!arguments.empty()) arguments += ", ";
         if (const auto found = std::ranges::find(baked, &row, &Baked::row); found != baked.end()) {
-            arguments += fmt::format("{}({}u)", glsl_type(row.kind), found->value);
+            arguments += fmt::format("{}({}u)", form_of(row).type, found->value);
             continue;
         }
         std::string components;
-        for (const Scalar& scalar : scalars_of(row.kind))
-            components += fmt::format("{}{}{}{}", components.empty() ? "" : ", ", prefix, row.name, scalar.suffix);
-        arguments += fmt::format("{}({})", glsl_type(row.kind), components);
+        for_each_scalar(row, prefix, [&](const std::string& name) {
+            components += fmt::format("{}{}", components.empty() ? "" : ", ", name);
+        });
+        arguments += fmt::format("{}({})", form_of(row).type, components);
     }
     if (arguments.empty()) arguments = "0u";
     return fmt::format("{0}{2} {1}_parameters{2}() {{\n    return {0}{2}({3});\n}}\n", info.parameters.struct_name,
