@@ -143,18 +143,16 @@ void clear_depth(VkCommandBuffer commands, VkImage image, VkImageLayout layout, 
 }
 
 void pipeline_barrier(VkCommandBuffer commands, const VkDependencyInfo* info) {
-    constexpr VkPipelineStageFlags2 others =
-        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COPY_BIT |
-        VK_PIPELINE_STAGE_2_CLEAR_BIT | VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT |
-        VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT | VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT;
-    VkPipelineStageFlags2 stages = 0;
-    for (const auto& barrier : std::span(info->pMemoryBarriers, info->memoryBarrierCount))
-        stages |= barrier.srcStageMask | barrier.dstStageMask;
-    for (const auto& barrier : std::span(info->pBufferMemoryBarriers, info->bufferMemoryBarrierCount))
-        stages |= barrier.srcStageMask | barrier.dstStageMask;
-    for (const auto& barrier : std::span(info->pImageMemoryBarriers, info->imageMemoryBarrierCount))
-        stages |= barrier.srcStageMask | barrier.dstStageMask;
-    if ((stages & ~others) != 0 && is_graphics_refused(commands, "a barrier with stages of graphics")) return;
+    constexpr VkPipelineStageFlags2 of_graphics =
+        VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |
+        VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_2_BLIT_BIT;
+    const auto is_of_graphics = [](const auto& barrier) {
+        return ((barrier.srcStageMask | barrier.dstStageMask) & of_graphics) != 0;
+    };
+    const bool is_asked =
+        std::ranges::any_of(std::span(info->pMemoryBarriers, info->memoryBarrierCount), is_of_graphics) ||
+        std::ranges::any_of(std::span(info->pImageMemoryBarriers, info->imageMemoryBarrierCount), is_of_graphics);
+    if (is_asked && is_graphics_refused(commands, "a barrier with stages of graphics")) return;
     smallest().real.CmdPipelineBarrier2(commands, info);
 }
 

@@ -34,22 +34,6 @@ PFN_vkVoidFunction instance_proc(VkInstance instance, const char* name) {
     return found != replacements().end() ? found->second : smallest().real.GetInstanceProcAddr(instance, name);
 }
 
-/// All that it has, and by which functions.
-struct Features {
-    explicit Features(const Context& host) {
-        vk.GetInstanceProcAddr = instance_proc;
-        must(vk.load_instance(host.instance, host.traits.has_debug_labels));
-        vk.GetPhysicalDeviceFeatures2(host.physical_device, &all);
-    }
-    Features(const Features&) = delete;
-    Features& operator=(const Features&) = delete;
-    Dispatch vk;
-    VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-    VkPhysicalDeviceVulkan12Features features12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
-                                                .pNext = &features13};
-    VkPhysicalDeviceFeatures2 all{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features12};
-};
-
 }  // namespace
 
 SmallestState& smallest() {
@@ -99,17 +83,20 @@ SmallestDevice::SmallestDevice(Device real) : real_(std::move(real)) {
     state.limits = properties.limits;
     limit(state.limits);
 
-    const Features features(host);
+    Dispatch vk;
+    vk.GetInstanceProcAddr = instance_proc;
+    must(vk.load_instance(host.instance, host.traits.has_debug_labels));
+    vk.GetPhysicalDeviceFeatures2(host.physical_device, &features_);
     constexpr float priority = 1.0F;
     const VkDeviceQueueCreateInfo queue_info{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                              .queueFamilyIndex = host.queue_family,
                                              .queueCount = 1,
                                              .pQueuePriorities = &priority};
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                  .pNext = &features.all,
+                                  .pNext = &features_,
                                   .queueCreateInfoCount = 1,
                                   .pQueueCreateInfos = &queue_info};
-    const VkResult made = features.vk.CreateDevice(host.physical_device, &info, nullptr, &handle_);
+    const VkResult made = vk.CreateDevice(host.physical_device, &info, nullptr, &handle_);
     must(host.check(made, "creating the smallest device"));
     // The layer knows its own functions by the device.
     must(state.real.load_device(handle_, host.traits.has_debug_labels));
@@ -118,14 +105,13 @@ SmallestDevice::SmallestDevice(Device real) : real_(std::move(real)) {
 
 Device SmallestDevice::adopted() const {
     const Context& host = real_.context();
-    const Features features(host);
     const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
     Device device = must(Device::adopt({
         .instance = host.instance,
         .physical_device = host.physical_device,
         .device = handle_,
         .queue_family = host.queue_family,
-        .enabled_features = &features.all,
+        .enabled_features = &features_,
         .enabled_instance_extensions = std::span(extensions).first(host.traits.has_debug_labels),
         .get_proc = instance_proc,
         .log = host.log,

@@ -38,6 +38,10 @@ class SmallestDevice {
 
   private:
     Device real_;
+    VkPhysicalDeviceVulkan13Features features13_{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    VkPhysicalDeviceVulkan12Features features12_{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+                                                 .pNext = &features13_};
+    VkPhysicalDeviceFeatures2 features_{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features12_};
     std::unique_ptr<Device> adopted_;
     VkDevice handle_ = VK_NULL_HANDLE;
 };
