@@ -4,6 +4,6 @@
 #include "motion_blur_reach.glsl"
 
 vec4 shade(Pixel pixel) {
-    float planar = motion_blur_planar(load(motion_blur_depth, motion_blur_place(pixel)).r);
-    return motion_blur_reach(load(motion_blur_velocity, motion_blur_first(pixel)).rg, motion_blur_inverse(vec4(planar)).x);
+    return motion_blur_reach(load(motion_blur_velocity, motion_blur_first(pixel)).rg,
+                             motion_blur_inverse(load(motion_blur_depth, motion_blur_place(pixel)).r));
 }

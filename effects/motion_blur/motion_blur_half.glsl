@@ -7,8 +7,9 @@ vec4 shade(Pixel pixel) {
     ivec2 first = pixel.texel * 2, last = min(first + 1, size(motion_blur_picture) - 1);
     // In the order of a gather: (0,1), (1,1), (1,0), (0,0).
     vec4 depth = gather_red(motion_blur_depth, (vec2(first) + 1.0) / vec2(size(motion_blur_depth)));
-    vec4 inverse = motion_blur_inverse(planar_distance(depth, custom[1], custom[0].w));
-    // Sky is like sky, whose inverse is 0. What is no number compares as unlike.
+    vec4 inverse = (depth * custom[1].z + custom[1].w) / (depth * custom[1].x + custom[1].y);
+    // Sky is like sky, whose inverse may be 0. What is no number compares as unlike.
+    inverse = mix(inverse, vec4(0.0), equal(depth, vec4(custom[0].w)));
     vec4 weight = vec4(lessThanEqual(abs(inverse - inverse.w), 0.1 * inverse));
     weight.w = 1.0;
     vec4 sum = load(motion_blur_picture, first);
