@@ -18,9 +18,9 @@
 // * views recordings may be unfinished; a further record may be made only when the oldest of them has finished.
 // A Composer is destroyed only when all its recordings have finished.
 //
-// The command buffer is a primary one or not, of a queue with graphics and compute, and outside of rendering. `record`
-// leaves other pipelines and descriptor sets bound at both bind points, and all dynamic state to be set anew; push
-// constants, vertex and index buffers are as they were. Before it records, it checks each image that the plan uses.
+// The command buffer is a primary one or not, of the device's queue family, and outside of rendering. `record` leaves
+// other pipelines and descriptor sets bound at both bind points, and all dynamic state to be set anew; push constants,
+// vertex and index buffers are as they were. Before it records, it checks each image that the plan uses.
 
 #include <cstdint>
 #include <darkroom/blend_mode.hpp>
