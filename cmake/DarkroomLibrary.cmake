@@ -1,8 +1,8 @@
 # What an engine links: libdarkroom.so, one shared object of core, glsl, gpu, graph, plan, compose, effects and
-# custom, libdarkroom_looks.so, which reads looks (TOML) and table files, libdarkroom_script.so, a console and controllers
-# in Lua, and libdarkroom_hud.so, documents of the interface; or libdarkroom.a, which is the first as an archive
-# (DARKROOM_STATIC). In the tree and installed they are Darkroom::darkroom, looks, script, hud and static. Included after the folders they are made
-# of; installed by cmake/install/library.
+# custom, libdarkroom_looks.so, which reads looks (TOML) and table files, libdarkroom_script.so, a console and
+# controllers in Lua, and libdarkroom_hud.so, documents of the interface; or libdarkroom.a, the first as an archive
+# (DARKROOM_STATIC). In the tree and installed they are Darkroom::darkroom, looks, script, hud and static. Included after
+# the folders they are made of; installed by cmake/install/library.
 
 # Objects, not archives: all of a folder goes in, and what it links comes from the folder's own target. The names of
 # this project are dropped from that list, their objects are already there.

@@ -13,7 +13,8 @@ namespace {
 constexpr auto arena_bloom_rows = describe(
     field<&ArenaBloom::intensity>("How much of the glow is added.", {0, 4}).as_amount(),
     field<&ArenaBloom::source_kind>("Whether colour is limited to a display's range and alpha masks the glow."),
-    field<&ArenaBloom::reach>("Whether the glow keeps its width in pixels, as in the game, or in parts of the height."));
+    field<&ArenaBloom::reach>(
+        "Whether the glow keeps its width in pixels, as in the game, or in parts of the height."));
 
 /// Of each level, for a glow in parts of the height.
 void weight_constants(const void* /*parameters*/, const PassContext& context, std::span<PassVector> out) {

@@ -24,7 +24,8 @@ inline double arena_bloom_shift(std::uint32_t height) { return std::log2(std::ma
 /// Halvings that frames of at most this extent use.
 inline std::uint32_t arena_bloom_level_count(VkExtent2D extent) {
     const double more = std::ceil(std::max(arena_bloom_shift(extent.height), 0.0));
-    return arena_bloom_levels + std::min(static_cast<std::uint32_t>(more), arena_bloom_most_levels - arena_bloom_levels);
+    return arena_bloom_levels +
+           std::min(static_cast<std::uint32_t>(more), arena_bloom_most_levels - arena_bloom_levels);
 }
 
 /// Of each level: the published weights of a picture of 1080 lines, each shared out between the two levels that are

@@ -101,7 +101,8 @@ TEST(EffectArenaBloom, GpuMatchesReference) {
     }
 }
 
-// At twice the height each weight is that of the next level, in between two levels share it, and at no height is any lost.
+// At twice the height each weight is that of the next level, in between two levels share it, and at no height is any
+// lost.
 TEST(EffectArenaBloom, WeightsMoveWithTheHeight) {
     const auto expect = [](std::uint32_t height, const std::array<double, arena_bloom_most_levels>& weights) {
         const auto got = arena_bloom_weights(height);

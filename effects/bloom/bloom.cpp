@@ -229,8 +229,10 @@ void build(PassBuilder& builder) {
                    format = builder.is_stored(packed) ? packed : VK_FORMAT_R16G16B16A16_SFLOAT;
     // With fewer levels they are no more than so many passes anyway.
     const bool has_tiles = levels > 2 && builder.tiles_pay(format, std::max({narrow_bytes, wide_bytes, join_bytes}));
-    const PassImage pyramid =
-        builder.create({.name = "pyramid", .format = format, .denominator = 2, .mip_levels = has_tiles ? stored_levels(levels) : levels});
+    const PassImage pyramid = builder.create({.name = "pyramid",
+                                              .format = format,
+                                              .denominator = 2,
+                                              .mip_levels = has_tiles ? stored_levels(levels) : levels});
     builder.loaded_side("bloom_pyramid",
                         has_tiles ? add_tiles(builder, pyramid, levels, format) : add_kernels(builder, pyramid, levels),
                         neutral);
@@ -262,7 +264,8 @@ BloomWeights bloom_weights(const Bloom& bloom, VkExtent2D extent) {
         return share == 1 ? b - a : (std::pow(share, a) - std::pow(share, b)) / (1 - share);
     };
     for (std::uint32_t i = 0; i < out.count; ++i) {
-        const double from = i == 0 ? 0 : std::clamp(i + finer, 0.0, levels), to = std::clamp(i + 1 + finer, 0.0, levels);
+        const double from = i == 0 ? 0 : std::clamp(i + finer, 0.0, levels),
+                     to = std::clamp(i + 1 + finer, 0.0, levels);
         out.weights[i] = std::max(octaves(from, to), i + finer < 0 ? least_weight : 0.0);
     }
     return out;

@@ -38,8 +38,8 @@ struct Bloom {
     Reach reach = Reach::Height;
 };
 
-/// Levels that a picture of `extent` has by pixels: floor(log2(shorter side)) - 3 within [0, 5], so that the last one is
-/// at least 8x8. Level i is 2^(i+1) times smaller than the picture.
+/// Levels that a picture of `extent` has by pixels: floor(log2(shorter side)) - 3 within [0, 5], so that the last one
+/// is at least 8x8. Level i is 2^(i+1) times smaller than the picture.
 [[nodiscard]] std::uint32_t bloom_level_count(VkExtent2D extent);
 
 /// What each level counts in the sum of a picture of `extent`, finest first.

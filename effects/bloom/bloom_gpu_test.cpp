@@ -49,8 +49,8 @@ double worst_excess(const Bloom& bloom, const ReferenceImage& picture, const Ref
         const auto check = [&](double w, double g, double b, const Write& write, double loss) {
             const double kept = bloom.mode == BloomMode::Additive ? b : b * (1.0 - bloom.intensity);
             const double allowed = std::abs(w - kept) * writes * write.relative +
-                                   bloom.intensity * first * writes * write.absolute + (std::abs(w) + std::abs(b)) * 2e-6 +
-                                   writes * loss;
+                                   bloom.intensity * first * writes * write.absolute +
+                                   (std::abs(w) + std::abs(b)) * 2e-6 + writes * loss;
             worst = std::max(worst, std::isfinite(g) ? std::abs(w - g) / allowed : 1e9);
         };
         check(want.r, got.r, base.r, is_packed ? six_bits : half, lost.r);
@@ -157,9 +157,9 @@ TEST(BloomGpu, QuadsAndTapsMatchTheReference) {
         Bloom bloom;
     };
     const Bloom conserving = published({.intensity = 1, .mode = BloomMode::EnergyConserving, .scatter = 1});
-    for (const Case& c :
-         {Case{256, 512, published({.intensity = 1})}, Case{256, 256, everything_glows(5)}, Case{64, 160, conserving},
-          Case{32, 34, everything_glows(2)}, Case{32, 33, everything_glows(2)}, Case{33, 32, published({.intensity = 1})}}) {
+    for (const Case& c : {Case{256, 512, published({.intensity = 1})}, Case{256, 256, everything_glows(5)},
+                          Case{64, 160, conserving}, Case{32, 34, everything_glows(2)},
+                          Case{32, 33, everything_glows(2)}, Case{33, 32, published({.intensity = 1})}}) {
         const ReferenceImage picture = test::round_to_float(test::random_hdr(c.width, c.height, 7));
         for (const bool lean : {true, false})
             for (const KernelStage kernels : {KernelStage::Compute, KernelStage::Raster}) {

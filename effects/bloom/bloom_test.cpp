@@ -233,7 +233,8 @@ TEST(Bloom, AdditiveGrowsByALevelEachAndTheOtherModeKeepsFlatFields) {
             const Bloom bloom{
                 .intensity = 0.5f, .mode = BloomMode::EnergyConserving, .scatter = scatter, .levels = levels};
             for (const Bloom& any : {bloom, published(bloom)})
-                EXPECT_LT(test::worst_difference(test::reference_of(any, flat), flat), 1e-9) << levels << " " << scatter;
+                EXPECT_LT(test::worst_difference(test::reference_of(any, flat), flat), 1e-9)
+                    << levels << " " << scatter;
         }
     }
 }
@@ -246,8 +247,7 @@ TEST(Bloom, TheConservingModeKeepsTheLightOfALonePixel) {
 
 TEST(Bloom, GlowDoesNotDependOnTheAspectRatio) {
     ReferenceImage square = impulse(256, 256, 128, 128, 500), wide = impulse(512, 256, 128, 128, 500);
-    const ReferenceImage a = test::reference_of(published(), square),
-                         b = test::reference_of(published(), wide);
+    const ReferenceImage a = test::reference_of(published(), square), b = test::reference_of(published(), wide);
     for (std::uint32_t y = 0; y < 256; ++y)
         for (std::uint32_t x = 0; x < 192; ++x) EXPECT_NEAR(a.at(x, y).r, b.at(x, y).r, 1e-9);
 }

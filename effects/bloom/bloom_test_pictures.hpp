@@ -15,7 +15,8 @@ inline Bloom published(Bloom bloom = {}) {
     return bloom;
 }
 
-inline ReferenceImage impulse(std::uint32_t width, std::uint32_t height, std::uint32_t x, std::uint32_t y, double value) {
+inline ReferenceImage impulse(std::uint32_t width, std::uint32_t height, std::uint32_t x, std::uint32_t y,
+                              double value) {
     ReferenceImage image(width, height);
     image.at(x, y) = {value, value, value, 1};
     return image;

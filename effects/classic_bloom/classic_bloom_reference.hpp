@@ -78,8 +78,7 @@ inline ReferenceImage classic_bloom_reference_extract(const ReferenceImage& pict
 
 /// Taps `step_x`, `step_y` of the picture apart, into one of width x height.
 inline ReferenceImage classic_bloom_reference_line(const ReferenceImage& image, std::uint32_t width,
-                                                   std::uint32_t height, double step_x, double step_y,
-                                                   double radius) {
+                                                   std::uint32_t height, double step_x, double step_y, double radius) {
     const auto weights = classic_bloom_weights(radius);
     const std::int32_t taps = classic_bloom_taps(radius);
     ReferenceImage out(width, height, {0, 0, 0, 1});
@@ -100,8 +99,7 @@ inline ReferenceImage classic_bloom_reference(const void* parameters, const Refe
     const ReferenceImage small = classic_bloom_reference_extract(*input.picture, *input.source, bloom);
     const ReferenceImage wide = classic_bloom_reference_line(
         small, std::max(out.width / 2, 1u), std::max(out.height / 2, 1u), 1.0 / small.width, 0, radius);
-    const ReferenceImage glow =
-        classic_bloom_reference_line(wide, out.width, out.height, 0, 2.0 / wide.height, radius);
+    const ReferenceImage glow = classic_bloom_reference_line(wide, out.width, out.height, 0, 2.0 / wide.height, radius);
     for (std::size_t i = 0; i < out.pixels.size(); ++i)
         out.pixels[i] = weighed_sum_reference(out.pixels[i], glow.pixels[i], double{bloom.intensity});
     return out;

@@ -49,8 +49,8 @@ void fog_constants(const void* parameters, const PassContext& context, std::span
     out[1][1] = fog.density;
     out[1][2] = static_cast<float>(-density * start);
     out[1][3] = static_cast<float>(density * span);
-    out[2] = {static_cast<float>(-1 / std::expm1(-std::max(density * span, 1e-30))), 0,
-              static_cast<float>(rise), static_cast<float>(1 / std::max(fog_horizon_sine(fog), 1e-6))};
+    out[2] = {static_cast<float>(-1 / std::expm1(-std::max(density * span, 1e-30))), 0, static_cast<float>(rise),
+              static_cast<float>(1 / std::max(fog_horizon_sine(fog), 1e-6))};
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ TEST(EffectFog, WithoutAnEndItIsTheExponential) {
 }
 
 TEST(EffectFog, TheEndPointThinsAboveTheOriginAndNotBelow) {
-    const Fog fog{.height_enabled = true, .height_form = FogHeight::EndPoint, .height_falloff = 0.5f, .height_origin = 1};
+    const Fog fog{
+        .height_enabled = true, .height_form = FogHeight::EndPoint, .height_falloff = 0.5f, .height_origin = 1};
     EXPECT_EQ(fog_amount(40, -7, fog, 0), fog_amount(40, 1, fog, 0));
     EXPECT_NEAR(fog_amount(40, 3, fog, 0), fog_amount(40, 1, fog, 0) * std::exp(-1.0), 1e-12);
 }
@@ -91,12 +92,12 @@ TEST(EffectFog, GpuMatchesReference) {
                            Fog{.density = 0.2f, .height_enabled = true, .height_falloff = 3, .height_origin = 3},
                            Fog{.height_enabled = true, .height_falloff = 0},
                            Fog{.density = 0.02f,
-                               .end = 100,
-                               .height_enabled = true,
-                               .height_form = FogHeight::EndPoint,
-                               .height_falloff = 0.4f,
-                               .height_origin = -2,
-                               .sky = true}}) {
+                           .end = 100,
+                           .height_enabled = true,
+                           .height_form = FogHeight::EndPoint,
+                           .height_falloff = 0.4f,
+                           .height_origin = -2,
+                           .sky = true}}) {
         const ReferenceImage expected = test::scene_reference_of(fog, data.picture, data.options());
         for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
             test::RunOptions options = data.options();

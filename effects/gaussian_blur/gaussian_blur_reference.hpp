@@ -64,8 +64,7 @@ inline ReferenceImage gaussian_blur_reference_naive(const GaussianBlur& blur, co
 
 inline ReferenceImage gaussian_blur_reference(const void* parameters, const ReferenceInput& input) {
     const ReferenceImage& picture = *input.picture;
-    const GaussianBlur blur =
-        gaussian_blur_in_pixels(*static_cast<const GaussianBlur*>(parameters), picture.height);
+    const GaussianBlur blur = gaussian_blur_in_pixels(*static_cast<const GaussianBlur*>(parameters), picture.height);
     const std::uint32_t level = gaussian_blur_level(blur);
     if (level == 0) return gaussian_blur_reference_naive(blur, picture);
     ReferenceImage image = picture;

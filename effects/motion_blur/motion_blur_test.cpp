@@ -275,8 +275,8 @@ TEST(EffectMotionBlur, NothingSmearsWhereTheCameraJumped) {
     }
 }
 
-// A sky of columns of one pixel, seen by a camera that turns, its far plane at infinity: at half size a texel is the mean
-// of what it covers, whose depth is 0, or 1, as that of all sky is. With an odd number of columns, too.
+// A sky of columns of one pixel, seen by a camera that turns, its far plane at infinity: at half size a texel is the
+// mean of what it covers, whose depth is 0, or 1, as that of all sky is. With an odd number of columns, too.
 TEST(EffectMotionBlur, TheSkyIsTakenWholeInDeviceDepth) {
     for (const DepthKind kind : {DepthKind::Standard, DepthKind::Reversed})
         for (const std::uint32_t columns : {128U, 127U}) {

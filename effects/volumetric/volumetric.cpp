@@ -21,8 +21,8 @@ constexpr auto volumetric_rows = describe(
         .as_amount(),
     field<&Volumetric::samples>("Steps of the march. Brightness does not depend on it, smoothness does.", {1, 256}),
     field<&Volumetric::max_distance>("How far the march goes; the sky is marched as far.", {0.01, 1e6}, unit::metres),
-    field<&Volumetric::decay>(
-        "What is left of the light after each metre, or after each thirty-second of the march.", {0.01, 1}),
+    field<&Volumetric::decay>("What is left of the light after each metre, or after each thirty-second of the march.",
+                              {0.01, 1}),
     field<&Volumetric::decay_form>("What `decay` is a share of."));
 
 const Volumetric& volumetric_of(const void* parameters) { return *static_cast<const Volumetric*>(parameters); }

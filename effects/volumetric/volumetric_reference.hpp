@@ -37,8 +37,8 @@ inline double volumetric_left(const Volumetric& volumetric, double step) {
     return std::pow(double{volumetric.decay}, is_per_metre ? step : 32.0 / volumetric.samples);
 }
 
-/// What the haze scatters where nothing casts a shadow, on `length` metres: the integral of what each metre leaves, or a
-/// geometric series of the steps' shares.
+/// What the haze scatters where nothing casts a shadow, on `length` metres: the integral of what each metre leaves, or
+/// a geometric series of the steps' shares.
 inline double volumetric_unoccluded(const Volumetric& volumetric, double intensity, double cosine, double length) {
     const double samples = volumetric.samples, left = volumetric_left(volumetric, length / samples);
     const double all = std::pow(left, samples);

@@ -65,11 +65,10 @@ TEST(EffectVolumetricShadow, GpuMatchesReference) {
     world.lights = {traced_light(lane, {0.2, 1, 0.1}, two_cascades, 128),
                     traced_light(lane, {-0.3, 1, 0.3}, {{{0, 0, -10}, 40, 50}}, 64)};
     world.lights[1].light.volumetric_color = {0.2f, 0.5f, 1};
-    for (const Volumetric& volumetric : {Volumetric{.density = 50}, Volumetric{.density = 50, .samples = 13},
-                                         Volumetric{.density = 80, .max_distance = 25, .decay = 0.9f},
-                                         Volumetric{.density = 50,
-                                                    .decay = 0.9f,
-                                                    .decay_form = VolumetricDecay::PerStep}}) {
+    for (const Volumetric& volumetric :
+         {Volumetric{.density = 50}, Volumetric{.density = 50, .samples = 13},
+          Volumetric{.density = 80, .max_distance = 25, .decay = 0.9f},
+          Volumetric{.density = 50, .decay = 0.9f, .decay_form = VolumetricDecay::PerStep}}) {
         const ReferenceImage expected = world.reference(volumetric);
         double most = 0;
         for (std::size_t i = 0; i < expected.pixels.size(); ++i)

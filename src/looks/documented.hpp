@@ -15,18 +15,12 @@ struct DocumentedValue {
 };
 
 inline constexpr std::array documented_values{
-    DocumentedValue{"ssao", "method", "hemisphere"},
-    DocumentedValue{"volumetric", "decay_form", "per_step"},
-    DocumentedValue{"volumetric", "decay", "0.98"},
-    DocumentedValue{"bloom", "reach", "pixels"},
-    DocumentedValue{"fog", "density", "0.02"},
-    DocumentedValue{"fog", "end", "100"},
-    DocumentedValue{"fog", "height_form", "end_point"},
-    DocumentedValue{"fog", "horizon", "0"},
-    DocumentedValue{"fxaa", "enabled", "false"},
-    DocumentedValue{"dither", "enabled", "false"},
-    DocumentedValue{"dither", "intensity", "0.03"},
-    DocumentedValue{"dither", "ends", "unrounded"},
+    DocumentedValue{"ssao", "method", "hemisphere"},    DocumentedValue{"volumetric", "decay_form", "per_step"},
+    DocumentedValue{"volumetric", "decay", "0.98"},     DocumentedValue{"bloom", "reach", "pixels"},
+    DocumentedValue{"fog", "density", "0.02"},          DocumentedValue{"fog", "end", "100"},
+    DocumentedValue{"fog", "height_form", "end_point"}, DocumentedValue{"fog", "horizon", "0"},
+    DocumentedValue{"fxaa", "enabled", "false"},        DocumentedValue{"dither", "enabled", "false"},
+    DocumentedValue{"dither", "intensity", "0.03"},     DocumentedValue{"dither", "ends", "unrounded"},
     DocumentedValue{"dither", "moves", "true"},
 };
 

@@ -177,17 +177,17 @@ TEST_F(ChainUi, NeitherSeesTheOthersEffects) {
     EXPECT_GT(test::worst_difference(bright, dark), 0.1);
 }
 
-// Whatever the picture's effects do, and in both orders: they lie before the interface, so what is opaque in it keeps its
-// codes, dither being the last of them.
+// Whatever the picture's effects do, and in both orders: they lie before the interface, so what is opaque in it keeps
+// its codes, dither being the last of them.
 TEST_F(ChainUi, OpaquePixelsKeepTheirCodesInBothOrders) {
     const ReferenceImage world = test::random_hdr(75, 44, 9), ui = interface_of(75, 44);
     for (const LookOrder order : {LookOrder::Documented, LookOrder::SceneLinear}) {
-        const Look look = test::must(parse_look(
-            fmt::format("[post_process]\norder = \"{}\"\nexposure = 1.7\nvignette_enabled = true\n"
-                        "vignette_intensity = 0.9\ndither_enabled = true\ndither_intensity = 0.1\n"
-                        "chromatic_aberration = 0.02\n[ui]\nui_composite_enabled = true\n",
-                        order == LookOrder::Documented ? "documented" : "scene_linear"),
-            "a look"));
+        const Look look = test::must(
+            parse_look(fmt::format("[post_process]\norder = \"{}\"\nexposure = 1.7\nvignette_enabled = true\n"
+                                   "vignette_intensity = 0.9\ndither_enabled = true\ndither_intensity = 0.1\n"
+                                   "chromatic_aberration = 0.02\n[ui]\nui_composite_enabled = true\n",
+                                   order == LookOrder::Documented ? "documented" : "scene_linear"),
+                       "a look"));
         const auto run = [&](const ReferenceImage& layer) {
             return test::develop([&](Composer& composer) { test::must(apply(look, composer)); }, world,
                                  {.target = VK_FORMAT_R8G8B8A8_UNORM, .ui = &layer});
@@ -240,7 +240,8 @@ TEST_F(ChainUi, TheGhostIsAddedAndTheLargerAlphaCounts) {
                 add(composer, "ui_composite");
             },
             world, {.ui = &ui, .ui_format = float4});
-        const double ghost = 0.6 * double{strength}, beside = std::min(ghost, 1.0), on = std::min(std::max(ghost, 0.6), 1.0);
+        const double ghost = 0.6 * double{strength}, beside = std::min(ghost, 1.0),
+                     on = std::min(std::max(ghost, 0.6), 1.0);
         EXPECT_NEAR(out.at(20, 4).r, below * (1 - beside) + 0.3 * double{strength}, 1e-3);
         EXPECT_NEAR(out.at(32, 4).r, below * (1 - on) + 0.3 * (1 + double{strength}), 1e-3);
         EXPECT_NEAR(out.at(12, 4).r, below, 1e-3) << "beyond twice the bar there is nothing";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The smallest user of installed interface documents: a value becomes pixels, drawn by the process that was installed with
-// the library.
+// The smallest user of installed interface documents: a value becomes pixels, drawn by the process that was installed
+// with the library.
 
 #include <cstdio>
 #include <darkroom/hud_document.hpp>

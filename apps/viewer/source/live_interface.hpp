@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
+#include <darkroom/hud_document.hpp>
 #include "apps/darkroom/run/timeline.hpp"
 #include "gpu/resource/resources.hpp"
-#include <darkroom/hud_document.hpp>
 
 namespace app {
 

@@ -78,8 +78,8 @@ TEST(ParamText, SizesArePixelsOrPercent) {
     EXPECT_EQ(set("radius", "9%"), "radius = 97: allowed is [0, 64] px");
     EXPECT_EQ(set("amplitude", "1%, -2%"), "[10.8, -21.6] \"height\"");
     for (const char* const wrong : {"%", "x%", "1%%", "1%,2%"})
-        EXPECT_EQ(set("wide", wrong), fmt::format("'{}' is not a number, allowed is [0, 200] px, also in % of the height",
-                                                  wrong));
+        EXPECT_EQ(set("wide", wrong),
+                  fmt::format("'{}' is not a number, allowed is [0, 200] px, also in % of the height", wrong));
     EXPECT_EQ(full_doc(*sized.find("radius")), "Radius. Also in % of the picture's height.");
 }
 
