@@ -202,7 +202,7 @@ float soften(Receiver receiver, float visibility) {
     vec2 blocked = vec2(0.0);  // how many, and the sum of their distances
     float nearest = 1.0;
     // Loops in place of branches, as below. The four corners come first: where they and the texels in the middle are dark
-    // all over, so is what lies between, and nothing more is looked at.
+    // all over, what lies between is taken to be so, too.
     uint looked = 0u;
     for (uint end = reach > least_reach ? 16u : 0u; looked < end;) {
         const vec2 offset = (search_place(looked) - 1.5) * (reach * (2.0 / 3.0));
