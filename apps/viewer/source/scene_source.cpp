@@ -21,6 +21,34 @@ darkroom::Frame as_reusable(darkroom::Frame frame) {
     return frame;
 }
 
+namespace {
+
+bool is_equal(const scene::OrbitOverride& a, const scene::OrbitOverride& b) {
+    return a.distance == b.distance && a.yaw == b.yaw && a.pitch == b.pitch && a.target == b.target &&
+           a.field_of_view == b.field_of_view && a.ortho_height == b.ortho_height &&
+           a.least_far_distance == b.least_far_distance;
+}
+
+/// The exposure is the display's alone.
+bool is_equal(const render::DrawOptions& a, const render::DrawOptions& b, bool is_display) {
+    return a.has_shadows == b.has_shadows && a.has_grid == b.has_grid && a.debug == b.debug &&
+           a.has_wireframe_overlay == b.has_wireframe_overlay && a.has_normal_arrows == b.has_normal_arrows &&
+           (!is_display || a.exposure == b.exposure);
+}
+
+/// Does nothing move from one to the other, and has nothing moved before?
+bool is_equal(const LiveMoment& a, const LiveMoment& b) {
+    const auto has_same_way = [](const LiveMoment& one, const LiveMoment& other) {
+        if (!one.previous_orbit || !other.previous_orbit) return !one.previous_orbit && !other.previous_orbit;
+        return is_equal(*one.previous_orbit, *other.previous_orbit);
+    };
+    const bool is_display = a.is_post_off || a.draw.debug != render::DebugView::None;
+    return a.time == b.time && a.previous_time == b.previous_time && a.is_post_off == b.is_post_off &&
+           is_equal(a.orbit, b.orbit) && has_same_way(a, b) && is_equal(a.draw, b.draw, is_display);
+}
+
+}  // namespace
+
 SceneSource::SceneSource(darkroom::Device& device, std::filesystem::path file, const Desc& desc)
     : device_(device), file_(std::move(file)), desc_(desc) {}
 
@@ -56,6 +84,10 @@ bool SceneSource::must_wait(const LiveMoment& moment, VkExtent2D extent) const {
 }
 
 Result<> SceneSource::prepare(const LiveMoment& moment, VkExtent2D extent) {
+    is_kept_ = drawn_ && drawn_->second.width == extent.width && drawn_->second.height == extent.height &&
+               is_equal(drawn_->first, moment);
+    if (is_kept_) return {};
+    drawn_.reset();
     is_display_ = moment.is_post_off || moment.draw.debug != render::DebugView::None;
     snapshot_ = scene::snapshot(scene_, assets_,
                                 {.time = moment.time,
@@ -68,7 +100,9 @@ Result<> SceneSource::prepare(const LiveMoment& moment, VkExtent2D extent) {
     // compile_desc() asks the linear one, even before it is shown.
     if (!std::exchange(is_prepared_, true) && is_display_)
         if (Result<> done = use(false, {.draw = {.has_shadows = moment.draw.has_shadows}}, extent); !done) return done;
-    return use(is_display_, moment, extent);
+    if (Result<> done = use(is_display_, moment, extent); !done) return done;
+    drawn_.emplace(moment, extent);
+    return {};
 }
 
 Result<> SceneSource::use(bool is_display, const LiveMoment& moment, VkExtent2D extent) {
@@ -92,7 +126,12 @@ Result<> SceneSource::use(bool is_display, const LiveMoment& moment, VkExtent2D 
     return used.prepare(snapshot_);
 }
 
-Result<> SceneSource::record(VkCommandBuffer commands) { return (is_display_ ? *display_ : *linear_).record(commands); }
+Result<> SceneSource::record(VkCommandBuffer commands) {
+    if (is_kept_) return {};
+    Result<> done = (is_display_ ? *display_ : *linear_).record(commands);
+    if (!done) drawn_.reset();
+    return done;
+}
 
 darkroom::Frame SceneSource::frame() const {
     darkroom::Frame frame = as_reusable(linear_->frame());

@@ -49,6 +49,8 @@ class SceneSource final : public LiveSource {
     darkroom::scene::Snapshot snapshot_;
     std::optional<darkroom::render::Renderer> linear_, display_;
     bool is_display_ = false, is_prepared_ = false;
+    bool is_kept_ = false;  ///< the images hold the very frame that is asked for
+    std::optional<std::pair<LiveMoment, VkExtent2D>> drawn_;
     std::vector<std::string> warnings_;
 };
 
