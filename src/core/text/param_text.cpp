@@ -382,6 +382,26 @@ std::string format(const ParamInfo& info, std::span<const std::uint32_t> words) 
     return fmt::format("[{}]", fmt::join(parts, ", "));
 }
 
+std::string format_for_file(const ParamInfo& info, std::span<const std::uint32_t> words) {
+    if (info.reach_word >= words.size() || words[info.reach_word] != static_cast<std::uint32_t>(Reach::Height))
+        return format(info, words);
+    std::vector<std::string> shares;
+    for (const std::uint32_t word : words.subspan(info.word, info.words)) {
+        const bool is_whole = info.kind == Kind::Int;
+        double size = std::bit_cast<float>(word);
+        if (is_whole) size = static_cast<std::int32_t>(word);
+        const auto reads_back = [&](const std::string& text) {
+            const double read = parse_share(text).value_or(-1);
+            return (is_whole ? std::round(read) : double{static_cast<float>(read)}) == size;
+        };
+        std::string share;
+        for (int digits = 1; digits <= std::numeric_limits<double>::max_digits10 && !reads_back(share); ++digits)
+            share = fmt::format("{:.{}g}%", size / lines_of_known_height * 100, digits);
+        shares.push_back(std::move(share));
+    }
+    return fmt::format("\"{}\"", fmt::join(shares, ", "));
+}
+
 std::string interval(const ParamInfo& info) {
     if (info.kind == Kind::Choice) return join(info.choices);
     if (info.kind == Kind::Toggle) return "true or false";

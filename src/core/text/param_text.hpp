@@ -51,6 +51,8 @@ struct ParamProblem {
 
 /// The value as TOML; floats are the shortest text that reads back as the same bits. `words` are those of the struct.
 [[nodiscard]] std::string format(const ParamInfo& info, std::span<const std::uint32_t> words);
+/// The same for files, where a size whose Reach is Height stands in % of it: "2.5%".
+[[nodiscard]] std::string format_for_file(const ParamInfo& info, std::span<const std::uint32_t> words);
 /// "[0, 16]", "[1, 64] px", "srgb, gamma22 or none", "true or false".
 [[nodiscard]] std::string interval(const ParamInfo& info);
 /// The row's sentence, and more where its text may be in stops or a change needs a compile.

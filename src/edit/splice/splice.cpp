@@ -23,6 +23,17 @@ const TomlPath flat_path{"post_process"}, ui_path{"ui"};
 
 const std::vector<std::string> interface_keys{"document", "controllers", "game"};
 
+/// Does an element of the file that has this row say it as before? What a size is measured in stands beside its number.
+bool is_said_alike(const LookEntry& before, const LookEntry& now, const ParamInfo& row) {
+    return has_same(before, now, row) &&
+           (row.reach_word == ~0u || before.words[row.reach_word] == now.words[row.reach_word]);
+}
+
+/// Is this what sizes of the effect are measured in, which their "%" says?
+bool is_reach(const EffectInfo& effect, const ParamInfo& row) {
+    return std::ranges::find(effect.parameters.rows, row.word, &ParamInfo::reach_word) != effect.parameters.rows.end();
+}
+
 std::string bool_text(Toggle toggle) { return toggle.on != 0 ? "true" : "false"; }
 
 class Splicer {
@@ -186,7 +197,9 @@ class Splicer {
                    (!row.formerly.empty() && has_key(table, flat_key(effect, row.formerly)));
         };
         const auto is_same_row = [&](const ParamInfo& row) {
-            return has_same(before == nullptr || !is_row_said(row) ? plain : *before, entry, row);
+            const bool is_said = is_row_said(row), is_known = is_said || is_reach(*entry.effect, row);
+            const LookEntry& other = before != nullptr && is_known ? *before : plain;
+            return is_said ? is_said_alike(other, entry, row) : has_same(other, entry, row);
         };
         if (!is_switched && std::ranges::all_of(entry.effect->parameters.rows, is_same_row)) return {};
         const std::string switch_key = flat_key(effect, "enabled");
@@ -304,8 +317,9 @@ class Splicer {
             if (Result<> done = editor_.set(table, row.name, text); !done) return done;
         }
         for (const ParamInfo& row : entry.effect->parameters.rows) {
-            if (has_same(before, entry, row)) continue;
             const std::string key(row.name), former(row.formerly.empty() ? row.name : row.formerly);
+            const bool is_said = has_key(table, key) || has_key(table, former);
+            if (is_said ? is_said_alike(before, entry, row) : has_same(before, entry, row)) continue;
             if (Result<> done = set_row(table, key, former, value_text(entry, row), {}); !done) return done;
         }
         return {};

@@ -244,6 +244,21 @@ TEST_F(Splice, AFlatTableBecomesAStackAndBack) {
     EXPECT_TRUE(says_same(read(*flat), was)) << *flat;
 }
 
+TEST_F(Splice, SizesStayInPercent) {
+    const auto sigma = [&](const std::string& text, float value) {
+        return edited(text, [&](Look& look) { return set(look, "gaussian_blur", "sigma", {value}); });
+    };
+    const std::string stack = "[[stack]]\neffect = \"gaussian_blur\"\n", flat = "[post_process]\n";
+    EXPECT_EQ(sigma(stack + "sigma = \"1%\"\n", 21.6f), stack + "sigma = \"2%\"\n");
+    EXPECT_EQ(sigma(stack + "sigma = 10\n", 21.5f), stack + "sigma = 21.5\n");
+    EXPECT_EQ(sigma(flat + "gaussian_blur_sigma = \"1%\"\n", 21.6f), flat + "gaussian_blur_sigma = \"2%\"\n");
+    const std::string pixels = edited(stack + "sigma = \"1%\"\n", [&](Look& look) {
+        const std::uint32_t in_pixels = 0;
+        return set_value(look, "gaussian_blur", "reach", {&in_pixels, 1});
+    });
+    EXPECT_EQ(pixels, stack + "sigma = 10.8\nreach = \"pixels\"\n");
+}
+
 TEST_F(Splice, TheInterfaceKeepsItsTable) {
     if (find_effect("ui_chroma") == nullptr) GTEST_SKIP() << "this build has no effect ui_chroma";
     const std::string text = "[post_process]\n\n[ui]\nui_chroma_strength = 0.5 # parted\n";
@@ -328,9 +343,19 @@ TEST_F(Splice, RandomValuesOfEveryShippedFileChangeTheirOwnBytesAlone) {
             const bool is_table = next.is_flat || entry.is_of_ui;
             const std::string key = is_table ? flat_key(entry.effect->name, one.row) : one.row;
             const std::string toggle = is_table ? flat_key(entry.effect->name, "enabled") : "enabled";
+            // What sizes are measured in stands beside their numbers.
+            const auto rows = entry.effect->parameters.rows;
+            const auto of_edit = std::ranges::find(rows, one.row, &ParamInfo::name);
+            const auto is_size = [&](std::string_view line) {
+                return std::ranges::any_of(rows, [&](const ParamInfo& row) {
+                    const std::string size = is_table ? flat_key(entry.effect->name, row.name) : std::string(row.name);
+                    return of_edit != rows.end() && row.reach_word == of_edit->word && line == "+" + size;
+                });
+            };
             for (const std::string& line : changed_lines(text, *spliced)) {
                 const bool is_header = line == "+" || line == "+[post_process]" || line == "+[ui]";
-                ASSERT_TRUE(line == key || line == "+" + key || line == toggle || line == "+" + toggle || is_header)
+                ASSERT_TRUE(line == key || line == "+" + key || line == toggle || line == "+" + toggle || is_header ||
+                            is_size(line) || is_size("+" + line))
                     << path << " " << one.entry << "." << one.row << ": " << line << "\n"
                     << *spliced;
             }

@@ -123,7 +123,7 @@ std::string list_text(std::span<const std::string> names) {
 }
 
 std::string value_text(const LookEntry& entry, const ParamInfo& row) {
-    if (row.kind != Kind::Resource) return format(row, entry.words);
+    if (row.kind != Kind::Resource) return format_for_file(row, entry.words);
     const LookResource* const resource = resource_of(entry, row);
     return toml_string(resource == nullptr ? std::string_view() : resource->file);
 }
