@@ -39,7 +39,7 @@ double glow_at(const ReferenceImage& picture, double distance) {
     return sum;
 }
 
-TEST(BloomReach, WeightsAreOctavesOfTheHeight) {
+TEST(EffectBloomReach, WeightsAreOctavesOfTheHeight) {
     const auto weights = [](VkExtent2D extent, const Bloom& bloom = {}) { return bloom_weights(bloom, extent); };
     const auto expect = [](const BloomWeights& got, std::initializer_list<double> want) {
         ASSERT_EQ(got.count, want.size());
@@ -65,7 +65,7 @@ TEST(BloomReach, WeightsAreOctavesOfTheHeight) {
 }
 
 // By pixels the glow of a large picture is a tenth of that of a small one.
-TEST(BloomReach, OneGlowAt360And1440Lines) {
+TEST(EffectBloomReach, OneGlowAt360And1440Lines) {
     const Bloom by_height{.intensity = 1, .firefly_filter = false};
     const auto ratio = [](const Bloom& bloom, double distance) {
         return glow_at(with_glow(bloom, lamp(1440)), distance) / glow_at(with_glow(bloom, lamp(360)), distance);
@@ -76,7 +76,7 @@ TEST(BloomReach, OneGlowAt360And1440Lines) {
 
 // Under dynamic resolution the glow does not breathe: from one height to the next nothing jumps, past that at which a
 // level more begins, too.
-TEST(BloomReach, GrowsSmoothlyWithTheHeight) {
+TEST(EffectBloomReach, GrowsSmoothlyWithTheHeight) {
     const Bloom bloom{.intensity = 1, .firefly_filter = false};
     const auto glow = [&](std::uint32_t height) { return glow_at(with_glow(bloom, lamp(height)), 0.05); };
     double before = glow(500);

@@ -153,9 +153,9 @@ TEST(BloomTilesGpu, MakeTheBitsOfMoreThanFiveLevels) {
 
 TEST(BloomTilesGpu, AreFourPassesBeforeTheJoin) {
     const AsGpu gpu(Form::Tiles, true);
-    const auto plan_of = [](VkExtent2D extent) {
+    const auto plan_of = [](VkExtent2D extent, const Bloom& bloom = {}) {
         Composer composer(gpu::test::device());
-        composer.add(Bloom{});
+        composer.add(bloom);
         const auto plan = composer.plan({.max_extent = extent});
         EXPECT_TRUE(plan) << plan.error().text;
         return names_of(*plan);
@@ -167,7 +167,7 @@ TEST(BloomTilesGpu, AreFourPassesBeforeTheJoin) {
                                         "bloom.wide levels 2", "bloom.upsample 2", "bloom.upsample", "bloom"}));
     EXPECT_EQ(plan_of({90, 70}),
               (std::vector<std::string>{"bloom.prefilter", "bloom.downsample", "bloom.upsample", "bloom"}));
-    EXPECT_EQ(plan_of({40, 40}),
+    EXPECT_EQ(plan_of({40, 40}, {.reach = Reach::Pixels}),
               (std::vector<std::string>{"bloom.prefilter", "bloom.downsample 1", "bloom.upsample 0", "bloom"}));
 }
 

@@ -85,7 +85,7 @@ ReferenceLight drawn_light(const std::vector<Box>& world, const View& view, cons
     return out;
 }
 
-/// The integral along one ray: samples in the middle of equal steps, transmittance falling evenly to decay^32.
+/// The integral along one ray: samples in the middle of equal steps, each metre leaves `decay`.
 double integral(const std::vector<Box>& world, const Volumetric& volumetric, const test::CameraRay& ray, int samples) {
     const Double3 direction = test::normalized(ray.direction), light = test::normalized(toward_light);
     const double length = std::min(test::trace(world, ray.from, direction), double{volumetric.max_distance});
@@ -93,7 +93,7 @@ double integral(const std::vector<Box>& world, const Volumetric& volumetric, con
     for (int i = 0; i < samples; ++i) {
         const double part = (i + 0.5) / samples;
         const Double3 point = test::along(ray.from, direction, part * length);
-        if (std::isinf(test::trace(world, point, light))) sum += std::pow(double{volumetric.decay}, 32 * part);
+        if (std::isinf(test::trace(world, point, light))) sum += std::pow(double{volumetric.decay}, part * length);
     }
     return sum / samples * length * double{volumetric.density} * 0.01 * volumetric_phase(test::dot(direction, light));
 }
