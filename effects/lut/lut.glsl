@@ -4,7 +4,7 @@
 // sampler3D, and a sampler2D where there is nothing to shape, or no second table: the overload then says at compile time
 // what a branch would say in every pixel, and some drivers pay for both sides of a branch around loads. That sampler2D is
 // as wide as the cube's edge.
-#include "shared/log_curves.glsl"
+#include "lut_log_curves.glsl"
 #include "shared/sanitize.glsl"
 #include "shared/srgb.glsl"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Linear light of Rec. 709 as code values of logarithmic curves, and back: ACEScct, ARRI LogC3 at EI 800 and LogC4, Sony
-// S-Log3, Panasonic V-Log and DaVinci Intermediate in their own primaries, and the library's LogShaper. Decoded values are clamped to half precision before they are Rec. 709.
-#ifndef SHARED_LOG_CURVES
-#define SHARED_LOG_CURVES
+// S-Log3, Panasonic V-Log and DaVinci Intermediate in their own primaries, and the library's LogShaper. Decoded values are
+// clamped to half precision before they are Rec. 709.
+#ifndef LUT_LOG_CURVES
+#define LUT_LOG_CURVES
 
 // As lut_reference.hpp works them out, which says where primaries and curves are published: ACES AP1 with the adaptation of
 // Bradford, ARRI Wide Gamut 3, S-Gamut3.Cine, ARRI Wide Gamut 4, V-Gamut, DaVinci Wide Gamut.
