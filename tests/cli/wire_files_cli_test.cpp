@@ -59,7 +59,7 @@ TEST_F(CliWireFiles, ASecondPictureIsSceneLinear) {
 TEST_F(CliWireFiles, APictureMovesTheOther) {
     write("moved.toml",
           "[[stack]]\neffect = \"perturb\"\nstrength = [0, 0, 1, 1]\nspeed = [0, 0]\n"
-          "distortion = \"white.png\"\ndistortion_strength = 4\n");
+          "distortion = \"white.png\"\ndistortion_strength = 4\nreach = \"pixels\"\n");
     Picture white(2, 2);
     white.pixels.assign(white.pixels.size(), 1.0f);
     ASSERT_TRUE(write_picture(path("white.png"), white));

@@ -123,7 +123,13 @@ std::string list_text(std::span<const std::string> names) {
 }
 
 std::string value_text(const LookEntry& entry, const ParamInfo& row) {
-    if (row.kind != Kind::Resource) return format_for_file(row, entry.words);
+    if (row.kind != Kind::Resource) {
+        // Where sizes are parts of the height anyway, plain numbers say the same.
+        const std::span defaults = entry.effect->parameters.defaults;
+        const bool is_own = row.reach_word < defaults.size() &&
+                            defaults[row.reach_word] != static_cast<std::uint32_t>(Reach::Height);
+        return is_own ? format_for_file(row, entry.words) : format(row, entry.words);
+    }
     const LookResource* const resource = resource_of(entry, row);
     return toml_string(resource == nullptr ? std::string_view() : resource->file);
 }
