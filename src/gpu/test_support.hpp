@@ -97,6 +97,20 @@ inline VkPhysicalDeviceLimits limits() {
     return properties.limits;
 }
 
+/// While it lives, plans for the test's device are made as for a GPU or as for a driver on the CPU, whichever it is.
+class PlannedFor {
+  public:
+    explicit PlannedFor(bool software) : was_software_(context().traits.is_software) {
+        context().traits.is_software = software;
+    }
+    ~PlannedFor() { context().traits.is_software = was_software_; }
+    PlannedFor(const PlannedFor&) = delete;
+    PlannedFor& operator=(const PlannedFor&) = delete;
+
+  private:
+    bool was_software_;
+};
+
 /// Is it Mesa's software driver, the one that everything is first tested on? It filters, blends and places vertices in
 /// single precision, and gives both stages the same operations: its tests are the strictest. What Vulkan leaves open is
 /// allowed to all others, which another software driver is one of.

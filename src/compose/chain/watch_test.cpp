@@ -151,7 +151,11 @@ TEST_F(ComposeWatch, WhoGivesNoTargetRunsNoPassAndGetsTheSamePicture) {
     EXPECT_EQ(test::must(composer.plan(desc())).passes.size(), plain.passes.size() + 1);
 }
 
-TEST_F(ComposeWatch, EveryLevelOfAnImageIsSeen) {
+/// In plans for a GPU one compute pass makes several levels.
+class ComposeWatchLevels : public ComposeWatch, public ::testing::WithParamInterface<bool> {};
+
+TEST_P(ComposeWatchLevels, EveryLevelOfAnImageIsSeen) {
+    const gpu::test::PlannedFor planned(GetParam());
     host.color = gpu::test::upload(host.device.context(), test::pixels_of(test::uniform(240, 150, {2, 3, 4, 1})),
                                    float_format, VK_IMAGE_LAYOUT_GENERAL);
     make_target({240, 150});
@@ -184,6 +188,7 @@ TEST_F(ComposeWatch, EveryLevelOfAnImageIsSeen) {
     EXPECT_EQ(composer.watch_state(0), WatchState::NotWritten);
     EXPECT_EQ(test::worst_difference(seen(targets[0]), before), 0);
 }
+INSTANTIATE_TEST_SUITE_P(Planned, ComposeWatchLevels, ::testing::Bool());
 
 TEST_F(ComposeWatch, AnEntryThatIsOffShowsItsInput) {
     for (const bool fuses : {false, true}) {

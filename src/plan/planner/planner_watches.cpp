@@ -38,19 +38,20 @@ std::optional<Planner::WatchedImage> Planner::watched_image(const Watch& watch) 
     const auto can_read = [&](graph::Version version) {
         return (facts_.at(version.index).usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0;
     };
-    const auto makes_level = [&](const ProgramPass& pass) {
-        return has_name(pass.output) && pass.output_mip_level == watch.mip_level;
-    };
-    const auto first = std::ranges::find_if(program_.passes, makes_level);
-    if (first == program_.passes.end()) {
+    const ProgramPass* first = nullptr;
+    graph::Version last;
+    for (const ProgramPass& pass : program_.passes)
+        pass.for_each_output([&](graph::Version version, std::uint32_t mip_level) {
+            if (!has_name(version)) return;
+            last = version;
+            if (first == nullptr && mip_level == watch.mip_level) first = &pass;
+        });
+    if (first == nullptr) {
         for (const auto& [which, version] : host_images_)
             if (has_name(version) && can_read(version) && which.kind != HostImage::Kind::Shadow && watch.mip_level == 0)
                 return WatchedImage{.input = {.version = version}};
         return std::nullopt;
     }
-    graph::Version last;
-    for (const ProgramPass& pass : program_.passes)
-        if (has_name(pass.output)) last = pass.output;
     if (!can_read(last)) return std::nullopt;
     WatchedImage out{.input = {.version = last, .mip_level = watch.mip_level}, .writer = first->toggle};
     // Passes that write over it may have gates of their own.
