@@ -16,8 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 Result<std::string> output_of(std::vector<std::string> arguments, const fs::path& log) {
+    const std::string program = arguments.front();
     const auto ran = run_program(std::move(arguments), log);
     if (!ran) return failure(ran.error());
+    if (!ran->has_value()) return machine_error(fmt::format("{}: there is no such program", program));
     const auto bytes = read_file(log);
     if (!bytes) return failure(bytes.error());
     const void* const text = bytes->data();
