@@ -114,20 +114,34 @@ TEST_F(ComposeComputeQueue, AnotherExtentResetsHistories) {
     if (find_effect("frame_blend") == nullptr) GTEST_SKIP() << "this build has no effect with a history";
     const gpu::test::ComputeQueue queue;
     Device device = gpu::test::shared_device.smallest_again();
-    const test::Host host(test::uniform(extent.width, extent.height, {0.5, 0.25, 0.125, 1}),
-                          VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, device);
+    const auto host_of = [&](const Rgba& color) {
+        return test::Host(test::uniform(extent.width, extent.height, color), VK_FORMAT_R32G32B32A32_SFLOAT,
+                          VK_FORMAT_R32G32B32A32_SFLOAT, device);
+    };
+    const Rgba old_color{0.5, 0.25, 0.125, 1}, color{0.125, 0.5, 0.75, 1};
+    const test::Host before = host_of(old_color), host = host_of(color);
     Composer composer(device);
-    test::add(composer, "frame_blend");
+    test::add(composer, "frame_blend", {{"amount", 0.5}});
     CompileDesc desc = host.compile_desc();
     desc.target.usage = VK_IMAGE_USAGE_STORAGE_BIT;
+    desc.encodes_target = false;
     test::must(composer.compile(desc));
-    for (const VkExtent2D size : {extent, VkExtent2D{24, 16}, VkExtent2D{25, 16}}) {
-        Frame frame = host.frame();
-        frame.color = test::image_ref(host.color, {{}, size});
-        frame.target = test::image_ref(host.target, {{}, size});
-        test::must(host.record(composer, frame));
-        const Rgba pixel = host.read_target().at(5, 5);
-        EXPECT_TRUE(std::isfinite(pixel.r) && std::isfinite(pixel.g) && std::isfinite(pixel.b));
+    double time = 0;
+    const auto blue = [&](const test::Host& shown, VkExtent2D size) {
+        Frame frame = shown.frame();
+        frame.delta_time = 1.0 / 60;
+        frame.time = time += frame.delta_time;
+        frame.color = test::image_ref(shown.color, {{}, size});
+        frame.target = test::image_ref(shown.target, {{}, size});
+        test::must(shown.record(composer, frame));
+        return shown.read_target().at(5, 5).b;
+    };
+    EXPECT_NEAR(blue(before, extent), old_color.b, 1e-6);
+    const double mixed = blue(host, extent);
+    EXPECT_LT(mixed, color.b - 0.05) << "the frame before is mixed in";
+    for (const VkExtent2D size : {VkExtent2D{24, 16}, VkExtent2D{25, 16}}) {
+        EXPECT_NEAR(blue(host, size), color.b, 1e-6) << size.width;
+        static_cast<void>(blue(before, size));
     }
 }
 
