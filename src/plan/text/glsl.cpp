@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "gpu/shader/glsl_scan.hpp"
@@ -47,13 +47,15 @@ std::string block_prefix(const EffectInfo& info, std::uint32_t place) {
 }
 
 /// Names in the shared files keep theirs, even where they begin with an effect's name.
-const std::set<std::string_view>& shared_words() {
-    static const std::set<std::string_view> words = [] {
-        std::set<std::string_view> out;
+const std::unordered_set<std::string_view>& shared_words() {
+    static const std::unordered_set<std::string_view> words = [] {
+        std::unordered_set<std::string_view> out;
+        out.reserve(4096);
         for (const EffectFile& file : shared_files()) {
             gpu::GlslScanner scanner(file.text);
-            for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next())
-                if (token.kind == gpu::Token::Kind::Word) out.insert(token.text);
+            for (gpu::Token token = scanner.next_word(); token.kind != gpu::Token::Kind::End;
+                 token = scanner.next_word())
+                out.insert(token.text);
         }
         return out;
     }();
@@ -202,15 +204,16 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, st
     if (own.glsl.empty()) return user_error(fmt::format("{}: there is no such file", own.shown));
 
     EffectText out;
-    std::set<std::string_view> members;
+    std::unordered_set<std::string_view> members;
     const std::string prefix = std::string(info.name) + "_", loader = prefix + "parameters";
+    const std::string suffix = place_suffix(place);
     const std::string_view type = info.parameters.struct_name;
     const std::string choice_prefix = std::string(type) + "_";
     std::string renamed;
+    std::size_t copied = 0;  // up to where the file is in `renamed`
     std::string_view function, before;
     gpu::GlslScanner scanner(own.glsl);
     for (gpu::Token token = scanner.next(); token.kind != gpu::Token::Kind::End; token = scanner.next()) {
-        renamed += token.text;
         if (token.kind == gpu::Token::Kind::Blank) continue;
         const bool is_loaded =
             before == "(" && (function == "load" || function == "load_clamped" || function == "size");
@@ -223,11 +226,14 @@ Result<EffectText> effect_text(const EffectInfo& info, std::string_view name, st
         const bool is_own =
             token.text == info.name || (token.text.starts_with(prefix) && !shared_words().contains(token.text));
         const bool is_of_type = token.text == type || token.text.starts_with(choice_prefix);
-        if (is_own || is_of_type || std::ranges::find(images, token.text) != images.end())
-            renamed += place_suffix(place);
+        if (is_own || is_of_type || std::ranges::find(images, token.text) != images.end()) {
+            renamed.append(own.glsl, copied, scanner.place() - copied).append(suffix);
+            copied = scanner.place();
+        }
         out.asks_sizes |= token.text == "input_is_twice" || token.text == "output_is_twice";
         out.asks_parameters |= token.text == loader;
     }
+    renamed.append(own.glsl, copied);
     for (const ParamInfo& row : info.parameters.rows) {
         const bool may_be_literal = row.is_loop_count || row.kind == Kind::Choice || row.kind == Kind::Toggle;
         if (may_be_literal && members.contains(row.name)) out.literal_rows.push_back(&row);
