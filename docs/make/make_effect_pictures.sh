@@ -78,6 +78,9 @@ effect = "posterize"
 levels = 5'
 samples=1 stack fxaa courtyard '' '[[stack]]
 effect = "fxaa"'
+stack sharpen showcase '' '[[stack]]
+effect = "sharpen"
+stops = 0.0'
 stack lens_distortion courtyard '' '[[stack]]
 effect = "lens_distortion"
 lens_distortion = 0.5
