@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
+#include <darkroom/effects/taa.hpp>
+
+#include "shared/scene_images.hpp"
+#include "taa/taa_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr auto taa_rows =
+    describe(field<&Taa::sharpness>(
+                 "How much the gathered picture is sharpened: 0 is not at all, 1 all that its contrast allows.", {0, 1})
+                 .at_compile(),
+             field<&Taa::stability>("How long what stands still is gathered: 0 for 8 frames, 1 for 128.", {0, 1}));
+
+const Taa& taa_of(const void* parameters) { return *static_cast<const Taa*>(parameters); }
+
+float ratio(std::uint32_t a, std::uint32_t b) { return static_cast<float>(a) / static_cast<float>(b); }
+
+/// Jitter is told in pixels of the scene: in those of the picture.
+std::array<float, 2> in_pixels(const std::array<float, 2>& jitter, const PassContext& context) {
+    return {jitter[0] * ratio(context.frame_extent.width, context.scene_extent.width),
+            jitter[1] * ratio(context.frame_extent.height, context.scene_extent.height)};
+}
+
+void gather_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const Camera& camera = *context.camera;
+    const VkExtent2D in = context.frame_extent, made = context.output_extent;
+    const std::array<float, 2> jitter = in_pixels(camera.jitter, context),
+                               before = in_pixels(camera.previous_jitter, context);
+    out[0] = {ratio(in.width, made.width), ratio(in.height, made.height), jitter[0], jitter[1]};
+    out[1] = {ratio(made.width, in.width), ratio(made.height, in.height), before[0], before[1]};
+    const TaaDepthBefore depth = taa_depth_before(camera);
+    const auto [ray, flat] = ray_constants(camera, in, 1);
+    const auto row = [&](std::size_t i) { return static_cast<float>(depth.row[i]); };
+    out[2] = {-row(0) * ray[0], -row(1) * ray[1], row(2) - row(0) * ray[2] - row(1) * ray[3],
+              -row(0) * flat[2] - row(1) * flat[3] - row(3)};
+    out[3] = {-row(0) * flat[0], -row(1) * flat[1], context.has_history ? 1.0f : 0.0f,
+              static_cast<float>(context.frame_index % 64)};
+    out[4] = {static_cast<float>(taa_most_frames(taa_of(parameters))), 0, 0, 0};
+}
+
+void motion_constants(const void*, const PassContext& context, std::span<PassVector> out) {
+    const Camera& camera = *context.camera;
+    const TaaMotion motion(camera);
+    const auto [ray, flat] = ray_constants(camera, context.frame_extent, 1);
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 4; ++j) out[i][j] = static_cast<float>(motion.rows[i][j]);
+    out[3] = ray;
+    out[4] = flat;
+    const std::array<float, 2> jitter = in_pixels(camera.jitter, context),
+                               before = in_pixels(camera.previous_jitter, context);
+    out[5] = {static_cast<float>(context.frame_extent.width), static_cast<float>(context.frame_extent.height),
+              jitter[0] - before[0], jitter[1] - before[1]};
+}
+
+PassImage motion_of_camera(PassBuilder& builder, PassImage distance) {
+    return builder.add({.name = "motion of the camera",
+                        .shader = "taa_motion.glsl",
+                        .inputs = {{.name = "taa_distance", .image = distance, .is_loaded = true}},
+                        .output = builder.create({.name = "motion", .format = VK_FORMAT_R16G16_SFLOAT}),
+                        .custom_vectors = 6,
+                        .constants = motion_constants});
+}
+
+void sharpen_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
+    out[0] = {static_cast<float>(taa_sharpening(taa_of(parameters))), 0, 0, 0};
+}
+
+void build(PassBuilder& builder) {
+    const PassBuilder::History distance = builder.history({.name = "distance", .format = VK_FORMAT_R16_SFLOAT});
+    const PassImage inverse = builder.add(
+        {.name = "distance",
+         .shader = "taa_distance.glsl",
+         .inputs = {{.name = "taa_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true}},
+         .output = distance.current,
+         .custom_vectors = 2,
+         .constants = depth_vectors});
+    const PassImage motion =
+        builder.has_frame_image(FrameImage::Velocity) ? velocity(builder) : motion_of_camera(builder, inverse);
+    const PassBuilder::History light = builder.history({.name = "light", .is_of_output = true});
+    const PassBuilder::History count =
+        builder.history({.name = "count", .format = VK_FORMAT_R16_SFLOAT, .is_of_output = true});
+    const std::vector<PassImage> made = builder.add_all(
+        {.name = "gather",
+         .shader = "taa_gather.glsl",
+         .inputs = {{.name = "taa_color", .image = builder.picture(), .is_loaded = true},
+                    {.name = "taa_distance", .image = inverse, .is_loaded = true},
+                    {.name = "taa_distance_before", .image = distance.previous, .is_loaded = true},
+                    {.name = "taa_velocity", .image = motion, .is_loaded = true},
+                    {.name = "taa_reactive", .image = builder.frame_image(FrameImage::Reactive), .is_loaded = true},
+                    {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true},
+                    {.name = "taa_light_before", .image = light.previous},
+                    {.name = "taa_count_before", .image = count.previous}},
+         .output = light.current,
+         .more_outputs = {count.current},
+         .custom_vectors = 5,
+         .constants = gather_constants});
+    if (made.empty()) return;
+    if (taa_of(builder.parameters()).sharpness == 0.0f) {
+        builder.result(made.front());
+        return;
+    }
+    builder.result(builder.add(
+        {.name = "sharpen",
+         .shader = "taa_sharpen.glsl",
+         .inputs = {{.name = "taa_gathered", .image = made.front(), .is_loaded = true},
+                    {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true}},
+         .output = builder.create({.name = "sharp", .is_of_output = true}),
+         .custom_vectors = 1,
+         .constants = sharpen_constants}));
+}
+
+}  // namespace
+
+const EffectInfo& effect_info(const Taa&) {
+    static const EffectInfo info{
+        .name = "taa",
+        .doc = "Gathers the frames of a jittered camera: smooth edges, and more pixels than were drawn.",
+        .parameters = taa_rows.table(),
+        .files = embedded_files("taa"),
+        .touch = Touch::History,
+        .accepts = Domains::only(Domain::SceneLinear),
+        .needs = {FrameImage::Depth, FrameImage::Reactive, FrameImage::Exposure},
+        .flat = {.documented = 41, .scene_linear = 42},
+        .makes_output = true,
+        .build = build,
+        .reference = taa_reference,
+        .pre_roll = [](const void* parameters, double) { return taa_pre_roll(taa_of(parameters)); },
+    };
+    return info;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// taa in double precision, over sequences: what the page says, pixel by pixel. Nothing is rounded to halves.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <darkroom/effects/taa.hpp>
+#include <darkroom/reference.hpp>
+
+#include "shared/camera_reference.hpp"
+#include "shared/finite_reference.hpp"
+#include "shared/sample_reference.hpp"
+
+namespace darkroom {
+
+/// Frames that are gathered where nothing moves.
+inline double taa_most_frames(const Taa& taa) { return 8 * std::exp2(4 * double{taa.stability}); }
+
+/// Until the frames before the first weigh less than half a code.
+inline std::uint32_t taa_pre_roll(const Taa& taa) {
+    return static_cast<std::uint32_t>(std::ceil(taa_most_frames(taa) * std::log(2 * 255)));
+}
+
+/// Row of the third coordinate: view space now to that of a moment ago, for a world that stands still.
+struct TaaDepthBefore {
+    std::array<double, 4> row{};
+};
+/// Rows of x, y (down) and w: view space now to the clip space of a moment ago.
+struct TaaMotion {
+    explicit TaaMotion(const Camera& camera);
+    std::array<std::array<double, 4>, 3> rows{};
+};
+
+namespace taa {
+
+using Row = std::array<double, 4>;
+
+inline Row row_of(const Matrix& matrix, std::size_t row) {
+    return {matrix[row], matrix[4 + row], matrix[8 + row], matrix[12 + row]};
+}
+
+/// `row` behind the way back from view space, which turns and moves.
+inline Row behind_inverse(const Row& row, const Matrix& view) {
+    Row out{0, 0, 0, row[3]};
+    for (std::size_t j = 0; j < 3; ++j) {
+        for (std::size_t k = 0; k < 3; ++k) out[j] += row[k] * double{view[k * 4 + j]};
+        out[3] -= out[j] * double{view[12 + j]};
+    }
+    return out;
+}
+
+inline Row product(const Row& row, const Matrix& matrix) {
+    Row out{};
+    for (std::size_t j = 0; j < 4; ++j)
+        for (std::size_t k = 0; k < 4; ++k) out[j] += row[k] * double{matrix[j * 4 + k]};
+    return out;
+}
+
+}  // namespace taa
+
+inline TaaDepthBefore taa_depth_before(const Camera& camera) {
+    return {taa::behind_inverse(taa::row_of(camera.previous_view, 2), camera.view)};
+}
+
+inline TaaMotion::TaaMotion(const Camera& camera) {
+    constexpr std::array<std::size_t, 3> of_clip{0, 1, 3};
+    for (std::size_t i = 0; i < 3; ++i)
+        rows[i] = taa::behind_inverse(
+            taa::product(taa::row_of(camera.previous_projection, of_clip[i]), camera.previous_view), camera.view);
+    if (!camera.is_y_down)
+        for (double& number : rows[1]) number = -number;
+}
+
+namespace taa {
+
+using Toned = std::array<double, 3>;
+
+// The same numbers as in taa_gather.glsl.
+constexpr double moving_frames = 16, nearer = 0.02, edge = 0.03, wide = 1, narrow = 2.3, still_reach = 3,
+                 moving_reach = 1, most_reactive = 0.9;
+
+inline Toned toned(const Rgba& c, double unit) {
+    const double scale = 1 / (unit + std::max({c.r, c.g, c.b}));
+    const double r = c.r * scale, g = c.g * scale, b = c.b * scale;
+    return {r / 4 + g / 2 + b / 4, r / 2 - b / 2, -r / 4 + g / 2 - b / 4};
+}
+
+inline Rgba light(const Toned& t, double unit, double alpha) {
+    const double r = std::max(t[0] - t[2] + t[1], 0.0), g = std::max(t[0] + t[2], 0.0),
+                 b = std::max(t[0] - t[2] - t[1], 0.0);
+    const double scale = unit / std::max(1 - std::max({r, g, b}), 1e-7);
+    return {std::min(r * scale, 65504.0), std::min(g * scale, 65504.0), std::min(b * scale, 65504.0), alpha};
+}
+
+inline Toned sum(const Toned& a, const Toned& b, double scale) {
+    return {a[0] + b[0] * scale, a[1] + b[1] * scale, a[2] + b[2] * scale};
+}
+
+/// One frame of a sequence.
+class Gather {
+  public:
+    Gather(const Taa& taa, const ReferenceInput& input)
+        : taa_(taa),
+          input_(input),
+          picture_(*input.picture),
+          width_(input.output_width),
+          height_(input.output_height),
+          x_scale_(double{1} * picture_.width / width_),
+          y_scale_(double{1} * picture_.height / height_),
+          unit_(1 /
+                std::clamp(input.exposure != nullptr ? finite_reference(input.exposure->pixels[0].r) : 1.0, 1e-6, 1e6)),
+          camera_(input.camera),
+          depth_before_(taa_depth_before(input.camera)),
+          motion_(input.camera),
+          distance_(picture_.width, picture_.height) {
+        for (std::size_t i = 0; i < distance_.pixels.size(); ++i) {
+            const double planar = input.depth->pixels[i].r;
+            distance_.pixels[i].r = planar > 0 && planar < 1e9 ? std::min(1 / planar, 65504.0) : 0;
+        }
+        if (input.history == nullptr || !input.history->contains("light")) return;
+        light_before_ = &input.history->at("light");
+        count_before_ = &input.history->at("count");
+        distance_before_ = &input.history->at("distance");
+        if (light_before_->width != width_ || light_before_->height != height_) light_before_ = nullptr;
+    }
+
+    ReferenceImage run() {
+        ReferenceImage light_now(width_, height_), count(width_, height_);
+        for (std::uint32_t y = 0; y < height_; ++y)
+            for (std::uint32_t x = 0; x < width_; ++x) gather(x, y, light_now.at(x, y), count.at(x, y).r);
+        if (input_.history != nullptr) {
+            (*input_.history)["light"] = light_now;
+            (*input_.history)["count"] = count;
+            (*input_.history)["distance"] = distance_;
+        }
+        return light_now;
+    }
+
+    double unit() const { return unit_; }
+
+  private:
+    struct Now {
+        Toned wide{}, narrow{}, mean{}, deviation{};
+        double weight = 0;
+    };
+
+    double jitter(std::size_t axis) const { return double{input_.camera.jitter[axis]}; }
+
+    Now now(std::int64_t i0, std::int64_t j0, double away_x, double away_y) const {
+        Now out;
+        double wide_sum = 0, narrow_sum = 0;
+        Toned squares{};
+        for (int j = -1; j <= 1; ++j)
+            for (int i = -1; i <= 1; ++i) {
+                const double dx = away_x + i, dy = away_y + j;
+                const double of_wide = std::exp(-wide * (dx * dx + dy * dy));
+                const double of_narrow = std::exp(-narrow * (std::pow(dx / x_scale_, 2) + std::pow(dy / y_scale_, 2)));
+                const Rgba& texel = picture_.clamped(i0 + i, j0 + j);
+                const Toned color = toned({finite_light_reference(texel.r), finite_light_reference(texel.g),
+                                           finite_light_reference(texel.b), 1},
+                                          unit_);
+                out.wide = sum(out.wide, color, of_wide);
+                out.narrow = sum(out.narrow, color, of_narrow);
+                out.mean = sum(out.mean, color, 1.0 / 9);
+                squares = sum(squares, {color[0] * color[0], color[1] * color[1], color[2] * color[2]}, 1.0 / 9);
+                wide_sum += of_wide;
+                narrow_sum += of_narrow;
+            }
+        out.wide = sum({}, out.wide, 1 / wide_sum);
+        out.narrow = sum({}, out.narrow, 1 / narrow_sum);
+        for (std::size_t c = 0; c < 3; ++c)
+            out.deviation[c] = std::sqrt(std::max(squares[c] - out.mean[c] * out.mean[c], 0.0));
+        out.weight = std::min(narrow_sum, 1.0);
+        return out;
+    }
+
+    Toned past(double x, double y) const {
+        const auto weights = [](double f) {
+            return std::array{f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f),
+                              f * (0.5 + f * (2 - 1.5 * f)), f * f * (-0.5 + 0.5 * f)};
+        };
+        const double mx = std::floor(x - 0.5) + 0.5, my = std::floor(y - 0.5) + 0.5;
+        const auto wx = weights(x - mx), wy = weights(y - my);
+        // The two in the middle are one filtered tap.
+        const std::array at_x{mx - 1, mx + wx[2] / (wx[1] + wx[2]), mx + 2},
+            at_y{my - 1, my + wy[2] / (wy[1] + wy[2]), my + 2};
+        const std::array of_x{wx[0], wx[1] + wx[2], wx[3]}, of_y{wy[0], wy[1] + wy[2], wy[3]};
+        Toned out{};
+        for (std::size_t j = 0; j < 3; ++j)
+            for (std::size_t i = 0; i < 3; ++i)
+                out = sum(out, toned(sample_reference(*light_before_, at_x[i] / width_, at_y[j] / height_), unit_),
+                          of_x[i] * of_y[j]);
+        return out;
+    }
+
+    bool was_hidden(std::int64_t i, std::int64_t j, double inverse, double x, double y) const {
+        const ReferenceCamera camera(camera_);
+        const double planar = 1 / std::max(inverse, 1e-12);
+        const Double3 point = camera.view_position((static_cast<double>(i) + 0.5) / picture_.width,
+                                                   (static_cast<double>(j) + 0.5) / picture_.height, planar);
+        const Row& row = depth_before_.row;
+        const double before = -(row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + row[3]);
+        const double expected = inverse > 0 ? 1 / std::max(before, 1e-9) : 0;
+        const auto i0 = static_cast<std::int64_t>(std::floor(x - 0.5)),
+                   j0 = static_cast<std::int64_t>(std::floor(y - 0.5));
+        double farthest = 65504;
+        for (int dj = 0; dj < 2; ++dj)
+            for (int di = 0; di < 2; ++di) farthest = std::min(farthest, distance_before_->clamped(i0 + di, j0 + dj).r);
+        return farthest > expected * (1 + nearer) + 1e-6;
+    }
+
+    std::array<double, 2> motion(std::int64_t i, std::int64_t j, double inverse) const {
+        if (input_.velocity != nullptr) {
+            const Rgba& v = input_.velocity->clamped(i, j);
+            return {finite_reference(v.r), finite_reference(v.g)};
+        }
+        const ReferenceCamera camera(camera_);
+        const double u = (static_cast<double>(i) + 0.5) / picture_.width,
+                     v = (static_cast<double>(j) + 0.5) / picture_.height;
+        const Double3 point = camera.view_position(u, v, 1 / std::max(inverse, 1e-9));
+        const auto along = [&](const Row& row) {
+            return row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + row[3];
+        };
+        const double w = along(motion_.rows[2]);
+        if (!(w > 0)) return {0, 0};
+        const Camera& c = input_.camera;
+        return {(along(motion_.rows[0]) / w * 0.5 + 0.5 - u) * picture_.width + double{c.jitter[0]} -
+                    double{c.previous_jitter[0]},
+                (along(motion_.rows[1]) / w * 0.5 + 0.5 - v) * picture_.height + double{c.jitter[1]} -
+                    double{c.previous_jitter[1]}};
+    }
+
+    void gather(std::uint32_t x, std::uint32_t y, Rgba& out, double& count) const {
+        const double px = (x + 0.5) * x_scale_ + jitter(0), py = (y + 0.5) * y_scale_ + jitter(1);
+        const auto inside = [](double v, std::uint32_t n) {
+            return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(v)), 0, std::int64_t{n} - 1);
+        };
+        const std::int64_t i0 = inside(px, picture_.width), j0 = inside(py, picture_.height);
+        const Now frame = now(i0, j0, static_cast<double>(i0) + 0.5 - px, static_cast<double>(j0) + 0.5 - py);
+        const double own = distance_.clamped(i0, j0).r;
+        double inverse = own;
+        std::int64_t at_i = i0, at_j = j0;
+        for (int dj = 0; dj < 2; ++dj)
+            for (int di = 0; di < 2; ++di) {
+                const std::int64_t i = inside(std::floor(px - 0.5) + di, picture_.width),
+                                   j = inside(std::floor(py - 0.5) + dj, picture_.height);
+                const double here = distance_.clamped(i, j).r;
+                if (here > inverse) inverse = here, at_i = i, at_j = j;
+            }
+        if (inverse <= own * (1 + edge)) inverse = own, at_i = i0, at_j = j0;
+        std::array<double, 2> moved = motion(at_i, at_j, inverse);
+        moved = {moved[0] / x_scale_, moved[1] / y_scale_};
+        const double bx = x + 0.5 + moved[0], by = y + 0.5 + moved[1];
+        Toned color = frame.wide;
+        count = frame.weight;
+        const bool has_past = light_before_ != nullptr && bx > 0 && by > 0 && bx < width_ && by < height_;
+        if (has_past && !was_hidden(at_i, at_j, inverse, bx * x_scale_ + double{input_.camera.previous_jitter[0]},
+                                    by * y_scale_ + double{input_.camera.previous_jitter[1]})) {
+            const double moves = std::min(std::hypot(moved[0], moved[1]) * 4, 1.0);
+            double frames = sample_reference(*count_before_, bx / width_, by / height_).r;
+            frames = std::min(frames, std::lerp(taa_most_frames(taa_), moving_frames, moves));
+            const Toned before = past(bx, by), away = sum(before, frame.mean, -1);
+            double beyond = 1;
+            for (std::size_t c = 0; c < 3; ++c)
+                beyond = std::max(beyond,
+                                  std::abs(away[c]) /
+                                      std::max(frame.deviation[c] * std::lerp(still_reach, moving_reach, moves), 1e-3));
+            const Toned held = sum(frame.mean, away, 1 / beyond);
+            if (input_.reactive != nullptr)
+                frames *=
+                    1 - most_reactive * std::clamp(finite_reference(input_.reactive->clamped(i0, j0).r), 0.0, 1.0);
+            const double narrower = std::min(frames / 4, 1.0);
+            const Toned present = sum(sum({}, frame.wide, 1 - narrower), frame.narrow, narrower);
+            const double alpha = frame.weight / (frames + frame.weight);
+            color = sum(sum({}, held, 1 - alpha), present, alpha);
+            count = frames + frame.weight;
+        }
+        out = light(color, unit_, sample_reference(picture_, px / picture_.width, py / picture_.height).a);
+    }
+
+    const Taa& taa_;
+    const ReferenceInput& input_;
+    const ReferenceImage& picture_;
+    std::uint32_t width_, height_;
+    double x_scale_, y_scale_;  ///< pixels of the frame a pixel of the output
+    double unit_;
+    Camera camera_;
+    TaaDepthBefore depth_before_;
+    TaaMotion motion_;
+    ReferenceImage distance_;  ///< inverse, 0 of the sky
+    const ReferenceImage *light_before_ = nullptr, *count_before_ = nullptr, *distance_before_ = nullptr;
+};
+
+/// taa_sharpen.glsl.
+inline ReferenceImage sharpened(const ReferenceImage& picture, double strength, double unit) {
+    constexpr double Rgba::*channels[] = {&Rgba::r, &Rgba::g, &Rgba::b};
+    ReferenceImage shown = picture, out = picture;
+    for (Rgba& c : shown.pixels) {
+        const double scale = 1 / (unit + std::max({c.r, c.g, c.b}));
+        c = {c.r * scale, c.g * scale, c.b * scale, c.a};
+    }
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const auto at = [&](int dx, int dy) { return shown.clamped(std::int64_t{x} + dx, std::int64_t{y} + dy); };
+            const Rgba n = at(0, -1), s = at(0, 1), w = at(-1, 0), o = at(1, 0), own = at(0, 0);
+            double most = 0.1875;
+            for (const auto c : channels) {
+                const double low = std::min({n.*c, s.*c, w.*c, o.*c}), high = std::max({n.*c, s.*c, w.*c, o.*c});
+                most = std::min({most, std::min(low, own.*c) / std::max(4 * high, 1e-30),
+                                 (1 - std::max(high, own.*c)) / std::max(4 - 4 * low, 1e-30)});
+            }
+            const double lobe = -most * strength;
+            Rgba sharp = own;
+            for (const auto c : channels)
+                sharp.*c =
+                    std::clamp((lobe * (n.*c + s.*c + w.*c + o.*c) + own.*c) / (4 * lobe + 1),
+                               std::min({n.*c, s.*c, w.*c, o.*c, own.*c}), std::max({n.*c, s.*c, w.*c, o.*c, own.*c}));
+            const double scale = unit / std::max(1 - std::max({sharp.r, sharp.g, sharp.b}), 1e-7);
+            for (const auto c : channels) out.at(x, y).*c = std::min(sharp.*c * scale, 65504.0);
+        }
+    return out;
+}
+
+}  // namespace taa
+
+/// How strongly it sharpens: the first step of the slider is three stops less than all.
+inline double taa_sharpening(const Taa& taa) { return std::exp2(3 * (double{taa.sharpness} - 1)); }
+
+inline ReferenceImage taa_reference(const void* parameters, const ReferenceInput& input) {
+    const Taa& taa = *static_cast<const Taa*>(parameters);
+    taa::Gather gather(taa, input);
+    const ReferenceImage gathered = gather.run();
+    return taa.sharpness == 0 ? gathered : taa::sharpened(gathered, taa_sharpening(taa), gather.unit());
+}
+
+}  // namespace darkroom
