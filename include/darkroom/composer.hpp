@@ -22,6 +22,7 @@
 // other pipelines and descriptor sets bound at both bind points, and all dynamic state to be set anew; push constants,
 // vertex and index buffers are as they were. Before it records, it checks each image that the plan uses.
 
+#include <array>
 #include <cstdint>
 #include <darkroom/blend_mode.hpp>
 #include <darkroom/device.hpp>
@@ -121,6 +122,14 @@ class Composer {
     Composer(Composer&&) noexcept;
     Composer& operator=(Composer&&) noexcept;
     ~Composer();
+
+    /// For effects that gather earlier frames: where within the pixel a frame is drawn. Camera::jitter, in pixels of
+    /// Frame::color, y down: a Halton sequence (bases 2 and 3) about 0 with 8 * scale^2 entries. `scale`: lines of the
+    /// output to those of the frame, 1 and more. jittered() moves a projection by it.
+    [[nodiscard]] static std::array<float, 2> jitter(std::uint64_t frame_index, float scale = 1);
+    /// What to add to the mip bias of all samplers of the scene, so that the gathered picture is as sharp as a frame of
+    /// the output's size: -log2(scale).
+    [[nodiscard]] static float mip_bias(float scale);
 
     // The stack. Edits keep the values, overrides and histories of the entries that stay; record() goes on with the
     // plan it has, and the present values of that plan's entries, until a compile has made another.

@@ -90,14 +90,29 @@ struct Camera {
     DepthKind depth = DepthKind::Standard;
     bool is_y_down = true;  ///< clip space as Vulkan has it; false: y up (a flipped viewport)
     VelocityKind velocity;
-    std::array<float, 2> jitter{};  ///< how far the projection moves this frame's picture, in pixels, y down
-    std::array<float, 2> previous_jitter{};
-    bool is_cut = false;  ///< nothing of the last frame is related to this one: histories are reset
+    /// How far the projection moves this frame's picture, in pixels of Frame::color, y down: see Composer::jitter.
+    std::array<float, 2> jitter{};
+    std::array<float, 2> previous_jitter{};  ///< the same of the view's last frame, in pixels of its own picture
+    bool is_cut = false;                     ///< nothing of the last frame is related to this one: histories are reset
     // A camera that moved or turned by more than this since the view's last frame is taken for a cut. Infinite: never.
     float jump_distance = 30;  ///< in scene units, of the eye; 30 m a frame are 720 m/s at 24 frames a second
     float jump_angle =
         1.0471976f;  ///< radians, about any axis; at 60 degrees two views share little more than a corner
 };
+
+/// A projection that moves the picture by Camera::jitter, in pixels of a picture of `extent`, y down. Of any
+/// projection: what is added to x and y of clip space is a multiple of w.
+[[nodiscard]] constexpr Matrix jittered(const Matrix& projection, const std::array<float, 2>& jitter, VkExtent2D extent,
+                                        bool is_y_down = true) {
+    const float x = 2 * jitter[0] / static_cast<float>(extent.width);
+    const float y = (is_y_down ? 2 : -2) * jitter[1] / static_cast<float>(extent.height);
+    Matrix out = projection;
+    for (std::size_t column = 0; column < out.size(); column += 4) {
+        out[column] += x * projection[column + 3];
+        out[column + 1] += y * projection[column + 3];
+    }
+    return out;
+}
 
 /// One directional light of the frame, with its shadow cascades where it casts.
 struct Light {
