@@ -37,6 +37,7 @@ class CliInfo : public test::CliFixture {
         frame.camera.world_to_camera = Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, -2, -5, 1};
         frame.camera.projection = perspective(40, 1.5);
         frame.camera.far_distance = std::numeric_limits<float>::infinity();
+        frame.camera.jitter = {0.25F, -0.375F};
         frame.time = 2.5;
         frame.frame_index = 60;
         FrameCascade cascade{.split = 25, .depth = Plane<1>(16, 16)};
@@ -84,6 +85,7 @@ TEST_F(CliInfo, AFrameIsToldWithLayersCameraAndLights) {
     EXPECT_EQ(found.at("camera").at("direction"), json({0.0, 0.0, -1.0}));
     EXPECT_NEAR(found.at("camera").at("vertical_field_of_view_degrees").get<double>(), 40, 1e-4);
     EXPECT_EQ(found.at("camera").at("far"), "inf");
+    EXPECT_EQ(found.at("camera").at("jitter"), json({0.25, -0.375}));
     EXPECT_EQ(found.at("time"), 2.5);
     EXPECT_EQ(found.at("frame_index"), 60);
     ASSERT_EQ(found.at("lights").size(), 2u);

@@ -49,6 +49,10 @@ TEST_F(CliRefuse, CamerasOfFramesThroughWhichNothingIsSeen) {
     odd[6] = std::numeric_limits<float>::infinity();
     write_with({.world_to_camera = rigid, .projection = perspective(40, 1), .previous_world_to_camera = odd});
     expect_refused_by_both("a.exr", "darkroom:previousWorldToCamera: number 7 of 16 is inf");
+    write_with({.jitter = std::array{0.5F, 65.0F}});
+    expect_refused_by_both("a.exr", "darkroom:jitter: number 2 of 2 is 65: allowed are [-64, 64] pixels");
+    write_with({.previous_jitter = std::array{std::numeric_limits<float>::quiet_NaN(), 0.0F}});
+    expect_refused_by_both("a.exr", "darkroom:previousJitter: number 1 of 2 is nan");
     Matrix flat = rigid;
     flat[10] = 0;
     write_with({.world_to_camera = flat});

@@ -115,6 +115,7 @@ Json camera_of(const darkroom::FrameCamera& camera) {
     }
     if (camera.near_distance) out["near"] = json_number(*camera.near_distance);
     if (camera.far_distance) out["far"] = json_number(*camera.far_distance);
+    if (camera.jitter) out["jitter"] = *camera.jitter;
     if (!out.empty()) out["has_previous_frame"] = camera.previous_world_to_camera.has_value();
     return out;
 }

@@ -36,16 +36,24 @@ Camera camera_of(const darkroom::FrameCamera& stored) {
     if (stored.projection) camera.projection = *stored.projection;
     camera.previous_view = stored.previous_world_to_camera.value_or(camera.view);
     camera.previous_projection = stored.previous_projection.value_or(camera.projection);
+    camera.jitter = stored.jitter.value_or(camera.jitter);
+    camera.previous_jitter = stored.previous_jitter.value_or(camera.previous_jitter);
     if (stored.near_distance) camera.near_distance = *stored.near_distance;
     if (stored.far_distance) camera.far_distance = *stored.far_distance;
     return camera;
 }
 
 darkroom::FrameCamera stored_camera(const Camera& camera) {
+    const bool is_jittered = camera.jitter != Camera().jitter || camera.previous_jitter != Camera().previous_jitter;
+    const auto stored_jitter = [&](const std::array<float, 2>& jitter) {
+        return is_jittered ? std::optional(jitter) : std::nullopt;
+    };
     return {.world_to_camera = camera.view,
             .projection = camera.projection,
             .previous_world_to_camera = camera.previous_view,
             .previous_projection = camera.previous_projection,
+            .jitter = stored_jitter(camera.jitter),
+            .previous_jitter = stored_jitter(camera.previous_jitter),
             .near_distance = camera.near_distance,
             .far_distance = camera.far_distance};
 }

@@ -61,6 +61,14 @@ Result<> check_camera(const FrameCamera& camera) {
           std::pair("darkroom:previousProjection", &camera.previous_projection)})
         if (*matrix)
             if (auto checked = check_camera_matrix(name, **matrix); !checked) return checked;
+    // Renderers stay within a pixel. What is far beyond is no place within the picture.
+    constexpr float most = 64;
+    for (const auto& [name, jitter] :
+         {std::pair("darkroom:jitter", &camera.jitter), std::pair("darkroom:previousJitter", &camera.previous_jitter)})
+        for (std::size_t i = 0; *jitter && i < 2; ++i)
+            if (!(std::abs((**jitter)[i]) <= most))
+                return user_error(fmt::format("{}: number {} of 2 is {}: allowed are [-{:g}, {:g}] pixels", name, i + 1,
+                                              (**jitter)[i], most, most));
     return {};
 }
 

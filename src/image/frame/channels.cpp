@@ -386,4 +386,16 @@ Result<FrameChannels> find_channels(std::span<const FilePart> parts, const Layer
     return Finder(parts, names, view).find();
 }
 
+Result<> add_mapping(LayerNames& names, std::string_view mapping) {
+    const std::size_t equals = mapping.find('=');
+    const std::string what(mapping.substr(0, equals));
+    const bool is_known = what == "color" || what == "depth" || what == "normals" || what == "velocity";
+    if (equals == std::string_view::npos || equals + 1 == mapping.size() || !is_known)
+        return user_error(fmt::format(
+            "\"{}\" maps nothing; color, depth, normals or velocity, then = and the name of a channel are needed",
+            one_printable_line(mapping)));
+    names[what] = mapping.substr(equals + 1);
+    return {};
+}
+
 }  // namespace darkroom

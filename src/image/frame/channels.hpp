@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/codec/decoder.hpp"
@@ -54,5 +55,8 @@ using LayerNames = std::map<std::string, std::string, std::less<>>;
 /// file name.
 [[nodiscard]] Result<FrameChannels> find_channels(std::span<const FilePart> parts, const LayerNames& names,
                                                   const std::string& view = {});
+
+/// Adds "depth=NAME", "normals=PREFIX", "velocity=PREFIX" or "color=PREFIX".
+[[nodiscard]] Result<> add_mapping(LayerNames& names, std::string_view mapping);
 
 }  // namespace darkroom

@@ -38,6 +38,8 @@ struct FrameCamera {
     /// Given with a field of view, the projection is made from it: y down, depth 0 at 0.1 and 1 at 1000.
     std::optional<double> vertical_field_of_view;  ///< degrees
     std::optional<Matrix> previous_world_to_camera, previous_projection;
+    /// How far `projection` moves the picture, in pixels, y down; and the previous one. Unknown: 0.
+    std::optional<std::array<float, 2>> jitter, previous_jitter;
     std::optional<float> near_distance, far_distance;  ///< far may be infinite
 };
 
@@ -131,20 +133,16 @@ void widen(FrameFile& frame);
 [[nodiscard]] Result<std::optional<double>> read_frame_time(const std::filesystem::path& path, const LayerNames& names);
 
 /// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, worldToCamera,
-/// and as attributes of our own darkroom:projection, previousWorldToCamera, previousProjection, near, far, time,
-/// deltaTime and frameIndex, bit for bit. Colour is half, or float if `frame.samples` is; depth and motion are float,
-/// normals half. Lights are attributes as well, and their cascades parts of their own beside the frame's: see
-/// docs/conventions.md.
-/// `max_threads`: that compress, 0: as many as there are processors.
+/// and as attributes of our own darkroom:projection, previousWorldToCamera, previousProjection, jitter,
+/// previousJitter, near, far, time, deltaTime and frameIndex, bit for bit. Colour is half, or float if `frame.samples`
+/// is; depth and motion are float, normals half. Lights are attributes as well, and their cascades parts of their own
+/// beside the frame's: see docs/conventions.md. `max_threads`: that compress, 0: as many as there are processors.
 [[nodiscard]] Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame,
                                    std::size_t max_threads = 0);
 
 /// A camera in a TOML file: `world_to_camera` or `camera_to_world` (16 numbers, row by row as one writes a matrix for
 /// column vectors), `projection` (16 numbers) or `fov` (vertical, degrees). All are optional; other keys are refused.
 [[nodiscard]] Result<FrameCamera> read_camera(const std::filesystem::path& path);
-
-/// Adds "depth=NAME", "normals=PREFIX", "velocity=PREFIX" or "color=PREFIX".
-[[nodiscard]] Result<> add_mapping(LayerNames& names, std::string_view mapping);
 
 /// The same projection for a picture of this size, in which what it saw is the window.
 [[nodiscard]] Matrix widened(const Matrix& projection, const PixelWindow& window, std::uint32_t width,

@@ -41,6 +41,8 @@ FrameFile full_frame() {
     frame.camera.previous_world_to_camera = matrix;
     matrix[15] = 1e-30F;
     frame.camera.previous_projection = matrix;
+    frame.camera.jitter = {1.0F / 3, -0.25F};
+    frame.camera.previous_jitter = {-0.125F, 1e-3F};
     frame.camera.near_distance = 0.1F;
     frame.camera.far_distance = std::numeric_limits<float>::infinity();
     frame.time = 1.0 / 3;
@@ -62,6 +64,8 @@ TEST_F(ImageFrame, WhatIsWrittenIsRead) {
     EXPECT_EQ(back->camera.projection, frame.camera.projection);
     EXPECT_EQ(back->camera.previous_world_to_camera, frame.camera.previous_world_to_camera);
     EXPECT_EQ(back->camera.previous_projection, frame.camera.previous_projection);
+    EXPECT_EQ(back->camera.jitter, frame.camera.jitter);
+    EXPECT_EQ(back->camera.previous_jitter, frame.camera.previous_jitter);
     EXPECT_EQ(back->camera.near_distance, frame.camera.near_distance);
     EXPECT_EQ(back->camera.far_distance, frame.camera.far_distance);
     EXPECT_EQ(back->time, frame.time);
@@ -81,6 +85,7 @@ TEST_F(ImageFrame, WhatIsNotGivenStaysUnknown) {
     ASSERT_TRUE(back) << back.error().text;
     EXPECT_TRUE(back->camera.world_to_camera);
     EXPECT_FALSE(back->camera.previous_world_to_camera || back->camera.previous_projection);
+    EXPECT_FALSE(back->camera.jitter || back->camera.previous_jitter);
     EXPECT_FALSE(back->camera.near_distance || back->camera.far_distance);
     EXPECT_FALSE(back->time || back->delta_time || back->frame_index);
 }
@@ -89,7 +94,7 @@ TEST_F(ImageFrame, AnotherCameraHasNoPast) {
     ASSERT_TRUE(write_frame(file("a.exr"), full_frame()));
     const auto wide = read_frame(file("a.exr"), {.vertical_field_of_view = 90});
     ASSERT_TRUE(wide) << wide.error().text;
-    EXPECT_FALSE(wide->camera.previous_projection || wide->camera.far_distance);
+    EXPECT_FALSE(wide->camera.previous_projection || wide->camera.far_distance || wide->camera.jitter);
     EXPECT_TRUE(wide->time);
 }
 

@@ -59,7 +59,9 @@ class FrameReader {
     void add_half_place(const ChannelSet& set, std::uint32_t components, std::vector<std::uint16_t>& plane);
     [[nodiscard]] Result<> check(const ChannelSet& set, std::uint32_t components, const char* what) const;
     [[nodiscard]] const FilePart& part(const ChannelSet& set) const { return decoder_.parts()[set.part]; }
-    [[nodiscard]] std::optional<Matrix> matrix(const char* attribute) const;
+    template <std::size_t count>
+    [[nodiscard]] std::optional<std::array<float, count>> floats(const char* attribute) const;
+    [[nodiscard]] std::optional<Matrix> matrix(const char* attribute) const { return floats<16>(attribute); }
     [[nodiscard]] std::optional<Matrix> world_to_camera() const;
 
     Decoder& decoder_;
@@ -73,10 +75,11 @@ class FrameReader {
     std::optional<Matrix> vray_normals_;    // world to camera, of what V-Ray wrote
 };
 
-std::optional<Matrix> FrameReader::matrix(const char* attribute) const {
+template <std::size_t count>
+std::optional<std::array<float, count>> FrameReader::floats(const char* attribute) const {
     const std::vector<float> values = decoder_.numbers(found_.color.part, attribute);
-    if (values.size() != 16) return std::nullopt;
-    Matrix result{};
+    if (values.size() != count) return std::nullopt;
+    std::array<float, count> result{};
     std::copy(values.begin(), values.end(), result.begin());
     return result;
 }
@@ -367,6 +370,8 @@ Result<> FrameReader::read_camera_of_file() {
     camera.projection = matrix("darkroom:projection");
     camera.previous_world_to_camera = matrix("darkroom:previousWorldToCamera");
     camera.previous_projection = matrix("darkroom:previousProjection");
+    camera.jitter = floats<2>("darkroom:jitter");
+    camera.previous_jitter = floats<2>("darkroom:previousJitter");
     const auto distance = [&](const char* name) -> std::optional<float> {
         const std::optional<double> value = decoder_.number(found_.color.part, name);
         if (!value || !(*value >= 0)) return std::nullopt;
@@ -376,10 +381,9 @@ Result<> FrameReader::read_camera_of_file() {
     camera.far_distance = distance("darkroom:far");
     // What follows from another camera than the file's is known of the file's alone.
     const auto forget = [&] {
-        camera.previous_world_to_camera.reset();
-        camera.previous_projection.reset();
-        camera.near_distance.reset();
-        camera.far_distance.reset();
+        camera = {.world_to_camera = camera.world_to_camera,
+                  .projection = camera.projection,
+                  .vertical_field_of_view = camera.vertical_field_of_view};
     };
     if (is_vray_) {
         if (camera.world_to_camera)
@@ -475,18 +479,6 @@ Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptio
         (options.camera_file.empty() || !frame.error().text.starts_with(options.camera_file.string())))
         frame.error().text.insert(0, place);
     return frame;
-}
-
-Result<> add_mapping(LayerNames& names, std::string_view mapping) {
-    const std::size_t equals = mapping.find('=');
-    const std::string what(mapping.substr(0, equals));
-    const bool is_known = what == "color" || what == "depth" || what == "normals" || what == "velocity";
-    if (equals == std::string_view::npos || equals + 1 == mapping.size() || !is_known)
-        return user_error(fmt::format(
-            "\"{}\" maps nothing; color, depth, normals or velocity, then = and the name of a channel are needed",
-            one_printable_line(mapping)));
-    names[what] = mapping.substr(equals + 1);
-    return {};
 }
 
 Result<std::optional<double>> read_frame_time(const std::filesystem::path& path, const LayerNames& names) {

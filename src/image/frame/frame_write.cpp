@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +20,10 @@ void add_matrix(Imf::Header& header, const char* name, const std::optional<Matri
     Imath::M44f value;
     std::copy(matrix->begin(), matrix->end(), value.getValue());
     header.insert(name, Imf::M44fAttribute(value));
+}
+
+void add_vector(Imf::Header& header, const char* name, const std::optional<std::array<float, 2>>& vector) {
+    if (vector) header.insert(name, Imf::V2fAttribute({(*vector)[0], (*vector)[1]}));
 }
 
 template <class Number>
@@ -63,6 +68,8 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame, 
     add_matrix(header, "darkroom:projection", frame.camera.projection);
     add_matrix(header, "darkroom:previousWorldToCamera", frame.camera.previous_world_to_camera);
     add_matrix(header, "darkroom:previousProjection", frame.camera.previous_projection);
+    add_vector(header, "darkroom:jitter", frame.camera.jitter);
+    add_vector(header, "darkroom:previousJitter", frame.camera.previous_jitter);
     add_number(header, "darkroom:near", frame.camera.near_distance);
     add_number(header, "darkroom:far", frame.camera.far_distance);
     add_number(header, "darkroom:time", frame.time);

@@ -103,10 +103,12 @@ Result<FrameFile> resize(FrameFile frame, const NewSize& asked_for) {
     frame.color = std::move(*color);
     if (frame.depth) frame.depth = nearest_pixels(*frame.depth, width, height);
     if (frame.normals) frame.normals = nearest_pixels(*frame.normals, width, height);
+    const float scale_x = static_cast<float>(width) / static_cast<float>(old_width);
+    const float scale_y = static_cast<float>(height) / static_cast<float>(old_height);
+    for (auto* const jitter : {&frame.camera.jitter, &frame.camera.previous_jitter})
+        if (*jitter) *jitter = {(**jitter)[0] * scale_x, (**jitter)[1] * scale_y};
     if (frame.velocity) {
         frame.velocity = nearest_pixels(*frame.velocity, width, height);
-        const float scale_x = static_cast<float>(width) / static_cast<float>(old_width);
-        const float scale_y = static_cast<float>(height) / static_cast<float>(old_height);
         for (std::size_t i = 0; i + 1 < frame.velocity->values.size(); i += 2) {
             frame.velocity->values[i] *= scale_x;
             frame.velocity->values[i + 1] *= scale_y;

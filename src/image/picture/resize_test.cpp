@@ -19,13 +19,18 @@ FrameFile frame_of(std::uint32_t width, std::uint32_t height) {
 }
 
 TEST(ImageResize, KeepsAnEvenPictureAndScalesMotion) {
-    const Result<FrameFile> small = resize(frame_of(16, 8), {8, 2});
+    FrameFile frame = frame_of(16, 8);
+    frame.camera.jitter = {0.5f, -0.5f};
+    frame.camera.previous_jitter = {0.25f, 0.25f};
+    const Result<FrameFile> small = resize(frame, {8, 2});
     ASSERT_TRUE(small) << small.error().text;
     EXPECT_EQ(small->color.width, 8u);
     EXPECT_EQ(small->color.height, 2u);
     for (const float value : small->color.pixels) EXPECT_NEAR(value, 0.5f, 1e-6f);
     EXPECT_EQ(*small->velocity->at(3, 1), 2.0f);
     EXPECT_EQ(small->velocity->at(3, 1)[1], 1.0f);
+    EXPECT_EQ(small->camera.jitter, (std::array{0.25f, -0.125f}));
+    EXPECT_EQ(small->camera.previous_jitter, (std::array{0.125f, 0.0625f}));
     EXPECT_EQ(*small->depth->at(3, 0), 7.0f) << "the nearest pixel, not a mean";
 }
 
