@@ -5,6 +5,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <vector>
 
 #include "draw/pipeline.hpp"
@@ -45,6 +46,11 @@ inline constexpr std::uint32_t frame_bindings = 12;
 /// Where the picture goes: linear HDR for effects, or the finished display picture by the scene's own shaders.
 enum class Output : std::uint32_t { Hdr, Display };
 enum class DebugView : std::uint32_t { None, Wireframe, Normals, Depth, Uv, Unlit, MetalRough };
+
+/// Where within the pixel a frame is drawn, and the one before: Camera::jitter and Camera::previous_jitter.
+struct FrameJitter {
+    std::array<float, 2> now{}, before{};
+};
 
 /// What draws leave of a colour target whose alpha is a layer of its own.
 inline constexpr VkColorComponentFlags color_without_alpha =

@@ -90,6 +90,7 @@ struct Renderer::State {
     // Of the prepared frame.
     std::uint32_t slot = 0;
     const scene::Snapshot* snapshot = nullptr;
+    FrameJitter jitter;
     DrawList list;
     std::vector<Light> lights;
     Frame frame;
@@ -101,7 +102,7 @@ struct Renderer::State {
     Result<> create_targets(VkExtent2D extent);
     void apply(const DrawOptions& options);
     Result<> warm_up();
-    Result<> prepare(const scene::Snapshot& next);
+    Result<> prepare(const scene::Snapshot& next, const FrameJitter& next_jitter);
     Result<> fill_buffers(FrameBuffers& buffers);
     void fill_frame();
     Result<> record(VkCommandBuffer commands);
@@ -151,6 +152,7 @@ Result<> Renderer::State::create() {
 void Renderer::State::apply(const DrawOptions& options) {
     desc.draw = options;
     settings.debug = options.debug;
+    settings.mip_bias = options.mip_bias;
     settings.is_tone_mapped = desc.is_tone_mapped && options.debug == DebugView::None;
     settings.exposure = options.debug == DebugView::None ? options.exposure : 1;
 }
@@ -223,10 +225,12 @@ MeshDraw Renderer::State::mesh_draw(const scene::Snapshot& drawn, const DrawList
                      .has_normal_arrows = desc.draw.has_normal_arrows}};
 }
 
-Result<> Renderer::State::prepare(const scene::Snapshot& next) {
+Result<> Renderer::State::prepare(const scene::Snapshot& next, const FrameJitter& next_jitter) {
     snapshot = &next;
+    jitter = next_jitter;
+    settings.jitter = jitter.now;
     slot = (slot + 1) % desc.frames_in_flight;
-    list = draw_list(next);
+    list = draw_list(next, jitter_matrix(jitter.now, desc.extent));
     if (desc.draw.has_shadows && desc.draw.debug == DebugView::None) {
         shadows->prepare(next);
     } else {
@@ -319,7 +323,7 @@ void Renderer::State::fill_frame() {
              .normals = targets.drawn(targets.normals, use),
              .velocity = targets.drawn(targets.velocity, use),
              .ui = {},
-             .camera = frame_camera(snapshot->camera),
+             .camera = frame_camera(snapshot->camera, desc.extent, jitter),
              .lights = lights,
              .time = snapshot->time,
              .target = {}};
@@ -415,7 +419,9 @@ Result<> Renderer::set(const DrawOptions& options) {
 }
 
 Result<> Renderer::warm_up() { return state_->warm_up(); }
-Result<> Renderer::prepare(const scene::Snapshot& snapshot) { return state_->prepare(snapshot); }
+Result<> Renderer::prepare(const scene::Snapshot& snapshot, const FrameJitter& jitter) {
+    return state_->prepare(snapshot, jitter);
+}
 Result<> Renderer::record(VkCommandBuffer commands) { return state_->record(commands); }
 Frame Renderer::frame() const { return state_->frame; }
 VkImageUsageFlags Renderer::layer_usage() const {

@@ -32,6 +32,7 @@ struct DrawOptions {
     bool has_grid = true;
     bool has_wireframe_overlay = false;
     bool has_normal_arrows = false;
+    float mip_bias = 0;                 ///< of textures: Composer::mip_bias, where something enlarges the picture
     float exposure = 1;                 ///< multiplies light, but not in debug views; of Output::Display alone
     DebugView debug = DebugView::None;  ///< others need Output::Display, and are neither tone-mapped nor encoded
 };
@@ -84,8 +85,9 @@ class Renderer {
 
     /// Culls, sorts and fills the buffers of the next frame; the recording made `frames_in_flight` frames ago must have
     /// finished. The snapshot must stay until record() has returned. Errors are those of the machine.
-    Result<> prepare(const scene::Snapshot& snapshot);
-    Result<> prepare(scene::Snapshot&& snapshot) = delete;
+    /// `jitter`: its picture is moved by that, its motion is not.
+    Result<> prepare(const scene::Snapshot& snapshot, const FrameJitter& jitter = {});
+    Result<> prepare(scene::Snapshot&& snapshot, const FrameJitter& jitter = {}) = delete;
     /// Records shadows, scene and resolve of what was prepared.
     Result<> record(VkCommandBuffer commands);
 

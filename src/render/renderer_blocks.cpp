@@ -2,6 +2,7 @@
 #include "render/renderer_blocks.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace darkroom::render {
 
@@ -55,13 +56,16 @@ blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& 
     const auto width = static_cast<float>(settings.extent.width), height = static_cast<float>(settings.extent.height);
     const scene::Environment& environment = settings.environment;
     blocks::Frame block;
+    // Both alike, so that no jitter is left in motion.
+    const mat4 jitter = jitter_matrix(settings.jitter, settings.extent);
     block.view = camera.view;
-    block.projection = camera.projection;
-    block.view_projection = camera.projection * camera.view;
-    block.previous_view_projection = camera.previous_projection * camera.previous_view;
+    block.projection = jitter * camera.projection;
+    block.view_projection = block.projection * camera.view;
+    block.previous_view_projection = jitter * camera.previous_projection * camera.previous_view;
     block.inverse_view_projection = glm::inverse(block.view_projection);
     block.camera_position = vec4(camera.position, camera.kind == scene::Projection::Perspective ? 1 : 0);
-    block.camera_forward = vec4(-camera.view[0].z, -camera.view[1].z, -camera.view[2].z, 0);
+    block.camera_forward =
+        vec4(-camera.view[0].z, -camera.view[1].z, -camera.view[2].z, std::exp2(settings.mip_bias) - 1);
     block.target_size = vec4(width, height, 1 / width, 1 / height);
     block.planes =
         vec4(camera.near_distance, camera.far_distance, static_cast<float>(snapshot.time), settings.exposure);
@@ -77,6 +81,13 @@ blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& 
         vec4(environment.skybox_intensity, static_cast<float>(std::max(settings.environment_levels, 1U) - 1), 0, 0);
     for (std::size_t i = 0; i < settings.irradiance.size(); ++i) block.irradiance[i] = vec4(settings.irradiance[i], 0);
     return block;
+}
+
+mat4 jitter_matrix(const std::array<float, 2>& jitter, VkExtent2D extent) {
+    mat4 out(1);
+    out[3] =
+        vec4(2 * jitter[0] / static_cast<float>(extent.width), 2 * jitter[1] / static_cast<float>(extent.height), 0, 1);
+    return out;
 }
 
 blocks::Frame moved_block(const blocks::Frame& frame, scene::vec2 pixels) {
@@ -158,15 +169,17 @@ blocks::Instance instance_block(const scene::Instance& instance, const GpuMesh& 
     return block;
 }
 
-Camera frame_camera(const scene::CameraState& camera) {
+Camera frame_camera(const scene::CameraState& camera, VkExtent2D extent, const FrameJitter& jitter) {
     return {.view = matrix_of(camera.view),
-            .projection = matrix_of(camera.projection),
+            .projection = jittered(matrix_of(camera.projection), jitter.now, extent),
             .previous_view = matrix_of(camera.previous_view),
-            .previous_projection = matrix_of(camera.previous_projection),
+            .previous_projection = jittered(matrix_of(camera.previous_projection), jitter.before, extent),
             .near_distance = camera.near_distance,
             .far_distance = camera.far_distance,
             .depth = DepthKind::Planar,
-            .is_y_down = true};
+            .is_y_down = true,
+            .jitter = jitter.now,
+            .previous_jitter = jitter.before};
 }
 
 Light frame_light(const scene::LightState& state) {

@@ -16,6 +16,8 @@ namespace darkroom::render {
 /// What the frame block says beyond the snapshot.
 struct FrameSettings {
     VkExtent2D extent{};
+    std::array<float, 2> jitter{};  ///< Camera::jitter
+    float mip_bias = 0;             ///< of textures
     Output output = Output::Hdr;
     bool is_tone_mapped = true;
     float exposure = 1;
@@ -34,7 +36,9 @@ struct FrameSettings {
 [[nodiscard]] blocks::Material material_block(const scene::SnapshotMaterial& material);
 [[nodiscard]] blocks::Instance instance_block(const scene::Instance& instance, const GpuMesh& mesh);
 
-[[nodiscard]] Camera frame_camera(const scene::CameraState& camera);
+[[nodiscard]] Camera frame_camera(const scene::CameraState& camera, VkExtent2D extent, const FrameJitter& jitter = {});
+/// Moves clip space, so that the picture is moved by these pixels.
+[[nodiscard]] scene::mat4 jitter_matrix(const std::array<float, 2>& jitter, VkExtent2D extent);
 /// A directional light as effects get it, without its cascades.
 [[nodiscard]] Light frame_light(const scene::LightState& light);
 [[nodiscard]] Matrix matrix_of(const scene::mat4& matrix);

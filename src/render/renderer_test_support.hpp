@@ -111,16 +111,16 @@ struct Shot {
     Pixels color, depth, normals, velocity;
 };
 
-inline void draw(Renderer& renderer, const scene::Snapshot& snapshot) {
-    must(renderer.prepare(snapshot));
+inline void draw(Renderer& renderer, const scene::Snapshot& snapshot, const FrameJitter& jitter = {}) {
+    must(renderer.prepare(snapshot, jitter));
     Result<> recorded;
     must(gpu::submit_and_wait(gpu::test::context(), "rendering a test scene",
                               [&](VkCommandBuffer commands) { recorded = renderer.record(commands); }));
     must(std::move(recorded));
 }
 
-inline Shot shoot(Renderer& renderer, const scene::Snapshot& snapshot) {
-    draw(renderer, snapshot);
+inline Shot shoot(Renderer& renderer, const scene::Snapshot& snapshot, const FrameJitter& jitter = {}) {
+    draw(renderer, snapshot, jitter);
     Shot shot{.color = download(renderer.picture()), .depth = {}, .normals = {}, .velocity = {}};
     if (renderer.desc().output == Output::Display) return shot;
     const Frame frame = renderer.frame();

@@ -135,9 +135,9 @@ bool Frustum::touches(const scene::Box& box) const {
     });
 }
 
-DrawList draw_list(const Snapshot& snapshot) {
+DrawList draw_list(const Snapshot& snapshot, const scene::mat4& clip_moved) {
     DrawList list;
-    const Frustum frustum(snapshot.camera.projection * snapshot.camera.view);
+    const Frustum frustum(clip_moved * snapshot.camera.projection * snapshot.camera.view);
     const std::vector<std::uint32_t> surfaces = surface_numbers(snapshot);
     std::vector<Entry> opaque, transparent, wireframe;
     for (std::uint32_t i = 0; i < snapshot.instances.size(); ++i) {

@@ -42,7 +42,9 @@ struct DrawList {
 };
 
 /// Two materials in one batch share state and textures; factors may differ, the shader looks them up an instance.
-[[nodiscard]] DrawList draw_list(const scene::Snapshot& snapshot);
+/// `clip_moved`: goes behind the camera's projection.
+[[nodiscard]] DrawList draw_list(const scene::Snapshot& snapshot, const scene::mat4& clip_moved = scene::mat4(1));
+
 /// How far a light shines.
 struct Reach {
     scene::vec3 center{0};

@@ -6,7 +6,7 @@ mat4 view_projection;
 mat4 previous_view_projection;
 mat4 inverse_view_projection;
 vec4 camera_position;  // world space; w: 1 perspective, 0 orthographic
-vec4 camera_forward;   // world space, normalised
+vec4 camera_forward;   // world space, normalised; w: what is added to 1 for the gradients of textures, 0: no mip bias
 vec4 target_size;      // pixels: width, height, 1 / width, 1 / height
 vec4 planes;           // near distance, far distance, time in seconds, exposure of the finished picture
 uvec4 light_counts;    // directional, point, spot, 0

@@ -8,6 +8,7 @@ layout(constant_id = 4) const uint output_mode = 0u;
 layout(constant_id = 5) const bool is_debug_view = false;  // which one says the frame: all have the same pipelines
 layout(constant_id = 6) const bool is_tone_mapped = true;
 layout(constant_id = 7) const bool is_transparent = false;  // alpha is the material's, for blending or as all there is
+const bool has_mip_bias = true;
 
 #include "frame.glsl"
 #include "mesh/mesh_varyings_in.glsl"

@@ -1,5 +1,5 @@
 // The surface under a fragment: its material with textures, and its normal. Needs frame.glsl, mesh_varyings_in.glsl and
-// the constant has_textures before it. Textures that a material lacks are white, so their values need no test.
+// the constants has_textures and has_mip_bias before it. Textures that a material lacks are white, so their values need no test.
 layout(set = 1, binding = 0) uniform sampler2D base_color_texture;          // sRGB
 layout(set = 1, binding = 1) uniform sampler2D metallic_roughness_texture;  // green: roughness; blue: metallic
 layout(set = 1, binding = 2) uniform sampler2D normal_texture;
@@ -46,8 +46,9 @@ struct Coordinates {
     vec2 y_gradient;
 };
 Coordinates texture_coordinates(uint texture_number) {
-    vec4 x_gradient = dFdx(uv);
-    vec4 y_gradient = dFdy(uv);
+    float gradient_scale = has_mip_bias ? 1.0 + frame.camera_forward.w : 1.0;
+    vec4 x_gradient = dFdx(uv) * gradient_scale;
+    vec4 y_gradient = dFdy(uv) * gradient_scale;
     bool is_second = (materials[material_index].flags.z & (1u << texture_number)) != 0u;
     vec3 u_row = materials[material_index].uv_rows[2u * texture_number].xyz;
     vec3 v_row = materials[material_index].uv_rows[2u * texture_number + 1u].xyz;
