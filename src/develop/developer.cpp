@@ -30,6 +30,7 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopDesc& desc) {
     const bool is_bytes = desc.target == DevelopTarget::Encoded8;
     const VkFormat target = is_bytes ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R32G32B32A32_SFLOAT;
     return {.target = {target, target_usage(context, target)},
+            .target_extent = desc.target_extent,
             .target_color = desc.color,
             .target_domain = desc.target == DevelopTarget::SceneLinear ? Domain::SceneLinear : Domain::Encoded,
             .encodes_target = desc.target != DevelopTarget::SceneLinear,
@@ -66,7 +67,7 @@ bool is_same(const CompileDesc& a, const CompileDesc& b) {
 }  // namespace
 
 CompileDesc compile_desc_for(Device& device, const DevelopInput& input, const DevelopDesc& desc) {
-    return compile_desc_for(device.context(), input, layers_of(input), desc);
+    return compile_desc_for(device.context(), input, layers_of(input, desc.target_extent), desc);
 }
 
 CompileDesc compile_desc_for(gpu::Context& context, const DeviceFrame& input, const DevelopDesc& desc) {
@@ -127,9 +128,9 @@ struct Developer::State {
 
     Result<> check(VkExtent2D extent, std::span<const UploadLayer> layers) const {
         if (Result<> done = check_extent(context(), extent); !done) return done;
-        const auto [width, height] = extent;
-        const std::size_t pixels = std::size_t{width} * height;
         for (const UploadLayer& layer : layers) {
+            const auto [width, height] = layer.extent;
+            const std::size_t pixels = std::size_t{width} * height;
             const bool is_required = layer.name == std::string_view("color");
             const auto is_wrong = [&](std::size_t count, std::size_t per_pixel) {
                 return count > 0 && count != pixels * per_pixel;
@@ -187,11 +188,11 @@ struct Developer::State {
     /// Target and read-back of a picture as it was compiled.
     Result<> make_target(Slot& slot) const {
         if (slot.readback) return {};
-        auto image =
-            gpu::Image::create(context(), {.name = "target",
-                                           .format = compiled->target.format,
-                                           .extent = {compiled->max_extent.width, compiled->max_extent.height, 1},
-                                           .usage = compiled->target.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+        const auto [width, height] = desc.target_extent.width != 0 ? desc.target_extent : compiled->max_extent;
+        auto image = gpu::Image::create(context(), {.name = "target",
+                                                    .format = compiled->target.format,
+                                                    .extent = {width, height, 1},
+                                                    .usage = compiled->target.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
         if (!image) return failure(std::move(image));
         slot.target = std::move(*image);
         auto read = Readback::create(context(), reference_to(slot.target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
@@ -265,7 +266,7 @@ Developer::~Developer() = default;
 Result<> Developer::submit(Composer& composer, const DevelopInput& input) {
     State& state = *state_;
     DARKROOM_ASSERT(state.in_flight < state.slots.size());
-    const UploadLayers layers = layers_of(input);
+    const UploadLayers layers = layers_of(input, state.desc.target_extent);
     if (Result<> done = state.check(input.extent, layers); !done) return done;
     if (Result<> done = state.check(input.lights); !done) return done;
     const CompileDesc wanted = compile_desc_for(state.context(), input, layers, state.desc);
@@ -319,7 +320,7 @@ Result<DevelopedPicture> Developer::develop(Composer& composer, const DeviceFram
     RecordBefore before = input.record_before;
     if (!input.ui.empty()) {
         const DevelopInput interface { .extent = frame.color.used_region().extent, .ui = input.ui };
-        const UploadLayers uploads = layers_of(interface);
+        const UploadLayers uploads = layers_of(interface, state.desc.target_extent);
         if (Result<> done = state.check(interface.extent, std::span(uploads).last(1)); !done)
             return failure(std::move(done));
         if (Result<> done = slot.upload.prepare(state.context(), interface, uploads); !done)

@@ -27,8 +27,9 @@ struct DevelopInput {
     std::span<const float> velocity;                             ///< x, y
     std::span<const std::uint16_t> color_halves, normal_halves;  ///< four a pixel, x, y, z, 1 of normals
     std::span<const std::uint16_t> velocity_halves;              ///< two a pixel
-    std::span<const std::uint8_t>
-        ui;  ///< the interface: red, green, blue, alpha, sRGB-encoded, premultiplied after that
+    /// The interface: red, green, blue, alpha, sRGB-encoded, premultiplied after that; as large as the picture that is
+    /// made, where DevelopDesc says how large that is.
+    std::span<const std::uint8_t> ui;
     std::span<const ReferenceLight> lights;
     Camera camera;
     double time = 0;
@@ -41,8 +42,8 @@ struct DeviceFrame {
     Frame frame;                                                 ///< without target
     VkImageUsageFlags color_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of the colour image
     VkImageUsageFlags layer_usage = VK_IMAGE_USAGE_SAMPLED_BIT;  ///< of depth, normals and velocity alike
-    std::span<const std::uint8_t> ui;  ///< as in DevelopInput, of the size of the colour, if frame.ui is not given
-    RecordBefore record_before;        ///< goes first, in the same submission
+    std::span<const std::uint8_t> ui;                            ///< as in DevelopInput, if frame.ui is not given
+    RecordBefore record_before;                                  ///< goes first, in the same submission
 };
 
 /// Encoded8: bytes for the screen, in DevelopedPicture::bytes. EncodedFloat: the same before it is rounded, for 16-bit
@@ -53,6 +54,9 @@ struct DevelopDesc {
     DevelopTarget target = DevelopTarget::Encoded8;
     /// What the picture is to be, in place of sRGB or linear Rec. 709.
     std::optional<ColorState> color{};
+    /// Of the pictures that are made, where frames have another one: CompileDesc::target_extent. (0, 0): as the stack
+    /// leaves them.
+    VkExtent2D target_extent{};
     KernelStage kernels = KernelStage::Auto;
     bool fuse = true;
     /// Of DevelopInput: how many may be submitted before the first is finished. The Composer has as many.

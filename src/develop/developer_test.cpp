@@ -98,6 +98,35 @@ TEST(ComposeDeveloper, ImagesOfTheDeviceAndOfMainMemoryGiveTheSameBytes) {
     }
 }
 
+TEST(ComposeDeveloper, PicturesHaveAnExtentOfTheirOwn) {
+    if (find_effect("exposure") == nullptr) GTEST_SKIP() << "this build has no effect exposure";
+    const support::Pixels pixels = scene(33, 17);
+    const VkExtent2D large{66, 34};
+    Composer composer(support::device(), {.frames_in_flight = 1});
+    composer.add(*find_effect("exposure"), nullptr);
+    Developer developer(support::device(), {.target = DevelopTarget::SceneLinear, .target_extent = large});
+    DevelopInput input{.extent = {33, 17}, .color = pixels.rgba};
+    const Result<DevelopedPicture> made = developer.develop(composer, input);
+    ASSERT_TRUE(made) << made.error().text;
+    ASSERT_EQ(made->extent.width, large.width);
+    ASSERT_EQ(made->extent.height, large.height);
+    // Between four pixels, below the bright one.
+    for (std::uint32_t y = 12; y < large.height - 1; ++y)
+        for (std::uint32_t x = 1; x < large.width - 1; ++x) {
+            const float* const found = &made->pixels[4 * (std::size_t{y} * large.width + x)];
+            EXPECT_NEAR(found[0], ((static_cast<float>(x) + 0.5F) / 2 - 0.5F) / 16, 2e-3F) << x << ", " << y;
+            EXPECT_NEAR(found[1], ((static_cast<float>(y) + 0.5F) / 2 - 0.5F) / 8, 2e-3F) << x << ", " << y;
+        }
+    // The interface is as large as the picture.
+    const std::vector<std::uint8_t> small(std::size_t{33} * 17 * 4), right(std::size_t{66} * 34 * 4);
+    input.ui = small;
+    const Result<DevelopedPicture> refused = developer.develop(composer, input);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().text, "ui: 2244 bytes, 66x34 pixels need 8976");
+    input.ui = right;
+    EXPECT_TRUE(developer.develop(composer, input));
+}
+
 TEST(ComposeDeveloper, WhatIsRecordedBeforeIsSeenAndItsErrorEndsIt) {
     Device& device = support::device();
     gpu::Context& context = device.context();

@@ -41,11 +41,11 @@ void fill(const UploadLayer& layer, std::byte* out) {
 
 }  // namespace
 
-UploadLayers layers_of(const DevelopInput& input) {
-    const auto layer = [](const char* name, std::span<const float> values, std::span<const std::uint16_t> halves,
-                          std::uint32_t given, std::uint32_t kept, VkFormat half, VkFormat whole) -> UploadLayer {
+UploadLayers layers_of(const DevelopInput& input, VkExtent2D output) {
+    const auto layer = [&](const char* name, std::span<const float> values, std::span<const std::uint16_t> halves,
+                           std::uint32_t given, std::uint32_t kept, VkFormat half, VkFormat whole) -> UploadLayer {
         const bool is_half = half != whole && (!halves.empty() || is_all_half(values));
-        return {name, values, halves, {}, given, kept, is_half ? half : whole, is_half};
+        return {name, input.extent, values, halves, {}, given, kept, is_half ? half : whole, is_half};
     };
     constexpr VkFormat half4 = VK_FORMAT_R16G16B16A16_SFLOAT, float4 = VK_FORMAT_R32G32B32A32_SFLOAT;
     // Depth stays whole: a renderer's planar distance is, too.
@@ -54,7 +54,12 @@ UploadLayers layers_of(const DevelopInput& input) {
             layer("normals", input.normals, input.normal_halves, 3, 4, half4, float4),
             layer("velocity", input.velocity, input.velocity_halves, 2, 2, VK_FORMAT_R16G16_SFLOAT,
                   VK_FORMAT_R32G32_SFLOAT),
-            {.name = "ui", .bytes = input.ui, .given = 4, .kept = 4, .format = VK_FORMAT_R8G8B8A8_UNORM}};
+            {.name = "ui",
+             .extent = output.width != 0 ? output : input.extent,
+             .bytes = input.ui,
+             .given = 4,
+             .kept = 4,
+             .format = VK_FORMAT_R8G8B8A8_UNORM}};
 }
 
 VkImageUsageFlags shader_usage(const gpu::Context& context, VkFormat format) {
@@ -74,20 +79,20 @@ ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayo
             .final_layout = after};
 }
 
-Result<FrameUpload::Layers> FrameUpload::make_layers(gpu::Context& context, VkExtent2D extent,
-                                                     const UploadLayers& layers) {
-    Layers made{.extent = extent};
+Result<FrameUpload::Layers> FrameUpload::make_layers(gpu::Context& context, const UploadLayers& layers) {
+    Layers made;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const UploadLayer& layer = layers[i];
         if (!layer.is_given()) continue;
         auto image = gpu::Image::create(
             context, {.name = layer.name,
                       .format = layer.format,
-                      .extent = {extent.width, extent.height, 1},
+                      .extent = {layer.extent.width, layer.extent.height, 1},
                       .usage = shader_usage(context, layer.format) | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
         if (!image) return failure(std::move(image));
-        auto buffer = gpu::Buffer::create(context, VkDeviceSize{extent.width} * extent.height * layer.texel(),
-                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, layer.name);
+        auto buffer =
+            gpu::Buffer::create(context, VkDeviceSize{layer.extent.width} * layer.extent.height * layer.texel(),
+                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::Memory::Kind::Upload, layer.name);
         if (!buffer) return failure(std::move(buffer));
         made.images[i] = std::move(*image);
         made.buffers[i] = std::move(*buffer);
@@ -144,7 +149,7 @@ Result<> FrameUpload::prepare_lights(gpu::Context& context, std::span<const Refe
 
 Result<> FrameUpload::prepare(gpu::Context& context, const DevelopInput& input, const UploadLayers& layers) {
     if (!layers_) {
-        Result<Layers> made = make_layers(context, input.extent, layers);
+        Result<Layers> made = make_layers(context, layers);
         if (!made) return failure(std::move(made));
         layers_ = std::move(*made);
     }
@@ -154,10 +159,10 @@ Result<> FrameUpload::prepare(gpu::Context& context, const DevelopInput& input, 
 }
 
 void FrameUpload::record(const gpu::Context& context, VkCommandBuffer commands) const {
-    const VkBufferImageCopy copy = whole(layers_->extent);
     for (std::size_t i = 0; i < layers_->images.size(); ++i) {
         if (!layers_->images[i]) continue;
         const gpu::Image& image = *layers_->images[i];
+        const VkBufferImageCopy copy = whole({image.info.extent.width, image.info.extent.height});
         gpu::transition(context, commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         context.vk.CmdCopyBufferToImage(commands, layers_->buffers[i]->handle, image.handle,
                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);

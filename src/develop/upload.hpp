@@ -16,6 +16,7 @@ namespace darkroom {
 /// A layer of the frame: what it is made of and where it goes. `values`, or `halves` or `bytes` as the image has them.
 struct UploadLayer {
     const char* name = "";
+    VkExtent2D extent{};
     std::span<const float> values;
     std::span<const std::uint16_t> halves;
     std::span<const std::uint8_t> bytes;
@@ -29,14 +30,14 @@ struct UploadLayer {
 };
 using UploadLayers = std::array<UploadLayer, 5>;  ///< colour, depth, normals, velocity, interface
 
-/// Layers whose numbers are all halves are kept as halves.
-[[nodiscard]] UploadLayers layers_of(const DevelopInput& input);
+/// Layers whose numbers are all halves are kept as halves. `output`: of the picture that is made; (0, 0): as the frame.
+[[nodiscard]] UploadLayers layers_of(const DevelopInput& input, VkExtent2D output = {});
 /// How images of such a format are used by what a Composer records.
 [[nodiscard]] VkImageUsageFlags shader_usage(const gpu::Context& context, VkFormat format);
 /// An image of ours as a Composer is told of it, with everything before it finished.
 [[nodiscard]] ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayout after);
 
-/// Images of one size for layers and lights from main memory, and the buffers that fill them.
+/// Images for layers and lights from main memory, and the buffers that fill them.
 class FrameUpload {
   public:
     /// Forgets the layers: the next ones may be of another size or format.
@@ -49,7 +50,6 @@ class FrameUpload {
 
   private:
     struct Layers {
-        VkExtent2D extent{};
         std::array<std::optional<gpu::Image>, std::tuple_size_v<UploadLayers>> images;
         std::array<std::optional<gpu::Buffer>, std::tuple_size_v<UploadLayers>> buffers;
     };
@@ -60,8 +60,7 @@ class FrameUpload {
         std::uint32_t resolution = 0, count = 0;
     };
 
-    [[nodiscard]] static Result<Layers> make_layers(gpu::Context& context, VkExtent2D extent,
-                                                    const UploadLayers& layers);
+    [[nodiscard]] static Result<Layers> make_layers(gpu::Context& context, const UploadLayers& layers);
     [[nodiscard]] static Result<Shadow> make_shadow(gpu::Context& context, const ReferenceLight& light);
     [[nodiscard]] Result<> prepare_lights(gpu::Context& context, std::span<const ReferenceLight> given);
 

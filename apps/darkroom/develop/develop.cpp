@@ -43,7 +43,7 @@ struct Options {
     RunFlags run;
     FrameFlags frame;
     std::vector<std::string> inputs;
-    std::string out, size;
+    std::string out, size, output_size;
     std::optional<std::string> frames;
     NumberFlag time{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames_per_second{"--fps", {.least = 0.001, .most = 1e6}};
@@ -165,6 +165,8 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
     if (Result<> done = options.run.start_report(); !done) return failure(std::move(done));
     if (options.keeps_layers && options.frame.keeps_overscan)
         return user_error("--overscan: --keep-layers keeps those of the display window alone");
+    if (!options.output_size.empty() && options.keeps_layers)
+        return user_error("--output-size: --keep-layers keeps those of the frame's size alone");
     if (options.is_reference && options.run.has_timings)
         return user_error("--timings: the references do not run on the device");
     if (options.time.is_given() && options.frames_per_second.is_given())
@@ -193,6 +195,11 @@ Result<Job> job_of(const Options& options, const std::string& eye) {
         const Result<darkroom::NewSize> size = parse_new_size(options.size);
         if (!size) return failure(size.error());
         job.size = *size;
+    }
+    if (!options.output_size.empty()) {
+        const Result<VkExtent2D> size = parse_size(options.output_size, "--output-size");
+        if (!size) return failure(size.error());
+        job.develop.target_extent = *size;
     }
     const Result<darkroom::KernelStage> stage = options.device.stage();
     if (!stage) return failure(stage.error());
@@ -324,7 +331,8 @@ class Develop {
         item.input.camera.is_cut = job_.steps[i].place != next_place_;
         next_place_ = job_.steps[i].place + 1;
         if (Result<> done = motion_.advance(*composer_, job_.steps[i].place, item.input.time); !done) return done;
-        const auto ui = motion_.picture(item.input.extent);
+        const VkExtent2D output = job_.develop.target_extent;
+        const auto ui = motion_.picture(output.width != 0 ? output : item.input.extent);
         if (!ui) return failure(ui.error());
         item.ui = *ui;
         item.input.ui = *item.ui;
@@ -374,7 +382,7 @@ class Develop {
         }
         darkroom::WriteOptions options = job_.write;
         options.attributes = items_[i].frame.attributes;
-        if (!job_.size) options.display = items_[i].frame.display;
+        if (!job_.size && job_.develop.target_extent.width == 0) options.display = items_[i].frame.display;
         if (options_.keeps_layers)
             if (Result<> done = keep_layers(i, options); !done) return done;
         return write(job_.steps[i].output, std::move(items_[i].picture), options);
@@ -458,6 +466,10 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
                     "Develops at this size; the frame is resampled first, to within it, or with :fill or "
                     ":stretch behind it, to all of it")
         .type_name("WxH[:fit|fill|stretch]");
+    command
+        .add_option("--output-size", options->output_size,
+                    "Of the picture, where frames are smaller: what upscalers make, else bilinear")
+        .type_name("WxH");
     command.add_flag("--keep-layers", options->keeps_layers,
                      "Puts the frame's other layers beside the picture in an .exr file");
     command.add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");

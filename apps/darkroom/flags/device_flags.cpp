@@ -48,7 +48,7 @@ Result<darkroom::Device> DeviceFlags::create_compiler() const {
     return darkroom::Device::create({.select = device_, .compiles_only = true, .log = log_sink()});
 }
 
-Result<VkExtent2D> parse_size(const std::string& text) {
+Result<VkExtent2D> parse_size(const std::string& text, std::string_view flag) {
     std::array<std::uint32_t, 2> sides{};
     const char* at = text.data();
     const char* const end = at + text.size();
@@ -57,8 +57,8 @@ Result<VkExtent2D> parse_size(const std::string& text) {
         const bool is_done = i == 1 && next == end;
         const bool is_between = i == 0 && next != end && *next == 'x';
         if (error != std::errc() || sides[i] == 0 || !(is_done || is_between))
-            return user_error(
-                fmt::format("--size {}: expected WIDTHxHEIGHT in pixels, each at least 1", darkroom::printable(text)));
+            return user_error(fmt::format("{} {}: expected WIDTHxHEIGHT in pixels, each at least 1", flag,
+                                          darkroom::printable(text)));
         at = next + 1;
     }
     return VkExtent2D{sides[0], sides[1]};

@@ -33,7 +33,7 @@ class DeviceFlags {
 };
 
 /// "1920x1080". Each side at least 1.
-[[nodiscard]] darkroom::Result<VkExtent2D> parse_size(const std::string& text);
+[[nodiscard]] darkroom::Result<VkExtent2D> parse_size(const std::string& text, std::string_view flag = "--size");
 /// The same with what becomes of another ratio behind it: "1280x1280:fill".
 [[nodiscard]] darkroom::Result<darkroom::NewSize> parse_new_size(const std::string& text);
 /// "8", "16", "half", "float".

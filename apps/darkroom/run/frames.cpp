@@ -268,7 +268,8 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
     };
     const ReferenceImage depth = layer(input.depth, 1), normals = layer(input.normals, 3),
                          velocity = layer(input.velocity, 2);
-    ReferenceImage ui(input.ui.empty() ? 0 : input.extent.width, input.ui.empty() ? 0 : input.extent.height);
+    const VkExtent2D output = desc.target_extent.width != 0 ? desc.target_extent : input.extent;
+    ReferenceImage ui(input.ui.empty() ? 0 : output.width, input.ui.empty() ? 0 : output.height);
     const auto byte = [&](std::size_t i) { return input.ui[i] / 255.0; };
     for (std::size_t i = 0; i < ui.pixels.size(); ++i)
         ui.pixels[i] = {byte(4 * i), byte(4 * i + 1), byte(4 * i + 2), byte(4 * i + 3)};
@@ -283,6 +284,7 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
     Result<darkroom::ReferenceChainOutput> made =
         darkroom::run_reference(composer, {.color = &color,
                                            .images = images,
+                                           .target_extent = desc.target_extent,
                                            .lights = input.lights,
                                            .camera = input.camera,
                                            .time = input.time,
