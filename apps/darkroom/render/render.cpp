@@ -11,6 +11,7 @@
 #include "apps/darkroom/commands.hpp"
 #include "apps/darkroom/run/dim_bloom.hpp"
 #include "apps/darkroom/run/frames.hpp"
+#include "apps/darkroom/run/jitter.hpp"
 #include "apps/darkroom/run/motion.hpp"
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
@@ -128,6 +129,8 @@ class Render {
         choose_way();
         if (flags_.run.has_timings && way_ != Way::Developed)
             return darkroom::user_error("--timings: nothing is post-processed");
+        if (job_.render_scale != 1 && way_ != Way::Developed)
+            return darkroom::user_error("--render-scale: nothing is post-processed, --size is that of the picture");
         if (job_.color && way_ != Way::Developed)
             return darkroom::user_error("--output-space: nothing is post-processed");
         return {};
@@ -237,8 +240,9 @@ class Render {
         Result<darkroom::Device> device = flags_.device.create();
         if (!device) return failure(std::move(device));
         device_ = std::make_unique<darkroom::Device>(std::move(*device));
-        render::RenderDesc& desc = job_.desc;
-        if (Result<> done = darkroom::check_extent(*device_, desc.extent); !done) return done;
+        const VkExtent2D extent = job_.desc.extent;
+        if (Result<> done = darkroom::check_extent(*device_, extent); !done) return done;
+        render::RenderDesc desc = job_.desc;
         desc.draw.has_grid = desc.draw.has_grid && scene_.has_grid;
         const bool has_frames = !job_.shots.back().frame.empty();
         if (way_ == Way::Display) {
@@ -253,12 +257,18 @@ class Render {
         if (way_ != Way::Display || has_frames) {
             const Result<std::uint32_t> samples = flags_.samples(scene_.samples);
             if (!samples) return failure(samples.error());
-            desc.positions = *samples;
+            is_jittered_ = job_.is_sequence && way_ == Way::Developed && gathers_frames(look_);
+            // Frames that are gathered have their other places in the frames before.
+            desc.positions = is_jittered_ && !flags_.has_samples() ? 1 : *samples;
+            desc.extent = scaled(extent, job_.render_scale);
+            scale_ = static_cast<float>(extent.height) / static_cast<float>(desc.extent.height);
+            desc.draw.mip_bias = way_ == Way::Developed ? darkroom::Composer::mip_bias(scale_) : 0;
             desc.output = render::Output::Hdr;
             desc.draw.debug = render::DebugView::None;
             if (Result<> done = make_renderer(desc, hdr_); !done) return done;
         }
         if (way_ != Way::Developed) return {};
+        if (job_.render_scale != 1) develop_.target_extent = extent;
         composer_ = std::make_unique<darkroom::Composer>(
             *device_, darkroom::ComposerDesc{.frames_in_flight = 1, .has_timers = flags_.run.has_timings});
         developer_ = std::make_unique<darkroom::Developer>(*device_, develop_);
@@ -329,7 +339,10 @@ class Render {
     Result<> render_light(std::size_t i) {
         const Shot& shot = job_.shots[i];
         Item& item = items_[i];
-        if (Result<> done = hdr_->prepare(*item.snapshot); !done) return done;
+        if (Result<> done =
+                hdr_->prepare(*item.snapshot, is_jittered_ ? jitter_of(shot.number, scale_) : render::FrameJitter{});
+            !done)
+            return done;
         darkroom::DeviceFrame input{.frame = hdr_->frame(),
                                     .color_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT,
                                     .layer_usage = hdr_->layer_usage(),
@@ -376,6 +389,8 @@ class Render {
     Way way_ = Way::Developed;
     std::unique_ptr<darkroom::Device> device_;
     std::optional<render::Renderer> hdr_, display_;
+    bool is_jittered_ = false;
+    float scale_ = 1;  ///< lines of the picture to those of the frame
     std::unique_ptr<darkroom::Composer> composer_;
     Motion motion_;  ///< moves the composer, so it goes first
     std::unique_ptr<darkroom::Developer> developer_;

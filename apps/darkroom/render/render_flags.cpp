@@ -46,6 +46,10 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
         .type_name("N")
         .default_str(fmt::format("what the scene says, or {}", usual_samples))
         .group(SceneFlags::drawing_group);
+    render_scale_.add_to(command, "Lines that are drawn for each of the picture: what upscalers make, else bilinear")
+        .type_name("N")
+        .default_str("1")
+        .group(SceneFlags::drawing_group);
     write.add_to(command);
     run.add_to(command);
     device.add_to(command);
@@ -159,6 +163,8 @@ Result<RenderJob> RenderFlags::job() const {
     if (!jobs) return failure(jobs.error());
     job.jobs = *jobs;
     if (Result<> done = frames_per_second_.read_to(job.frames_per_second); !done) return failure(std::move(done));
+    if (Result<> done = render_scale_.read_to(job.render_scale); !done) return failure(std::move(done));
+    job.is_sequence = frames_.has_value();
     if (Result<> done = set_target(job); !done) return failure(std::move(done));
     Result<std::vector<Shot>> shots = this->shots(job);
     if (!shots) return failure(std::move(shots));

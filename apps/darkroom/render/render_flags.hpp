@@ -42,6 +42,8 @@ struct RenderJob {
     std::optional<StreamDesc> stream;
     std::uint64_t seed = 0;
     double frames_per_second = 24;
+    double render_scale = 1;   ///< of the frame's lines to those of the picture, whose extent `desc` has
+    bool is_sequence = false;  ///< its frames follow each other
 
     [[nodiscard]] double time_of(std::uint64_t frame) const { return static_cast<double>(frame) / frames_per_second; }
 };
@@ -62,6 +64,7 @@ class RenderFlags {
     /// Places within a pixel that light is the mean of: those of the flag, else of the scene, else enough for edges
     /// within 0.02 FLIP of 256.
     [[nodiscard]] darkroom::Result<std::uint32_t> samples(std::uint32_t of_scene) const;
+    [[nodiscard]] bool has_samples() const { return samples_.is_given(); }
 
   private:
     void add_moments(CommandFlags command);
@@ -75,6 +78,7 @@ class RenderFlags {
     std::optional<std::string> frame_, frames_;
     NumberFlag time_{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames_per_second_{"--fps", {.least = 0.001, .most = 1e6}};
+    NumberFlag render_scale_{"--render-scale", {.least = 0.1, .most = 1}};
     NumberFlag samples_{"--samples", {.least = 1, .most = darkroom::scene::most_samples, .is_whole = true}};
 };
 
