@@ -93,6 +93,7 @@ struct CompileDesc {
     bool is_velocity_plain = false;
     ImageUse ui;
     ImageUse reactive;
+    ImageUse transparency;
     ImageUse exposure;
     bool has_shadows = false;  ///< frames have lights with cascades in D32_SFLOAT
     ImageUse target{VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};

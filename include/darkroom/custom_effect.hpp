@@ -24,8 +24,8 @@
 //     @accepts DOMAIN ...         scene_linear, display_linear, encoded: those it is meant for; without it all
 //     @makes DOMAIN               what the picture is behind it; without it what it was
 //     @needs NEED ...             without these of the frame it is left out of the plan: depth, normals, velocity,
-//                                 shadows, ui; and `second`, the entry's second picture, for the end. Without reactive
-//                                 and exposure it reads what stands in for them
+//                                 shadows, ui; and `second`, the entry's second picture, for the end. Without
+//                                 reactive, transparency and exposure it reads what stands in for them
 //     @image NAME: RATIO FORMAT   an image for passes, RATIO (1, 1/2, 3/4 ...) of the picture's size; of FORMAT
 //                                 rgba16f, rgba32f, rgba8, rg16f, rg32f, rg8, r16f, r32f, r8 or r11f_g11f_b10f
 //     @history NAME: RATIO FORMAT an image that outlives the frame: NAME is written, NAME_previous is what the frame
@@ -57,10 +57,10 @@
 // gather_red, gather_green and size (src/gpu/kernel/kernel.hpp). Of the frame it may read frame_time, frame_delta_time,
 // frame_index; with shared/camera.glsl its camera; and what @needs names: frame_depth (red: planar distance; 1e10 is
 // sky), frame_normals (view space), frame_velocity (red, green: previous minus current position, in pixels, y down),
-// frame_ui (sRGB-encoded, premultiplied), frame_reactive (red; else 0), frame_exposure (red; else 1), and of the first
-// light that casts shadows duotone_lit(vec3 world, float planar), 1 where it reaches that place,
-// duotone_light_direction() and duotone_light_color(). Names at file scope begin with the effect's name, so that two
-// entries of it fit one kernel.
+// frame_ui (sRGB-encoded, premultiplied), frame_reactive (red; else 0), frame_transparency (the colour before it; else
+// 0), frame_exposure (red; else 1), and of the first light that casts shadows duotone_lit(vec3 world, float planar), 1
+// where it reaches that place, duotone_light_direction() and duotone_light_color(). Names at file scope begin with the
+// effect's name, so that two entries of it fit one kernel.
 
 #include <cstddef>
 #include <darkroom/effect.hpp>

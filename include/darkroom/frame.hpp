@@ -149,8 +149,8 @@ struct Watched {
 
 /// What a frame may bring beside its colour: what effects name in their needs. What each is like, what stands in for
 /// one that is not given, and how it is brought to another size is in src/plan/frame_inputs.hpp.
-enum class FrameImage : std::uint8_t { Depth, Normals, Velocity, Shadows, Ui, Reactive, Exposure };
-inline constexpr std::size_t frame_image_count = 7;
+enum class FrameImage : std::uint8_t { Depth, Normals, Velocity, Shadows, Ui, Reactive, Transparency, Exposure };
+inline constexpr std::size_t frame_image_count = 8;
 
 /// One frame of one view.
 struct Frame {
@@ -161,6 +161,9 @@ struct Frame {
     ImageRef ui;        ///< sRGB-encoded, premultiplied after encoding
     /// Red, 0 .. 1: how little earlier frames tell of a pixel (glass, particles, screens in the scene). Without it: 0.
     ImageRef reactive;
+    /// Red, green, blue: the colour before anything transparent was drawn, such as glass and particles, which depth and
+    /// velocity know nothing of. Without it: 0.
+    ImageRef transparency;
     /// One texel, red: what the host multiplies light by before it shows it. Without it: 1.
     ImageRef exposure;
     Camera camera;

@@ -59,6 +59,7 @@ struct ReferenceInput {
     const ReferenceImage* normals = nullptr;
     const ReferenceImage* velocity = nullptr;
     const ReferenceImage* reactive = nullptr;
+    const ReferenceImage* transparency = nullptr;
     const ReferenceImage* exposure = nullptr;
     std::span<const ReferenceLight> lights;
     const Resources* resources = nullptr;

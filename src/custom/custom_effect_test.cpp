@@ -114,7 +114,7 @@ TEST(CustomEffect, ErrorsNameThePlaceTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of_line("@accepts linear"),
               "my.glsl:3: @accepts linear: allowed is scene_linear, display_linear, encoded");
     EXPECT_EQ(error_of_line("@needs money"),
-              "my.glsl:3: @needs money: allowed is depth, normals, velocity, shadows, ui, reactive, exposure, second");
+              "my.glsl:3: @needs money: allowed is depth, normals, velocity, shadows, ui, reactive, transparency, exposure, second");
     EXPECT_EQ(error_of_line("@param double a = 1 in [0, 2]: A."),
               "my.glsl:3: @param double: allowed is float, int, toggle, choice, vec2, vec3, vec4, rgb");
     EXPECT_EQ(error_of_line("@effect other: Other."), "my.glsl:3: a second @effect; a file holds one");

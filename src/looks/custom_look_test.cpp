@@ -110,7 +110,7 @@ TEST_F(CustomLook, ErrorsAreThoseOfOtherEffects) {
     EXPECT_EQ(
         error_of("[[stack]]\neffect = \"broken.glsl\"\n"),
         "a.toml:2:10: effect = \"broken.glsl\": broken.glsl:2: @needs money: allowed is depth, normals, velocity, "
-        "shadows, ui, reactive, exposure, second");
+        "shadows, ui, reactive, transparency, exposure, second");
     EXPECT_EQ(error_of(tint_entry + "amont = 1\n"),
               "a.toml:3:1: unknown key 'amont' = 1, did you mean 'amount', which takes "
               "[0, 1]?");

@@ -16,6 +16,7 @@ constexpr EffectFile files[] = {
      "    vec4 sum = load(reader_depth, pixel.texel) + load(reader_normals, pixel.texel);\n"
      "    sum += load(reader_velocity, pixel.texel) + load(reader_ui, pixel.texel);\n"
      "    sum += load(reader_reactive, pixel.texel) * load(reader_exposure, ivec2(0));\n"
+     "    sum += load(reader_transparency, pixel.texel);\n"
      "    return color + sum * texture(reader_shadow, vec4(pixel.uv, 0.0, 0.5));\n}\n"},
 };
 void build_reader(PassBuilder& builder) {
@@ -24,6 +25,7 @@ void build_reader(PassBuilder& builder) {
     builder.side("reader_velocity", builder.frame_image(FrameImage::Velocity), {});
     builder.side("reader_ui", builder.frame_image(FrameImage::Ui), {});
     builder.side("reader_reactive", builder.frame_image(FrameImage::Reactive), {});
+    builder.side("reader_transparency", builder.frame_image(FrameImage::Transparency), {});
     builder.side("reader_exposure", builder.frame_image(FrameImage::Exposure), {});
     builder.side("reader_shadow", builder.shadow_map(0), {});
 }
@@ -33,7 +35,7 @@ const EffectInfo reader{.name = "reader",
                         .parameters = {.struct_name = "Reader"},
                         .files = files,
                         .needs = {FrameImage::Depth, FrameImage::Normals, FrameImage::Velocity, FrameImage::Shadows,
-                                  FrameImage::Ui, FrameImage::Reactive, FrameImage::Exposure},
+                                  FrameImage::Ui, FrameImage::Reactive, FrameImage::Transparency, FrameImage::Exposure},
                         .build = build_reader};
 
 ReferenceLight striped() {
@@ -52,6 +54,7 @@ class ComposeFrameCheck : public ::testing::Test {
         desc.velocity = {VK_FORMAT_R16G16_SFLOAT};
         desc.ui = {VK_FORMAT_R8G8B8A8_UNORM};
         desc.reactive = {VK_FORMAT_R8G8B8A8_UNORM};
+        desc.transparency = {VK_FORMAT_R16G16B16A16_SFLOAT};
         desc.exposure = {VK_FORMAT_R32_SFLOAT};
         desc.has_shadows = true;
         return desc;
@@ -63,6 +66,7 @@ class ComposeFrameCheck : public ::testing::Test {
         frame.velocity = test::image_ref(velocity);
         frame.ui = test::image_ref(ui);
         frame.reactive = test::image_ref(reactive);
+        frame.transparency = test::image_ref(transparency);
         frame.exposure = test::image_ref(exposure);
         frame.lights = lights;
         return frame;
@@ -79,6 +83,7 @@ class ComposeFrameCheck : public ::testing::Test {
     gpu::test::Picture normals = gpu::test::blank(context(), frame_extent, VK_FORMAT_R16G16B16A16_SFLOAT);
     gpu::test::Picture velocity = gpu::test::blank(context(), frame_extent, VK_FORMAT_R16G16_SFLOAT);
     gpu::test::Picture ui = gpu::test::blank(context(), frame_extent, VK_FORMAT_R8G8B8A8_UNORM);
+    gpu::test::Picture transparency = gpu::test::blank(context(), frame_extent, VK_FORMAT_R16G16B16A16_SFLOAT);
     gpu::test::Picture reactive = gpu::test::blank(context(), frame_extent, VK_FORMAT_R8G8B8A8_UNORM);
     gpu::test::Picture exposure = gpu::test::blank(context(), {1, 1}, VK_FORMAT_R32_SFLOAT);
     gpu::Image shadow_map = test::upload_shadow_map(context(), striped());
@@ -130,6 +135,10 @@ TEST_F(ComposeFrameCheck, EveryFaultNamesImageAndField) {
              f.reactive.extent = {24, 17};
          },
          "frame.reactive is 24x17: with a color of 24x18"},
+        {[](Frame& f, Light&) {
+             f.transparency.extent = {12, 9};
+         },
+         "frame.transparency is 12x9: with a color of 24x18"},
         {[](Frame& f, Light&) {
              f.exposure.extent = {2, 1};
          },
