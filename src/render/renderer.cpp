@@ -59,6 +59,11 @@ Result<> check(const gpu::Context& context, const RenderDesc& desc) {
     if (desc.positions < 1 || desc.positions > scene::most_samples)
         return user_error(
             fmt::format("positions in a pixel: {}, [1, {}] are allowed", desc.positions, scene::most_samples));
+    if (desc.has_transparency && (desc.samples != 1 || desc.positions != 1 || desc.output != Output::Hdr))
+        return user_error(
+            fmt::format("colour before transparency: with {} samples, {} positions and the {} output; allowed is 1, 1 "
+                        "and hdr",
+                        desc.samples, desc.positions, desc.output == Output::Hdr ? "hdr" : "display"));
     return check(context, desc.draw, desc.output);
 }
 
@@ -182,7 +187,8 @@ TargetFormats Renderer::State::formats() const {
 }
 
 Result<> Renderer::State::create_targets(VkExtent2D extent) {
-    Result<Targets> made = Targets::create(*context, {.extent = extent, .formats = formats()});
+    Result<Targets> made =
+        Targets::create(*context, {.extent = extent, .formats = formats(), .has_transparency = desc.has_transparency});
     if (!made) return failure(std::move(made));
     if (accumulate)
         if (Result<> resized = accumulate->resize(*made); !resized) return resized;
@@ -323,6 +329,7 @@ void Renderer::State::fill_frame() {
              .normals = targets.drawn(targets.normals, use),
              .velocity = targets.drawn(targets.velocity, use),
              .ui = {},
+             .transparency = targets.copied_transparency(),
              .camera = frame_camera(snapshot->camera, desc.extent, jitter),
              .lights = lights,
              .time = snapshot->time,
@@ -371,8 +378,10 @@ Result<> Renderer::State::record_scene(VkCommandBuffer commands) {
     if (shows_surroundings()) {
         billboards->record_sprites(commands, set, slot);
         sky->record_sky(commands, set);
-        if (desc.draw.has_grid) sky->record_grid(commands, set);
     }
+    // The grid is blended, too.
+    if (desc.has_transparency) targets.copy_before_transparency(commands);
+    if (shows_surroundings() && desc.draw.has_grid) sky->record_grid(commands, set);
     if (Result<> done = meshes->record_transparent(commands, draw, scene->meshes); !done) return done;
     if (shows_surroundings()) billboards->record_particles(commands, set, slot);
     return meshes->record_overlays(commands, draw, scene->meshes);

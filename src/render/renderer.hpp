@@ -47,6 +47,9 @@ struct RenderDesc {
     /// Of the picture for Output::Display; its first channels red, green, blue, alpha, sRGB-encoded by the shader.
     VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
     bool is_tone_mapped = true;  ///< Output::Display: ACES (Narkowicz) before encoding
+    /// The frame has the colour before transparency: without grid, transparent meshes and particles. Of one sample and
+    /// one position alone.
+    bool has_transparency = false;
     CascadeDesc cascades;
     DrawOptions draw;
     std::uint32_t frames_in_flight = 1;

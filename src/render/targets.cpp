@@ -62,11 +62,11 @@ VkImageUsageFlags final_usage(const gpu::Context& context, VkFormat format) {
     return usage;
 }
 
-VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layout) {
+VkRenderingAttachmentInfo attachment(const gpu::Image& image, VkImageLayout layout, VkAttachmentLoadOp load) {
     return {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
             .imageView = image.view,
             .imageLayout = layout,
-            .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+            .loadOp = load,
             .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
 }
 
@@ -103,6 +103,8 @@ Result<Targets> Targets::create(gpu::Context& context, const TargetsDesc& desc) 
         Wanted{out.normals, has_layers, "scene normals", formats.normals, final_usage(context, formats.normals)},
         Wanted{out.velocity, has_layers, "scene velocity", formats.velocity, final_usage(context, formats.velocity)},
         Wanted{out.planar_depth, has_layers, "scene distance", distance, final_usage(context, distance)},
+        Wanted{out.transparency, desc.has_transparency, "scene before transparency", formats.color,
+               final_usage(context, formats.color) | VK_IMAGE_USAGE_TRANSFER_DST_BIT},
         Wanted{out.depth, true, "scene depth", formats.depth, depth_usage, formats.samples},
         Wanted{out.many_color, has_many, "colour samples", formats.color, many_usage, formats.samples},
         Wanted{out.many_normals, has_many && has_layers, "normal samples", formats.normals, many_usage,
@@ -137,20 +139,32 @@ void Targets::begin(VkCommandBuffer commands, const std::array<float, 4>& backgr
     }
     barriers.add(depth, has_layers() ? Use{resolve.stage, 0} : Use{depth_stages, depth_access}, depth_attachment);
     barriers.record(*context_, commands);
+    begin_rendering(commands, VK_ATTACHMENT_LOAD_OP_CLEAR, background);
+    const VkViewport viewport{0, 0, static_cast<float>(desc_.extent.width), static_cast<float>(desc_.extent.height),
+                              0, 1};
+    const VkRect2D area{{0, 0}, desc_.extent};
+    context_->vk.CmdSetViewport(commands, 0, 1, &viewport);
+    context_->vk.CmdSetScissor(commands, 0, 1, &area);
+}
 
-    std::vector<VkRenderingAttachmentInfo> colors{
-        attachment(has_many ? many_color : color, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL)};
+void Targets::begin_rendering(VkCommandBuffer commands, VkAttachmentLoadOp load,
+                              const std::array<float, 4>& background) const {
+    const bool has_many = is_multi_sampled();
+    const auto color_attachment_of = [load](const gpu::Image& image) {
+        return attachment(image, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, load);
+    };
+    std::vector<VkRenderingAttachmentInfo> colors{color_attachment_of(has_many ? many_color : color)};
     colors[0].clearValue.color = {{background[0], background[1], background[2], background[3]}};
     if (has_layers()) {
-        colors.push_back(attachment(has_many ? many_normals : normals, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
-        colors.push_back(attachment(has_many ? many_velocity : velocity, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL));
+        colors.push_back(color_attachment_of(has_many ? many_normals : normals));
+        colors.push_back(color_attachment_of(has_many ? many_velocity : velocity));
     } else if (has_many) {
         colors[0].resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
         colors[0].resolveImageView = color.view;
         colors[0].resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
         colors[0].storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     }
-    VkRenderingAttachmentInfo depth_info = attachment(depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    VkRenderingAttachmentInfo depth_info = attachment(depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, load);
     if (!has_layers()) depth_info.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     const VkRect2D area{{0, 0}, desc_.extent};
     const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
@@ -159,12 +173,30 @@ void Targets::begin(VkCommandBuffer commands, const std::array<float, 4>& backgr
                                .colorAttachmentCount = static_cast<std::uint32_t>(colors.size()),
                                .pColorAttachments = colors.data(),
                                .pDepthAttachment = &depth_info};
-    const gpu::Dispatch& vk = context_->vk;
-    vk.CmdBeginRendering(commands, &info);
-    const VkViewport viewport{0, 0, static_cast<float>(area.extent.width), static_cast<float>(area.extent.height),
-                              0, 1};
-    vk.CmdSetViewport(commands, 0, 1, &viewport);
-    vk.CmdSetScissor(commands, 0, 1, &area);
+    context_->vk.CmdBeginRendering(commands, &info);
+}
+
+void Targets::copy_before_transparency(VkCommandBuffer commands) const {
+    context_->vk.CmdEndRendering(commands);
+    constexpr Use copied_from{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+    constexpr Use copied_to{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
+    Barriers before;
+    before.add(color, color_attachment, copied_from);
+    before.add(transparency, unknown_use, copied_to);
+    before.record(*context_, commands);
+    const VkImageCopy region{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                             .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                             .extent = {desc_.extent.width, desc_.extent.height, 1}};
+    context_->vk.CmdCopyImage(commands, color.handle, copied_from.layout, transparency.handle, copied_to.layout, 1,
+                              &region);
+    Barriers after;
+    after.add(color, copied_from, color_attachment);
+    for (const gpu::Image* image : {&normals, &velocity}) after.add(*image, color_attachment, color_attachment);
+    after.add(depth, depth_attachment, depth_attachment);
+    after.record(*context_, commands);
+    begin_rendering(commands, VK_ATTACHMENT_LOAD_OP_LOAD, {});
 }
 
 void Targets::end_for_resolve(VkCommandBuffer commands, const ResolveUse& resolve) const {
@@ -205,6 +237,17 @@ ImageRef Targets::drawn(const gpu::Image& image, const ResolveUse& resolve, bool
             .layout = is_resolved ? resolve.write_layout : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
             .last_stages = is_resolved ? resolve.write_stage : color_stage,
             .last_access = is_resolved ? resolve.write_access : VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+}
+
+ImageRef Targets::copied_transparency() const {
+    if (transparency.handle == VK_NULL_HANDLE) return {};
+    return {.image = transparency.handle,
+            .view = transparency.view,
+            .format = transparency.info.format,
+            .extent = desc_.extent,
+            .layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+            .last_stages = VK_PIPELINE_STAGE_2_COPY_BIT,
+            .last_access = VK_ACCESS_2_TRANSFER_WRITE_BIT};
 }
 
 ImageRef Targets::copied_picture() const {

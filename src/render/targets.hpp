@@ -15,6 +15,7 @@ namespace darkroom::render {
 struct TargetsDesc {
     VkExtent2D extent{};
     TargetFormats formats;  ///< without layers: a display picture
+    bool has_transparency = false;
 };
 
 /// How a kernel of the renderer uses its images.
@@ -34,6 +35,7 @@ class Targets {
     /// Final ones, in the order of the resolve's outputs.
     gpu::Image color, normals, velocity, planar_depth;
     gpu::Image depth;
+    gpu::Image transparency;  ///< where it is wanted, and there is one sample
     /// Only with more than one sample.
     gpu::Image many_color, many_normals, many_velocity;
 
@@ -43,6 +45,8 @@ class Targets {
     /// Begins the rendering instance, with everything cleared: colour to `background`, the rest to 0; sets viewport and
     /// scissor.
     void begin(VkCommandBuffer commands, const std::array<float, 4>& background, const ResolveUse& resolve) const;
+    /// Between begin() and the end: copies the colour as it is into `transparency`, and goes on.
+    void copy_before_transparency(VkCommandBuffer commands) const;
     /// Ends it, and brings every image to where the resolve wants it.
     void end_for_resolve(VkCommandBuffer commands, const ResolveUse& resolve) const;
     /// Ends it, and leaves the picture to be copied from.
@@ -53,8 +57,12 @@ class Targets {
     /// One that a kernel wrote behind the resolve.
     [[nodiscard]] ImageRef written(const gpu::Image& image, const ResolveUse& writer) const;
     [[nodiscard]] ImageRef copied_picture() const;
+    /// As copy_before_transparency() leaves it; not given: there is none.
+    [[nodiscard]] ImageRef copied_transparency() const;
 
   private:
+    void begin_rendering(VkCommandBuffer commands, VkAttachmentLoadOp load,
+                         const std::array<float, 4>& background) const;
     [[nodiscard]] ImageRef drawn(const gpu::Image& image, const ResolveUse& resolve, bool is_resolved) const;
 
     gpu::Context* context_ = nullptr;
