@@ -53,7 +53,10 @@ CompileDesc compile_desc_for(gpu::Context& context, const DevelopInput& input, c
     out.normals = use(2);
     out.velocity = use(3);
     out.is_velocity_plain = true;
-    out.ui = use(4);
+    out.reactive = use(4);
+    out.transparency = use(5);
+    out.exposure = use(6);
+    out.ui = use(7);
     out.has_shadows = std::any_of(input.lights.begin(), input.lights.end(), has_cascades);
     return out;
 }

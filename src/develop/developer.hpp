@@ -25,6 +25,9 @@ struct DevelopInput {
     std::span<const float> depth;                                ///< planar distance
     std::span<const float> normals;                              ///< x, y, z
     std::span<const float> velocity;                             ///< x, y
+    std::span<const float> reactive;                             ///< one a pixel
+    std::span<const float> transparency;                         ///< red, green, blue
+    std::span<const float> exposure;                             ///< one
     std::span<const std::uint16_t> color_halves, normal_halves;  ///< four a pixel, x, y, z, 1 of normals
     std::span<const std::uint16_t> velocity_halves;              ///< two a pixel
     /// The interface: red, green, blue, alpha, sRGB-encoded, premultiplied after that; as large as the picture that is

@@ -166,6 +166,7 @@ Result<FrameReadback> FrameReadback::create(gpu::Context& context, const Frame& 
     if (Result<> done = add(frame.depth, out.depth_); !done) return failure(std::move(done));
     if (Result<> done = add(frame.normals, out.normals_); !done) return failure(std::move(done));
     if (Result<> done = add(frame.velocity, out.velocity_); !done) return failure(std::move(done));
+    if (Result<> done = add(frame.transparency, out.transparency_); !done) return failure(std::move(done));
     for (const Light& light : frame.lights) {
         out.lights_.push_back(light);
         ImageRef cascades = light.cascades;
@@ -177,7 +178,7 @@ Result<FrameReadback> FrameReadback::create(gpu::Context& context, const Frame& 
 }
 
 void FrameReadback::record(VkCommandBuffer commands) const {
-    for (const std::optional<Readback>* const layer : {&color_, &depth_, &normals_, &velocity_})
+    for (const std::optional<Readback>* const layer : {&color_, &depth_, &normals_, &velocity_, &transparency_})
         if (*layer) (*layer)->record(commands);
     for (const std::optional<Readback>& cascades : cascades_)
         if (cascades) cascades->record(commands);
@@ -189,6 +190,7 @@ FrameLayers FrameReadback::layers() const {
     if (depth_) out.depth = depth_->floats(1);
     if (normals_) out.normals = normals_->floats(3);
     if (velocity_) out.velocity = velocity_->floats(2);
+    if (transparency_) out.transparency = transparency_->floats(3);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         ReferenceLight& light = out.lights.emplace_back(ReferenceLight{.light = lights_[i]});
         light.light.cascades = {};  // the image is the host's

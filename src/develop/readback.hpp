@@ -18,10 +18,11 @@ namespace darkroom {
 /// Layers of a frame, row-major, top row first; the ones that were not given are empty.
 struct FrameLayers {
     VkExtent2D extent{};
-    std::vector<float> color;     ///< red, green, blue, alpha
-    std::vector<float> depth;     ///< one number a pixel
-    std::vector<float> normals;   ///< x, y, z
-    std::vector<float> velocity;  ///< x, y
+    std::vector<float> color;         ///< red, green, blue, alpha
+    std::vector<float> depth;         ///< one number a pixel
+    std::vector<float> normals;       ///< x, y, z
+    std::vector<float> velocity;      ///< x, y
+    std::vector<float> transparency;  ///< red, green, blue
     std::vector<ReferenceLight> lights;
 };
 
@@ -60,7 +61,7 @@ class FrameReadback {
 
   private:
     VkExtent2D extent_{};
-    std::optional<Readback> color_, depth_, normals_, velocity_;
+    std::optional<Readback> color_, depth_, normals_, velocity_, transparency_;
     std::vector<Light> lights_;
     std::vector<std::optional<Readback>> cascades_;  ///< of each light
 };

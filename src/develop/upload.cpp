@@ -54,6 +54,14 @@ UploadLayers layers_of(const DevelopInput& input, VkExtent2D output) {
             layer("normals", input.normals, input.normal_halves, 3, 4, half4, float4),
             layer("velocity", input.velocity, input.velocity_halves, 2, 2, VK_FORMAT_R16G16_SFLOAT,
                   VK_FORMAT_R32G32_SFLOAT),
+            layer("reactive", input.reactive, {}, 1, 1, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT),
+            layer("transparency", input.transparency, {}, 3, 4, half4, float4),
+            {.name = "exposure",
+             .extent = {1, 1},
+             .values = input.exposure,
+             .given = 1,
+             .kept = 1,
+             .format = VK_FORMAT_R32_SFLOAT},
             {.name = "ui",
              .extent = output.width != 0 ? output : input.extent,
              .bytes = input.ui,
@@ -184,7 +192,8 @@ Frame FrameUpload::frame(const DevelopInput& input) const {
                 .delta_time = input.delta_time,
                 .frame_index = input.frame_index};
     frame.camera.depth = DepthKind::Planar;
-    ImageRef* const slots[] = {&frame.color, &frame.depth, &frame.normals, &frame.velocity, &frame.ui};
+    ImageRef* const slots[] = {&frame.color,    &frame.depth,        &frame.normals,  &frame.velocity,
+                               &frame.reactive, &frame.transparency, &frame.exposure, &frame.ui};
     for (std::size_t i = 0; i < layers_->images.size(); ++i)
         if (layers_->images[i])
             *slots[i] =

@@ -28,7 +28,8 @@ struct UploadLayer {
     [[nodiscard]] bool is_given() const { return !values.empty() || !halves.empty() || !bytes.empty(); }
     [[nodiscard]] VkDeviceSize texel() const { return VkDeviceSize{kept} * (!bytes.empty() ? 1 : is_half ? 2 : 4); }
 };
-using UploadLayers = std::array<UploadLayer, 5>;  ///< colour, depth, normals, velocity, interface
+/// Colour, depth, normals, velocity, reactive mask, colour before transparency, exposure, interface.
+using UploadLayers = std::array<UploadLayer, 8>;
 
 /// Layers whose numbers are all halves are kept as halves. `output`: of the picture that is made; (0, 0): as the frame.
 [[nodiscard]] UploadLayers layers_of(const DevelopInput& input, VkExtent2D output = {});

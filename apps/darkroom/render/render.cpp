@@ -183,10 +183,9 @@ class Render {
 
     /// The shots before each that histories need and that are not made anyway.
     Result<> add_pre_roll() {
-        darkroom::FrameOptions ignored;
         if (job_.shots.empty()) return {};
         const double delta_time = job_.shots.front().delta_time;
-        const Result<std::uint32_t> of_look = add_needs(look_, delta_time, timeline_, ignored);
+        const Result<std::uint32_t> of_look = add_needs(look_, delta_time, timeline_, needs_);
         if (!of_look) return failure(of_look.error());
         const Result<std::uint32_t> of_motion = motion_.pre_roll(look_, delta_time, job_.shots.back().number);
         if (!of_motion) return failure(of_motion.error());
@@ -260,6 +259,7 @@ class Render {
             is_jittered_ = job_.is_sequence && way_ == Way::Developed && gathers_frames(look_);
             // Frames that are gathered have their other places in the frames before.
             desc.positions = is_jittered_ && !flags_.has_samples() ? 1 : *samples;
+            desc.has_transparency = desc.positions == 1 && desc.samples == 1 && needs_.has_transparency;
             desc.extent = scaled(extent, job_.render_scale);
             scale_ = static_cast<float>(extent.height) / static_cast<float>(desc.extent.height);
             desc.draw.mip_bias = way_ == Way::Developed ? darkroom::Composer::mip_bias(scale_) : 0;
@@ -389,6 +389,7 @@ class Render {
     Way way_ = Way::Developed;
     std::unique_ptr<darkroom::Device> device_;
     std::optional<render::Renderer> hdr_, display_;
+    darkroom::FrameOptions needs_{.has_transparency = false};
     bool is_jittered_ = false;
     float scale_ = 1;  ///< lines of the picture to those of the frame
     std::unique_ptr<darkroom::Composer> composer_;

@@ -126,6 +126,9 @@ DevelopInput develop_input(const darkroom::FrameFile& frame, std::span<const Ref
     if (frame.depth) input.depth = frame.depth->values;
     if (frame.normals) input.normals = frame.normals->values;
     if (frame.velocity) input.velocity = frame.velocity->values;
+    if (frame.reactive) input.reactive = frame.reactive->values;
+    if (frame.transparency) input.transparency = frame.transparency->values;
+    if (frame.exposure) input.exposure = {&*frame.exposure, 1};
     darkroom::FrameCamera camera = frame.camera;
     if (!camera.projection)
         camera.projection = darkroom::perspective(assumed_field_of_view, static_cast<double>(width) / height);
@@ -146,6 +149,7 @@ darkroom::FrameFile frame_file(const darkroom::Frame& frame, darkroom::FrameLaye
     out.depth = plane<1>(layers.extent, std::move(layers.depth));
     out.normals = plane<3>(layers.extent, std::move(layers.normals));
     out.velocity = plane<2>(layers.extent, std::move(layers.velocity));
+    out.transparency = plane<3>(layers.extent, std::move(layers.transparency));
     for (ReferenceLight& light : layers.lights) out.lights.push_back(stored_light(std::move(light)));
     out.camera = stored_camera(frame.camera);
     out.time = frame.time;
@@ -170,6 +174,9 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, T
                                                        .velocity = {VK_FORMAT_R32G32_SFLOAT, sampled},
                                                        .is_velocity_plain = true,
                                                        .ui = {VK_FORMAT_R8G8B8A8_UNORM, sampled},
+                                                       .reactive = {VK_FORMAT_R16_SFLOAT, sampled},
+                                                       .transparency = {VK_FORMAT_R16G16B16A16_SFLOAT, sampled},
+                                                       .exposure = {VK_FORMAT_R32_SFLOAT, sampled},
                                                        .has_shadows = true});
     if (!plan) return failure(plan.error());
     const auto is_read = [&](std::string_view image) {
@@ -178,6 +185,8 @@ Result<std::uint32_t> add_needs(const darkroom::Look& look, double delta_time, T
     frame.has_depth = is_read("depth");
     frame.has_normals = is_read("normals");
     frame.has_velocity = is_read("velocity");
+    frame.has_reactive = is_read("reactive");
+    frame.has_transparency = is_read("transparency");
     frame.has_shadow_depths = is_read("shadows");
     std::uint32_t frames = composer.pre_roll(delta_time);
     for (const double time : timeline.times()) {
@@ -267,7 +276,10 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
         return values.empty() ? ReferenceImage() : reference_image(values, input.extent, channels);
     };
     const ReferenceImage depth = layer(input.depth, 1), normals = layer(input.normals, 3),
-                         velocity = layer(input.velocity, 2);
+                         velocity = layer(input.velocity, 2), reactive = layer(input.reactive, 1),
+                         transparency = layer(input.transparency, 3);
+    const ReferenceImage exposure =
+        input.exposure.empty() ? ReferenceImage() : reference_image(input.exposure, {1, 1}, 1);
     const VkExtent2D output = desc.target_extent.width != 0 ? desc.target_extent : input.extent;
     ReferenceImage ui(input.ui.empty() ? 0 : output.width, input.ui.empty() ? 0 : output.height);
     const auto byte = [&](std::size_t i) { return input.ui[i] / 255.0; };
@@ -278,6 +290,9 @@ Result<DevelopedPicture> develop_by_reference(const darkroom::Composer& composer
     const darkroom::ReferenceImages images{{FrameImage::Depth, given(depth)},
                                            {FrameImage::Normals, given(normals)},
                                            {FrameImage::Velocity, given(velocity)},
+                                           {FrameImage::Reactive, given(reactive)},
+                                           {FrameImage::Transparency, given(transparency)},
+                                           {FrameImage::Exposure, given(exposure)},
                                            {FrameImage::Ui, given(ui)}};
     const darkroom::Domain domain =
         desc.target == DevelopTarget::SceneLinear ? darkroom::Domain::SceneLinear : darkroom::Domain::Encoded;

@@ -166,7 +166,8 @@ Result<> FrameSource::record(VkCommandBuffer commands) {
                            .subresourceRange = {aspect, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS}});
         image.layout = image.final_layout;
     };
-    for (darkroom::ImageRef* const image : {&frame_.color, &frame_.depth, &frame_.normals, &frame_.velocity})
+    for (darkroom::ImageRef* const image : {&frame_.color, &frame_.depth, &frame_.normals, &frame_.velocity,
+                                            &frame_.reactive, &frame_.transparency, &frame_.exposure})
         settle(*image, VK_IMAGE_ASPECT_COLOR_BIT);
     for (darkroom::Light& light : lights_) settle(light.cascades, VK_IMAGE_ASPECT_DEPTH_BIT);
     const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,

@@ -144,6 +144,7 @@ class Finder {
     Result<> find_depth(FrameChannels& found) const;
     Result<> find_normals(FrameChannels& found) const;
     Result<> find_velocity(FrameChannels& found) const;
+    void find_masks(FrameChannels& found) const;
 
     std::span<const FilePart> parts_;
     const LayerNames& names_;
@@ -348,6 +349,14 @@ Result<> Finder::find_velocity(FrameChannels& found) const {
     return {};
 }
 
+void Finder::find_masks(FrameChannels& found) const {
+    const Layer* layer = best([](const Layer& l) { return l.is_plain() && l.channel("reactive") >= 0; });
+    if (layer != nullptr)
+        found.reactive = ChannelSet{layer->part, {layer->channel("reactive"), -1, -1, -1}, layer->name};
+    layer = best([](const Layer& l) { return last_component(l.name) == "transparency" && l.has("rgb"); });
+    if (layer != nullptr) found.transparency = layer->set("rgb");
+}
+
 Result<FrameChannels> Finder::find() {
     for (const auto& [what, name] : names_)
         if (what != "color" && what != "depth" && what != "normals" && what != "velocity")
@@ -363,6 +372,7 @@ Result<FrameChannels> Finder::find() {
     if (auto done = find_depth(found); !done) return failure(std::move(done));
     if (auto done = find_normals(found); !done) return failure(std::move(done));
     if (auto done = find_velocity(found); !done) return failure(std::move(done));
+    find_masks(found);
     return found;
 }
 

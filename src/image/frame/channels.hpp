@@ -33,10 +33,12 @@ struct FrameChannels {
     std::optional<ChannelSet> depth;
     std::optional<ChannelSet> normals;
     std::optional<ChannelSet> velocity;
-    bool is_velocity_y_up = false;   ///< Blender's Vector pass
-    float depth_scale = 1;           ///< metres for each unit, as far as the layer's name tells
-    std::vector<std::string> views;  ///< of a stereo picture, if there are several
-    std::string view;                ///< that the colour is of; may be empty
+    std::optional<ChannelSet> reactive;      ///< the first channel only
+    std::optional<ChannelSet> transparency;  ///< red, green, blue
+    bool is_velocity_y_up = false;           ///< Blender's Vector pass
+    float depth_scale = 1;                   ///< metres for each unit, as far as the layer's name tells
+    std::vector<std::string> views;          ///< of a stereo picture, if there are several
+    std::string view;                        ///< that the colour is of; may be empty
 };
 
 /// What the caller calls the layers: "color", "depth", "normals" or "velocity" to a channel or to what is before the

@@ -78,7 +78,7 @@ struct FrameOptions {
     /// place and the distances are not known either.
     std::filesystem::path camera_file;
     /// False: these stay in the file, for those who do not need them.
-    bool has_depth = true, has_normals = true, has_velocity = true;
+    bool has_depth = true, has_normals = true, has_velocity = true, has_reactive = true, has_transparency = true;
     std::optional<InputSpace> input_space;          ///< goes before what the file says of its colour
     std::shared_ptr<const ColorChain> input_chain;  ///< goes before that: from the file's numbers to linear Rec. 709
     /// False: so do the depths of cascades, which are most of a file.
@@ -105,14 +105,17 @@ struct FrameFile {
     Picture color;
     /// Where overscan was kept: the display window, in pixels of this picture.
     std::optional<PixelWindow> display;
-    bool has_alpha = false;            ///< false: alpha is 1 wherever there are data
-    std::optional<Plane<1>> depth;     ///< distance along the view axis; sky_depth where there is no surface
-    std::optional<Plane<3>> normals;   ///< world space; 0 where there is no surface
-    std::optional<Plane<2>> velocity;  ///< previous minus current position, pixels, y down
+    bool has_alpha = false;                ///< false: alpha is 1 wherever there are data
+    std::optional<Plane<1>> depth;         ///< distance along the view axis; sky_depth where there is no surface
+    std::optional<Plane<3>> normals;       ///< world space; 0 where there is no surface
+    std::optional<Plane<2>> velocity;      ///< previous minus current position, pixels, y down
+    std::optional<Plane<1>> reactive;      ///< 0 .. 1: how little earlier frames tell of a pixel
+    std::optional<Plane<3>> transparency;  ///< the colour before anything transparent was drawn
     FrameCamera camera;
     HalfLayers halves;  ///< see FrameOptions::keeps_halves
     std::vector<FrameLight> lights;
     std::optional<double> time, delta_time;    ///< seconds
+    std::optional<float> exposure;             ///< what light is multiplied by before it is shown; above 0
     std::optional<std::uint64_t> frame_index;  ///< at most 2^53
     FileKind kind = FileKind::OpenExr;
     SampleKind samples = SampleKind::Half;  ///< of the colour, in the file
@@ -132,10 +135,11 @@ void widen(FrameFile& frame);
 /// FrameFile::time of a file, whose pixels stay undecoded.
 [[nodiscard]] Result<std::optional<double>> read_frame_time(const std::filesystem::path& path, const LayerNames& names);
 
-/// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, worldToCamera,
-/// and as attributes of our own darkroom:projection, previousWorldToCamera, previousProjection, jitter,
-/// previousJitter, near, far, time, deltaTime and frameIndex, bit for bit. Colour is half, or float if `frame.samples`
-/// is; depth and motion are float, normals half. Lights are attributes as well, and their cascades parts of their own
+/// Writes an OpenEXR file that read_frame gives back: R G B (A), Z, N.X N.Y N.Z, velocity.X velocity.Y, reactive,
+/// transparency.R transparency.G transparency.B, worldToCamera, and as attributes of our own darkroom:projection,
+/// previousWorldToCamera, previousProjection, jitter, previousJitter, near, far, time, deltaTime, frameIndex and
+/// exposure, bit for bit. Colour is half, or float if `frame.samples` is; depth and motion are float, normals and the
+/// reactive mask half, the rest as the colour. Lights are attributes as well, and their cascades parts of their own
 /// beside the frame's: see docs/conventions.md. `max_threads`: that compress, 0: as many as there are processors.
 [[nodiscard]] Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame,
                                    std::size_t max_threads = 0);

@@ -25,6 +25,11 @@ FrameFile full_frame() {
     frame.depth = Plane<1>(5, 3);
     frame.normals = Plane<3>(5, 3);
     frame.velocity = Plane<2>(5, 3);
+    frame.reactive = Plane<1>(5, 3);
+    frame.transparency = Plane<3>(5, 3);
+    for (std::size_t i = 0; i < 15; ++i) frame.reactive->values[i] = static_cast<float>(i) / 16;
+    for (std::size_t i = 0; i < 45; ++i) frame.transparency->values[i] = static_cast<float>(i) / 4;
+    frame.exposure = 1.0F / 3;
     frame.has_alpha = true;
     for (std::size_t i = 0; i < frame.color.pixels.size(); ++i) frame.color.pixels[i] = static_cast<float>(i) / 8;
     for (std::size_t i = 0; i < 15; ++i) frame.depth->values[i] = 1.0f + static_cast<float>(i) / 3;
@@ -60,6 +65,9 @@ TEST_F(ImageFrame, WhatIsWrittenIsRead) {
     EXPECT_EQ(back->depth, frame.depth);
     EXPECT_EQ(back->normals, frame.normals);
     EXPECT_EQ(back->velocity, frame.velocity);
+    EXPECT_EQ(back->reactive, frame.reactive);
+    EXPECT_EQ(back->transparency, frame.transparency);
+    EXPECT_EQ(back->exposure, frame.exposure);
     EXPECT_EQ(back->camera.world_to_camera, frame.camera.world_to_camera);
     EXPECT_EQ(back->camera.projection, frame.camera.projection);
     EXPECT_EQ(back->camera.previous_world_to_camera, frame.camera.previous_world_to_camera);

@@ -20,12 +20,6 @@ namespace darkroom {
 namespace {
 
 constexpr std::uint16_t half_one = 0x3c00;
-constexpr const char* time_attribute = "darkroom:time";
-
-std::optional<double> number_of(const Decoder& decoder, std::size_t part, const char* attribute) {
-    const std::optional<double> value = decoder.number(part, attribute);
-    return value && std::isfinite(*value) ? value : std::nullopt;
-}
 
 bool is_inside(const FilePart& part, std::uint32_t x, std::uint32_t y) {
     const std::int64_t column = std::int64_t{x} - part.x;
@@ -45,10 +39,12 @@ class FrameReader {
     Result<> make_depth();
     Result<> make_normals();
     Result<> make_velocity();
+    Result<> make_masks();
     void finish_color();
     void finish_depth();
     void finish_normals();
     void finish_velocity();
+    void finish_masks();
     Result<> read_camera_of_file();
     void read_time_of_file();
     [[nodiscard]] bool is_integer() const;
@@ -57,7 +53,9 @@ class FrameReader {
     [[nodiscard]] bool are_halves(const ChannelSet& set, std::uint32_t components) const;
     void add_place(const ChannelSet& set, std::uint32_t components, std::vector<float>& plane);
     void add_half_place(const ChannelSet& set, std::uint32_t components, std::vector<std::uint16_t>& plane);
-    [[nodiscard]] Result<> check(const ChannelSet& set, std::uint32_t components, const char* what) const;
+    [[nodiscard]] Result<> check(const ChannelSet& set, std::uint32_t components, std::string_view what) const {
+        return check_layer(part(set), set, components, what, frame_.color.width, frame_.color.height);
+    }
     [[nodiscard]] const FilePart& part(const ChannelSet& set) const { return decoder_.parts()[set.part]; }
     template <std::size_t count>
     [[nodiscard]] std::optional<std::array<float, count>> floats(const char* attribute) const;
@@ -88,23 +86,6 @@ std::optional<std::array<float, count>> FrameReader::floats(const char* attribut
 std::optional<Matrix> FrameReader::world_to_camera() const {
     const std::optional<Matrix> standard = matrix("worldToCamera");
     return standard || !is_vray_ ? standard : matrix("cameraTransform");
-}
-
-// All parts of an OpenEXR file should have one display window; a plane of another size than the picture has no meaning.
-Result<> FrameReader::check(const ChannelSet& set, std::uint32_t components, const char* what) const {
-    const FilePart& ours = part(set);
-    if (ours.display_width != frame_.color.width || ours.display_height != frame_.color.height)
-        return user_error(fmt::format("{} is {}x{}, the color is {}x{}; one display window is needed", what,
-                                      ours.display_width, ours.display_height, frame_.color.width,
-                                      frame_.color.height));
-    for (std::uint32_t i = 0; i < components; ++i) {
-        if (set.channels[i] < 0) continue;
-        const auto channel = static_cast<std::size_t>(set.channels[i]);
-        if (ours.kinds[channel] == SampleKind::Integer32)
-            return user_error(fmt::format("channel {} for {} has 32-bit integers; half or float is needed",
-                                          one_printable_line(ours.channels[channel]), what));
-    }
-    return {};
 }
 
 bool FrameReader::are_halves(const ChannelSet& set, std::uint32_t components) const {
@@ -362,6 +343,31 @@ void FrameReader::finish_velocity() {
     }
 }
 
+Result<> FrameReader::make_masks() {
+    const auto make = [&](const auto& found, std::uint32_t components, std::string_view what, auto& plane) -> Result<> {
+        if (auto checked = check(*found, components, what); !checked) return checked;
+        plane.emplace(frame_.color.width, frame_.color.height);
+        add_place(*found, components, plane->values);
+        return {};
+    };
+    if (found_.reactive && options_.has_reactive)
+        if (auto done = make(found_.reactive, 1, "the reactive mask", frame_.reactive); !done) return done;
+    // Of colours that are turned into ours there is no telling what it is.
+    if (!found_.transparency || !options_.has_transparency || to_rec709_ || options_.input_chain) return {};
+    return make(found_.transparency, 3, "the colour before transparency", frame_.transparency);
+}
+
+void FrameReader::finish_masks() {
+    for (std::vector<float>* const values : {frame_.reactive ? &frame_.reactive->values : nullptr,
+                                             frame_.transparency ? &frame_.transparency->values : nullptr})
+        if (values != nullptr)
+            for (float& value : *values) {
+                if (std::isfinite(value)) continue;
+                ++frame_.counts.not_finite_other;
+                value = 0;
+            }
+}
+
 Result<> FrameReader::read_camera_of_file() {
     FrameCamera& camera = frame_.camera;
     const PixelWindow seen = frame_.display.value_or(PixelWindow{0, 0, frame_.color.width, frame_.color.height});
@@ -421,9 +427,14 @@ Result<> FrameReader::read_camera_of_file() {
 }
 
 void FrameReader::read_time_of_file() {
-    const auto number = [&](const char* name) { return number_of(decoder_, found_.color.part, name); };
-    frame_.time = number(time_attribute);
+    const auto number = [&](const char* name) -> std::optional<double> {
+        const std::optional<double> value = decoder_.number(found_.color.part, name);
+        return value && std::isfinite(*value) ? value : std::nullopt;
+    };
+    frame_.time = number("darkroom:time");
     frame_.delta_time = number("darkroom:deltaTime");
+    if (const auto exposure = number("darkroom:exposure"); exposure && *exposure > 0)
+        frame_.exposure = static_cast<float>(*exposure);
     constexpr double most = 9007199254740992;  // 2^53: whole numbers beyond are not exact in a double
     const std::optional<double> index = number("darkroom:frameIndex");
     if (index && *index >= 0 && *index <= most && *index == std::floor(*index))
@@ -447,11 +458,13 @@ Result<FrameFile> FrameReader::read() {
     if (auto done = make_depth(); !done) return failure(std::move(done));
     if (auto done = make_normals(); !done) return failure(std::move(done));
     if (auto done = make_velocity(); !done) return failure(std::move(done));
+    if (auto done = make_masks(); !done) return failure(std::move(done));
     if (auto done = read_layers(decoder_, places_); !done) return failure(std::move(done));
     finish_color();
     finish_depth();
     finish_normals();
     finish_velocity();
+    finish_masks();
     if (auto done = read_camera_of_file(); !done) return failure(std::move(done));
     read_time_of_file();
     if (auto done = read_lights(decoder_, found_.color.part, options_, frame_); !done) return failure(std::move(done));
@@ -479,14 +492,6 @@ Result<FrameFile> read_frame(const std::filesystem::path& path, const FrameOptio
         (options.camera_file.empty() || !frame.error().text.starts_with(options.camera_file.string())))
         frame.error().text.insert(0, place);
     return frame;
-}
-
-Result<std::optional<double>> read_frame_time(const std::filesystem::path& path, const LayerNames& names) {
-    const auto decoder = Decoder::open(path);
-    if (!decoder) return failure(decoder.error());
-    const auto found = find_channels(decoder->parts(), names);
-    if (!found) return failure(found.error());
-    return number_of(*decoder, found->color.part, time_attribute);
 }
 
 }  // namespace darkroom

@@ -62,6 +62,10 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame, 
     if (frame.normals) add({"N.X", "N.Y", "N.Z"}, SampleKind::Half, frame.normals->values, 3);
     if (frame.velocity) add({"velocity.X", "velocity.Y"}, SampleKind::Float, frame.velocity->values, 2);
 
+    if (frame.reactive) add({"reactive"}, SampleKind::Half, frame.reactive->values, 1);
+    if (frame.transparency)
+        add({"transparency.R", "transparency.G", "transparency.B"}, color, frame.transparency->values, 3);
+
     Imf::Header& header = part.header;
     add_rec709(header);
     add_matrix(header, "worldToCamera", frame.camera.world_to_camera);
@@ -75,6 +79,7 @@ Result<> write_frame(const std::filesystem::path& path, const FrameFile& frame, 
     add_number(header, "darkroom:time", frame.time);
     add_number(header, "darkroom:deltaTime", frame.delta_time);
     add_number(header, "darkroom:frameIndex", frame.frame_index);
+    add_number(header, "darkroom:exposure", frame.exposure);
     add_lights(header, frame.lights);
     for (ExrPart& shadow : shadow_parts(header, frame.lights)) parts.push_back(std::move(shadow));
     if (parts.size() > 1) parts.front().header.setName("frame");

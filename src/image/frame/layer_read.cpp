@@ -2,8 +2,10 @@
 #include "image/frame/layer_read.hpp"
 
 #include <Imath/half.h>
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <vector>
@@ -79,6 +81,22 @@ Result<> read_cropped(Decoder& decoder, std::size_t number, std::span<const Samp
 
 }  // namespace
 
+// All parts of an OpenEXR file should have one display window; a plane of another size than the picture has no meaning.
+Result<> check_layer(const FilePart& part, const ChannelSet& set, std::uint32_t components, std::string_view what,
+                     std::uint32_t width, std::uint32_t height) {
+    if (part.display_width != width || part.display_height != height)
+        return user_error(fmt::format("{} is {}x{}, the color is {}x{}; one display window is needed", what,
+                                      part.display_width, part.display_height, width, height));
+    for (std::uint32_t i = 0; i < components; ++i) {
+        if (set.channels[i] < 0) continue;
+        const auto channel = static_cast<std::size_t>(set.channels[i]);
+        if (part.kinds[channel] == SampleKind::Integer32)
+            return user_error(fmt::format("channel {} for {} has 32-bit integers; half or float is needed",
+                                          one_printable_line(part.channels[channel]), what));
+    }
+    return {};
+}
+
 Result<> read_layers(Decoder& decoder, std::span<const LayerPlace> layers) {
     // A channel has one place in a reading; whoever else wants it comes in the next, but for repeats within a layer.
     std::map<std::size_t, std::vector<std::vector<SamplePlace>>> readings;  // by part
@@ -132,6 +150,15 @@ void widen(FrameFile& frame) {
     take(frame.halves.color, 4, 4, frame.color.pixels);
     if (frame.normals) take(frame.halves.normals, 3, 4, frame.normals->values);
     if (frame.velocity) take(frame.halves.velocity, 2, 2, frame.velocity->values);
+}
+
+Result<std::optional<double>> read_frame_time(const std::filesystem::path& path, const LayerNames& names) {
+    const auto decoder = Decoder::open(path);
+    if (!decoder) return failure(decoder.error());
+    const auto found = find_channels(decoder->parts(), names);
+    if (!found) return failure(found.error());
+    const std::optional<double> time = decoder->number(found->color.part, "darkroom:time");
+    return time && std::isfinite(*time) ? time : std::nullopt;
 }
 
 }  // namespace darkroom

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <darkroom/result.hpp>
 #include <span>
+#include <string_view>
 
 #include "image/codec/decoder.hpp"
 #include "image/frame/channels.hpp"
@@ -21,6 +22,10 @@ struct LayerPlace {
     std::byte* plane = nullptr;
     std::uint32_t read = 4;  ///< how many of `source` are read at most
 };
+
+/// Are the first `components` of it numbers that are no integers, in a display window of this size? `what` names it.
+[[nodiscard]] Result<> check_layer(const FilePart& part, const ChannelSet& set, std::uint32_t components,
+                                   std::string_view what, std::uint32_t width, std::uint32_t height);
 
 /// What lies outside the data window stays as it is, what lies outside the display window is left out. Errors as those
 /// of Decoder::read_rows.

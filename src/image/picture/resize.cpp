@@ -37,6 +37,22 @@ Plane<Channels> nearest_pixels(const Plane<Channels>& plane, std::uint32_t width
     return out;
 }
 
+Result<Plane<3>> filtered_plane(const Plane<3>& plane, std::uint32_t width, std::uint32_t height) {
+    const auto copy = [](const std::vector<float>& from, std::size_t stride, std::vector<float>& to,
+                         std::size_t to_stride) {
+        for (std::size_t i = 0; i < from.size() / stride; ++i)
+            std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(i * stride), 3,
+                        to.begin() + static_cast<std::ptrdiff_t>(i * to_stride));
+    };
+    Picture picture(plane.width, plane.height);
+    copy(plane.values, 3, picture.pixels, 4);
+    const Result<Picture> sized = filtered(picture, width, height);
+    if (!sized) return failure(sized.error());
+    Plane<3> out(width, height);
+    copy(sized->pixels, 4, out.values, 3);
+    return out;
+}
+
 /// Columns and rows of a plane.
 template <class Of>
 Of part_of(const Of& plane, std::uint32_t left, std::uint32_t top, std::uint32_t width, std::uint32_t height) {
@@ -64,6 +80,8 @@ FrameFile cropped(FrameFile frame, std::uint32_t width, std::uint32_t height) {
     if (frame.depth) cut(*frame.depth);
     if (frame.normals) cut(*frame.normals);
     if (frame.velocity) cut(*frame.velocity);
+    if (frame.reactive) cut(*frame.reactive);
+    if (frame.transparency) cut(*frame.transparency);
     for (std::optional<Matrix>* const projection : {&frame.camera.projection, &frame.camera.previous_projection}) {
         if (!*projection) continue;
         const auto narrow = [&](std::size_t row, double old_side, double new_side, double first) {
@@ -101,6 +119,12 @@ Result<FrameFile> resize(FrameFile frame, const NewSize& asked_for) {
     Result<Picture> color = filtered(frame.color, width, height);
     if (!color) return failure(std::move(color));
     frame.color = std::move(*color);
+    if (frame.reactive) frame.reactive = nearest_pixels(*frame.reactive, width, height);
+    if (frame.transparency) {
+        Result<Plane<3>> before = filtered_plane(*frame.transparency, width, height);
+        if (!before) return failure(std::move(before));
+        frame.transparency = std::move(*before);
+    }
     if (frame.depth) frame.depth = nearest_pixels(*frame.depth, width, height);
     if (frame.normals) frame.normals = nearest_pixels(*frame.normals, width, height);
     const float scale_x = static_cast<float>(width) / static_cast<float>(old_width);
