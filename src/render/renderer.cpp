@@ -139,7 +139,9 @@ Result<> Renderer::State::create() {
     if (desc.output == Output::Hdr) {
         Result<> made = take(Resolve::create(*context, formats(), desc.frames_in_flight), resolve);
         if (!made) return made;
-        if (desc.positions > 1) made = take(Accumulate::create(*context, formats().color, desc.positions), accumulate);
+        if (desc.positions > 1)
+            made =
+                take(Accumulate::create(*context, formats().color, desc.positions, desc.is_mean_weighed), accumulate);
         if (!made) return made;
     }
     if (Result<> done = create_targets(desc.extent); !done) return done;

@@ -40,9 +40,12 @@ struct DrawOptions {
 struct RenderDesc {
     VkExtent2D extent{1920, 1080};
     std::uint32_t samples = 1;  ///< of the rasteriser, for each position
-    /// Places within the pixel that the scene is drawn from, [1, 1024]: linear light is their mean, weighed by the
-    /// inverse of one plus the largest channel; the layers beside it are those of the pixel's centre. Output::Hdr only.
+    /// Places within the pixel that the scene is drawn from, [1, 1024]: linear light is their mean; the layers beside
+    /// it are those of the pixel's centre. Output::Hdr only.
     std::uint32_t positions = 1;
+    /// That mean is weighed by the inverse of one plus the largest channel, so that edges are as smooth as a display
+    /// shows them; else it is of light itself.
+    bool is_mean_weighed = true;
     Output output = Output::Hdr;
     /// Of the picture for Output::Display; its first channels red, green, blue, alpha, sRGB-encoded by the shader.
     VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;

@@ -46,11 +46,12 @@ scene::vec2 position_in_pixel(std::uint32_t index) {
     return {place(along), place(down)};
 }
 
-Result<Accumulate> Accumulate::create(gpu::Context& context, VkFormat color, std::uint32_t positions) {
+Result<Accumulate> Accumulate::create(gpu::Context& context, VkFormat color, std::uint32_t positions, bool is_weighed) {
     DARKROOM_ASSERT(positions >= 2 && positions <= scene::most_samples);
     Accumulate out;
     out.context_ = &context;
     out.positions_ = positions;
+    out.is_weighed_ = is_weighed;
     const auto make = [&](std::unique_ptr<gpu::Kernel>& kernel, gpu::KernelSpec spec) -> Result<> {
         spec.workgroup = gpu::usual_workgroup(context);
         Result<std::unique_ptr<gpu::Kernel>> made =
@@ -96,7 +97,8 @@ Result<> Accumulate::resize(const Targets& targets) {
     sums_ = std::move(larger);
     const gpu::Binding color = bound(targets.color);
     const std::array sums{bound(sums_[0]), bound(sums_[1])};
-    const std::array<std::array<float, 4>, 1> custom{std::array{1 / static_cast<float>(positions_), 0.0F, 0.0F, 0.0F}};
+    const std::array<std::array<float, 4>, 1> custom{
+        std::array{1 / static_cast<float>(positions_), is_weighed_ ? 1.0F : 0.0F, 0.0F, 0.0F}};
     const auto write = [&](const gpu::Kernel& kernel, std::size_t set, std::span<const gpu::Binding> images,
                            const gpu::Binding& output) {
         const gpu::Kernel::Block block{blocks_.handle, set * block_stride_, gpu::own_block_size(kernel.spec())};

@@ -19,8 +19,9 @@ namespace darkroom::render {
 
 class Accumulate {
   public:
-    /// `positions`: [2, scene::most_samples].
-    [[nodiscard]] static Result<Accumulate> create(gpu::Context& context, VkFormat color, std::uint32_t positions);
+    /// `positions`: [2, scene::most_samples]. `is_weighed`: of c / (1 + max c), else of light itself.
+    [[nodiscard]] static Result<Accumulate> create(gpu::Context& context, VkFormat color, std::uint32_t positions,
+                                                   bool is_weighed);
     /// Images as large as the targets, whose colour is what it works on; nothing of both is in use by the device.
     Result<> resize(const Targets& targets);
     /// Adds `color`, which is in the layout `from`: the place-th to be drawn, [0, positions).
@@ -32,6 +33,7 @@ class Accumulate {
   private:
     gpu::Context* context_ = nullptr;
     std::uint32_t positions_ = 0;
+    bool is_weighed_ = true;
     /// Starts a sum, adds to one, turns it into the mean.
     std::unique_ptr<gpu::Kernel> first_, next_, mean_;
     gpu::DescriptorSets sets_;  ///< of first_, of next_ into each sum, of mean_

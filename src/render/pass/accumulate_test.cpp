@@ -109,6 +109,16 @@ TEST(RenderGpuAccumulate, SamplesOfTheRasteriserAddToThePositions) {
     EXPECT_GT(std::abs(mean - 1), 0.05F);
 }
 
+TEST(RenderGpuAccumulate, LightIsAPlainMeanWhereThatIsAsked) {
+    const float weighed = shot_of({.positions = 16}).color.at(20, 30)[0];
+    const float plain_mean = shot_of({.positions = 16, .is_mean_weighed = false}).color.at(20, 30)[0];
+    const double shift = gpu::test::vertex_shift();
+    const float least = static_cast<float>(covered(16, 20, 30, -shift)) / 16 * wall_light;
+    const float most = static_cast<float>(covered(16, 20, 30, shift)) / 16 * wall_light;
+    EXPECT_NEAR(plain_mean, std::clamp(plain_mean, least, most), 4e-3F * wall_light);
+    EXPECT_GT(plain_mean, weighed * 1.1F);
+}
+
 TEST(RenderGpuAccumulate, AlphaIsAPlainMean) {
     scene::Scene scene = dark_scene();
     scene.has_alpha_layer = true;
