@@ -31,6 +31,7 @@ struct Command {
 [[nodiscard]] Command add_effects(CommandFlags program);
 [[nodiscard]] Command add_devices(CommandFlags program);
 [[nodiscard]] Command add_compare(CommandFlags program);
+[[nodiscard]] Command add_capture(CommandFlags program);
 [[nodiscard]] Command add_info(CommandFlags program);
 /// One for each command below it.
 [[nodiscard]] std::vector<Command> add_lut(CommandFlags program, std::span<const darkroom::LookEntry> named);

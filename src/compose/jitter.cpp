@@ -36,6 +36,6 @@ std::array<float, 2> Composer::jitter(std::uint64_t frame_index, float scale) {
     return {static_cast<float>(radical_inverse(entry, 2) - 0.5), static_cast<float>(radical_inverse(entry, 3) - 0.5)};
 }
 
-float Composer::mip_bias(float scale) { return -std::log2(at_least_one(scale)); }
+float Composer::mip_bias(float scale) { return 0 - std::log2(at_least_one(scale)); }  // not -0
 
 }  // namespace darkroom

@@ -1,17 +1,38 @@
 // SPDX-License-Identifier: MIT
-// Frames of another size than their picture.
+// Frames of another size than their picture, and captures of what temporal filters are given.
 #include <darkroom/composer.hpp>
 #include <darkroom/effect.hpp>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tests/cli_render/render_cli_support.hpp"
 
 namespace darkroom {
 namespace {
 
+using nlohmann::json;
 using test::content;
 using test::Outcome;
 
-class CliTemporal : public test::CliRender {};
+class CliTemporal : public test::CliRender {
+  protected:
+    /// Two frames at two sizes, of the yard at 48x32.
+    [[nodiscard]] Outcome capture(const std::string& folder, std::vector<std::string> flags = {}) const {
+        flags.insert(flags.begin(),
+                     {"capture", path("yard.scene.toml"), "-o", path(folder), "--size", "48x32", "--samples", "4",
+                      "--frames", "5-7", "--scales", "1,1.5", "--shadow-resolution", "64"});
+        return run(flags);
+    }
+    [[nodiscard]] std::vector<std::string> files_below(const std::string& folder) const {
+        std::vector<std::string> out;
+        for (const auto& file : std::filesystem::recursive_directory_iterator(path(folder)))
+            if (file.is_regular_file())
+                out.push_back(std::filesystem::relative(file.path(), path(folder)).generic_string());
+        std::ranges::sort(out);
+        return out;
+    }
+};
 
 TEST_F(CliTemporal, ARenderScaleDrawsFewerLinesOfThePicture) {
     ASSERT_EQ(render({}, "whole.png").code, 0);
@@ -74,6 +95,64 @@ TEST_F(CliTemporal, SequencesOfLooksThatGatherFramesAreJittered) {
     // A picture by itself has all its places at once.
     ASSERT_EQ(render({"--look", path("gathers.toml"), "--save-frame", path("one.exr")}).code, 0);
     EXPECT_FALSE(frame("one.exr").camera.jitter);
+}
+
+TEST_F(CliTemporal, ACaptureIsInputsAndTruth) {
+    const Outcome outcome = capture("captured", {"--truth-frames", "6-7"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(files_below("captured"),
+              (std::vector<std::string>{"1.5x/input.0005.exr", "1.5x/input.0006.exr", "1.5x/input.0007.exr",
+                                        "1x/input.0005.exr", "1x/input.0006.exr", "1x/input.0007.exr", "capture.json",
+                                        "truth/truth.0006.exr", "truth/truth.0007.exr"}));
+    const FrameFile input = frame("captured/1.5x/input.0006.exr"), truth = frame("captured/truth/truth.0006.exr");
+    EXPECT_EQ(input.color.width, 32U);
+    EXPECT_EQ(input.color.height, 21U);
+    EXPECT_EQ(truth.color.width, 48U);
+    EXPECT_EQ(input.camera.jitter, Composer::jitter(6, 32.0F / 21));
+    EXPECT_EQ(input.camera.previous_jitter, Composer::jitter(5, 32.0F / 21));
+    EXPECT_FALSE(truth.camera.jitter);
+    EXPECT_EQ(input.time, 6 / 24.0);
+    EXPECT_EQ(input.frame_index, 6U);
+    EXPECT_EQ(input.exposure, 1.0F);
+    ASSERT_TRUE(input.reactive && input.transparency && input.depth && input.velocity);
+    EXPECT_GT(*std::ranges::max_element(input.reactive->values), 0.85F) << "sparks";
+    EXPECT_EQ(*std::ranges::min_element(input.reactive->values), 0);
+    const json found = json::parse(content(path("captured/capture.json")), nullptr, false);
+    EXPECT_EQ(found.at("scene"), "yard.scene.toml");
+    EXPECT_EQ(found.at("frames"), "5-7");
+    EXPECT_EQ(found.at("inputs").at(1).at("size"), json({32, 21}));
+    EXPECT_EQ(found.at("truth"),
+              json({{"files", "truth/truth.####.exr"}, {"frames", "6-7"}, {"samples", 4}, {"mean", "tone_mapped"}}));
+}
+
+TEST_F(CliTemporal, TheSameCaptureIsTheSameBytes) {
+    ASSERT_EQ(capture("a").code, 0);
+    ASSERT_EQ(capture("b").code, 0);
+    ASSERT_EQ(files_below("a"), files_below("b"));
+    for (const std::string& file : files_below("a"))
+        EXPECT_EQ(content(path("a/" + file)), content(path("b/" + file))) << file;
+    ASSERT_EQ(capture("b", {"--mean", "linear", "--fps", "12"}).code, 0);
+    EXPECT_NE(content(path("a/truth/truth.0006.exr")), content(path("b/truth/truth.0006.exr")));
+    EXPECT_EQ(json::parse(content(path("b/capture.json"))).at("truth").at("mean"), "linear");
+}
+
+TEST_F(CliTemporal, ACaptureThatCannotBeIsRefused) {
+    const std::vector<std::string> base{"capture", path("yard.scene.toml"), "-o", path("c"), "--frames", "5-7"};
+    for (const auto& [flags, part] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+             {{"--scales", "1,0.5"}, "--scales 1,0.5: allowed are 1 to 8 numbers in [1, 10], each once"},
+             {{"--scales", "2,2"}, "--scales 2,2: allowed"},
+             {{"--scales", ""}, "--scales : allowed"},
+             {{"--samples", "1"}, "--samples 1: whole numbers in [2, 1024]"},
+             {{"--mean", "rms"}, "--mean rms: allowed is tone-mapped or linear"},
+             {{"--truth-frames", "4-6"}, "--truth-frames 4-6: are not all among --frames 5-7"},
+             {{"--msaa", "4"}, "colour before transparency: with 4 samples"}}) {
+        std::vector<std::string> all = base;
+        all.insert(all.end(), flags.begin(), flags.end());
+        expect_refused(all, 1, part);
+    }
+    expect_refused({"capture", path("yard.scene.toml"), "-o", path("c"), "--frames", "-2-1"}, 1,
+                   "a scene begins at frame 0");
+    expect_refused({"capture", path("none.toml"), "-o", path("c"), "--frames", "1"}, 1, "none.toml");
 }
 
 }  // namespace
