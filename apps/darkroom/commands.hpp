@@ -32,6 +32,7 @@ struct Command {
 [[nodiscard]] Command add_devices(CommandFlags program);
 [[nodiscard]] Command add_compare(CommandFlags program);
 [[nodiscard]] Command add_capture(CommandFlags program);
+[[nodiscard]] Command add_judge(CommandFlags program);
 [[nodiscard]] Command add_info(CommandFlags program);
 /// One for each command below it.
 [[nodiscard]] std::vector<Command> add_lut(CommandFlags program, std::span<const darkroom::LookEntry> named);

@@ -38,6 +38,7 @@ std::vector<app::Command> add_commands(app::CommandFlags program, std::span<cons
         {{"devices"}, [&] { return Commands{app::add_devices(program)}; }},
         {{"compare"}, [&] { return Commands{app::add_compare(program)}; }},
         {{"capture"}, [&] { return Commands{app::add_capture(program)}; }},
+        {{"judge"}, [&] { return Commands{app::add_judge(program)}; }},
         {{"info"}, [&] { return Commands{app::add_info(program)}; }},
         {{"lut"}, [&] { return app::add_lut(program, named); }},
         {{"farm"}, [&] { return app::add_farm(program, named); }},

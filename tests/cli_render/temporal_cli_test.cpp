@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Frames of another size than their picture, and captures of what temporal filters are given.
+// Frames of another size than their picture, captures of what temporal filters are given, and judgements of theirs.
 #include <darkroom/composer.hpp>
 #include <darkroom/effect.hpp>
 
@@ -23,6 +23,12 @@ class CliTemporal : public test::CliRender {
                      {"capture", path("yard.scene.toml"), "-o", path(folder), "--size", "48x32", "--samples", "4",
                       "--frames", "5-7", "--scales", "1,1.5", "--shadow-resolution", "64"});
         return run(flags);
+    }
+    [[nodiscard]] json judged(const std::string& test, std::vector<std::string> flags = {}) const {
+        flags.insert(flags.begin(), {"judge", "--truth", path("captured"), "--test", path(test), "--json"});
+        const Outcome outcome = run(flags);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return json::parse(outcome.out, nullptr, false);
     }
     [[nodiscard]] std::vector<std::string> files_below(const std::string& folder) const {
         std::vector<std::string> out;
@@ -153,6 +159,55 @@ TEST_F(CliTemporal, ACaptureThatCannotBeIsRefused) {
     expect_refused({"capture", path("yard.scene.toml"), "-o", path("c"), "--frames", "-2-1"}, 1,
                    "a scene begins at frame 0");
     expect_refused({"capture", path("none.toml"), "-o", path("c"), "--frames", "1"}, 1, "none.toml");
+}
+
+TEST_F(CliTemporal, AJudgementHoldsPicturesAgainstTheTruth) {
+    ASSERT_EQ(capture("captured").code, 0);
+    const json perfect = judged("captured/truth");
+    EXPECT_EQ(perfect.at("psnr"), "inf");
+    EXPECT_EQ(perfect.at("flicker"), "inf");
+    EXPECT_EQ(perfect.at("flip_mean"), 0.0);
+    EXPECT_EQ(perfect.at("frames").size(), 3U);
+    const json rough = judged("captured/1x", {"-o", path("page"), "--frames", "6-7"});
+    EXPECT_GT(rough.at("psnr").get<double>(), 15);
+    EXPECT_LT(rough.at("psnr").get<double>(), 60);
+    EXPECT_LT(rough.at("regions").at("edges").at("psnr").get<double>(), rough.at("psnr").get<double>());
+    EXPECT_EQ(rough.at("recovery").size(), 8U);
+    EXPECT_EQ(rough.at("frames").size(), 2U);
+    EXPECT_TRUE(rough.at("edge").is_null());
+    EXPECT_EQ(files_below("page"),
+              (std::vector<std::string>{"error.0006.png", "error.0007.png", "index.html", "judge.json", "test.0006.png",
+                                        "test.0007.png", "truth.0006.png", "truth.0007.png"}));
+    EXPECT_EQ(json::parse(content(path("page/judge.json")), nullptr, false), rough);
+    // What a page shows can be judged as well: codes are codes.
+    std::filesystem::create_directory(path("codes"));
+    for (const char* const number : {"0006", "0007"})
+        std::filesystem::copy(path(std::string("page/test.") + number + ".png"),
+                              path(std::string("codes/") + number + ".png"));
+    EXPECT_EQ(judged("codes", {"--frames", "6-7"}).at("psnr"), rough.at("psnr"));
+    const Outcome text = run({"judge", "--truth", path("captured"), "--test", path("captured/1x")});
+    EXPECT_NE(text.out.find("PSNR dB"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("disoccluded"), std::string::npos) << text.out;
+}
+
+TEST_F(CliTemporal, AJudgementThatCannotBeIsRefused) {
+    ASSERT_EQ(capture("captured").code, 0);
+    std::filesystem::create_directory(path("empty"));
+    const auto judge = [&](const std::string& truth, const std::string& test, std::vector<std::string> flags = {}) {
+        flags.insert(flags.begin(), {"judge", "--truth", path(truth), "--test", path(test)});
+        return flags;
+    };
+    expect_refused(judge("empty", "captured/1x"), 1, "capture.json");
+    expect_refused(judge("captured", "empty"), 1, "has no picture of frame 5, which the truth has");
+    expect_refused(judge("captured", "captured/1.5x"), 1, "is 32x21, its truth is 48x32");
+    expect_refused(judge("captured", "none"), 1, "none: cannot list the folder");
+    expect_refused(judge("captured", "captured/1x", {"--frames", "9"}), 1, "--frames 9: the truth has none of them");
+    expect_refused(judge("captured", "captured/1x", {"--edge", "9"}), 1, "--edge 9: expected X,Y,WIDTHxHEIGHT");
+    expect_refused(judge("captured", "captured/1x", {"--edge", "40,0,16x16"}), 1, "reaches out of 48x32");
+    write("captured/capture.json", "{\"format\": 1, \"truth\": {\"files\": \"../x.####.exr\", \"frames\": \"5\"}}");
+    expect_refused(judge("captured", "captured/1x"), 1, "allowed is a name within the folder");
+    write("captured/capture.json", "[]");
+    expect_refused(judge("captured", "captured/1x"), 1, "is no description of a capture");
 }
 
 }  // namespace
