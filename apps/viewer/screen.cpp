@@ -94,6 +94,7 @@ void Screen::draw(const Input& input) {
                      .inspection = input.inspection,
                      .watch_state = input.view.watch_state(),
                      .extent = input.extent,
+                     .divisor = input.divisor,
                      .camera = input.camera,
                      .frames_a_second = input.frames_a_second,
                      .last_line = last_line_},

@@ -160,11 +160,12 @@ Result<> Viewer::turn() {
     reload();
     follow_document();
     is_resting_ = !is_due();
+    has_rested_ = has_rested_ || is_resting_;
     if (is_resting_) return {};
     const Result<std::optional<PresentFrame>> frame = presenter_->begin(window_->extent());
     if (!frame) return failure(frame.error());
     if (!*frame) {
-        is_resting_ = true;
+        is_resting_ = has_rested_ = true;
         return {};
     }
     const Result<> shown = show(**frame);
@@ -188,7 +189,7 @@ void Viewer::move_time(double passed) {
 }
 
 LiveMoment Viewer::moment() const {
-    LiveMoment out{.time = time_, .previous_time = previous_time_, .draw = draw_};
+    LiveMoment out{.time = time_, .previous_time = previous_time_, .draw = draw_, .divisor = divisor_};
     if (scene_ != nullptr) out.orbit = camera_->orbit(scene_->snapshot());
     out.previous_orbit = last_orbit_;
     out.is_post_off = !is_post_on_ && !is_off() && !screen_.is_comparing();
@@ -220,6 +221,8 @@ Result<> Viewer::show(const PresentFrame& frame) {
     // The first frame, too, has what the game says and controllers set.
     const bool is_menu_open = screen_.has_console() || gui_->has_popup();
     settle("interface", interface_->advance(time_, camera_->head(), is_menu_open));
+    divisor_ = choose_divisor();
+    has_rested_ = has_developed_ = false;
     if (Result<> done = prepare(frame, wanted); !done) return done;
     for (std::size_t side = 0; side < side_count; ++side)
         if (views_[side]) settle(fmt::format("plan {}", side), views_[side]->planned());
@@ -248,7 +251,8 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .watched = look.watched(),
                   .transfer = left != nullptr ? left->transfer() : PaneTransfer::Encoded,
                   .compared_transfer = right != nullptr ? right->transfer() : PaneTransfer::Encoded,
-                  .extent = look.extent(),
+                  .extent = full_extent_,
+                  .divisor = divisor_,
                   .window = frame.extent,
                   .scale = window_->scale(),
                   .passed = is_fixed() ? delta_time_ : passed_,
@@ -291,8 +295,10 @@ Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
         settle(fmt::format("fit {}", side), views_[side]->fit(*source_, wanted, interface_->format()));
         extent = least_of(extent, views_[side]->most());
     }
+    full_extent_ = extent;
+    extent = {(extent.width + divisor_ - 1) / divisor_, (extent.height + divisor_ - 1) / divisor_};
     const LiveMoment now = moment();
-    bool must_wait = source_->must_wait(now, extent) || interface_->must_wait(extent);
+    bool must_wait = source_->must_wait(now, extent) || interface_->must_wait(full_extent_, extent);
     for (const auto& any : views_) must_wait = must_wait || (any && any->must_wait(extent));
     if (EditPanels* const panels = screen_.panels(); panels != nullptr && !is_first)
         must_wait = must_wait || (*look)->must_wait_to_watch(panels->watched((*look)->composer().current_plan()),
@@ -326,17 +332,20 @@ Result<> Viewer::record(const PresentFrame& frame, VkExtent2D extent) {
         input.frame_index = frame_index_;
         input.camera.is_cut = is_cut_;
     }
+    const bool is_kept = is_picture_kept();
     if (interface_->is_given()) {
-        const Result<darkroom::ImageRef> ui = interface_->record(frame.commands, frame.slot, extent, window_->scale());
+        const Result<darkroom::ImageRef> ui =
+            interface_->record(frame.commands, frame.slot, full_extent_, extent, window_->scale());
         if (!ui) return failure(ui.error());
         input.ui = *ui;
     }
     if (Result<> done = job_.timeline.advance((*look)->composer(), input.time); !done) return done;
     const std::array<bool, side_count> is_shown = shown_sides();
     for (std::size_t side = 0; side < side_count; ++side)
-        if (is_shown[side])
+        if (is_shown[side] && !(is_kept && views_[side] && views_[side]->is_current()))
             if (Result<> done = record_look(frame.commands, static_cast<Side>(side), input); !done) return done;
     is_cut_ = false;
+    developed_version_ = document_->version();
     return inspect(frame.commands, input);
 }
 
@@ -346,9 +355,10 @@ Result<> Viewer::record_look(VkCommandBuffer commands, Side side, const darkroom
     LookView& of = **found;
     const VkExtent2D extent = frame.color.used_region().extent;
     if (of.most().width == 0)
-        if (Result<> done = of.fit(*source_, extent, interface_->format()); !done) return done;
+        if (Result<> done = of.fit(*source_, full_extent_, interface_->format()); !done) return done;
     if (Result<> done = of.resize(extent); !done) return done;
     if (is_fixed()) of.composer().wait_for_kernels();
+    has_developed_ = true;
     // A plan that does not fit yet is on its way: the picture stays what it was.
     const Result<> recorded = of.record(commands, frame);
     if (recorded || !of.is_coming()) settle(fmt::format("frame {}", static_cast<int>(side)), recorded);

@@ -39,10 +39,11 @@ struct ViewerJob {
     darkroom::window::WindowDesc window;
     darkroom::window::Presentation presentation = darkroom::window::Presentation::Vsync;
     darkroom::window::DynamicRange range = darkroom::window::DynamicRange::Standard;
-    float peak_nits = 1000;    ///< of a display of high range
-    bool turns = false;        ///< the camera goes round by itself
-    bool is_paused = false;    ///< the time stands still at first
-    bool obeys_input = false;  ///< lines of standard input are the console's commands
+    float peak_nits = 1000;     ///< of a display of high range
+    bool turns = false;         ///< the camera goes round by itself
+    bool is_paused = false;     ///< the time stands still at first
+    bool is_full_size = false;  ///< also while something moves, however long frames take
+    bool obeys_input = false;   ///< lines of standard input are the console's commands
 
     /// For tests and pictures: so many frames, `step` seconds apart, then it ends.
     std::optional<std::uint64_t> frames_to_show;

@@ -46,7 +46,7 @@ bool Viewer::is_due() {
         return true;
     }
     const bool is_old = now - last_turn_ >= between_frames;
-    if (is_old && (is_coming() || screen_.is_over())) return true;
+    if ((is_old && (is_coming() || screen_.is_over())) || has_come_to_rest()) return true;
     // What a frame measured is shown by another, which measures nothing.
     is_echo_ = std::exchange(has_measured_, false);
     return is_echo_;

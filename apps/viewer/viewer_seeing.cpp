@@ -49,7 +49,12 @@ Result<> Viewer::inspect(VkCommandBuffer commands, const darkroom::Frame& frame)
 
 Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
     const EditPanels* const panels = screen_.panels();
-    if (panels == nullptr || !panels->wants_scopes() || scope_frame_ || is_echo_) return {};
+    if (panels == nullptr || !panels->wants_scopes()) {
+        has_scopes_ = false;
+        return {};
+    }
+    // Of a picture that stands they stand, too.
+    if (scope_frame_ || is_echo_ || (has_scopes_ && !has_developed_)) return {};
     darkroom::gpu::Context& context = device_->context();
     const LookView& look = *views_[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)];
     const darkroom::ImageRef picture = look.picture();
@@ -80,6 +85,7 @@ Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
     scope_read_ = std::move(*read);
     scope_read_->record(frame.commands);
     scope_frame_ = frame.number;
+    has_scopes_ = true;
     return {};
 }
 

@@ -16,6 +16,7 @@
 #include "develop/readback.hpp"
 #include "edit/document.hpp"
 #include "gui.hpp"
+#include "preview_scale.hpp"
 #include "screen.hpp"
 #include "viewer.hpp"
 
@@ -107,6 +108,14 @@ class Viewer {
     [[nodiscard]] bool is_coming() const;
     [[nodiscard]] double frames_a_second();
 
+    // viewer_preview.cpp
+    /// Of the frame that comes: how many times fewer pixels each way are enough.
+    [[nodiscard]] std::uint32_t choose_divisor();
+    /// Has nothing changed that the picture is made of, the plan apart?
+    [[nodiscard]] bool is_picture_kept() const;
+    [[nodiscard]] bool is_looked_into() const;
+    [[nodiscard]] bool has_come_to_rest() const;
+
     // viewer_files.cpp
     void reload();
     void follow_document();
@@ -142,7 +151,13 @@ class Viewer {
     std::uint32_t frames_due_ = 0;
     std::uint64_t drawn_version_ = 0;  ///< of the document
     bool is_resting_ = false, is_echo_ = false, has_measured_ = false;
-    double passed_ = 0;  ///< seconds since the frame before
+    PreviewScale preview_;
+    std::uint32_t divisor_ = 1, moves_ = 0;  ///< of the last frame; frames that were another, one behind the other
+    VkExtent2D full_extent_{};               ///< of the picture, were it not divided
+    Clock::time_point moved_at_{};           ///< the picture was another
+    std::uint64_t developed_version_ = 0;    ///< of the document
+    bool has_rested_ = true, has_developed_ = false;  ///< before the frame that comes; since then a look was recorded
+    double passed_ = 0;                               ///< seconds since the frame before
     bool is_post_on_ = true, is_paused_ = false, is_leaving_ = false;
     double time_ = 0, previous_time_ = 0, delta_time_ = 0;
     double played_ = 0;  ///< seconds of a sequence
@@ -186,6 +201,7 @@ class Viewer {
     std::optional<darkroom::Inspection> inspection_;
     darkroom::gpu::Image scope_image_;
     std::optional<darkroom::Readback> scope_read_;
+    bool has_scopes_ = false;                                        ///< since the panel was chosen
     std::optional<std::uint64_t> scope_frame_;                       ///< whose copy is on its way
     std::deque<std::future<std::pair<std::string, bool>>> writing_;  ///< what to tell, is it an error?
     std::string failed_;                                             ///< the last store that failed

@@ -81,6 +81,11 @@ void ViewFlags::add_to(CommandFlags command, bool is_edit, std::span<const darkr
         .type_name("S")
         .group(group);
     command.add_flag("--paused", is_paused_, "The time stands still until P is pressed").group(group);
+    command
+        .add_flag(
+            "--full-size", is_full_size_,
+            "Draws every pixel also while something moves; else a half or a quarter each way where frames take long")
+        .group(group);
     command.add_option("--screenshot", screenshot_, "Stores the last frame's picture, and ends (--frames 1)")
         .type_name("OUT")
         .group(group);
@@ -224,6 +229,7 @@ Result<> ViewFlags::read_window(ViewerJob& job) const {
     job.device = device_.name();
     job.turns = turns_;
     job.is_paused = is_paused_;
+    job.is_full_size = is_full_size_;
     job.obeys_input = obeys_input_;
     const std::string subject = (job.scene.empty() ? job.frames.front().path : job.scene).filename().string();
     job.window = {.title = fmt::format("{} - Darkroom", printable(subject)),

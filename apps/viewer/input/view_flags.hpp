@@ -41,7 +41,8 @@ class ViewFlags {
     DeviceFlags device_;
     std::string presentation_ = "vsync", range_ = "high", screenshot_, window_screenshot_, camera_;
     std::vector<std::string> maps_;
-    bool is_fullscreen_ = false, turns_ = false, is_paused_ = false, asks_for_keys_ = false, obeys_input_ = false;
+    bool is_fullscreen_ = false, turns_ = false, is_paused_ = false, is_full_size_ = false, asks_for_keys_ = false,
+         obeys_input_ = false;
     NumberFlag time_{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames_{"--frames", {.least = 1, .most = 1e9, .is_whole = true}};
     NumberFlag peak_{"--peak-nits", {.least = 100, .most = 10000, .unit = "cd/m2"}};

@@ -111,13 +111,18 @@ void FrameSource::wait() {
     changed_.wait(lock, [&] { return find(wanted_) != nullptr || failed_.contains(wanted_); });
 }
 
-bool FrameSource::must_wait(const LiveMoment& moment, VkExtent2D) const {
+bool FrameSource::is_another(const LiveMoment& moment) const {
     const std::lock_guard lock(mutex_);
-    return is_new_ || (moment.number != shown_->number && find(moment.number) != nullptr);
+    return moment.number != shown_->number && find(moment.number) != nullptr;
+}
+
+bool FrameSource::must_wait(const LiveMoment& moment, VkExtent2D) const {
+    return is_new_ || moment.divisor != divisor_ || is_another(moment);
 }
 
 Result<> FrameSource::prepare(const LiveMoment& moment, VkExtent2D) {
-    bool is_another = is_new_;
+    const std::uint32_t divisor_before = std::exchange(divisor_, moment.divisor);
+    bool is_another = is_new_ || divisor_ != divisor_before;
     {
         const std::lock_guard lock(mutex_);
         const std::size_t number = std::min(moment.number, files_.size() - 1);
@@ -136,9 +141,10 @@ Result<> FrameSource::prepare(const LiveMoment& moment, VkExtent2D) {
     }
     if (!is_another) return {};
     is_new_ = true;
-    const darkroom::UploadLayers layers = darkroom::layers_of(shown_->input);
+    reduced_.reset();
+    if (divisor_ > 1) reduced_.emplace(shown_->input, divisor_);
     upload_.reset();
-    return upload_.prepare(device_.context(), shown_->input, layers);
+    return upload_.prepare(device_.context(), input(), reduced_ ? reduced_->layers() : layers_of(shown_->input));
 }
 
 // Images are left where every recording may find them, and leave them.
@@ -147,7 +153,7 @@ Result<> FrameSource::record(VkCommandBuffer commands) {
     if (!std::exchange(is_new_, false)) return {};
     const darkroom::gpu::Context& context = device_.context();
     upload_.record(context, commands);
-    frame_ = upload_.frame(shown_->input);
+    frame_ = upload_.frame(input());
     frame_.camera.is_cut = is_cut_;
     lights_.assign(frame_.lights.begin(), frame_.lights.end());
     std::vector<VkImageMemoryBarrier2> changes;

@@ -14,6 +14,7 @@
 #include "image/frame/frame_file.hpp"
 #include "image/frame/sequence.hpp"
 #include "live_source.hpp"
+#include "reduced_frame.hpp"
 
 namespace app {
 
@@ -30,7 +31,9 @@ class FrameSource final : public LiveSource {
 
     [[nodiscard]] std::optional<VkExtent2D> extent() const override;
     [[nodiscard]] bool must_wait(const LiveMoment& moment, VkExtent2D extent) const override;
+    [[nodiscard]] bool is_another(const LiveMoment& moment) const override;
     [[nodiscard]] darkroom::Result<> prepare(const LiveMoment& moment, VkExtent2D extent) override;
+    [[nodiscard]] bool is_kept() const override { return !is_new_; }
     [[nodiscard]] darkroom::Result<> record(VkCommandBuffer commands) override;
     [[nodiscard]] darkroom::Frame frame() const override;
     [[nodiscard]] darkroom::CompileDesc compile_desc(VkExtent2D most) const override;
@@ -56,6 +59,7 @@ class FrameSource final : public LiveSource {
     [[nodiscard]] darkroom::Result<std::shared_ptr<Decoded>> decode(std::size_t number) const;
     void work();
     [[nodiscard]] std::shared_ptr<Decoded> find(std::size_t number) const;  ///< with the lock
+    [[nodiscard]] const darkroom::DevelopInput& input() const { return reduced_ ? reduced_->input() : shown_->input; }
 
     darkroom::Device& device_;
     std::vector<darkroom::NumberedFile> files_;
@@ -74,6 +78,8 @@ class FrameSource final : public LiveSource {
     std::shared_ptr<Decoded> shown_;
     bool is_new_ = true;  ///< it is still to be uploaded
     bool is_cut_ = true;
+    std::uint32_t divisor_ = 1;
+    std::optional<ReducedFrame> reduced_;  ///< of what is shown, where the divisor is above 1
     darkroom::FrameUpload upload_;
     darkroom::Frame frame_;  ///< of what was uploaded last
     std::vector<darkroom::Light> lights_;

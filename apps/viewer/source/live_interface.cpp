@@ -13,6 +13,14 @@ namespace app {
 namespace gpu = darkroom::gpu;
 using darkroom::Result;
 
+namespace {
+
+bool has_extent(const gpu::Image& image, VkExtent2D extent) {
+    return image.info.extent.width == extent.width && image.info.extent.height == extent.height;
+}
+
+}  // namespace
+
 LiveInterface::LiveInterface(darkroom::Device& device, bool is_headless, std::uint32_t slots, darkroom::LogSink print,
                              std::filesystem::path folder)
     : device_(device),
@@ -72,9 +80,11 @@ void LiveInterface::reload_changed() {
     if (controllers_) controllers_->reload_changed();
 }
 
-bool LiveInterface::must_wait(VkExtent2D extent) const {
-    return image_.handle != VK_NULL_HANDLE &&
-           (image_.info.extent.width != extent.width || image_.info.extent.height != extent.height);
+bool LiveInterface::must_wait(VkExtent2D extent, VkExtent2D of_frame) const {
+    const auto is_other = [](const gpu::Image& image, VkExtent2D wanted) {
+        return image.handle != VK_NULL_HANDLE && !has_extent(image, wanted);
+    };
+    return is_other(image_, extent) || is_other(scaled_, of_frame);
 }
 
 // Asking makes the document begin a drawing that is due.
@@ -102,12 +112,13 @@ Result<LiveInterface::Bytes> LiveInterface::picture(VkExtent2D& extent, float sc
 }
 
 Result<> LiveInterface::resize(VkExtent2D extent) {
-    if (image_.handle != VK_NULL_HANDLE && !must_wait(extent)) return {};
-    Result<gpu::Image> made =
-        gpu::Image::create(device_.context(), {.name = "interface",
-                                               .format = image_format,
-                                               .extent = {extent.width, extent.height, 1},
-                                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+    if (image_.handle != VK_NULL_HANDLE && has_extent(image_, extent)) return {};
+    Result<gpu::Image> made = gpu::Image::create(
+        device_.context(),
+        {.name = "interface",
+         .format = image_format,
+         .extent = {extent.width, extent.height, 1},
+         .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
     if (!made) return failure(std::move(made));
     image_ = std::move(*made);
     for (gpu::Buffer& buffer : staging_) {
@@ -122,8 +133,46 @@ Result<> LiveInterface::resize(VkExtent2D extent) {
     return {};
 }
 
+Result<> LiveInterface::scale_to(VkCommandBuffer commands, VkExtent2D of_frame) {
+    if (scaled_.handle == VK_NULL_HANDLE || !has_extent(scaled_, of_frame)) {
+        Result<gpu::Image> made = gpu::Image::create(
+            device_.context(), {.name = "interface, scaled",
+                                .format = image_format,
+                                .extent = {of_frame.width, of_frame.height, 1},
+                                .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+        if (!made) return failure(std::move(made));
+        scaled_ = std::move(*made);
+    }
+    const gpu::Context& context = device_.context();
+    const auto end_of = [](const gpu::Image& of) {
+        return VkOffset3D{static_cast<std::int32_t>(of.info.extent.width),
+                          static_cast<std::int32_t>(of.info.extent.height), 1};
+    };
+    const VkImageSubresourceLayers layer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    const VkImageBlit whole{.srcSubresource = layer,
+                            .srcOffsets = {{}, end_of(image_)},
+                            .dstSubresource = layer,
+                            .dstOffsets = {{}, end_of(scaled_)}};
+    gpu::transition(context, commands, image_, layout_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    gpu::transition(context, commands, scaled_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    context.vk.CmdBlitImage(commands, image_.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, scaled_.handle,
+                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole, VK_FILTER_LINEAR);
+    gpu::transition(context, commands, image_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, layout_);
+    gpu::transition(context, commands, scaled_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout_);
+    return {};
+}
+
+darkroom::ImageRef LiveInterface::reference_to(const gpu::Image& image) const {
+    return {.image = image.handle,
+            .view = image.mip_views[0],
+            .format = image_format,
+            .extent = {image.info.extent.width, image.info.extent.height},
+            .layout = layout_,
+            .final_layout = layout_};
+}
+
 Result<darkroom::ImageRef> LiveInterface::record(VkCommandBuffer commands, std::uint32_t slot, VkExtent2D extent,
-                                                 float scale) {
+                                                 VkExtent2D of_frame, float scale) {
     if (Result<> done = resize(extent); !done) return failure(std::move(done));
     recorded_extent_ = extent;
     recorded_scale_ = scale;
@@ -153,12 +202,9 @@ Result<darkroom::ImageRef> LiveInterface::record(VkCommandBuffer commands, std::
         layout_ = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         gpu::transition(context, commands, image_, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, layout_);
     }
-    return darkroom::ImageRef{.image = image_.handle,
-                              .view = image_.mip_views[0],
-                              .format = image_format,
-                              .extent = extent,
-                              .layout = layout_,
-                              .final_layout = layout_};
+    if (has_extent(image_, of_frame)) return reference_to(image_);
+    if (Result<> done = scale_to(commands, of_frame); !done) return failure(std::move(done));
+    return reference_to(scaled_);
 }
 
 }  // namespace app

@@ -40,10 +40,10 @@ class LiveInterface {
     /// Reads scripts again that have changed. Documents do so by themselves.
     void reload_changed();
     /// Brings its image up to date. Where must_wait() says so, no frame is unfinished. What Frame::ui takes. `scale`:
-    /// the window's, see HudDocument::picture.
+    /// the window's, see HudDocument::picture. It is drawn for the first extent, and scaled to that of the frame.
     [[nodiscard]] darkroom::Result<darkroom::ImageRef> record(VkCommandBuffer commands, std::uint32_t slot,
-                                                              VkExtent2D extent, float scale);
-    [[nodiscard]] bool must_wait(VkExtent2D extent) const;
+                                                              VkExtent2D extent, VkExtent2D of_frame, float scale);
+    [[nodiscard]] bool must_wait(VkExtent2D extent, VkExtent2D of_frame) const;
     /// Is there another picture of it than the one that was recorded last, or another error than advance() told?
     [[nodiscard]] bool is_new() const;
     [[nodiscard]] bool has_controllers() const { return controllers_.has_value(); }
@@ -57,6 +57,8 @@ class LiveInterface {
     using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
     [[nodiscard]] darkroom::Result<Bytes> picture(VkExtent2D& extent, float scale);
     [[nodiscard]] darkroom::Result<> resize(VkExtent2D extent);
+    [[nodiscard]] darkroom::Result<> scale_to(VkCommandBuffer commands, VkExtent2D of_frame);
+    [[nodiscard]] darkroom::ImageRef reference_to(const darkroom::gpu::Image& image) const;
 
     darkroom::Device& device_;
     bool is_headless_;
@@ -77,7 +79,7 @@ class LiveInterface {
     VkExtent2D recorded_extent_{};
     float recorded_scale_ = 1;
     VkExtent2D shown_extent_{};
-    darkroom::gpu::Image image_;
+    darkroom::gpu::Image image_, scaled_;
     std::vector<darkroom::gpu::Buffer> staging_;  ///< one a slot
     VkImageLayout layout_ = VK_IMAGE_LAYOUT_UNDEFINED;
 };

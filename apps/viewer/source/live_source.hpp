@@ -23,7 +23,8 @@ struct LiveMoment {
     darkroom::scene::OrbitOverride orbit;
     std::optional<darkroom::scene::OrbitOverride> previous_orbit;  ///< of the frame before
     darkroom::render::DrawOptions draw;
-    bool is_post_off = false;  ///< a picture by the scene's own shaders is wanted
+    bool is_post_off = false;   ///< a picture by the scene's own shaders is wanted
+    std::uint32_t divisor = 1;  ///< frames that have a size are wanted with so many times fewer pixels each way
 };
 
 class LiveSource {
@@ -33,12 +34,16 @@ class LiveSource {
     LiveSource& operator=(const LiveSource&) = delete;
     virtual ~LiveSource() = default;
 
-    /// Of the frames where they have a size of their own; else whatever prepare() is told.
+    /// Of the frames where they have a size of their own, whatever the divisor; else whatever prepare() is told.
     [[nodiscard]] virtual std::optional<VkExtent2D> extent() const = 0;
     /// Would prepare() replace images that unfinished frames may use?
     [[nodiscard]] virtual bool must_wait(const LiveMoment& moment, VkExtent2D extent) const = 0;
+    /// Would it be another frame than the last one, whatever its size?
+    [[nodiscard]] virtual bool is_another(const LiveMoment& moment) const = 0;
     /// Makes the next frame ready to be recorded. Where must_wait() says so, no frame is unfinished.
     [[nodiscard]] virtual darkroom::Result<> prepare(const LiveMoment& moment, VkExtent2D extent) = 0;
+    /// Will record() leave the images as they are?
+    [[nodiscard]] virtual bool is_kept() const = 0;
     [[nodiscard]] virtual darkroom::Result<> record(VkCommandBuffer commands) = 0;
     /// As record() leaves it, without target and interface; images may be recorded with more than once, since each is
     /// left as it was.

@@ -47,6 +47,7 @@ Result<> LookView::show(const darkroom::Look& look) {
         darkroom::follow(shown_, look, composer_, {.keeps_what_is_off = true, .keeps = desc_.keeps});
     if (!followed) return failure(followed.error());
     shown_ = look;
+    is_of_look_ = false;
     return followed->needs_compile && is_compiled_ ? compile(compiled_) : Result<>();
 }
 
@@ -110,7 +111,7 @@ Result<> LookView::resize(VkExtent2D extent) {
                                                          .usage = compiled_.target.usage});
     if (!made) return failure(std::move(made));
     picture_ = std::move(*made);
-    is_drawn_ = false;
+    is_drawn_ = is_of_look_ = false;
     return {};
 }
 
@@ -130,8 +131,16 @@ Result<> LookView::record(VkCommandBuffer commands, darkroom::Frame frame) {
     }
     Result<> done = composer_.record(commands, frame);
     is_drawn_ = is_drawn_ || done;
+    is_of_look_ = done.has_value();
     if (done && desc_.makes_light) transfer_ = darkroom::window::PaneTransfer::SceneLinear;
     return done;
+}
+
+bool LookView::is_current() const {
+    const darkroom::Plan* const plan = composer_.current_plan();
+    return is_of_look_ && !is_coming() && plan != nullptr && std::ranges::none_of(plan->images, [](const auto& image) {
+               return image.kind == darkroom::PlanImage::Kind::History;
+           });
 }
 
 bool LookView::must_wait_to_watch(const darkroom::PlanImage* image, std::uint32_t mip_level) const {
@@ -185,6 +194,7 @@ void LookView::copy(VkCommandBuffer commands, const darkroom::ImageRef& from) {
                                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole, VK_FILTER_NEAREST);
     change_layout(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     is_drawn_ = true;
+    is_of_look_ = false;
     transfer_ = darkroom::window::PaneTransfer::Encoded;
 }
 

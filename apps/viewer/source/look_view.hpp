@@ -39,6 +39,8 @@ class LookView {
     [[nodiscard]] darkroom::Result<> record(VkCommandBuffer commands, darkroom::Frame frame);
     /// Copies somebody else's picture of the same extent there, code values, which is in TRANSFER_SRC_OPTIMAL.
     void copy(VkCommandBuffer commands, const darkroom::ImageRef& picture);
+    /// Would record() make the same picture again of the same frame? Never of a look that remembers frames.
+    [[nodiscard]] bool is_current() const;
     /// The picture, scaled, into an image that was created for copies, which is left in TRANSFER_DST_OPTIMAL.
     void copy_to(VkCommandBuffer commands, const darkroom::gpu::Image& image) const;
     /// Shows an image of the plan, too, at its own size, as record() makes it; nothing: no more.
@@ -75,7 +77,7 @@ class LookView {
     std::uint32_t frames_alike_ = 0;
     bool is_settling_ = false;  ///< the plan is for another extent
     darkroom::gpu::Image picture_, watched_;
-    bool is_drawn_ = false;
+    bool is_drawn_ = false, is_of_look_ = false;  ///< the picture is there; it is that of the look as it is
     darkroom::window::PaneTransfer transfer_ = darkroom::window::PaneTransfer::Encoded;
     std::vector<darkroom::Watch> watches_;
 };

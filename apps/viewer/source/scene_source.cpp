@@ -37,14 +37,22 @@ bool is_equal(const render::DrawOptions& a, const render::DrawOptions& b, bool i
 }
 
 /// Does nothing move from one to the other, and has nothing moved before?
-bool is_equal(const LiveMoment& a, const LiveMoment& b) {
+bool is_equal(const LiveMoment& a, const LiveMoment& b, bool is_moved) {
     const auto has_same_way = [](const LiveMoment& one, const LiveMoment& other) {
         if (!one.previous_orbit || !other.previous_orbit) return !one.previous_orbit && !other.previous_orbit;
         return is_equal(*one.previous_orbit, *other.previous_orbit);
     };
     const bool is_display = a.is_post_off || a.draw.debug != render::DebugView::None;
-    return a.time == b.time && a.previous_time == b.previous_time && a.is_post_off == b.is_post_off &&
-           is_equal(a.orbit, b.orbit) && has_same_way(a, b) && is_equal(a.draw, b.draw, is_display);
+    const bool is_same_time = a.time == b.time && a.previous_time == b.previous_time;
+    return (is_same_time || !is_moved) && a.is_post_off == b.is_post_off && is_equal(a.orbit, b.orbit) &&
+           has_same_way(a, b) && is_equal(a.draw, b.draw, is_display);
+}
+
+/// Can its frames differ by their times alone?
+bool is_moved_by_time(const scene::Scene& of, const scene::Assets& assets) {
+    return std::ranges::any_of(of.entities,
+                               [](const auto& entity) { return !entity.path.empty() || entity.emitter; }) ||
+           std::ranges::any_of(assets.models, [](const auto& model) { return !model.animations.empty(); });
 }
 
 }  // namespace
@@ -68,6 +76,7 @@ Result<> SceneSource::read() {
     if (scene::is_model_path(file_) && !assets_.model_errors.empty()) return failure(assets_.model_errors.front());
     if (Result<> done = scene::check_snapshot(scene_, assets_); !done) return done;
     std::ranges::copy(assets_.warnings, std::back_inserter(warnings_));
+    is_moved_ = is_moved_by_time(scene_, assets_);
     render::RenderDesc desc = desc_.render;
     desc.output = render::Output::Hdr;
     desc.draw = {};  // switches come with every frame
@@ -83,9 +92,12 @@ bool SceneSource::must_wait(const LiveMoment& moment, VkExtent2D extent) const {
     return used && (used->desc().extent.width != extent.width || used->desc().extent.height != extent.height);
 }
 
+bool SceneSource::is_another(const LiveMoment& moment) const {
+    return !drawn_ || !is_equal(drawn_->first, moment, is_moved_);
+}
+
 Result<> SceneSource::prepare(const LiveMoment& moment, VkExtent2D extent) {
-    is_kept_ = drawn_ && drawn_->second.width == extent.width && drawn_->second.height == extent.height &&
-               is_equal(drawn_->first, moment);
+    is_kept_ = !is_another(moment) && drawn_->second.width == extent.width && drawn_->second.height == extent.height;
     if (is_kept_) return {};
     drawn_.reset();
     is_display_ = moment.is_post_off || moment.draw.debug != render::DebugView::None;

@@ -23,7 +23,9 @@ class SceneSource final : public LiveSource {
                                                                                const Desc& desc);
     [[nodiscard]] std::optional<VkExtent2D> extent() const override { return std::nullopt; }
     [[nodiscard]] bool must_wait(const LiveMoment& moment, VkExtent2D extent) const override;
+    [[nodiscard]] bool is_another(const LiveMoment& moment) const override;
     [[nodiscard]] darkroom::Result<> prepare(const LiveMoment& moment, VkExtent2D extent) override;
+    [[nodiscard]] bool is_kept() const override { return is_kept_; }
     [[nodiscard]] darkroom::Result<> record(VkCommandBuffer commands) override;
     [[nodiscard]] darkroom::Frame frame() const override;
     [[nodiscard]] darkroom::CompileDesc compile_desc(VkExtent2D most) const override;
@@ -49,7 +51,8 @@ class SceneSource final : public LiveSource {
     darkroom::scene::Snapshot snapshot_;
     std::optional<darkroom::render::Renderer> linear_, display_;
     bool is_display_ = false, is_prepared_ = false;
-    bool is_kept_ = false;  ///< the images hold the very frame that is asked for
+    bool is_moved_ = false;  ///< by the time
+    bool is_kept_ = false;   ///< the images hold the very frame that is asked for
     std::optional<std::pair<LiveMoment, VkExtent2D>> drawn_;
     std::vector<std::string> warnings_;
 };
