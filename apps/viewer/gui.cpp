@@ -86,6 +86,11 @@ Result<> Gui::draw(const darkroom::window::PresentFrame& frame) {
 }
 
 bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
+bool Gui::has_typed(unsigned character) const {
+    const ImGuiIO& io = ImGui::GetIO();
+    return !io.WantTextInput && io.InputQueueCharacters.contains(static_cast<ImWchar>(character));
+}
+
 bool Gui::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 
 }  // namespace app

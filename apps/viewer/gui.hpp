@@ -29,6 +29,8 @@ class Gui {
     /// Is somebody typing, or pointing at a panel?
     [[nodiscard]] bool wants_keys() const;
     [[nodiscard]] bool wants_mouse() const;
+    /// Has this character been typed since the last frame, into no field?
+    [[nodiscard]] bool has_typed(unsigned character) const;
     /// Is there something that Esc closes?
     [[nodiscard]] bool has_popup() const { return has_popup_; }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "apps/darkroom/run/report.hpp"
+#include "apps/viewer/input/keys.hpp"
 
 namespace app {
 
@@ -103,6 +104,7 @@ void Screen::draw(const Input& input) {
     draw_errors(input, area);
     if (has_console_) draw_console(area, input.console);
     draw_lines(input, area);
+    if (has_key_sheet_) draw_key_sheet(input);
     print_new();
 }
 
@@ -150,6 +152,28 @@ void Screen::draw_errors(const Input& input, const VkRect2D& area) {
     ImGui::SetNextWindowSize({width, messages().height(width - 2 * margin) + 2 * margin});
     ImGui::Begin("##errors", nullptr, plain & ~ImGuiWindowFlags_AlwaysAutoResize);
     messages().draw();
+    ImGui::End();
+}
+
+// Over everything, with both columns as wide as they must be, and scrolled where a window is small.
+void Screen::draw_key_sheet(const Input& input) const {
+    const bool is_edit = panels_.has_value();
+    const auto width = static_cast<float>(input.window.width), height = static_cast<float>(input.window.height);
+    ImGui::SetNextWindowPos({width / 2, height / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSizeConstraints({1, 1}, {width * 0.96F, height * 0.96F});
+    ImGui::Begin("##keys", nullptr, plain & ~ImGuiWindowFlags_NoScrollbar);
+    ImGui::TextDisabled("Keys; ? or Esc closes this list");
+    if (ImGui::BeginTable("##lines", 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) {
+        for (const KeyLine& line : key_lines()) {
+            if (!(is_edit ? line.is_for_edit : line.is_for_play)) continue;
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(line.shown.c_str());
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(line.doc.data(), line.doc.data() + line.doc.size());
+        }
+        ImGui::EndTable();
+    }
     ImGui::End();
 }
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "apps/viewer/input/command_line.hpp"
+#include "apps/viewer/panels/edit_panels.hpp"
 #include "apps/viewer/source/look_view.hpp"
-#include "edit_panels.hpp"
 
 namespace app {
 
@@ -60,6 +60,8 @@ class Screen {
     void toggle_panels() { has_panels_ = !has_panels_; }
     void toggle_console() { has_console_ = !has_console_; }
     [[nodiscard]] bool has_console() const { return has_console_; }
+    void toggle_key_sheet() { has_key_sheet_ = !has_key_sheet_; }
+    [[nodiscard]] bool has_key_sheet() const { return has_key_sheet_; }
     /// Null: there are none, or they are hidden.
     [[nodiscard]] EditPanels* panels() { return panels_ && has_panels_ ? &*panels_ : nullptr; }
     [[nodiscard]] const EditPanels* panels() const { return panels_ && has_panels_ ? &*panels_ : nullptr; }
@@ -77,6 +79,7 @@ class Screen {
     void draw_picture(const Input& input, const VkRect2D& area);
     void draw_lines(const Input& input, const VkRect2D& area);
     void draw_errors(const Input& input, const VkRect2D& area);
+    void draw_key_sheet(const Input& input) const;
     void draw_console(const VkRect2D& area, darkroom::Console* console);
     void print_new();
 
@@ -87,7 +90,7 @@ class Screen {
         Clock::time_point over{};  ///< the same for who looks at a clock
     };
     std::optional<EditPanels> panels_;
-    bool has_panels_ = true, has_console_ = false;
+    bool has_panels_ = true, has_console_ = false, has_key_sheet_ = false;
     PictureView picture_;
     darkroom::panels::Messages messages_;  ///< where no panels show them
     std::deque<Line> lines_;

@@ -153,6 +153,7 @@ VkExtent2D Viewer::picture_extent() const {
 
 Result<> Viewer::turn() {
     rest();
+    recall_panels();
     obey_keys();
     obey_input();
     finish_stores(false);
@@ -229,6 +230,7 @@ Result<> Viewer::show(const PresentFrame& frame) {
     tell_source_warnings();
     store_picture(frame);
     if (Result<> done = gui_->begin(window_->scale()); !done) return done;
+    if (gui_->has_typed('?')) obey(KeyAction::KeySheet, 0);
     draw_screen(frame);
     if (Result<> done = gui_->draw(frame); !done) return done;
     store_window(frame);
@@ -268,6 +270,9 @@ void Viewer::draw_screen(const PresentFrame& frame) {
     if (const auto place = screen_.messages().take_chosen()) open_place(*place);
     EditPanels* const panels = screen_.panels();
     if (panels == nullptr) return;
+    remember_panels();
+    if (panels->take_fullscreen()) obey(KeyAction::Fullscreen, 0);
+    if (panels->take_key_sheet()) obey(KeyAction::KeySheet, 0);
     if (panels->take_pause()) is_paused_ = !is_paused_;
     if (const auto file = panels->take_opened()) open_subject(*file);
     if (const std::optional<std::size_t> chosen = panels->take_number(); chosen && *chosen != number)

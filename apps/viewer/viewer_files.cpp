@@ -26,6 +26,7 @@ using darkroom::window::PresentFrame;
 namespace {
 
 constexpr std::chrono::milliseconds between_looks{200};
+constexpr const char* panels_file = "panels.toml";
 
 std::string shown(const std::filesystem::path& path) { return darkroom::printable(path.string()); }
 
@@ -65,14 +66,47 @@ void Viewer::tell_source_warnings() {
 // The same command gives the same picture, whatever somebody has set; and what is edited is the look's own.
 bool Viewer::has_config() const { return !job_.is_edit && !is_fixed() && !config_file().empty(); }
 
-std::filesystem::path Viewer::config_file() {
+std::filesystem::path Viewer::config_folder() {
     const auto variable = [](const char* name) {
         const char* const value = std::getenv(name);
         return std::filesystem::path(value != nullptr ? value : "");
     };
     const std::filesystem::path own = variable("XDG_CONFIG_HOME"), home = variable("HOME");
-    if (own.is_absolute()) return own / "darkroom" / "console.cfg";
-    return home.is_absolute() ? home / ".config" / "darkroom" / "console.cfg" : std::filesystem::path();
+    if (own.is_absolute()) return own / "darkroom";
+    return home.is_absolute() ? home / ".config" / "darkroom" : std::filesystem::path();
+}
+
+std::filesystem::path Viewer::config_file() {
+    const std::filesystem::path folder = config_folder();
+    return folder.empty() ? folder : folder / "console.cfg";
+}
+
+bool Viewer::keeps_panels() const { return job_.is_edit && !is_fixed() && !config_folder().empty(); }
+
+// At every size by themselves, so that a small window does not undo what was made in a large one.
+void Viewer::recall_panels() {
+    EditPanels* const panels = screen_.editor();
+    const VkExtent2D window = window_->extent();
+    if (panels == nullptr || window.width == 0) return;
+    panels->set_over(window_->is_fullscreen());
+    if (!keeps_panels() || (window.width == panels_of_.width && window.height == panels_of_.height)) return;
+    if (!known_panels_) {
+        Result<KnownPanels> known = KnownPanels::read(config_folder() / panels_file);
+        settle("panels", known ? Result<>() : failure(known.error()));
+        known_panels_ = known ? std::move(*known) : KnownPanels();
+    }
+    panels_of_ = window;
+    panels->set_sizes(known_panels_->of(window));
+}
+
+void Viewer::remember_panels() {
+    const EditPanels* const panels = screen_.editor();
+    if (!known_panels_ || panels == nullptr || panels->is_sizing()) return;
+    if (panels->sizes() == known_panels_->of(panels_of_)) return;
+    known_panels_->set(panels_of_, panels->sizes());
+    std::error_code error;
+    std::filesystem::create_directories(config_folder(), error);
+    settle("panels", known_panels_->write(config_folder() / panels_file));
 }
 
 Result<> Viewer::read_config() {

@@ -9,6 +9,7 @@
 
 #include "apps/viewer/input/camera_rig.hpp"
 #include "apps/viewer/input/keys.hpp"
+#include "apps/viewer/input/known_panels.hpp"
 #include "apps/viewer/input/line_input.hpp"
 #include "apps/viewer/source/live_interface.hpp"
 #include "apps/viewer/source/look_view.hpp"
@@ -122,7 +123,13 @@ class Viewer {
     void tell_warnings();
     void tell_source_warnings();
     [[nodiscard]] bool has_config() const;
+    /// Empty: there is none.
+    [[nodiscard]] static std::filesystem::path config_folder();
     [[nodiscard]] static std::filesystem::path config_file();
+    [[nodiscard]] bool keeps_panels() const;
+    /// Panels lie as they did in a window of this size.
+    void recall_panels();
+    void remember_panels();
     [[nodiscard]] darkroom::Result<> read_config();
     void write_config();
     void store_picture(const darkroom::window::PresentFrame& frame);
@@ -142,6 +149,8 @@ class Viewer {
     std::unique_ptr<LiveInterface> interface_;
     std::unique_ptr<Gui> gui_;
     Screen screen_;
+    std::optional<KnownPanels> known_panels_;
+    VkExtent2D panels_of_{};  ///< the window whose panels are shown
     std::optional<CameraRig> camera_;
     std::optional<darkroom::scene::Ground> ground_;  ///< that is walked on
 

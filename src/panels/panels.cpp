@@ -242,4 +242,8 @@ const WidgetPlaces& LookPanels::places() {
 
 void LookPanels::note_place(std::string_view name) { state_->note(name); }
 
+void LookPanels::note_place(std::string_view name, const WidgetPlace& place) {
+    if (state_->places) (*state_->places)[std::string(name)] = place;
+}
+
 }  // namespace darkroom::panels

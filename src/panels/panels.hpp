@@ -75,6 +75,7 @@ class LookPanels {
     [[nodiscard]] const WidgetPlaces& places();
     /// The item that was drawn last, a host's own, is among them from now on.
     void note_place(std::string_view name);
+    void note_place(std::string_view name, const WidgetPlace& place);
 
   private:
     std::unique_ptr<PanelState> state_;

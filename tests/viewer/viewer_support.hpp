@@ -82,10 +82,10 @@ class ViewerFixture : public CliFixture {
         std::array<int, 2> ends{};
         ASSERT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
         // Without -noreset it begins anew, and loses who is just connecting, when the last of the others leaves.
-        display_ =
-            std::make_unique<Process>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen",
-                                                               "0", "1920x1080x24", "-nolisten", "tcp", "-noreset"},
-                                      path("xvfb.log"), path("xvfb.err"), path(""), ends[1]);
+        display_ = std::make_unique<Process>(
+            std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1920x1080x24",
+                                     "-nolisten", "tcp", "-noreset", "-dpi", std::to_string(dots_per_inch())},
+            path("xvfb.log"), path("xvfb.err"), path(""), ends[1]);
         close(ends[1]);
         std::string number;
         char digit = 0;
@@ -97,6 +97,8 @@ class ViewerFixture : public CliFixture {
                                              path("openbox.err"), path(""));
         ASSERT_TRUE(wait_until([] { return shell("xdotool get_desktop") == 0; }, 30)) << "no window manager";
     }
+    /// Of the display: at 192 all is twice as large.
+    [[nodiscard]] virtual int dots_per_inch() const { return 96; }
     void TearDown() override {
         viewer_.reset();
         close(commands_);
@@ -213,7 +215,6 @@ class ViewerFixture : public CliFixture {
     [[nodiscard]] const std::string& window() const { return window_; }
     [[nodiscard]] Process& viewer() { return *viewer_; }
 
-  private:
     /// Asks the console until an answer begins so, and returns the rest of its line.
     [[nodiscard]] std::string ask(const std::string& question, const std::string& begin) const {
         const std::size_t before = said().size();
@@ -230,6 +231,8 @@ class ViewerFixture : public CliFixture {
         EXPECT_TRUE(is_told) << begin << " is not in " << said() << complained();
         return answer;
     }
+
+  private:
     [[nodiscard]] static bool has(const std::string& name) { return shell("command -v " + name) == 0; }
 
     std::unique_ptr<Process> display_, manager_, viewer_;

@@ -37,6 +37,8 @@ constexpr std::array table{
     Key{GLFW_KEY_F, 0, KeyAction::FrameAll, "F", "frames all", false, true},
     Key{GLFW_KEY_V, 0, KeyAction::CameraKind, "V", "the camera orbits, or flies", false, true},
     Key{GLFW_KEY_B, 0, KeyAction::Compare, "B", "compares two looks at a divider", false, true},
+    // A character, wherever a keyboard has it: the interface reports it.
+    Key{GLFW_KEY_UNKNOWN, relevant, KeyAction::KeySheet, "?", "this list of keys"},
     Key{GLFW_KEY_ESCAPE, 0, KeyAction::Leave, "Esc", "frees the mouse, then quits; twice where changes would be lost"},
 };
 
@@ -57,24 +59,32 @@ std::optional<KeyAction> action_of(const darkroom::window::KeyPress& press, bool
     return std::nullopt;
 }
 
-std::string keys_text() {
-    std::string out;
-    const auto line = [&](std::string_view shown, std::string_view doc, std::string_view where) {
-        out += fmt::format("{:<14}{}{}\n", shown, doc, where);
+std::vector<KeyLine> key_lines() {
+    std::vector<KeyLine> out{
+        {"W A S D", "walks; with Shift it runs", true, false},
+        {"W A S D Q E", "flies; with Shift faster", false, true},
+        {"Space", "jumps", true, false},
+        {"mouse", "looks round; a click takes it, Esc frees it", true, false},
+        {"mouse", "left orbits, middle pans, right looks, wheel nears; of a stored frame the wheel zooms", false, true},
     };
-    line("W A S D", "walks (play), flies (edit); with Shift faster", "");
-    line("Space", "jumps", "  [play]");
-    line("mouse", "looks round (play); left orbits, middle pans, right looks, wheel nears (edit)", "");
     // Those of effects stand among the others by their number.
     for (std::uint32_t number = 1; number <= 12; ++number) {
         for (const Key& key : table)
-            if (function_key(key.key) == number) line(key.shown, key.doc, "");
+            if (function_key(key.key) == number) out.push_back({std::string(key.shown), key.doc});
         for (const darkroom::EffectInfo* const effect : darkroom::all_effects())
-            if (effect->toggle_key == number) line(fmt::format("F{}", number), effect->name, "");
+            if (effect->toggle_key == number) out.push_back({fmt::format("F{}", number), effect->name});
     }
     for (const Key& key : table)
         if (function_key(key.key) == 0)
-            line(key.shown, key.doc, key.is_for_play ? (key.is_for_edit ? "" : "  [play]") : "  [edit]");
+            out.push_back({std::string(key.shown), key.doc, key.is_for_play, key.is_for_edit});
+    return out;
+}
+
+std::string keys_text() {
+    std::string out;
+    for (const KeyLine& line : key_lines())
+        out += fmt::format("{:<14}{}{}\n", line.shown, line.doc,
+                           line.is_for_play ? (line.is_for_edit ? "" : "  [play]") : "  [edit]");
     return out;
 }
 

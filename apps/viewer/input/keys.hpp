@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "window/window.hpp"
 
@@ -33,6 +34,7 @@ enum class KeyAction : std::uint8_t {
     FrameAll,
     CameraKind,
     Compare,
+    KeySheet,
     Leave,
 };
 
@@ -51,6 +53,13 @@ struct Key {
 [[nodiscard]] std::optional<KeyAction> action_of(const darkroom::window::KeyPress& press, bool is_edit);
 /// The number of a key F1 .. F12; 0: it is none.
 [[nodiscard]] std::uint32_t function_key(int key);
+/// What a key or a button of the mouse does, for people.
+struct KeyLine {
+    std::string shown;
+    std::string_view doc;
+    bool is_for_play = true, is_for_edit = true;
+};
+[[nodiscard]] std::vector<KeyLine> key_lines();
 /// All of it as text, a line a key.
 [[nodiscard]] std::string keys_text();
 

@@ -113,7 +113,11 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             if (edit == nullptr) return;
             edit->toggle_compare();
             return tell(fmt::format("B compare: {}", on_off(edit->is_comparing())));
+        case KeyAction::KeySheet:
+            screen_.toggle_key_sheet();
+            return tell(fmt::format("? keys: {}", on_off(screen_.has_key_sheet())));
         case KeyAction::Leave:
+            if (screen_.has_key_sheet()) return screen_.toggle_key_sheet();
             if (window_->is_cursor_captured()) return window_->capture_cursor(false);
             if (screen_.has_console()) return screen_.toggle_console();
             if (gui_->has_popup() || gui_->wants_keys()) return;
@@ -215,6 +219,11 @@ void Viewer::run_command(const std::string& command) {
     if (command.starts_with(places)) {
         places_ = command.substr(std::min(places.size() + 1, command.size()));
         return;
+    }
+    // For who measures: what was drawn so far.
+    if (command == "frames") {
+        const auto [width, height] = full_extent_;
+        return print(fmt::format("frames: {}, {}x{} / {}", shown_frames_, width, height, divisor_));
     }
     if (command == "messages") {
         const darkroom::panels::Messages& messages = screen_.messages();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/viewer/panels/panel_layout.hpp"
 #include "apps/viewer/source/live_source.hpp"
 #include "apps/viewer/source/picture_view.hpp"
 #include "develop/inspect/inspector.hpp"
@@ -25,11 +26,14 @@ class EditPanels {
     /// The document outlives them.
     explicit EditPanels(darkroom::edit::LookDocument& document) : look_(document) {}
 
-    /// Areas of a window, in pixels.
-    struct Layout {
-        VkRect2D bar, stack, entry, view_bar, picture, timeline, below, status;
-    };
-    [[nodiscard]] Layout layout(VkExtent2D window, float scale, bool has_timeline) const;
+    [[nodiscard]] PanelAreas layout(VkExtent2D window, float scale, bool has_timeline) const;
+    /// What their user has made of them, and of a former time.
+    [[nodiscard]] const PanelSizes& sizes() const { return sizes_; }
+    void set_sizes(const PanelSizes& sizes) { sizes_ = sizes; }
+    /// Is a line between them being dragged?
+    [[nodiscard]] bool is_sizing() const { return dragged_.has_value(); }
+    /// The picture has the whole window, and they lie over it.
+    void set_over(bool is_over) { is_over_ = is_over; }
 
     /// What there is to be shown.
     struct Input {
@@ -70,14 +74,26 @@ class EditPanels {
     [[nodiscard]] std::optional<std::size_t> take_number() { return std::exchange(number_, std::nullopt); }
     /// The file that is to be shown in place of the present scene or frame.
     [[nodiscard]] std::optional<std::filesystem::path> take_opened() { return std::exchange(opened_, std::nullopt); }
+    [[nodiscard]] bool take_fullscreen() { return std::exchange(is_fullscreen_wanted_, false); }
+    [[nodiscard]] bool take_key_sheet() { return std::exchange(is_key_sheet_wanted_, false); }
     [[nodiscard]] bool take_pause() { return std::exchange(is_pause_wanted_, false); }
 
   private:
     enum class Tab : std::uint8_t { Plan, Times, Scopes, Images, Pixel, Messages };
+    // view_menu.cpp
+    void draw_bar();
+    void draw_view_menu();
+    void draw_open_button();
+    void draw_splitters(const PanelAreas& areas);
+    void draw_splitter(Splitter which, const VkRect2D& area);
+    /// A panel with its name and a button that closes it.
+    void begin_panel(const char* name, const VkRect2D& area, bool& is_there);
+    void end_panel(const char* name);
+
+    // edit_panels.cpp
     void draw_view_bar(PictureView& picture);
     void draw_timeline(const Input& input);
     void draw_status(const Input& input, const PictureView& picture);
-    void draw_open_button();
     void draw_below(const Input& input, PictureView& picture);
     void draw_images(const Input& input);
     void draw_pixel(const Input& input) const;
@@ -87,6 +103,11 @@ class EditPanels {
     darkroom::panels::TimingsPanel timings_;
     darkroom::panels::ScopesPanel scopes_;
     Tab tab_ = Tab::Plan;
+    PanelSizes sizes_;
+    PanelRoom room_;  ///< of the frame that is drawn
+    std::optional<Splitter> dragged_;
+    bool is_over_ = false, is_fullscreen_wanted_ = false, is_key_sheet_wanted_ = false;
+    std::uint32_t view_rows_ = 1;
     bool is_messages_wanted_ = false;  ///< their tab comes to the front
     std::optional<std::filesystem::path> opened_;
     bool is_comparing_ = false, is_pause_wanted_ = false;

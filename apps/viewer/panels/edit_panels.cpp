@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 
+#include "apps/viewer/panels/areas.hpp"
 #include "panels/show/plan_picture.hpp"
 #include "panels/widgets/fitting_text.hpp"
 #include "panels/widgets/slider.hpp"
@@ -20,18 +21,9 @@ namespace {
 using darkroom::window::PaneChannels;
 using darkroom::window::PaneTransfer;
 
-constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
-                                   ImGuiWindowFlags_NoBringToFrontOnFocus;
 constexpr darkroom::ParamInfo exposure_row{.name = "exposure", .unit = {"stops"}, .range = {-8, 8}};
 constexpr std::array sides{"look", "saved", "off"};
 constexpr std::array channels{"RGB", "red", "green", "blue", "alpha", "luminance"};
-
-void begin(const char* name, const VkRect2D& area, ImGuiWindowFlags more = 0) {
-    ImGui::SetNextWindowPos({static_cast<float>(area.offset.x), static_cast<float>(area.offset.y)});
-    ImGui::SetNextWindowSize({static_cast<float>(area.extent.width), static_cast<float>(area.extent.height)});
-    ImGui::Begin(name, nullptr, fixed | more);
-}
 
 /// `width`: in heights of the font.
 template <class Value, std::size_t Count>
@@ -41,35 +33,14 @@ void combo(const char* name, Value& value, const std::array<const char*, Count>&
     if (ImGui::Combo(name, &chosen, names.data(), static_cast<int>(names.size()))) value = static_cast<Value>(chosen);
 }
 
-void tip(const char* text) {
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
-}
-
 std::string number_text(float value) { return fmt::format("{:.5g}", value); }
 
 }  // namespace
 
-EditPanels::Layout EditPanels::layout(VkExtent2D window, float scale, bool has_timeline) const {
-    const auto pixels = [&](float at_one) { return static_cast<std::uint32_t>(at_one * scale); };
-    const std::uint32_t width = window.width, height = window.height;
-    const std::uint32_t row = std::min(pixels(38), height), side = std::min(pixels(296), width / 3);
-    const std::uint32_t status = std::min(pixels(26), height - row);
-    const std::uint32_t below = std::min(std::max(height * 3 / 10, pixels(200)), (height - row - status) / 2);
-    const std::uint32_t middle = width - 2 * side, inner = height - row - status;
-    const std::uint32_t timeline = has_timeline ? row : 0;
-    const std::uint32_t picture = height - std::min(height, 2 * row + timeline + below + status);
-    const auto rect = [](std::uint32_t x, std::uint32_t y, std::uint32_t w, std::uint32_t h) {
-        return VkRect2D{{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
-                        {std::max(w, 1U), std::max(h, 1U)}};
-    };
-    return {.bar = rect(0, 0, width, row),
-            .stack = rect(0, row, side, inner),
-            .entry = rect(width - side, row, side, inner),
-            .view_bar = rect(side, row, middle, row),
-            .picture = rect(side, 2 * row, middle, picture),
-            .timeline = rect(side, 2 * row + picture, middle, timeline),
-            .below = rect(side, height - status - below, middle, below),
-            .status = rect(0, height - status, width, status)};
+PanelAreas EditPanels::layout(VkExtent2D window, float scale, bool has_timeline) const {
+    return lay_out(
+        sizes_,
+        {.window = window, .scale = scale, .has_timeline = has_timeline, .is_over = is_over_, .view_rows = view_rows_});
 }
 
 const darkroom::PlanImage* EditPanels::watched(const darkroom::Plan* plan) const {
@@ -80,42 +51,65 @@ const darkroom::PlanImage* EditPanels::watched(const darkroom::Plan* plan) const
 
 void EditPanels::draw(const Input& input, PictureView& picture) {
     const bool has_timeline = input.source.frames() > 0;
-    const Layout area = layout(input.window, input.scale, has_timeline);
+    room_ = {.window = input.window,
+             .scale = input.scale,
+             .has_timeline = has_timeline,
+             .is_over = is_over_,
+             .view_rows = view_rows_};
+    const PanelAreas area = lay_out(sizes_, room_);
     look_.set_plan(input.composer.current_plan(), input.composer.pending().is_pending);
     times_.add(input.composer.times(), input.composer.record_microseconds());
-    begin("##bar", area.bar, ImGuiWindowFlags_NoScrollbar);
-    draw_open_button();
-    look_.draw_bar();
+    begin_area("##bar", area.bar, ImGuiWindowFlags_NoScrollbar);
+    draw_bar();
     ImGui::End();
-    begin("##stack", area.stack);
-    look_.draw_stack();
-    ImGui::End();
-    begin("##entry", area.entry);
-    look_.draw_entry();
-    ImGui::End();
-    begin("##view", area.view_bar, ImGuiWindowFlags_NoScrollbar);
+    if (sizes_.has_stack) {
+        begin_panel("Stack", area.stack, sizes_.has_stack);
+        look_.draw_stack();
+        end_panel("Stack");
+    }
+    if (sizes_.has_entry) {
+        begin_panel("Parameters", area.entry, sizes_.has_entry);
+        look_.draw_entry();
+        end_panel("Parameters");
+    }
+    begin_area("##view", area.view_bar, ImGuiWindowFlags_NoScrollbar);
     draw_view_bar(picture);
     ImGui::End();
     if (has_timeline) {
-        begin("##timeline", area.timeline, ImGuiWindowFlags_NoScrollbar);
+        begin_area("##timeline", area.timeline, ImGuiWindowFlags_NoScrollbar);
         draw_timeline(input);
         ImGui::End();
     }
-    begin("##below", area.below);
-    draw_below(input, picture);
-    ImGui::End();
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * input.scale, 3 * input.scale});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-    begin("##status", area.status, ImGuiWindowFlags_NoScrollbar);
-    ImGui::PopStyleVar(2);
-    draw_status(input, picture);
-    ImGui::End();
-    const float room = static_cast<float>(area.picture.extent.width);
-    const float height = look_.messages().height(room);
+    if (sizes_.has_below) {
+        begin_area("##below", area.below);
+        draw_below(input, picture);
+        end_panel("Below");
+    } else {
+        tab_ = Tab::Plan;
+    }
+    if (sizes_.has_status) {
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * input.scale, 3 * input.scale});
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+        begin_area("##status", area.status, ImGuiWindowFlags_NoScrollbar);
+        ImGui::PopStyleVar(2);
+        draw_status(input, picture);
+        ImGui::End();
+    }
+    draw_splitters(area);
+    const auto [x, y] = area.picture.offset;
+    const ImVec2 corner{static_cast<float>(x), static_cast<float>(y)};
+    look_.note_place("panel/Picture", {corner,
+                                       {corner.x + static_cast<float>(area.picture.extent.width),
+                                        corner.y + static_cast<float>(area.picture.extent.height)}});
+    VkRect2D strip = area.picture;
+    if (is_over_)
+        strip = {
+            {area.view_bar.offset.x, area.view_bar.offset.y + static_cast<std::int32_t>(area.view_bar.extent.height)},
+            {area.view_bar.extent.width, area.picture.extent.height}};
+    const float height = look_.messages().height(static_cast<float>(strip.extent.width));
     if (height > 0) {
-        VkRect2D strip = area.picture;
         strip.extent.height = std::min(strip.extent.height, static_cast<std::uint32_t>(height + 16 * input.scale));
-        begin("##messages", strip);
+        begin_area("##messages", strip);
         look_.draw_messages();
         ImGui::End();
     }
@@ -124,52 +118,41 @@ void EditPanels::draw(const Input& input, PictureView& picture) {
 
 void EditPanels::draw_view_bar(PictureView& picture) {
     darkroom::window::Pane& pane = picture.pane();
-    const float em = ImGui::GetFontSize();
+    const float em = ImGui::GetFontSize(), gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    Flow flow;
+    flow.next(checkbox_width("A/B"));
     ImGui::Checkbox("A/B", &is_comparing_);
     look_.note_place("view/compare");
     tip("Compares two of the look, the look as it was saved, and none. The divider can be dragged.");
-    ImGui::SameLine();
+    flow.next(9.6F * em + gap);
     ImGui::BeginDisabled(!is_comparing_);
     combo("##left", left_, sides, 4.8F);
-    ImGui::SameLine(0, 2);
+    ImGui::SameLine(0, gap);
     combo("##right", right_, sides, 4.8F);
     ImGui::EndDisabled();
-    ImGui::SameLine();
+    flow.next(6 * em);
     ImGui::SetNextItemWidth(6 * em);
     double stops = pane.exposure;
     if (darkroom::panels::draw_slider("##exposure", exposure_row, 0, stops).is_changed)
         pane.exposure = static_cast<float>(std::clamp(stops, exposure_row.range.min, exposure_row.range.max));
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) pane.exposure = 0;
     tip("Brightens what is shown here, and nothing else. A double click sets it to 0.");
-    ImGui::SameLine();
+    flow.next(5.5F * em);
     combo("##channels", pane.channels, channels, 5.5F);
-    ImGui::SameLine();
+    flow.next(checkbox_width("False colours"));
     ImGui::Checkbox("False colours", &pane.is_false_color);
     look_.note_place("view/false_colors");
     tip("Shows levels as colours; the scopes have the legend.");
-    ImGui::SameLine();
+    flow.next(checkbox_width("Clipping"));
     ImGui::Checkbox("Clipping", &pane.is_clipping_marked);
     look_.note_place("view/clipping");
     tip("Stripes mark what is black (blue), white (red) or not a number (magenta).");
-    ImGui::SameLine();
+    flow.next(checkbox_width("Fit"));
     bool is_fitted = picture.zoom() == 0;
     if (ImGui::Checkbox("Fit", &is_fitted)) is_fitted ? picture.fit() : picture.set_zoom(1);
+    look_.note_place("view/fit");
     tip("Shows all of the picture, or a pixel on a pixel. The wheel zooms where no camera wants it.");
-}
-
-void EditPanels::draw_open_button() {
-    const ImVec2 begin = ImGui::GetCursorPos();
-    constexpr const char* open = "Open...";
-    const float width = ImGui::CalcTextSize(open).x + 2 * ImGui::GetStyle().FramePadding.x;
-    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - width);
-    if (ImGui::Button(open))
-        look_.files().open({.title = "A scene, a model, a frame or a picture",
-                            .extensions = {".toml", ".glb", ".gltf", ".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tif",
-                                           ".tiff", ".webp"},
-                            .then = [this](const std::filesystem::path& file) { opened_ = file; }});
-    look_.note_place("view/open");
-    tip("Opens another scene, model, frame or picture to see through the look.");
-    ImGui::SetCursorPos(begin);
+    view_rows_ = flow.rows();
 }
 
 void EditPanels::draw_status(const Input& input, const PictureView& picture) {
@@ -260,6 +243,9 @@ void EditPanels::draw_below(const Input& input, PictureView& picture) {
     tab("Images", Tab::Images, [&] { draw_images(input); });
     tab("Pixel", Tab::Pixel, [&] { draw_pixel(input); });
     tab("Messages", Tab::Messages, [&] { look_.draw_history(); });
+    if (ImGui::TabItemButton("x", ImGuiTabItemFlags_Trailing)) sizes_.has_below = false;
+    look_.note_place("close/Below");
+    tip("Closes this panel. View brings it back.");
     ImGui::EndTabBar();
 }
 

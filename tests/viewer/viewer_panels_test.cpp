@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// Panels of edit in windows of several sizes: moved, closed, brought back and remembered, by the mouse; and pictures
+// that have fewer pixels while they move.
+#include <fmt/format.h>
+
+#include "tests/places.hpp"
+#include "viewer_support.hpp"
+
+namespace darkroom::test {
+
+namespace {
+
+const std::string scenes = std::string(test::source_folder) + "/scenes/";
+
+struct Shown {
+    const char* name;
+    const char* size;
+    int dots_per_inch;
+    bool is_fullscreen;
+};
+
+class CliViewerPanels : public ViewerFixture, public testing::WithParamInterface<Shown> {
+  protected:
+    [[nodiscard]] int dots_per_inch() const override { return GetParam().dots_per_inch; }
+    void SetUp() override {
+        ViewerFixture::SetUp();
+        setenv("XDG_CONFIG_HOME", path("config").c_str(), 1);
+    }
+    void TearDown() override {
+        unsetenv("XDG_CONFIG_HOME");
+        ViewerFixture::TearDown();
+    }
+    void open(const std::string& frame) {
+        std::vector<std::string> line{"edit", frame, "--size", GetParam().size};
+        if (GetParam().is_fullscreen) line.emplace_back("--fullscreen");
+        start(line);
+    }
+    [[nodiscard]] int scale() const { return dots_per_inch() / 96; }
+    [[nodiscard]] std::array<int, 2> middle(const std::string& name) const {
+        const auto [left, top, right, bottom] = place(name);
+        return {(left + right) / 2, (top + bottom) / 2};
+    }
+    /// Drags a line between panels, and returns where it is then.
+    std::array<int, 2> move(const std::string& line, int right, int down) const {
+        const std::array<int, 2> from = middle(line);
+        const std::array<int, 2> to{from[0] + right * scale(), from[1] + down * scale()};
+        drag(from, to);
+        const std::array<int, 2> at = middle(line);
+        EXPECT_NEAR(at[right != 0 ? 0 : 1], to[right != 0 ? 0 : 1], 8 * scale()) << line;
+        return at;
+    }
+    void choose(const std::string& item) const {
+        click("view/menu");
+        click("menu/" + item);
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Windows, CliViewerPanels,
+                         testing::Values(Shown{"Small", "1280x720", 96, false}, Shown{"Scaled", "1600x900", 192, false},
+                                         Shown{"Fullscreen", "1280x720", 96, true}),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+TEST_P(CliViewerPanels, AreMovedClosedAndRemembered) {
+    ASSERT_EQ(run({"render", scenes + "dungeon.scene.toml", "--size", "160x90", "-o", path("r.png"), "--frame",
+                   path("frame.exr")})
+                  .code,
+              0);
+    open(path("frame.exr"));
+    const bool is_column = GetParam().dots_per_inch > 96;
+    const std::array<int, 2> stack = move("splitter/Stack", 60, 0), below = move("splitter/Below", 0, -40);
+    const std::array<int, 2> other = is_column ? move("splitter/Column", 0, 50) : move("splitter/Parameters", -50, 0);
+    click("close/Parameters");
+    if (!is_column && !GetParam().is_fullscreen)
+        EXPECT_GT(place("panel/Picture")[2], other[0] + 100) << "the picture has its place";
+    choose("Status line");
+    const std::array<int, 4> picture = place("panel/Picture");
+    leave();
+
+    open(path("frame.exr"));
+    EXPECT_EQ(middle("splitter/Stack"), stack);
+    EXPECT_NEAR(middle("splitter/Below")[1], below[1] + 26 * scale(), 26 * scale());
+    EXPECT_EQ(place("panel/Picture"), picture);
+    choose("Parameters");
+    EXPECT_EQ(middle(is_column ? "splitter/Column" : "splitter/Parameters")[0], other[0]);
+    click("close/Below");
+    if (!GetParam().is_fullscreen) EXPECT_GT(place("panel/Picture")[3], picture[3]);
+    choose("Put panels back");
+    EXPECT_NE(middle("splitter/Stack"), stack);
+    press("question", "? keys: on");
+    press("Escape", "? keys: off");
+    leave();
+}
+
+class CliViewerSpeed : public ViewerFixture {
+  protected:
+    [[nodiscard]] std::string divisor() const {
+        const std::string text = ask("frames", "frames: ");
+        return text.substr(text.find(", ") + 2);
+    }
+};
+
+TEST_F(CliViewerSpeed, WhatMovesHasFewerPixelsAndWhatIsStoredAll) {
+    start({"play", scenes + "showcase.scene.toml", "--size", "1280x720"});
+    EXPECT_TRUE(wait_until([&] { return divisor() == "1280x720 / 2" || divisor() == "1280x720 / 4"; }, 60))
+        << divisor();
+    EXPECT_EQ(shot().width, 1280U);
+    press("p", "P pause: on");
+    EXPECT_TRUE(wait_until([&] { return divisor() == "1280x720 / 1"; }, 60)) << divisor();
+    leave();
+    start({"play", scenes + "showcase.scene.toml", "--size", "1280x720", "--full-size"});
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+    EXPECT_EQ(divisor(), "1280x720 / 1");
+    leave();
+}
+
+}  // namespace
+}  // namespace darkroom::test
