@@ -7,6 +7,7 @@
 #include <darkroom/temporal_check.hpp>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 namespace darkroom {
 
@@ -76,11 +77,13 @@ class Checker {
 
     bool check_sizes() {
         const std::size_t pixels = std::size_t{frame_.extent.width} * frame_.extent.height;
-        for (const auto& [name, count, wanted] : {std::tuple("depth", frame_.depth.size(), pixels),
-                                                  std::tuple("velocity", frame_.velocity.size(), 2 * pixels)})
+        const auto check = [&](std::string_view start, std::size_t count, std::size_t wanted) {
             if (count != 0 && count != wanted)
-                out_.push_back(fmt::format("{}: {} numbers, {}x{} pixels have {}", name, count, frame_.extent.width,
+                out_.push_back(fmt::format("{}{} numbers, {}x{} pixels have {}", start, count, frame_.extent.width,
                                            frame_.extent.height, wanted));
+        };
+        check("depth: ", frame_.depth.size(), pixels);
+        check("velocity: ", frame_.velocity.size(), 2 * pixels);
         return out_.empty() && pixels > 0;
     }
 
