@@ -42,6 +42,20 @@ std::uint32_t maker(const Plan& plan, std::uint32_t image) {
     return pass == plan.passes.end() ? none : static_cast<std::uint32_t>(pass - plan.passes.begin());
 }
 
+/// Of each pass, which effect's it is, counted along the frame.
+std::vector<std::uint32_t> effects_of(const Plan& plan) {
+    std::vector<std::uint32_t> out;
+    std::uint32_t number = 0;
+    for (std::size_t i = 0; i < plan.passes.size(); ++i) {
+        if (i > 0 && title_of(plan.passes[i]) != title_of(plan.passes[i - 1])) ++number;
+        out.push_back(number);
+    }
+    return out;
+}
+
+/// What stands over a pass alone: its part, or its effect where it is all of it.
+std::string own_name(const PlanPass& pass) { return part_of(pass).empty() ? title_of(pass) : part_of(pass); }
+
 std::string byte_text(std::uint64_t bytes) {
     if (bytes < 1024) return fmt::format("{} B", bytes);
     const double kibibytes = static_cast<double>(bytes) / 1024;
@@ -57,7 +71,7 @@ struct Pointed {
 class Picture {
   public:
     Picture(const Plan& plan, const PlanLayout& layout, const Plot& plot)
-        : plan_(plan), layout_(layout), plot_(plot), pointed_(find()) {}
+        : plan_(plan), layout_(layout), plot_(plot), effects_(effects_of(plan)), pointed_(find()) {}
 
     void draw() const {
         draw_titles();
@@ -110,27 +124,28 @@ class Picture {
             const std::string title = title_of(plan_.passes[first]);
             while (end < plan_.passes.size() && title_of(plan_.passes[end]) == title) ++end;
             const ImVec2 min{static_cast<float>(first) * layout_.column_width, 0};
-            const ImVec2 max{static_cast<float>(end) * layout_.column_width - 1, layout_.header_height / 2};
+            if (end == first + 1 && part_of(plan_.passes[first]).empty()) continue;  // its column says it
+            const ImVec2 max{static_cast<float>(end) * layout_.column_width - 1, layout_.title_height};
             plot_.list->AddRectFilled(place(min), place({max.x, max.y - 1}), ImGui::GetColorU32(ImGuiCol_Header));
             label(title, min, max, ImGui::GetColorU32(ImGuiCol_Text));
         }
     }
 
     void draw_columns() const {
-        const float top = layout_.header_height / 2;
         for (std::uint32_t i = 0; i < plan_.passes.size(); ++i) {
             const float left = static_cast<float>(i) * layout_.column_width, right = left + layout_.column_width;
+            const float top = part_of(plan_.passes[i]).empty() ? 0 : layout_.title_height;
             const bool is_bound = pointed_.image == none ? pointed_.pass == none || pointed_.pass == i
                                                          : writes(plan_.passes[i], pointed_.image) ||
                                                                reads(plan_.passes[i], pointed_.image);
             plot_.list->AddRectFilled(place({left, top}), place({right - 1, layout_.header_height - 1}),
-                                      faded(series_color(i), is_bound ? 1.0f : 0.3f));
+                                      faded(series_color(effects_[i]), is_bound ? 1.0f : 0.3f));
             if (pointed_.pass == i)
                 plot_.list->AddRectFilled(place({left, layout_.header_height}), place({right - 1, layout_.size.y}),
                                           ImGui::GetColorU32(ImGuiCol_Text, 0.06f));
             plot_.list->AddLine(place({right - 0.5f, layout_.header_height}), place({right - 0.5f, layout_.size.y}),
                                 grid_color());
-            label(part_of(plan_.passes[i]), {left, top}, {right - 1, layout_.header_height}, IM_COL32(16, 16, 16, 255));
+            head(own_name(plan_.passes[i]), {left, top}, {right - 1, layout_.header_height});
         }
         plot_.list->AddLine(place({0, layout_.memory_top - 2}), place({layout_.size.x, layout_.memory_top - 2}),
                             ImGui::GetColorU32(ImGuiCol_Border));
@@ -139,7 +154,8 @@ class Picture {
     void draw_bar(const PlanLayout::Bar& bar) const {
         const PlanImage& image = plan_.images[bar.image];
         const std::uint32_t made_by = maker(plan_, bar.image);
-        const ImU32 base = made_by == none ? ImGui::GetColorU32(ImGuiCol_TextDisabled) : series_color(made_by);
+        const ImU32 base =
+            made_by == none ? ImGui::GetColorU32(ImGuiCol_TextDisabled) : series_color(effects_[made_by]);
         const bool is_bound = is_bound_to_pointed(bar.image);
         const ImVec2 min = place(bar.min), max = place({bar.max.x - 1, bar.max.y - 1});
         if (image.kind == Kind::History) {
@@ -156,7 +172,7 @@ class Picture {
         const auto bar = std::ranges::find(layout_.bars, image, &PlanLayout::Bar::image);
         const ImU32 color = ImGui::ColorConvertFloat4ToU32(accent_color);
         plot_.list->AddRect(place(bar->min), place({bar->max.x - 1, bar->max.y - 1}), color);
-        const float radius = std::min(layout_.column_width, layout_.header_height / 2) * 0.27f;
+        const float radius = std::min(layout_.column_width, layout_.title_height) * 0.27f;
         for (std::uint32_t i = 0; i < plan_.passes.size(); ++i) {
             const ImVec2 middle =
                 place({(static_cast<float>(i) + 0.5f) * layout_.column_width, layout_.header_height + radius * 1.5f});
@@ -175,6 +191,24 @@ class Picture {
         plot_.list->PushClipRect(corner, end, true);
         plot_.list->AddText({corner.x + 3, (corner.y + end.y - font) / 2}, color, text.c_str());
         plot_.list->PopClipRect();
+    }
+
+    /// Along the column where it is wider than that.
+    void head(const std::string& text, ImVec2 min, ImVec2 max) const {
+        constexpr ImU32 dark = IM_COL32(16, 16, 16, 255);
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        if (size.x + 6 <= max.x - min.x) return label(text, min, max, dark);
+        const ImVec2 corner = place(min), end = place(max);
+        if (end.x - corner.x < size.y * 0.8f) return;
+        // Written where nothing cuts it off, then turned by a quarter and put into its place, from the bottom upwards.
+        const ImVec2 from = place({0, 0});
+        const int first = plot_.list->VtxBuffer.Size;
+        plot_.list->AddText(from, dark, text.c_str());
+        const float left = std::round((corner.x + end.x - size.y) / 2);
+        for (int i = first; i < plot_.list->VtxBuffer.Size; ++i) {
+            ImVec2& at = plot_.list->VtxBuffer[i].pos;
+            at = {left + (at.y - from.y), end.y - 3 - (at.x - from.x)};
+        }
     }
 
     [[nodiscard]] std::string image_text(std::uint32_t index) const {
@@ -203,13 +237,14 @@ class Picture {
     const Plan& plan_;
     const PlanLayout& layout_;
     const Plot& plot_;
+    std::vector<std::uint32_t> effects_;
     Pointed pointed_;
 };
 
 }  // namespace
 
-PlanLayout lay_out(const Plan& plan, ImVec2 size, float row) {
-    PlanLayout layout{.header_height = 2 * row};
+PlanLayout lay_out(const Plan& plan, ImVec2 size, float row, float names) {
+    PlanLayout layout{.title_height = row, .header_height = row + std::max(row, names)};
     layout.column_width = size.x / static_cast<float>(std::max<std::size_t>(plan.passes.size(), 1));
     float top = layout.header_height + 2;
     const auto add = [&](std::uint32_t index, float from, float height) {
@@ -238,6 +273,19 @@ PlanLayout lay_out(const Plan& plan, ImVec2 size, float row) {
     return layout;
 }
 
+namespace {
+
+/// 0: each has room in its column.
+float height_of_names(const Plan& plan, float width) {
+    const float column = width / static_cast<float>(std::max<std::size_t>(plan.passes.size(), 1));
+    float longest = 0;
+    for (const PlanPass& pass : plan.passes)
+        longest = std::max(longest, ImGui::CalcTextSize(own_name(pass).c_str()).x + 6);
+    return longest <= column || column < ImGui::GetFontSize() * 0.8f ? 0 : longest;
+}
+
+}  // namespace
+
 void draw_plan_picture(const Plan& plan) {
     std::string text = fmt::format("{} passes, {} of images in {}", plan.passes.size(),
                                    byte_text(plan.transient_bytes_unaliased), byte_text(plan.transient_bytes));
@@ -246,7 +294,8 @@ void draw_plan_picture(const Plan& plan) {
     if (ImGui::BeginChild("picture")) {
         const ImVec2 room = ImGui::GetContentRegionAvail();
         const float row = std::round(1.25f * ImGui::GetFontSize());
-        const PlanLayout layout = lay_out(plan, {std::max(room.x, 1.0f), room.y}, row);
+        const float width = std::max(room.x, 1.0f);
+        const PlanLayout layout = lay_out(plan, {width, room.y}, row, height_of_names(plan, width));
         const Plot plot = begin_plot("plan", layout.size);
         const Picture picture(plan, layout, plot);
         picture.draw();

@@ -19,13 +19,14 @@ struct PlanLayout {
         ImVec2 min, max;
     };
     float column_width = 0;
-    float header_height = 0;  ///< of the passes' two rows: what they belong to, and each
+    float title_height = 0;   ///< of what passes belong to
+    float header_height = 0;  ///< of that and the passes' names
     float memory_top = 0;     ///< of the transient memory
     ImVec2 size;              ///< of all; no smaller than what was asked for
     std::vector<Bar> bars;    ///< of the images that passes use
 };
-/// As wide as `size`, and at least as high; a row is `row` high.
-[[nodiscard]] PlanLayout lay_out(const Plan& plan, ImVec2 size, float row);
+/// As wide as `size`, and at least as high; a row is `row` high, that of the passes' names as high as `names` at least.
+[[nodiscard]] PlanLayout lay_out(const Plan& plan, ImVec2 size, float row, float names = 0);
 
 /// Fills the rest of the present window, and scrolls in it; what is left out of the plan, and why, is listed below.
 void draw_plan_picture(const Plan& plan);
