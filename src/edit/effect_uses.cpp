@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "edit/effect_uses.hpp"
 
+#include <algorithm>
 #include <darkroom/pass_builder.hpp>
 
 namespace darkroom::edit {
@@ -63,6 +64,18 @@ EffectUses uses_of(const EffectInfo& effect) {
     Listener listener(effect);
     if (effect.build) effect.build(listener);
     return listener.uses;
+}
+
+std::string_view purpose_of(const EffectInfo& effect) {
+    constexpr std::string_view begin = "\nPurpose: ";
+    for (const EffectFile& file : effect.files) {
+        const std::size_t at = file.name.ends_with(".md") ? file.text.find(begin) : std::string_view::npos;
+        if (at == std::string_view::npos) continue;
+        const std::string_view rest = file.text.substr(at + begin.size());
+        const auto found = std::ranges::find(purposes, rest.substr(0, rest.find('.')));
+        return found == purposes.end() ? std::string_view() : *found;
+    }
+    return {};
 }
 
 }  // namespace darkroom::edit

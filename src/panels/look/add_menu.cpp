@@ -3,7 +3,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cfloat>
 #include <cmath>
@@ -21,27 +20,6 @@
 namespace darkroom::panels {
 
 namespace {
-
-struct Group {
-    const char* heading;
-    bool (*holds)(const EffectInfo& effect);
-};
-
-bool accepts_only(const EffectInfo& effect, Domain domain) {
-    return !effect.is_ui && effect.accepts.bits == Domains::only(domain).bits;
-}
-bool accepts_several(const EffectInfo& effect) {
-    return !effect.is_ui && (effect.accepts.bits & (effect.accepts.bits - 1)) != 0;
-}
-
-/// Every effect is in one of them.
-constexpr std::array<Group, 5> groups{{
-    {"Scene-linear light", [](const EffectInfo& effect) { return accepts_only(effect, Domain::SceneLinear); }},
-    {"Display-linear light", [](const EffectInfo& effect) { return accepts_only(effect, Domain::DisplayLinear); }},
-    {"Encoded picture", [](const EffectInfo& effect) { return accepts_only(effect, Domain::Encoded); }},
-    {"Any picture", accepts_several},
-    {"Interface", [](const EffectInfo& effect) { return effect.is_ui; }},
-}};
 
 /// What it costs, as the kind of work that it is.
 const char* text_of(const EffectInfo& effect) {
@@ -61,14 +39,14 @@ const std::map<const EffectInfo*, const char*>& costs() {
     return known;
 }
 
-bool is_wanted(const EffectInfo& effect, std::string_view filter) {
+bool is_wanted(const EffectInfo& effect, std::string_view purpose, std::string_view filter) {
     const auto has = [&](std::string_view text) {
         const auto is_alike = [](char a, char b) {
             return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
         };
         return std::search(text.begin(), text.end(), filter.begin(), filter.end(), is_alike) != text.end();
     };
-    return filter.empty() || has(shown_name(effect.name)) || has(effect.doc);
+    return filter.empty() || has(shown_name(effect.name)) || has(effect.doc) || has(purpose);
 }
 
 /// Takes the result of an edit that adds, so that what was added is selected.
@@ -125,39 +103,69 @@ void add_from_file(PanelState& state) {
                       }});
 }
 
-/// Those that are offered, group by group.
-std::vector<std::pair<const Group*, const EffectInfo*>> wanted_effects(const PanelState& state) {
-    std::vector<std::pair<const Group*, const EffectInfo*>> out;
-    for (const Group& group : groups)
+struct Offered {
+    std::string_view purpose;
+    const EffectInfo* effect = nullptr;
+};
+/// By what they are for; those that do not say it come last.
+std::vector<Offered> wanted_effects(const PanelState& state) {
+    std::vector<Offered> out;
+    const auto add_those_for = [&](std::string_view purpose) {
         for (const EffectInfo* const effect : all_effects())
-            if (group.holds(*effect) && is_wanted(*effect, state.filter)) out.emplace_back(&group, effect);
+            if (edit::purpose_of(*effect) == purpose && is_wanted(*effect, purpose, state.filter))
+                out.push_back({purpose, effect});
+    };
+    for (const std::string_view purpose : edit::purposes) add_those_for(purpose);
+    add_those_for({});
     return out;
 }
 
+std::string heading_of(std::string_view purpose) {
+    if (purpose.empty()) return "Other";
+    std::string out(purpose);
+    out.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(out.front())));
+    return out;
+}
+
+/// A name and what it costs, and below them the effect's sentence, as one thing to be clicked.
+bool draw_effect(const EffectInfo& effect, bool is_chosen) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float indent = ImGui::GetFontSize(), width = ImGui::GetContentRegionAvail().x;
+    const std::string doc(effect.doc);
+    const float wrap = width - indent;
+    const float height =
+        ImGui::GetTextLineHeight() + ImGui::CalcTextSize(doc.c_str(), nullptr, false, wrap).y + style.ItemSpacing.y;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const bool is_pressed = ImGui::Selectable("##effect", is_chosen, 0, {0, height});
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImU32 dim = ImGui::GetColorU32(ImGuiCol_TextDisabled);
+    const char* const cost = costs().at(&effect);
+    list.AddText({corner.x + indent, corner.y}, ImGui::GetColorU32(ImGuiCol_Text), shown_name(effect.name).c_str());
+    list.AddText({corner.x + width - ImGui::CalcTextSize(cost).x, corner.y}, dim, cost);
+    list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), {corner.x + indent, corner.y + ImGui::GetTextLineHeight()},
+                 dim, doc.c_str(), nullptr, wrap);
+    return is_pressed;
+}
+
 /// The row of the keyboard stands out, and is scrolled to where it moved.
-void draw_effects(PanelState& state, std::span<const std::pair<const Group*, const EffectInfo*>> wanted, bool moved) {
-    const Group* last = nullptr;
+void draw_effects(PanelState& state, std::span<const Offered> wanted, bool moved) {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-        const auto& [group, effect] = wanted[i];
-        if (group != last) ImGui::TextDisabled("%s", group->heading);
-        last = group;
-        const std::string name = shown_name(effect->name);
-        if (ImGui::Selectable(fmt::format("  {}", name).c_str(), i == state.add_row)) add(state, *effect);
+        const auto& [purpose, effect] = wanted[i];
+        if (i == 0 || purpose != wanted[i - 1].purpose) ImGui::TextDisabled("%s", heading_of(purpose).c_str());
+        ImGui::PushID(effect);
+        if (draw_effect(*effect, i == state.add_row)) add(state, *effect);
         if (moved && i == state.add_row) ImGui::SetScrollHereY();
         state.note(fmt::format("add/{}", effect->name));
-        tooltip(std::string(effect->doc).c_str());
-        const char* const cost = costs().at(effect);
-        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(cost).x);
-        ImGui::TextDisabled("%s", cost);
+        ImGui::PopID();
     }
-    if (wanted.empty()) ImGui::TextDisabled("No effect has this in its name or sentence.");
+    if (wanted.empty()) ImGui::TextDisabled("No effect has this in its name, sentence or purpose.");
 }
 
 }  // namespace
 
 void draw_add_menu(PanelState& state) {
     const float em = ImGui::GetFontSize();
-    ImGui::SetNextWindowSize({22 * em, std::min(30 * em, ImGui::GetIO().DisplaySize.y * 0.7f)});
+    ImGui::SetNextWindowSize({24 * em, std::min(36 * em, ImGui::GetIO().DisplaySize.y * 0.7f)});
     if (!ImGui::BeginPopup("add")) return;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, std::round(em / 3)});
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
@@ -177,7 +185,7 @@ void draw_add_menu(PanelState& state) {
     ImGui::BeginChild("effects", {0, takes_files ? -ImGui::GetFrameHeightWithSpacing() : 0});
     draw_effects(state, wanted, row != state.add_row);
     ImGui::EndChild();
-    if (is_taken && !wanted.empty()) add(state, *wanted[state.add_row].second);
+    if (is_taken && !wanted.empty()) add(state, *wanted[state.add_row].effect);
     if (takes_files && ImGui::Button("From a GLSL file...", {-FLT_MIN, 0})) add_from_file(state);
     ImGui::PopStyleVar();
     ImGui::EndPopup();
