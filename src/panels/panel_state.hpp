@@ -42,9 +42,11 @@ struct PanelState {
 
     std::string renamed{}, new_name{};  ///< the entry whose name is being typed
     bool is_renaming_new = false;
-    std::string filter{};     ///< of the list of effects to add
-    std::size_t add_row = 0;  ///< of that list, where the keyboard is
-    std::string wanted{};     ///< the entry that an edit has made, to be selected
+    bool shows_numbers = false;          ///< in place of wheels and curves
+    std::string filter{};                ///< of the list of effects to add
+    std::size_t add_row = 0;             ///< of that list, where the keyboard is
+    std::optional<std::string> fired{};  ///< an event, by its button
+    std::string wanted{};                ///< the entry that an edit has made, to be selected
 
     struct Edit {
         std::string what;

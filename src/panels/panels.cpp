@@ -225,6 +225,11 @@ void LookPanels::revert() {
     state_->settle();
 }
 
+const std::filesystem::path& LookPanels::folder() const { return state_->document->options().folder; }
+std::optional<std::string> LookPanels::take_fired() { return std::exchange(state_->fired, std::nullopt); }
+void LookPanels::ask(std::string text, std::vector<std::pair<std::string, std::function<void()>>> answers) {
+    state_->ask({.text = std::move(text), .answers = std::move(answers)});
+}
 Messages& LookPanels::messages() { return state_->messages; }
 FileBrowser& LookPanels::files() { return state_->files; }
 
@@ -234,6 +239,8 @@ std::string LookPanels::selected() const {
 }
 
 void LookPanels::select(std::string_view entry) { state_->select(entry); }
+
+void LookPanels::show_numbers(bool shows_numbers) { state_->shows_numbers = shows_numbers; }
 
 const WidgetPlaces& LookPanels::places() {
     if (!state_->places) state_->places.emplace();

@@ -17,9 +17,14 @@
 // least. A host that wants the same look applies panels/widgets/theme.hpp.
 
 #include <darkroom/plan.hpp>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "edit/document.hpp"
 #include "panels/widgets/file_browser.hpp"
@@ -66,11 +71,19 @@ class LookPanels {
     /// To what the file says: a step of undo.
     void revert();
 
+    /// Where the look's files are.
+    [[nodiscard]] const std::filesystem::path& folder() const;
+    /// An event whose pulses are to be fired.
+    [[nodiscard]] std::optional<std::string> take_fired();
+    /// Asks something over everything else; each answer with what it does, beside "Cancel".
+    void ask(std::string text, std::vector<std::pair<std::string, std::function<void()>>> answers);
     [[nodiscard]] Messages& messages();
     [[nodiscard]] FileBrowser& files();
     /// Name of the selected entry; empty: none.
     [[nodiscard]] std::string selected() const;
     void select(std::string_view entry);
+    /// Effects whose parameters have wheels and curves show lines of numbers instead.
+    void show_numbers(bool shows_numbers);
     /// Where widgets are, noted from now on while they are drawn.
     [[nodiscard]] const WidgetPlaces& places();
     /// The item that was drawn last, a host's own, is among them from now on.

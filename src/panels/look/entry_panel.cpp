@@ -8,7 +8,7 @@
 #include "core/text/param_text.hpp"
 #include "edit/edits.hpp"
 #include "looks/apply/look_resources.hpp"
-#include "panels/look/parameter_row.hpp"
+#include "panels/look/entry_rows.hpp"
 #include "panels/panel_state.hpp"
 #include "panels/widgets/fitting_text.hpp"
 #include "panels/widgets/icons.hpp"
@@ -49,29 +49,6 @@ ValueEdit draw_file(PanelState& state, const LookEntry& entry, const std::string
     return {};
 }
 
-void draw_parameter(PanelState& state, const LookEntry& entry, const std::string& name, const ParamInfo& row,
-                    const Columns& columns) {
-    RowLine line{.row = &row,
-                 .words = std::span(entry.words).subspan(row.word, row.words),
-                 .defaults = entry.effect->parameters.defaults.subspan(row.word, row.words),
-                 .place = fmt::format("{}.{}", name, row.name)};
-    const std::string toml = value_text(entry, row);
-    const std::string flag = row.kind == Kind::Resource ? toml : flag_text(row, line.words);
-    name_value(line, state.look(), entry, name, flag, toml);
-    std::function<ValueEdit(std::span<std::uint32_t>)> body;
-    if (row.kind == Kind::Resource) body = [&](std::span<std::uint32_t>) { return draw_file(state, entry, name, row); };
-    const RowOutcome outcome = draw_row(state, line, columns, body);
-    if (outcome.act == RowAct::None) return;
-    const std::string parameter(row.name), what = step_name(name, row);
-    if (outcome.act == RowAct::Reset)
-        state.edit(
-            what, [=](Look& look) { return edit::reset_value(look, name, parameter); }, line.place);
-    else
-        state.edit(
-            what, [=, words = outcome.words](Look& look) { return edit::set_value(look, name, parameter, words); },
-            line.place);
-}
-
 void draw_head(PanelState& state, const LookEntry& entry, const std::string& name) {
     const bool is_on = entry.state.enabled.on != 0;
     if (icon_button("##enabled", is_on ? Icon::Shown : Icon::Hidden, is_on ? "Switches it off." : "Switches it on.",
@@ -101,6 +78,37 @@ void draw_head(PanelState& state, const LookEntry& entry, const std::string& nam
 
 }  // namespace
 
+RowLine line_of(const PanelState& state, const LookEntry& entry, const std::string& name, const ParamInfo& row) {
+    RowLine line{.row = &row,
+                 .words = std::span(entry.words).subspan(row.word, row.words),
+                 .defaults = entry.effect->parameters.defaults.subspan(row.word, row.words),
+                 .place = fmt::format("{}.{}", name, row.name)};
+    const std::string toml = value_text(entry, row);
+    const std::string flag = row.kind == Kind::Resource ? toml : flag_text(row, line.words);
+    name_value(line, state.look(), entry, name, flag, toml);
+    return line;
+}
+
+void apply(PanelState& state, const std::string& name, const RowLine& line, const RowOutcome& outcome) {
+    if (outcome.act == RowAct::None) return;
+    const std::string parameter(line.row->name), what = step_name(name, *line.row);
+    if (outcome.act == RowAct::Reset)
+        state.edit(
+            what, [=](Look& look) { return edit::reset_value(look, name, parameter); }, line.place);
+    else
+        state.edit(
+            what, [=, words = outcome.words](Look& look) { return edit::set_value(look, name, parameter, words); },
+            line.place);
+}
+
+void draw_parameter(PanelState& state, const LookEntry& entry, const std::string& name, const ParamInfo& row,
+                    const Columns& columns) {
+    const RowLine line = line_of(state, entry, name, row);
+    std::function<ValueEdit(std::span<std::uint32_t>)> body;
+    if (row.kind == Kind::Resource) body = [&](std::span<std::uint32_t>) { return draw_file(state, entry, name, row); };
+    apply(state, name, line, draw_row(state, line, columns, body));
+}
+
 void draw_entry_panel(PanelState& state) {
     const int index = state.selected_index();
     if (index < 0) {
@@ -118,7 +126,8 @@ void draw_entry_panel(PanelState& state) {
     const bool has_state = !state.look().is_flat && !entry.is_of_ui;
     if (has_state) add_state_names(names);
     const Columns columns = Columns::of(names);
-    for (const ParamInfo& row : entry.effect->parameters.rows) draw_parameter(state, entry, name, row, columns);
+    if (!draw_grouped_rows(state, entry, name))
+        for (const ParamInfo& row : entry.effect->parameters.rows) draw_parameter(state, entry, name, row, columns);
     if (has_state) draw_entry_state(state, entry, name, columns);
     ImGui::PopID();
     state.settle();

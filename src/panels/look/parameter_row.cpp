@@ -43,6 +43,22 @@ void indent_widget(const std::string& name, const Columns& columns) {
     if (is_tall(name, columns)) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + mark_width());
 }
 
+/// True: reset.
+bool draw_menu(const RowLine& line) {
+    bool resets = false;
+    if (!ImGui::BeginPopup("menu")) return resets;
+    resets = ImGui::MenuItem("Reset", "double-click");
+    ImGui::Separator();
+    if (!line.flag.empty() && ImGui::MenuItem("Copy as flag")) ImGui::SetClipboardText(line.flag.c_str());
+    if (ImGui::MenuItem("Copy as TOML")) ImGui::SetClipboardText(line.toml.c_str());
+    ImGui::EndPopup();
+    return resets;
+}
+
+bool has_double_click_of_its_own(Kind kind) { return kind == Kind::Curve || kind == Kind::Toggle; }
+
+}  // namespace
+
 void explain(const RowLine& line) {
     if (!is_rested_on()) return;
     const ParamInfo& row = *line.row;
@@ -59,22 +75,6 @@ void explain(const RowLine& line) {
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
 }
-
-/// True: reset.
-bool draw_menu(const RowLine& line) {
-    bool resets = false;
-    if (!ImGui::BeginPopup("menu")) return resets;
-    resets = ImGui::MenuItem("Reset", "double-click");
-    ImGui::Separator();
-    if (!line.flag.empty() && ImGui::MenuItem("Copy as flag")) ImGui::SetClipboardText(line.flag.c_str());
-    if (ImGui::MenuItem("Copy as TOML")) ImGui::SetClipboardText(line.toml.c_str());
-    ImGui::EndPopup();
-    return resets;
-}
-
-bool has_double_click_of_its_own(Kind kind) { return kind == Kind::Curve || kind == Kind::Toggle; }
-
-}  // namespace
 
 Columns Columns::of(std::span<const std::string> names) {
     float widest = 0;

@@ -39,6 +39,8 @@ struct RowOutcome {
     RowAct act = RowAct::None;
     std::vector<std::uint32_t> words;  ///< of a change
 };
+/// Sentence, interval and text of the row, while the mouse rests on the last item.
+void explain(const RowLine& line);
 /// `body` draws the widget over a copy of the words; by default draw_value.
 [[nodiscard]] RowOutcome draw_row(PanelState& state, const RowLine& line, const Columns& columns,
                                   const std::function<ValueEdit(std::span<std::uint32_t>)>& body = {});

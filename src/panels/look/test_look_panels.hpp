@@ -18,6 +18,8 @@ class TestPanels {
     explicit TestPanels(Look look, ImVec2 size = {1280, 720}, float scale = 1)
         : document(std::move(look)), panels(document), gui(size.x, size.y, scale) {
         static_cast<void>(panels.places());
+        // Every value has a line; what holds wheels takes this back.
+        panels.show_numbers(true);
         gui.draw = [this, size, scale] { draw(size, scale); };
         gui.frame(2);
     }

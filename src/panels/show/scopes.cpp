@@ -230,12 +230,33 @@ void clipped_text(const ScopeData& data) {
 
 }  // namespace
 
+// Each in a child, whose list of triangles is its own.
+void ScopesPanel::draw_together(ImVec2 room) const {
+    const float gap = ImGui::GetStyle().ItemSpacing.x, side = std::min(room.y, (room.x - 2 * gap) / 3);
+    const ImVec2 size{std::max((room.x - side - 2 * gap) / 2, 1.0f), room.y};
+    const auto part = [&](const char* name, ImVec2 of, const auto& draw) {
+        ImGui::BeginChild(name, of, false, ImGuiWindowFlags_NoScrollbar);
+        draw();
+        ImGui::EndChild();
+    };
+    part("##waveform", size,
+         [&] { draw_waveform(data_.waveform, is_luma_ ? WaveformKind::Luma : WaveformKind::Rgb, size); });
+    ImGui::SameLine(0, gap);
+    part("##histogram", size, [&] { draw_histogram(data_, is_logarithmic_, size); });
+    ImGui::SameLine(0, gap);
+    part("##vectorscope", {side, room.y}, [&] { draw_vectorscope(data_.vectorscope, side); });
+}
+
 void ScopesPanel::draw() {
     if (!ImGui::BeginTabBar("scopes")) return;
     const auto rest = [](float lines) {
         const ImVec2 all = ImGui::GetContentRegionAvail();
         return ImVec2{all.x, std::max(all.y - lines * ImGui::GetFrameHeightWithSpacing(), ImGui::GetFontSize() * 6)};
     };
+    if (ImGui::BeginTabItem("Together")) {
+        draw_together(rest(0));
+        ImGui::EndTabItem();
+    }
     if (ImGui::BeginTabItem("Histogram")) {
         draw_histogram(data_, is_logarithmic_, rest(1));
         ImGui::Checkbox("Log", &is_logarithmic_);

@@ -25,7 +25,7 @@ void draw_vectorscope(const Vectorscope& scope, float size);
 /// A line for each band, with its colour and its name, as wide as the window.
 void draw_legend(std::span<const FalseColorBand> bands);
 
-/// All of them, one at a time.
+/// All of them, side by side or one at a time.
 class ScopesPanel {
   public:
     void set(ScopeData data) { data_ = std::move(data); }
@@ -33,6 +33,7 @@ class ScopesPanel {
     void draw();
 
   private:
+    void draw_together(ImVec2 room) const;
     ScopeData data_;
     bool is_logarithmic_ = false;
     bool is_luma_ = false;

@@ -90,7 +90,27 @@ int point_at(const Curve& curve, const View& view, ImVec2 mouse, float reach) {
     return nearest;
 }
 
-void paint(const Curve& curve, const View& view, int chosen) {
+void paint_line(const Curve& curve, const View& view, ImU32 color, bool has_identity) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float thickness = 1.5f * ImGui::GetFontSize() / 15;
+    if (curve.count == 0) {
+        if (has_identity)
+            list.AddLine(view.place(view.least_x, view.least_x), view.place(view.most_x, view.most_x), color,
+                         thickness);
+        return;
+    }
+    std::array<ImVec2, Curve::capacity + 2> places;
+    for (std::uint32_t i = 0; i < curve.count; ++i) places[i + 1] = view.place(curve.x[i], curve.y[i]);
+    const std::uint32_t last = curve.count - 1;
+    const float least_x = std::min(view.least_x, curve.x[0]), most_x = std::max(view.most_x, curve.x[last]);
+    // Constant outside, or as far from the identity as the last point is.
+    const float before = has_identity ? least_x - curve.x[0] : 0, behind = has_identity ? most_x - curve.x[last] : 0;
+    places[0] = view.place(least_x, curve.y[0] + before);
+    places[curve.count + 1] = view.place(most_x, curve.y[last] + behind);
+    list.AddPolyline(places.data(), static_cast<int>(curve.count) + 2, color, 0, thickness);
+}
+
+void paint(const Curve& curve, const View& view, int chosen, const CurveShown& shown) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 end{view.corner.x + view.size.x, view.corner.y + view.size.y};
     const float unit = ImGui::GetFontSize() / 15;
@@ -104,19 +124,15 @@ void paint(const Curve& curve, const View& view, int chosen) {
         list.AddLine({x, view.corner.y}, {x, end.y}, i == 2 ? axis : line, std::round(unit));
         list.AddLine({view.corner.x, y}, {end.x, y}, i == 2 ? axis : line, std::round(unit));
     }
-    if (curve.count > 0) {
-        const ImU32 color = ImGui::GetColorU32(ImGuiCol_Text);
-        std::array<ImVec2, Curve::capacity + 2> places;
-        for (std::uint32_t i = 0; i < curve.count; ++i) places[i + 1] = view.place(curve.x[i], curve.y[i]);
-        // Constant outside.
-        places[0] = {std::min(view.corner.x, places[1].x), places[1].y};
-        places[curve.count + 1] = {std::max(end.x, places[curve.count].x), places[curve.count].y};
-        list.AddPolyline(places.data(), static_cast<int>(curve.count) + 2, color, 0, 1.5f * unit);
-        for (std::uint32_t i = 0; i < curve.count; ++i) {
-            const bool is_chosen = static_cast<int>(i) == chosen;
-            list.AddCircleFilled(places[i + 1], (is_chosen ? 5.0f : 3.5f) * unit,
-                                 is_chosen ? ImGui::GetColorU32(accent_color) : color);
-        }
+    if (shown.has_identity) paint_line({}, view, axis, true);
+    for (const CurveShown::Other& other : shown.behind)
+        paint_line(curve_of(other.words), view, other.color, shown.has_identity);
+    const ImU32 color = shown.color != 0 ? shown.color : ImGui::GetColorU32(ImGuiCol_Text);
+    paint_line(curve, view, color, shown.has_identity);
+    for (std::uint32_t i = 0; i < curve.count; ++i) {
+        const bool is_chosen = static_cast<int>(i) == chosen;
+        list.AddCircleFilled(view.place(curve.x[i], curve.y[i]), (is_chosen ? 5.0f : 3.5f) * unit,
+                             is_chosen ? ImGui::GetColorU32(accent_color) : color);
     }
     list.PopClipRect();
     const ImU32 dim = ImGui::GetColorU32(ImGuiCol_TextDisabled);
@@ -144,7 +160,7 @@ bool edit_numbers(Curve& curve, std::uint32_t point, const Range& range, bool& i
 
 }  // namespace
 
-ValueEdit draw_curve(const ParamInfo& row, std::span<std::uint32_t> words) {
+ValueEdit draw_curve(const ParamInfo& row, std::span<std::uint32_t> words, const CurveShown& shown) {
     Curve curve = curve_of(words);
     ImGuiStorage& storage = *ImGui::GetStateStorage();
     const ImGuiID span_id = ImGui::GetID("span"), chosen_id = ImGui::GetID("chosen");
@@ -183,7 +199,7 @@ ValueEdit draw_curve(const ParamInfo& row, std::span<std::uint32_t> words) {
     }
     if (is_hovered && ImGui::GetIO().MouseWheel != 0 && ImGui::GetIO().KeyCtrl)
         span = std::clamp(span * std::pow(0.8f, ImGui::GetIO().MouseWheel), std::min(1.0f, widest), widest);
-    paint(curve, view, chosen);
+    paint(curve, view, chosen, shown);
     if (chosen >= 0)
         edit.is_changed |= edit_numbers(curve, static_cast<std::uint32_t>(chosen), row.range, edit.is_begun);
     ImGui::EndGroup();

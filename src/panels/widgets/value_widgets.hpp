@@ -22,9 +22,20 @@ struct ValueEdit {
 [[nodiscard]] ValueEdit draw_value(const ParamInfo& row, std::span<std::uint32_t> words,
                                    std::span<const std::uint32_t> defaults);
 
+/// How a curve is shown.
+struct CurveShown {
+    struct Other {
+        std::span<const std::uint32_t> words;
+        std::uint32_t color = 0;
+    };
+    std::span<const Other> behind{};  ///< curves that are seen, too
+    std::uint32_t color = 0;          ///< as ImGui packs it; 0: that of text
+    /// Both axes mean the same: a line shows what stays as it is, and beyond its ends the curve goes on beside it.
+    bool has_identity = false;
+};
 /// The same for a curve: click to add a point, drag it, double-click to remove it; ctrl and the wheel change how much
 /// is seen.
-[[nodiscard]] ValueEdit draw_curve(const ParamInfo& row, std::span<std::uint32_t> words);
+[[nodiscard]] ValueEdit draw_curve(const ParamInfo& row, std::span<std::uint32_t> words, const CurveShown& shown = {});
 
 /// A value as flags take it: "0.08", "1.0,0.5,0.2", "on", "0.0:0.0,1.0:1.0". `words` as above.
 [[nodiscard]] std::string flag_text(const ParamInfo& row, std::span<const std::uint32_t> words);
