@@ -46,7 +46,10 @@ class StackList {
         if (picture.empty()) ImGui::TextDisabled("No effect: the picture stays as it is.");
         draw_heading("Interface");
         draw_part({.is_interface = true}, "document, scripts, game", "stack/interface");
-        for (const std::size_t index : ui) draw_entry(index, {});
+        // Without a document there is nothing for them to work on.
+        const bool has_document = look_.ui && !look_.ui->document.empty();
+        for (const std::size_t index : ui)
+            if (has_document || look_.entries[index].id == state_.selected) draw_entry(index, {});
         if (!look_.pulses.empty()) draw_heading("Pulses");
         for (std::size_t i = 0; i < look_.pulses.size(); ++i) draw_mover({false, i}, fmt::format("stack/pulse/{}", i));
         if (!look_.layers.empty()) draw_heading("Layers");
