@@ -43,7 +43,10 @@ void gather_constants(const void* parameters, const PassContext& context, std::s
               -row(0) * flat[2] - row(1) * flat[3] - row(3)};
     out[3] = {-row(0) * flat[0], -row(1) * flat[1], context.has_history ? 1.0f : 0.0f,
               static_cast<float>(context.frame_index % 64)};
-    out[4] = {static_cast<float>(taa_most_frames(taa_of(parameters))), 0, 0, 0};
+    const TaaExponents exponents(std::sqrt(double{out[1][0]} * double{out[1][1]}));
+    out[4] = {static_cast<float>(1 / taa_most_frames(taa_of(parameters))),
+              static_cast<float>(-exponents.narrow / std::log(2)), static_cast<float>(-exponents.wide / std::log(2)),
+              0};
 }
 
 void motion_constants(const void*, const PassContext& context, std::span<PassVector> out) {
@@ -85,8 +88,8 @@ void build(PassBuilder& builder) {
     const PassImage motion =
         builder.has_frame_image(FrameImage::Velocity) ? velocity(builder) : motion_of_camera(builder, inverse);
     const PassBuilder::History light = builder.history({.name = "light", .is_of_output = true});
-    const PassBuilder::History count =
-        builder.history({.name = "count", .format = VK_FORMAT_R16_SFLOAT, .is_of_output = true});
+    const PassBuilder::History kept =
+        builder.history({.name = "kept", .format = VK_FORMAT_R8G8_UNORM, .is_of_output = true});
     const std::vector<PassImage> made = builder.add_all(
         {.name = "gather",
          .shader = "taa_gather.glsl",
@@ -97,9 +100,9 @@ void build(PassBuilder& builder) {
                     {.name = "taa_reactive", .image = builder.frame_image(FrameImage::Reactive), .is_loaded = true},
                     {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true},
                     {.name = "taa_light_before", .image = light.previous},
-                    {.name = "taa_count_before", .image = count.previous}},
+                    {.name = "taa_kept_before", .image = kept.previous}},
          .output = light.current,
-         .more_outputs = {count.current},
+         .more_outputs = {kept.current},
          .custom_vectors = 5,
          .constants = gather_constants});
     if (made.empty()) return;

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: MIT
 // Scene-linear. A pixel of the output: what the frame has near it, and what was gathered of the surface that it shows.
-// result[0] = (colour, alpha of the frame), result[1].r = frames that are in it, by their weight.
+// result[0] = (colour, alpha of the frame), result[1] = (frames that are in it, by their weight; how far samples are off its
+// luma), packed.
 // custom[0] = (pixels of the frame a pixel of the output, jitter), custom[1] = (the inverse, jitter a moment ago),
 // custom[2], custom[3].xy: distance before = distance (x a + y b + c) + d + x e + y f of the frame's texel (x, y),
-// custom[3].zw = (has the past, frame), custom[4].x = frames gathered at most where nothing moves.
+// custom[3].zw = (has the past, frame), custom[4] = (inverse of the most frames, exponents of the Gaussian by which samples
+// count: where there is a past, and where there is none).
 // Colours are mixed as a display will show them, c / (1 + max c) of exposed light (B. Karis, "High Quality Temporal
 // Supersampling", 2014), so that one bright sample does not outweigh all others, and in YCoCg.
 #include "taa_tone.glsl"
 
-const float taa_moving_frames = 16.0;  // beyond it, resampling again and again blurs more than it gathers
-const float taa_nearer = 0.02;         // by so much of a distance something else was in front
-const float taa_edge = 0.03;           // by so much of a distance a sample beside is another surface
-const float taa_wide = 1.0;            // exponents of Gaussians: of a pixel of the frame, while there is little past
-const float taa_narrow = 2.3;          // of a pixel of the output
-const float taa_still_reach = 3.0;     // deviations that the past may lie off the frame's mean
-const float taa_moving_reach = 1.0;
+const float taa_edge = 0.03;    // by so much of a distance a sample beside is another surface
+const float taa_nearer = 0.02;  // by so much of a distance something else was in front
+const float taa_cubic = -0.6;   // slope of the filter of the past (R. Keys, 1981): -0.5 is Catmull-Rom, and softer
+// What the filter loses of the past goes with f (1 - f) of the place between pixels: half way between four, no more than
+// a frame is worth keeping.
+const float taa_loss = 2.0;
+const float taa_reach = 1.25;  // how far the past may lie off the frame's mean: deviations of the frame's colours,
+const float taa_still_noise = 3.0, taa_moving_noise = 1.0;  // and of samples off the past
 const float taa_most_reactive = 0.9;
 
-// What of `inverse` distances around a place is nearest, and where.
+// What of the inverse distances beside is nearer, and where.
 void taa_nearest(ivec2 texel, ivec2 limit, inout float inverse, inout ivec2 at) {
     ivec2 inside = clamp(texel, ivec2(0), limit);
     float here = load(taa_distance, inside).r;
@@ -27,51 +30,49 @@ void taa_nearest(ivec2 texel, ivec2 limit, inout float inverse, inout ivec2 at) 
     }
 }
 
-// Of what the frame has around a place: a mean over a pixel of the frame, one over a pixel of the output, and what the
-// past may be.
+// What the frame has around a place: a mean by a Gaussian with its weight, and all colours there are.
 struct TaaNow {
-    vec3 wide, narrow, mean, deviation;
-    float weight;
+    vec3 color, mean, deviation;
+    float luma, weight;
 };
 
-TaaNow taa_now(ivec2 middle, ivec2 limit, vec2 away, float unit) {
-    vec3 x = away.x + vec3(-1.0, 0.0, 1.0), y = away.y + vec3(-1.0, 0.0, 1.0);
-    vec3 x_wide = exp2(-1.4427 * taa_wide * x * x), y_wide = exp2(-1.4427 * taa_wide * y * y);
-    x *= custom[1].x;
-    y *= custom[1].y;
-    vec3 x_narrow = exp2(-1.4427 * taa_narrow * x * x), y_narrow = exp2(-1.4427 * taa_narrow * y * y);
-    TaaNow now = TaaNow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+TaaNow taa_now(ivec2 middle, ivec2 limit, vec2 away, float unit, float exponent) {
+    vec3 x = (away.x + vec3(-1.0, 0.0, 1.0)) * custom[1].x, y = (away.y + vec3(-1.0, 0.0, 1.0)) * custom[1].y;
+    x = exp2(exponent * x * x);
+    y = exp2(exponent * y * y);
+    TaaNow now = TaaNow(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0.0);
     vec3 squares = vec3(0.0);
     for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i) {
             ivec2 texel = clamp(middle + ivec2(i, j) - 1, ivec2(0), limit);
-            vec3 color = taa_toned(sanitize_light(load(taa_color, texel).rgb), unit);
+            vec3 color = taa_opponent(taa_toned(sanitize_light(load(taa_color, texel).rgb), unit));
+            if (i == 1 && j == 1) now.luma = color.x;
+            now.color += color * (x[i] * y[j]);
             now.mean += color;
             squares += color * color;
-            now.wide += color * (x_wide[i] * y_wide[j]);
-            now.narrow += color * (x_narrow[i] * y_narrow[j]);
         }
-    float narrow = (x_narrow.x + x_narrow.y + x_narrow.z) * (y_narrow.x + y_narrow.y + y_narrow.z);
-    now.wide /= (x_wide.x + x_wide.y + x_wide.z) * (y_wide.x + y_wide.y + y_wide.z);
-    now.narrow /= narrow;
+    float weight = (x.x + x.y + x.z) * (y.x + y.y + y.z);
+    now.color /= weight;
     now.mean /= 9.0;
     now.deviation = sqrt(max(squares / 9.0 - now.mean * now.mean, vec3(0.0)));
-    now.weight = min(narrow, 1.0);
+    // A mean over a wider place tells less of it.
+    now.weight = min(weight, 1.0) * (exponent / custom[4].y);
     return now;
 }
 
-// Catmull-Rom, by nine taps that are each filtered.
-vec3 taa_past(vec2 place, vec2 extent, float unit) {
-    vec2 middle = floor(place - 0.5) + 0.5, f = place - middle;
-    vec2 before = f * (-0.5 + f * (1.0 - 0.5 * f)), behind = f * f * (-0.5 + 0.5 * f);
-    vec2 second = f * (0.5 + f * (2.0 - 1.5 * f)), inner = 1.0 - before - behind;
-    vec3 x_at = vec3(middle.x - 1.0, middle.x + second.x / inner.x, middle.x + 2.0) / extent.x;
-    vec3 y_at = vec3(middle.y - 1.0, middle.y + second.y / inner.y, middle.y + 2.0) / extent.y;
-    vec3 x = vec3(before.x, inner.x, behind.x), y = vec3(before.y, inner.y, behind.y), past = vec3(0.0);
-    for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i)
-            past += taa_toned(sample_linear(taa_light_before, vec2(x_at[i], y_at[j])).rgb, unit) * (x[i] * y[j]);
-    return past;
+vec3 taa_tap(vec2 place, float unit) { return taa_toned(sample_linear(taa_light_before, place).rgb, unit); }
+
+// A bicubic filter by five taps that are each filtered: what the corners weigh is little.
+vec3 taa_past(vec2 middle, vec2 f, vec2 extent, float unit) {
+    vec2 g = 1.0 - f, before = taa_cubic * f * g * g, behind = taa_cubic * g * f * f, inner = 1.0 - before - behind;
+    vec2 second = (taa_cubic + 2.0) * g * g * g - (taa_cubic + 3.0) * g * g + 1.0;
+    vec2 first_at = (middle - 1.0) / extent, at = (middle + second / inner) / extent, last_at = (middle + 2.0) / extent;
+    vec3 past = taa_tap(at, unit) * (inner.x * inner.y);
+    past += taa_tap(vec2(first_at.x, at.y), unit) * (before.x * inner.y);
+    past += taa_tap(vec2(last_at.x, at.y), unit) * (behind.x * inner.y);
+    past += taa_tap(vec2(at.x, first_at.y), unit) * (before.y * inner.x);
+    past += taa_tap(vec2(at.x, last_at.y), unit) * (behind.y * inner.x);
+    return taa_opponent(past / (inner.x + inner.y - inner.x * inner.y));
 }
 
 // Was something else in front of the surface, wherever the past would be read?
@@ -93,39 +94,44 @@ void shade(Pixel pixel, out vec4 result[2]) {
     float unit = 1.0 / clamp(load(taa_exposure, ivec2(0)).r, 1e-6, 1e6);
     vec2 output_place = vec2(pixel.texel) + 0.5, place = output_place * custom[0].xy + custom[0].zw;
     ivec2 limit = size(taa_color) - 1, middle = clamp(ivec2(floor(place)), ivec2(0), limit);
-    TaaNow now = taa_now(middle, limit, vec2(middle) + 0.5 - place, unit);
 
-    // The edge of what is in front moves with it: the motion of the nearest of the four samples around the place.
+    // The edge of what is in front moves with it: the motion of the nearest of the sample and the four beside it.
     float own = load(taa_distance, middle).r, inverse = own;
-    ivec2 at = middle, first = ivec2(floor(place - 0.5));
-    for (int j = 0; j < 2; ++j)
-        for (int i = 0; i < 2; ++i) taa_nearest(first + ivec2(i, j), limit, inverse, at);
+    ivec2 at = middle;
+    taa_nearest(middle - ivec2(1, 0), limit, inverse, at);
+    taa_nearest(middle + ivec2(1, 0), limit, inverse, at);
+    taa_nearest(middle - ivec2(0, 1), limit, inverse, at);
+    taa_nearest(middle + ivec2(0, 1), limit, inverse, at);
     if (inverse <= own * (1.0 + taa_edge)) {
         inverse = own;
         at = middle;
     }
-    vec2 motion = sanitize(load(taa_velocity, at)).xy * custom[1].xy, place_before = output_place + motion;
-    vec2 extent = vec2(pixel.size);
+    vec2 motion = sanitize(load(taa_velocity, at)).xy * custom[1].xy, before = output_place + motion;
+    vec2 extent = vec2(pixel.size), middle_before = floor(before - 0.5) + 0.5, f = before - middle_before;
 
-    vec3 color = now.wide;
-    float count = now.weight;
-    bool is_inside = all(greaterThan(place_before, vec2(0.0))) && all(lessThan(place_before, extent));
-    if (custom[3].z > 0.5 && is_inside && !taa_was_hidden(at, inverse, place_before * custom[0].xy + custom[1].zw)) {
-        float moves = min(length(motion) * 4.0, 1.0);
-        float frames = sample_linear(taa_count_before, place_before / extent).r;
-        frames = min(frames, mix(custom[4].x, taa_moving_frames, moves));
-        vec3 past = taa_past(place_before, extent, unit), away = past - now.mean;
-        // What lies outside the frame's own colours is drawn to their mean (M. Salvi, "An Excursion in Temporal
-        // Supersampling", 2016).
-        vec3 reach = max(now.deviation * mix(taa_still_reach, taa_moving_reach, moves), vec3(1e-3));
-        vec3 beyond = abs(away) / reach;
-        past = now.mean + away / max(max(beyond.x, beyond.y), max(beyond.z, 1.0));
+    float frames = 0.0, noise = 0.0;
+    bool is_inside = all(greaterThan(before, vec2(0.0))) && all(lessThan(before, extent));
+    if (custom[3].z > 0.5 && is_inside && !taa_was_hidden(at, inverse, before * custom[0].xy + custom[1].zw)) {
+        vec2 kept = taa_unpacked(sample_linear(taa_kept_before, before / extent).rg);
+        frames = min(kept.x, 1.0 / (custom[4].x + taa_loss * dot(f, 1.0 - f)));
         frames *= 1.0 - taa_most_reactive * clamp(load(taa_reactive, middle).r, 0.0, 1.0);
-        vec3 present = mix(now.wide, now.narrow, min(frames / 4.0, 1.0));
-        color = mix(past, present, now.weight / (frames + now.weight));
-        count = frames + now.weight;
+        noise = kept.y;
     }
-    float noise = taa_noise(pixel.texel, custom[3].w);
-    result[0] = vec4(taa_rounded(taa_light(color, unit), noise), sample_linear(taa_color, place / vec2(limit + 1)).a);
-    result[1] = vec4(count, 0.0, 0.0, 1.0);
+    TaaNow now = taa_now(middle, limit, vec2(middle) + 0.5 - place, unit,
+                         mix(custom[4].z, custom[4].y, min(frames, 1.0)));
+    vec3 color = now.color;
+    if (frames > 0.0) {
+        vec3 past = taa_past(middle_before, f, extent, unit), away = past - now.mean;
+        // What lies outside the frame's own colours is drawn to their mean (M. Salvi, "An Excursion in Temporal
+        // Supersampling", 2016), but for what samples are off the past all the time: parts thinner than a pixel are in one
+        // frame and not in the next.
+        float of_samples = noise * mix(taa_still_noise, taa_moving_noise, min(length(motion) * 4.0, 1.0));
+        vec3 beyond = abs(away) / max(now.deviation * taa_reach + of_samples, vec3(1e-3));
+        past = now.mean + away / max(max(beyond.x, beyond.y), max(beyond.z, 1.0));
+        color = mix(past, color, now.weight / (frames + now.weight));
+        noise += (abs(now.luma - past.x) - noise) * max(0.1, 1.0 / (frames + 1.0));
+    }
+    float dither = taa_dither(pixel.texel, custom[3].w);
+    result[0] = vec4(taa_rounded(taa_light(color, unit), dither), sample_linear(taa_color, place / vec2(limit + 1)).a);
+    result[1] = vec4(taa_packed(vec2(frames + now.weight, noise), dither), 0.0, 1.0);
 }

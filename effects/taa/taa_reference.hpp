@@ -17,6 +17,13 @@ namespace darkroom {
 /// Frames that are gathered where nothing moves.
 inline double taa_most_frames(const Taa& taa) { return 8 * std::exp2(4 * double{taa.stability}); }
 
+/// Of the Gaussian by which samples count, in pixels of the output: where there is a past, narrower the more samples
+/// there are, and where there is none, of a pixel of the frame.
+struct TaaExponents {
+    explicit TaaExponents(double scale) : narrow(4 * std::pow(scale, -0.75)), wide(1.5 / (scale * scale)) {}
+    double narrow, wide;
+};
+
 /// Until the frames before the first weigh less than half a code.
 inline std::uint32_t taa_pre_roll(const Taa& taa) {
     return static_cast<std::uint32_t>(std::ceil(taa_most_frames(taa) * std::log(2 * 255)));
@@ -77,8 +84,8 @@ namespace taa {
 using Toned = std::array<double, 3>;
 
 // The same numbers as in taa_gather.glsl.
-constexpr double moving_frames = 16, nearer = 0.02, edge = 0.03, wide = 1, narrow = 2.3, still_reach = 3,
-                 moving_reach = 1, most_reactive = 0.9;
+constexpr double edge = 0.03, nearer = 0.02, cubic = -0.6, loss = 2, reach = 1.25, still_noise = 3, moving_noise = 1,
+                 most_reactive = 0.9;
 
 inline Toned toned(const Rgba& c, double unit) {
     const double scale = 1 / (unit + std::max({c.r, c.g, c.b}));
@@ -120,18 +127,18 @@ class Gather {
         }
         if (input.history == nullptr || !input.history->contains("light")) return;
         light_before_ = &input.history->at("light");
-        count_before_ = &input.history->at("count");
+        kept_before_ = &input.history->at("kept");
         distance_before_ = &input.history->at("distance");
         if (light_before_->width != width_ || light_before_->height != height_) light_before_ = nullptr;
     }
 
     ReferenceImage run() {
-        ReferenceImage light_now(width_, height_), count(width_, height_);
+        ReferenceImage light_now(width_, height_), kept(width_, height_);
         for (std::uint32_t y = 0; y < height_; ++y)
-            for (std::uint32_t x = 0; x < width_; ++x) gather(x, y, light_now.at(x, y), count.at(x, y).r);
+            for (std::uint32_t x = 0; x < width_; ++x) gather(x, y, light_now.at(x, y), kept.at(x, y));
         if (input_.history != nullptr) {
             (*input_.history)["light"] = light_now;
-            (*input_.history)["count"] = count;
+            (*input_.history)["kept"] = kept;
             (*input_.history)["distance"] = distance_;
         }
         return light_now;
@@ -141,57 +148,60 @@ class Gather {
 
   private:
     struct Now {
-        Toned wide{}, narrow{}, mean{}, deviation{};
-        double weight = 0;
+        Toned color{}, mean{}, deviation{};
+        double luma = 0, weight = 0;
     };
 
     double jitter(std::size_t axis) const { return double{input_.camera.jitter[axis]}; }
 
-    Now now(std::int64_t i0, std::int64_t j0, double away_x, double away_y) const {
+    Now now(std::int64_t i0, std::int64_t j0, double away_x, double away_y, double exponent) const {
         Now out;
-        double wide_sum = 0, narrow_sum = 0;
         Toned squares{};
+        double weights = 0;
         for (int j = -1; j <= 1; ++j)
             for (int i = -1; i <= 1; ++i) {
-                const double dx = away_x + i, dy = away_y + j;
-                const double of_wide = std::exp(-wide * (dx * dx + dy * dy));
-                const double of_narrow = std::exp(-narrow * (std::pow(dx / x_scale_, 2) + std::pow(dy / y_scale_, 2)));
+                const double dx = (away_x + i) / x_scale_, dy = (away_y + j) / y_scale_;
+                const double weight = std::exp(-exponent * (dx * dx + dy * dy));
                 const Rgba& texel = picture_.clamped(i0 + i, j0 + j);
                 const Toned color = toned({finite_light_reference(texel.r), finite_light_reference(texel.g),
                                            finite_light_reference(texel.b), 1},
                                           unit_);
-                out.wide = sum(out.wide, color, of_wide);
-                out.narrow = sum(out.narrow, color, of_narrow);
+                if (i == 0 && j == 0) out.luma = color[0];
+                out.color = sum(out.color, color, weight);
                 out.mean = sum(out.mean, color, 1.0 / 9);
                 squares = sum(squares, {color[0] * color[0], color[1] * color[1], color[2] * color[2]}, 1.0 / 9);
-                wide_sum += of_wide;
-                narrow_sum += of_narrow;
+                weights += weight;
             }
-        out.wide = sum({}, out.wide, 1 / wide_sum);
-        out.narrow = sum({}, out.narrow, 1 / narrow_sum);
+        out.color = sum({}, out.color, 1 / weights);
         for (std::size_t c = 0; c < 3; ++c)
             out.deviation[c] = std::sqrt(std::max(squares[c] - out.mean[c] * out.mean[c], 0.0));
-        out.weight = std::min(narrow_sum, 1.0);
+        out.weight = std::min(weights, 1.0) * exponent / exponents_.narrow;
         return out;
     }
 
     Toned past(double x, double y) const {
-        const auto weights = [](double f) {
-            return std::array{f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f),
-                              f * (0.5 + f * (2 - 1.5 * f)), f * f * (-0.5 + 0.5 * f)};
+        const auto of_axis = [](double f) {
+            const double g = 1 - f, first = cubic * f * g * g, last = cubic * g * f * f;
+            const double third = (cubic + 2) * g * g * g - (cubic + 3) * g * g + 1;
+            return std::array{first, 1 - first - third - last, third, last};
         };
         const double mx = std::floor(x - 0.5) + 0.5, my = std::floor(y - 0.5) + 0.5;
-        const auto wx = weights(x - mx), wy = weights(y - my);
+        const auto wx = of_axis(x - mx), wy = of_axis(y - my);
         // The two in the middle are one filtered tap.
         const std::array at_x{mx - 1, mx + wx[2] / (wx[1] + wx[2]), mx + 2},
             at_y{my - 1, my + wy[2] / (wy[1] + wy[2]), my + 2};
         const std::array of_x{wx[0], wx[1] + wx[2], wx[3]}, of_y{wy[0], wy[1] + wy[2], wy[3]};
         Toned out{};
+        double weights = 0;
         for (std::size_t j = 0; j < 3; ++j)
-            for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (i != 1 && j != 1) continue;  // corners weigh little
+                const double weight = of_x[i] * of_y[j];
                 out = sum(out, toned(sample_reference(*light_before_, at_x[i] / width_, at_y[j] / height_), unit_),
-                          of_x[i] * of_y[j]);
-        return out;
+                          weight);
+                weights += weight;
+            }
+        return sum({}, out, 1 / weights);
     }
 
     bool was_hidden(std::int64_t i, std::int64_t j, double inverse, double x, double y) const {
@@ -231,51 +241,57 @@ class Gather {
                     double{c.previous_jitter[1]}};
     }
 
-    void gather(std::uint32_t x, std::uint32_t y, Rgba& out, double& count) const {
+    void gather(std::uint32_t x, std::uint32_t y, Rgba& out, Rgba& kept) const {
         const double px = (x + 0.5) * x_scale_ + jitter(0), py = (y + 0.5) * y_scale_ + jitter(1);
         const auto inside = [](double v, std::uint32_t n) {
             return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(v)), 0, std::int64_t{n} - 1);
         };
         const std::int64_t i0 = inside(px, picture_.width), j0 = inside(py, picture_.height);
-        const Now frame = now(i0, j0, static_cast<double>(i0) + 0.5 - px, static_cast<double>(j0) + 0.5 - py);
         const double own = distance_.clamped(i0, j0).r;
         double inverse = own;
         std::int64_t at_i = i0, at_j = j0;
-        for (int dj = 0; dj < 2; ++dj)
-            for (int di = 0; di < 2; ++di) {
-                const std::int64_t i = inside(std::floor(px - 0.5) + di, picture_.width),
-                                   j = inside(std::floor(py - 0.5) + dj, picture_.height);
-                const double here = distance_.clamped(i, j).r;
-                if (here > inverse) inverse = here, at_i = i, at_j = j;
-            }
+        constexpr std::array<std::array<int, 2>, 4> beside{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+        for (const auto& [di, dj] : beside) {
+            const double here = distance_.clamped(i0 + di, j0 + dj).r;
+            if (!(here > inverse)) continue;
+            inverse = here;
+            at_i = std::clamp<std::int64_t>(i0 + di, 0, std::int64_t{picture_.width} - 1);
+            at_j = std::clamp<std::int64_t>(j0 + dj, 0, std::int64_t{picture_.height} - 1);
+        }
         if (inverse <= own * (1 + edge)) inverse = own, at_i = i0, at_j = j0;
         std::array<double, 2> moved = motion(at_i, at_j, inverse);
         moved = {moved[0] / x_scale_, moved[1] / y_scale_};
         const double bx = x + 0.5 + moved[0], by = y + 0.5 + moved[1];
-        Toned color = frame.wide;
-        count = frame.weight;
+        const double fx = bx - 0.5 - std::floor(bx - 0.5), fy = by - 0.5 - std::floor(by - 0.5);
+        double frames = 0, noise = 0;
         const bool has_past = light_before_ != nullptr && bx > 0 && by > 0 && bx < width_ && by < height_;
         if (has_past && !was_hidden(at_i, at_j, inverse, bx * x_scale_ + double{input_.camera.previous_jitter[0]},
                                     by * y_scale_ + double{input_.camera.previous_jitter[1]})) {
-            const double moves = std::min(std::hypot(moved[0], moved[1]) * 4, 1.0);
-            double frames = sample_reference(*count_before_, bx / width_, by / height_).r;
-            frames = std::min(frames, std::lerp(taa_most_frames(taa_), moving_frames, moves));
-            const Toned before = past(bx, by), away = sum(before, frame.mean, -1);
-            double beyond = 1;
-            for (std::size_t c = 0; c < 3; ++c)
-                beyond = std::max(beyond,
-                                  std::abs(away[c]) /
-                                      std::max(frame.deviation[c] * std::lerp(still_reach, moving_reach, moves), 1e-3));
-            const Toned held = sum(frame.mean, away, 1 / beyond);
+            const Rgba before = sample_reference(*kept_before_, bx / width_, by / height_);
+            noise = before.g * before.g;
+            frames = std::min(before.r * before.r * 128,
+                              1 / (1 / taa_most_frames(taa_) + loss * (fx * (1 - fx) + fy * (1 - fy))));
             if (input_.reactive != nullptr)
                 frames *=
                     1 - most_reactive * std::clamp(finite_reference(input_.reactive->clamped(i0, j0).r), 0.0, 1.0);
-            const double narrower = std::min(frames / 4, 1.0);
-            const Toned present = sum(sum({}, frame.wide, 1 - narrower), frame.narrow, narrower);
-            const double alpha = frame.weight / (frames + frame.weight);
-            color = sum(sum({}, held, 1 - alpha), present, alpha);
-            count = frames + frame.weight;
         }
+        const Now frame = now(i0, j0, static_cast<double>(i0) + 0.5 - px, static_cast<double>(j0) + 0.5 - py,
+                              std::lerp(exponents_.wide, exponents_.narrow, std::min(frames, 1.0)));
+        Toned color = frame.color;
+        if (frames > 0) {
+            const Toned away = sum(past(bx, by), frame.mean, -1);
+            const double of_samples =
+                noise * std::lerp(still_noise, moving_noise, std::min(std::hypot(moved[0], moved[1]) * 4, 1.0));
+            double beyond = 1;
+            for (std::size_t c = 0; c < 3; ++c)
+                beyond = std::max(beyond, std::abs(away[c]) / std::max(frame.deviation[c] * reach + of_samples, 1e-3));
+            const Toned held = sum(frame.mean, away, 1 / beyond);
+            const double alpha = frame.weight / (frames + frame.weight);
+            color = sum(sum({}, held, 1 - alpha), color, alpha);
+            noise += (std::abs(frame.luma - held[0]) - noise) * std::max(0.1, 1 / (frames + 1));
+        }
+        // Roots, as the device keeps and filters them.
+        kept = {std::sqrt(std::clamp((frames + frame.weight) / 128, 0.0, 1.0)), std::sqrt(std::min(noise, 1.0)), 0, 1};
         out = light(color, unit_, sample_reference(picture_, px / picture_.width, py / picture_.height).a);
     }
 
@@ -284,12 +300,13 @@ class Gather {
     const ReferenceImage& picture_;
     std::uint32_t width_, height_;
     double x_scale_, y_scale_;  ///< pixels of the frame a pixel of the output
+    TaaExponents exponents_{1 / std::sqrt(x_scale_ * y_scale_)};
     double unit_;
     Camera camera_;
     TaaDepthBefore depth_before_;
     TaaMotion motion_;
     ReferenceImage distance_;  ///< inverse, 0 of the sky
-    const ReferenceImage *light_before_ = nullptr, *count_before_ = nullptr, *distance_before_ = nullptr;
+    const ReferenceImage *light_before_ = nullptr, *kept_before_ = nullptr, *distance_before_ = nullptr;
 };
 
 /// taa_sharpen.glsl.

@@ -2,27 +2,35 @@
 // From light to what is averaged, and back. `unit` is the light that is shown as white: the inverse of the exposure.
 #include "shared/sanitize.glsl"
 
-vec3 taa_toned(vec3 light, float unit) {
-    vec3 t = light / (unit + max(light.r, max(light.g, light.b)));
-    float green = 0.5 * t.g, both = 0.25 * (t.r + t.b);
-    return vec3(both + green, 0.5 * (t.r - t.b), green - both);
+vec3 taa_toned(vec3 light, float unit) { return light / (unit + max(light.r, max(light.g, light.b))); }
+
+// YCoCg.
+vec3 taa_opponent(vec3 toned) {
+    float green = 0.5 * toned.g, both = 0.25 * (toned.r + toned.b);
+    return vec3(both + green, 0.5 * (toned.r - toned.b), green - both);
 }
 
-vec3 taa_light(vec3 toned, float unit) {
-    float green = toned.x - toned.z;
-    vec3 t = max(vec3(green + toned.y, toned.x + toned.z, green - toned.y), vec3(0.0));
+vec3 taa_light(vec3 opponent, float unit) {
+    float both = opponent.x - opponent.z;
+    vec3 t = max(vec3(both + opponent.y, opponent.x + opponent.z, both - opponent.y), vec3(0.0));
     // As bright as half floats can be.
     return min(t * unit / max(1.0 - max(t.r, max(t.g, t.b)), 1e-7), vec3(65504.0));
 }
 
 // Halves would stop at what is near, and drivers that cut off would darken: it is rounded up as often as the part that
 // is lost is large. Noise by J. Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014.
-float taa_noise(ivec2 texel, float frame) {
+float taa_dither(ivec2 texel, float frame) {
     vec2 place = vec2(texel) + 5.588238 * frame;
     return fract(52.9829189 * fract(dot(place, vec2(0.06711056, 0.00583715))));
 }
-vec3 taa_rounded(vec3 value, float noise) {
+vec3 taa_rounded(vec3 value, float dither) {
     // A half has 13 bits of mantissa less.
-    uvec3 steps = uvec3(fract(vec3(0.0, 1.0 / 3.0, 2.0 / 3.0) + noise) * 8192.0);
+    uvec3 steps = uvec3(fract(vec3(0.0, 1.0 / 3.0, 2.0 / 3.0) + dither) * 8192.0);
     return min(uintBitsToFloat((floatBitsToUint(value) + steps) & 0xffffe000u), vec3(65504.0));
 }
+
+// Frames up to 128 and a deviation, as roots of their share in 8 bits each.
+vec2 taa_packed(vec2 kept, float dither) {
+    return floor(sqrt(clamp(kept / vec2(128.0, 1.0), 0.0, 1.0)) * 255.0 + vec2(dither, fract(dither + 0.5))) / 255.0;
+}
+vec2 taa_unpacked(vec2 packed) { return packed * packed * vec2(128.0, 1.0); }
