@@ -35,8 +35,8 @@ struct HostDesc {
 };
 
 /// A frame of a host that does everything right: a floor that goes away, in numbers of its own.
-struct Host {
-    explicit Host(const HostDesc& desc) {
+struct GatheredHost {
+    explicit GatheredHost(const HostDesc& desc) {
         const bool is_reversed = desc.depth == DepthKind::Reversed;
         const Matrix lens = projection_of(is_reversed, desc.is_y_down);
         camera.jitter = Composer::jitter(4, 1.5F);
@@ -106,7 +106,7 @@ void for_each_host(const std::function<void(const HostDesc&)>& call) {
 
 TEST(TemporalCheck, HostsOfEveryConventionAreRight) {
     for_each_host([](const HostDesc& desc) {
-        const std::vector<std::string> found = Host(desc).mistakes();
+        const std::vector<std::string> found = GatheredHost(desc).mistakes();
         EXPECT_TRUE(found.empty()) << found[0];
     });
 }
@@ -114,7 +114,7 @@ TEST(TemporalCheck, HostsOfEveryConventionAreRight) {
 // The first of the three: also where the camera stands still, and where nobody gives depth.
 TEST(TemporalCheck, JitterInVectorsIsSaid) {
     for_each_host([](const HostDesc& desc) {
-        Host host(desc);
+        GatheredHost host(desc);
         host.camera.velocity.has_jitter = !desc.velocity.has_jitter;
         host.expect_mistake(desc.velocity.has_jitter
                                 ? "velocity: holds the jitter, which camera.velocity.has_jitter does not say"
@@ -129,15 +129,15 @@ TEST(TemporalCheck, JitterInVectorsIsSaid) {
 TEST(TemporalCheck, SignsAreSaid) {
     for_each_host([](const HostDesc& desc) {
         if (!desc.moves) return;
-        Host turned(desc);
+        GatheredHost turned(desc);
         turned.camera.velocity.sign = static_cast<VelocityKind::Sign>(1 - static_cast<int>(desc.velocity.sign));
         // Jitter that is in the vectors has then the wrong sign as well.
         if (!desc.velocity.has_jitter) turned.expect_mistake("velocity: has the other sign than");
-        Host upside_down(desc);
+        GatheredHost upside_down(desc);
         upside_down.camera.velocity.is_y_down = !desc.velocity.is_y_down;
         if (!desc.velocity.has_jitter) upside_down.expect_mistake("velocity: has y the other way than");
     });
-    Host host({.moves = false});
+    GatheredHost host({.moves = false});
     for (std::array<float, 2>* const jitter : {&host.camera.jitter, &host.camera.previous_jitter})
         *jitter = {-(*jitter)[0], -(*jitter)[1]};
     const std::vector<std::string> found = host.mistakes();
@@ -149,7 +149,7 @@ TEST(TemporalCheck, SignsAreSaid) {
 // The third.
 TEST(TemporalCheck, TheDirectionOfDepthIsSaid) {
     for (const bool is_reversed : {false, true}) {
-        Host host({.depth = is_reversed ? DepthKind::Reversed : DepthKind::Standard, .moves = false});
+        GatheredHost host({.depth = is_reversed ? DepthKind::Reversed : DepthKind::Standard, .moves = false});
         host.camera.depth = is_reversed ? DepthKind::Standard : DepthKind::Reversed;
         host.expect_mistake(is_reversed ? "camera.depth: Standard is told, and the projection makes depth smaller"
                                         : "camera.depth: Reversed is told, and the projection makes depth larger");
@@ -157,15 +157,15 @@ TEST(TemporalCheck, TheDirectionOfDepthIsSaid) {
 }
 
 TEST(TemporalCheck, UnitsAndMissingJitterAndSizesAreSaid) {
-    Host pixels({.velocity = {.unit = VelocityKind::Unit::Uv}});
+    GatheredHost pixels({.velocity = {.unit = VelocityKind::Unit::Uv}});
     pixels.camera.velocity.unit = VelocityKind::Unit::Pixels;
     const std::vector<std::string> found = pixels.mistakes();
     ASSERT_FALSE(found.empty());
     EXPECT_NE(found[0].find("camera.velocity.unit"), std::string::npos) << found[0];
-    Host still({.moves = false});
+    GatheredHost still({.moves = false});
     still.camera.projection = still.camera.previous_projection = projection_of(false, true);
     EXPECT_TRUE(still.mistakes().at(0).starts_with("camera.projection: has no jitter; camera.jitter tells of"));
-    Host small({});
+    GatheredHost small({});
     small.velocity.pop_back();
     small.expect_mistake("velocity: 1279 numbers, 32x20 pixels have 1280");
 }
@@ -173,7 +173,7 @@ TEST(TemporalCheck, UnitsAndMissingJitterAndSizesAreSaid) {
 // A third of the picture that moves by itself hides no mistake and makes none.
 TEST(TemporalCheck, WhatMovesByItselfDoesNoHarm) {
     for (const bool is_told : {false, true}) {
-        Host host({.velocity = {.has_jitter = true}});
+        GatheredHost host({.velocity = {.has_jitter = true}});
         for (std::size_t i = 0; i < host.velocity.size() / 3; ++i) host.velocity[i] += 7;
         host.camera.velocity.has_jitter = is_told;
         EXPECT_EQ(host.mistakes().size(), is_told ? 0U : 1U);

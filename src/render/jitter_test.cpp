@@ -15,10 +15,10 @@ namespace {
 
 using namespace test;
 
-constexpr VkExtent2D extent{64, 48};
+constexpr VkExtent2D jitter_extent{64, 48};
 
 scene::Snapshot boxes() {
-    scene::Snapshot snapshot = snapshot_of(extent);
+    scene::Snapshot snapshot = snapshot_of(jitter_extent);
     snapshot.camera.projection[2] += vec4(0.1F, -0.05F, 0, 0);
     snapshot.camera.previous_projection = snapshot.camera.projection;
     add_wall(snapshot, 4, 1.3F, plain({2, 1, 0.5F, 1}));
@@ -27,11 +27,11 @@ scene::Snapshot boxes() {
 }
 
 TEST(RenderGpuJitter, MovesThePictureRightAndDown) {
-    Renderer renderer = renderer_for({.extent = extent}, {}, dark_scene());
+    Renderer renderer = renderer_for({.extent = jitter_extent}, {}, dark_scene());
     const scene::Snapshot snapshot = boxes();
     const Shot still = shoot(renderer, snapshot), moved = shoot(renderer, snapshot, {.now = {3, 2}});
-    for (std::uint32_t y = 2; y < extent.height; ++y)
-        for (std::uint32_t x = 3; x < extent.width; ++x) {
+    for (std::uint32_t y = 2; y < jitter_extent.height; ++y)
+        for (std::uint32_t x = 3; x < jitter_extent.width; ++x) {
             EXPECT_EQ(moved.color.at(x, y), still.color.at(x - 3, y - 2)) << x << ", " << y;
             const float depth = still.depth.at(x - 3, y - 2)[0];
             EXPECT_NEAR(moved.depth.at(x, y)[0], depth, depth * 1e-4F) << x << ", " << y;
@@ -40,16 +40,16 @@ TEST(RenderGpuJitter, MovesThePictureRightAndDown) {
 
 // The mean of many places is that of a picture drawn from many places.
 TEST(RenderGpuJitter, PlacesAddUpToThePixel) {
-    Renderer renderer = renderer_for({.extent = extent}, {}, dark_scene());
+    Renderer renderer = renderer_for({.extent = jitter_extent}, {}, dark_scene());
     const scene::Snapshot snapshot = boxes();
     constexpr std::uint64_t frames = 64;
-    std::vector<double> sum(extent.width * extent.height);
+    std::vector<double> sum(jitter_extent.width * jitter_extent.height);
     for (std::uint64_t i = 0; i < frames; ++i) {
         const Pixels color = shoot(renderer, snapshot, {.now = Composer::jitter(i, 3)}).color;
         for (std::size_t pixel = 0; pixel < sum.size(); ++pixel)
             sum[pixel] += double{color.rgba[4 * pixel]} / (1 + double{color.rgba[4 * pixel]}) / frames;
     }
-    Renderer many = renderer_for({.extent = extent, .positions = 256}, {}, dark_scene());
+    Renderer many = renderer_for({.extent = jitter_extent, .positions = 256}, {}, dark_scene());
     const Pixels truth = shoot(many, snapshot).color;
     double worst = 0;
     for (std::size_t pixel = 0; pixel < sum.size(); ++pixel)
@@ -59,7 +59,7 @@ TEST(RenderGpuJitter, PlacesAddUpToThePixel) {
 }
 
 TEST(RenderGpuJitter, TheFrameTellsOfIt) {
-    Renderer renderer = renderer_for({.extent = extent}, {}, dark_scene());
+    Renderer renderer = renderer_for({.extent = jitter_extent}, {}, dark_scene());
     const scene::Snapshot snapshot = boxes();
     const FrameJitter jitter{.now = {0.375F, -0.25F}, .before = {-0.125F, 0.5F}};
     shoot(renderer, snapshot, jitter);
@@ -70,14 +70,14 @@ TEST(RenderGpuJitter, TheFrameTellsOfIt) {
     shoot(renderer, snapshot);
     const Camera still = renderer.frame().camera;
     EXPECT_EQ(still.jitter, (std::array<float, 2>{}));
-    EXPECT_EQ(camera.projection, jittered(still.projection, jitter.now, extent));
-    EXPECT_EQ(camera.previous_projection, jittered(still.projection, jitter.before, extent));
+    EXPECT_EQ(camera.projection, jittered(still.projection, jitter.now, jitter_extent));
+    EXPECT_EQ(camera.previous_projection, jittered(still.projection, jitter.before, jitter_extent));
 }
 
 // A box that begins a quarter of a pixel outside comes into the picture.
 TEST(RenderGpuJitter, WhatItBringsIntoThePictureIsDrawn) {
-    Renderer renderer = renderer_for({.extent = extent}, {}, dark_scene());
-    scene::Snapshot snapshot = snapshot_of(extent);
+    Renderer renderer = renderer_for({.extent = jitter_extent}, {}, dark_scene());
+    scene::Snapshot snapshot = snapshot_of(jitter_extent);
     // 6 pixels a metre at distance 4; the left edge is at -32 pixels.
     add_box(snapshot, {-9, -1, -4.001F}, {(-32 - 0.25F) / 6, 1, -4}, plain(vec4(1)));
     EXPECT_EQ(shoot(renderer, snapshot).color.at(0, 24)[0], 0);
@@ -108,9 +108,9 @@ scene::Assets board() {
 
 TEST(RenderGpuJitter, TheMipBiasIsOfTextures) {
     const scene::Assets assets = board();
-    Renderer renderer = renderer_for({.extent = extent}, assets, dark_scene());
+    Renderer renderer = renderer_for({.extent = jitter_extent}, assets, dark_scene());
     // Meshes and sprites: 60 pixels show 128 texels, so the level of half the size, which is grey.
-    scene::Snapshot mesh = snapshot_of(extent), sprite = snapshot_of(extent);
+    scene::Snapshot mesh = snapshot_of(jitter_extent), sprite = snapshot_of(jitter_extent);
     scene::SnapshotMaterial material = plain(vec4(1));
     material.entity_texture = 0;
     add_wall(mesh, 4, 5, material);

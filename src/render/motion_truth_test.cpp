@@ -18,7 +18,7 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
 
-constexpr VkExtent2D extent{97, 64};
+constexpr VkExtent2D motion_extent{97, 64};
 constexpr FrameJitter off_centre{.now = {0.375F, -0.25F}, .before = {-0.4F, 0.1F}};
 
 // Colours by which pixels are told apart.
@@ -47,7 +47,7 @@ mat4 placed(vec3 position, float degrees, vec3 axis, float scale) {
 /// A wall that stands, two boxes of one call that turn each in its own way, a skinned quad, a sprite, and sky; the
 /// camera walks and turns, and its lens zooms.
 scene::Snapshot moving_scene() {
-    scene::Snapshot snapshot = snapshot_of(extent);
+    scene::Snapshot snapshot = snapshot_of(motion_extent);
     scene::CameraState& camera = snapshot.camera;
     camera.view = glm::lookAt(vec3(0.2F, 0.3F, 0), vec3(0, 0.1F, -8), vec3(0, 1, 0));
     camera.previous_view = glm::lookAt(vec3(0.35F, 0.2F, 0.3F), vec3(0.5F, -0.1F, -8), vec3(0.05F, 1, 0));
@@ -95,7 +95,7 @@ class Truth {
     [[nodiscard]] dvec2 motion(std::uint32_t x, std::uint32_t y, double depth, float red) const {
         const scene::CameraState& camera = snapshot_.camera;
         const dvec2 seen = dvec2(x + 0.5, y + 0.5) - jitter_;
-        const dvec2 clip = seen / dvec2(extent.width, extent.height) * 2.0 - 1.0;
+        const dvec2 clip = seen / dvec2(motion_extent.width, motion_extent.height) * 2.0 - 1.0;
         const dmat4 projection(camera.projection);
         const dvec3 ray((clip.x + projection[2][0]) / projection[0][0], (clip.y + projection[2][1]) / projection[1][1],
                         -1);
@@ -104,7 +104,7 @@ class Truth {
         const bool is_sky = depth > 1e9;
         const dvec4 now = to_world * dvec4(is_sky ? ray : ray * depth, is_sky ? 0 : 1);
         const dvec4 before = dmat4(camera.previous_projection) * dmat4(camera.previous_view) * previous(now, red);
-        return (dvec2(before) / before.w * 0.5 + 0.5) * dvec2(extent.width, extent.height) - seen;
+        return (dvec2(before) / before.w * 0.5 + 0.5) * dvec2(motion_extent.width, motion_extent.height) - seen;
     }
 
   private:
@@ -139,7 +139,7 @@ class Truth {
 /// Half floats of motion, and depth where it was drawn from.
 double tolerance(const dvec2& motion) { return 0.01 + glm::length(motion) / 1024; }
 
-Renderer motion_renderer() { return renderer_for({.extent = extent}, figure(), dark_scene()); }
+Renderer motion_renderer() { return renderer_for({.extent = motion_extent}, figure(), dark_scene()); }
 
 TEST(RenderGpuMotion, EachPixelCameFromWhereItsVectorLeads) {
     Renderer renderer = motion_renderer();
@@ -149,8 +149,8 @@ TEST(RenderGpuMotion, EachPixelCameFromWhereItsVectorLeads) {
         const Shot shot = shoot(renderer, snapshot, jitter);
         std::map<float, int> seen;
         std::map<float, double> moved;  ///< pixels, all together
-        for (std::uint32_t y = 0; y < extent.height; ++y)
-            for (std::uint32_t x = 0; x < extent.width; ++x) {
+        for (std::uint32_t y = 0; y < motion_extent.height; ++y)
+            for (std::uint32_t x = 0; x < motion_extent.width; ++x) {
                 const float red = std::nearbyint(shot.color.at(x, y)[0]);  // halves of what was interpolated
                 const dvec2 expected = truth.motion(x, y, double{shot.depth.at(x, y)[0]}, red);
                 const auto found = shot.velocity.at(x, y);
@@ -191,8 +191,8 @@ TEST(RenderGpuMotion, NothingMovesOverACut) {
     snapshot.previous_joints = snapshot.joints;
     snapshot.sprites[0].previous_position = snapshot.sprites[0].position;
     const Shot shot = shoot(renderer, snapshot, off_centre);
-    for (std::uint32_t y = 0; y < extent.height; ++y)
-        for (std::uint32_t x = 0; x < extent.width; ++x)
+    for (std::uint32_t y = 0; y < motion_extent.height; ++y)
+        for (std::uint32_t x = 0; x < motion_extent.width; ++x)
             for (std::size_t axis = 0; axis < 2; ++axis) ASSERT_NEAR(shot.velocity.at(x, y)[axis], 0, 1e-4F);
 }
 

@@ -10,10 +10,10 @@ namespace {
 
 using namespace test;
 
-constexpr VkExtent2D extent{64, 48};
+constexpr VkExtent2D transparency_extent{64, 48};
 
 scene::Snapshot opaque_scene() {
-    scene::Snapshot snapshot = snapshot_of(extent);
+    scene::Snapshot snapshot = snapshot_of(transparency_extent);
     add_wall(snapshot, 6, 3, plain({2, 1, 0.5F, 1}));
     snapshot.sprites = {{.position = {-2, -1, -4}, .size = {1, 2}, .anchor_y = 0, .intensity = 3}};
     return snapshot;
@@ -30,8 +30,8 @@ scene::Snapshot whole_scene() {
 }
 
 TEST(RenderGpuTransparency, IsThePictureWithoutWhatIsBlended) {
-    Renderer with = renderer_for({.extent = extent, .has_transparency = true}),
-             without = renderer_for({.extent = extent});
+    Renderer with = renderer_for({.extent = transparency_extent, .has_transparency = true}),
+             without = renderer_for({.extent = transparency_extent});
     const scene::Snapshot whole = whole_scene();
     const Pixels opaque = shoot(without, opaque_scene()).color;
     const Shot plain_shot = shoot(without, whole);
@@ -43,15 +43,16 @@ TEST(RenderGpuTransparency, IsThePictureWithoutWhatIsBlended) {
         EXPECT_EQ(shot.normals.rgba, plain_shot.normals.rgba);
         EXPECT_EQ(shot.velocity.rgba, plain_shot.velocity.rgba);
         EXPECT_EQ(download(with.frame().transparency).rgba, opaque.rgba);
-        must(with.resize(extent));
+        must(with.resize(transparency_extent));
     }
     EXPECT_NE(opaque.at(48, 24), plain_shot.color.at(48, 24)) << "the pane";
     EXPECT_NE(opaque.at(16, 16), plain_shot.color.at(16, 16)) << "the puff";
 }
 
 TEST(RenderGpuTransparency, IsOfOneSampleAndPositionOfLinearLight) {
-    for (const RenderDesc& desc : {RenderDesc{.extent = extent, .positions = 2, .has_transparency = true},
-                                   RenderDesc{.extent = extent, .output = Output::Display, .has_transparency = true}}) {
+    for (const RenderDesc& desc :
+         {RenderDesc{.extent = transparency_extent, .positions = 2, .has_transparency = true},
+          RenderDesc{.extent = transparency_extent, .output = Output::Display, .has_transparency = true}}) {
         const Result<Renderer> made = Renderer::create(gpu::test::device(), {}, {}, desc);
         ASSERT_FALSE(made);
         EXPECT_TRUE(made.error().text.starts_with("colour before transparency: with 1 samples, ")) << made.error().text;
