@@ -84,7 +84,9 @@ TEST_P(CliViewerPanels, AreMovedClosedAndRemembered) {
     choose("Parameters");
     EXPECT_EQ(middle(is_column ? "splitter/Column" : "splitter/Parameters")[0], other[0]);
     click("close/Below");
-    if (!GetParam().is_fullscreen) EXPECT_GT(place("panel/Picture")[3], picture[3]);
+    if (!GetParam().is_fullscreen) {
+        EXPECT_GT(place("panel/Picture")[3], picture[3]);
+    }
     choose("Put panels back");
     EXPECT_NE(middle("splitter/Stack"), stack);
     press("question", "? keys: on");
