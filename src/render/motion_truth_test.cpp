@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <darkroom/temporal_check.hpp>
 #include <map>
 
 #include "render/renderer_test_support.hpp"
@@ -82,6 +83,14 @@ scene::Snapshot moving_scene() {
                          .size = {2, 2.5F},
                          .anchor_y = 0,
                          .intensity = sprite_red}};
+    return snapshot;
+}
+
+/// The same with a camera alone that moves.
+scene::Snapshot standing(scene::Snapshot snapshot) {
+    for (scene::Instance& instance : snapshot.instances) instance.previous_world = instance.world;
+    snapshot.previous_joints = snapshot.joints;
+    snapshot.sprites[0].previous_position = snapshot.sprites[0].position;
     return snapshot;
 }
 
@@ -167,6 +176,24 @@ TEST(RenderGpuMotion, EachPixelCameFromWhereItsVectorLeads) {
     }
 }
 
+// What is told to hosts about theirs is true of ours. Before the sky, which the check leaves out, most must stand.
+TEST(RenderGpuMotion, TheCheckOfHostsFindsNoMistake) {
+    Renderer renderer = motion_renderer();
+    const Shot shot = shoot(renderer, standing(moving_scene()), off_centre);
+    std::vector<float> depth, velocity;
+    for (std::uint32_t y = 0; y < extent.height; ++y)
+        for (std::uint32_t x = 0; x < extent.width; ++x) {
+            depth.push_back(shot.depth.at(x, y)[0]);
+            velocity.insert(velocity.end(), {shot.velocity.at(x, y)[0], shot.velocity.at(x, y)[1]});
+        }
+    TemporalFrame frame{.camera = renderer.frame().camera, .extent = extent, .depth = depth, .velocity = velocity};
+    for (const std::string& mistake : check_temporal(frame)) ADD_FAILURE() << mistake;
+    frame.camera.velocity.has_jitter = true;
+    const std::vector<std::string> found = check_temporal(frame);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0], "velocity: holds no jitter, and camera.velocity.has_jitter says that it does");
+}
+
 // They are blended into what lies behind, which stays what depth and motion tell of.
 TEST(RenderGpuMotion, ParticlesLeaveTheMotionOfWhatLiesBehind) {
     Renderer renderer = motion_renderer();
@@ -184,12 +211,9 @@ TEST(RenderGpuMotion, ParticlesLeaveTheMotionOfWhatLiesBehind) {
 // A cut has no past: what the snapshot then says is that nothing moved, and no jitter comes in its place.
 TEST(RenderGpuMotion, NothingMovesOverACut) {
     Renderer renderer = motion_renderer();
-    scene::Snapshot snapshot = moving_scene();
+    scene::Snapshot snapshot = standing(moving_scene());
     snapshot.camera.previous_view = snapshot.camera.view;
     snapshot.camera.previous_projection = snapshot.camera.projection;
-    for (scene::Instance& instance : snapshot.instances) instance.previous_world = instance.world;
-    snapshot.previous_joints = snapshot.joints;
-    snapshot.sprites[0].previous_position = snapshot.sprites[0].position;
     const Shot shot = shoot(renderer, snapshot, off_centre);
     for (std::uint32_t y = 0; y < motion_extent.height; ++y)
         for (std::uint32_t x = 0; x < motion_extent.width; ++x)

@@ -61,7 +61,8 @@ TEST_F(CliBake, EveryImageOfAFrameHasAFlag) {
     for (const char* const word :
          {"--depth-format", "R32_SFLOAT", "--planar-depth", "--normals-format", "R16G16B16A16_SFLOAT",
           "--velocity-format", "R16G16_SFLOAT", "--plain-velocity", "--ui-format", "R8G8B8A8_UNORM",
-          "--reactive-format", "R8_UNORM", "--exposure-format", "R32_SFLOAT", "--shadows"})
+          "--reactive-format", "R8_UNORM", "--transparency-format", "R16G16B16A16_SFLOAT", "--exposure-format",
+          "R32_SFLOAT", "--shadows"})
         with.emplace_back(word);
     ASSERT_EQ(run(typed).code, 0);
     const auto without = read_file(path("all.dkb"));
