@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <darkroom/effects.hpp>
+#include <darkroom/frame.hpp>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -92,6 +93,37 @@ TEST_F(CliInfo, AFrameIsToldWithLayersCameraAndLights) {
     EXPECT_EQ(found.at("lights").at(0).at("cascades"), 2);
     EXPECT_EQ(found.at("lights").at(0).at("reach"), 25.0);
     EXPECT_EQ(found.at("lights").at(1).at("cascades"), 0);
+}
+
+// Of frames that were drawn for effects that gather them.
+TEST_F(CliInfo, JitterThatWasLeftInMotionIsToldAsAWarning) {
+    for (const bool is_left : {false, true}) {
+        FrameFile frame;
+        frame.color = Picture(16, 9);
+        frame.depth = Plane<1>(16, 9);
+        std::ranges::fill(frame.depth->values, 5.0F);
+        frame.velocity = Plane<2>(16, 9);
+        frame.camera.world_to_camera = frame.camera.previous_world_to_camera =
+            Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+        frame.camera.jitter = {0.25F, -0.375F};
+        frame.camera.previous_jitter = {-0.25F, 0.125F};
+        const Matrix lens = perspective(40, 16 / 9.0);
+        frame.camera.projection = jittered(lens, *frame.camera.jitter, {16, 9});
+        frame.camera.previous_projection = jittered(lens, *frame.camera.previous_jitter, {16, 9});
+        for (std::size_t i = 0; is_left && i < frame.velocity->values.size(); ++i)
+            frame.velocity->values[i] = i % 2 == 0 ? -0.5F : 0.5F;
+        ASSERT_TRUE(write_frame(path("jittered.exr"), frame));
+        const json found = document(path("jittered.exr"));
+        if (!is_left) {
+            EXPECT_FALSE(found.contains("warnings")) << found.dump();
+            continue;
+        }
+        ASSERT_EQ(found.at("warnings").size(), 1U) << found.dump();
+        EXPECT_EQ(
+            found.at("warnings").at(0),
+            "velocity: holds the jitter, which camera.velocity.has_jitter does not say: what stands still moves by "
+            "-0.500, 0.500 pixels");
+    }
 }
 
 TEST_F(CliInfo, WhatTheDefaultLookLeavesOutIsThePlansWord) {

@@ -6,10 +6,12 @@
 #include <darkroom/composer.hpp>
 #include <darkroom/device.hpp>
 #include <darkroom/look.hpp>
+#include <darkroom/temporal_check.hpp>
 #include <numbers>
 #include <optional>
 #include <system_error>
 
+#include "apps/darkroom/run/frames.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/frame/layer_file.hpp"
 #include "info_documents.hpp"
@@ -159,6 +161,17 @@ Result<Json> default_look_of(const FrameFile& frame) {
     return Json{{"left_out", std::move(left_out)}, {"would_be_left_out_if_on", std::move(left_out_if_on)}};
 }
 
+/// What effects that gather frames would stumble over, of a frame that was drawn for them.
+void add_mistakes(const FrameFile& frame, Json& out) {
+    if (!frame.camera.jitter || !frame.velocity || !frame.camera.world_to_camera || !frame.camera.projection ||
+        !frame.camera.previous_world_to_camera || !frame.camera.previous_projection)
+        return;
+    const darkroom::DevelopInput input = develop_input(frame, {});
+    for (const std::string& mistake : darkroom::check_temporal(
+             {.camera = input.camera, .extent = input.extent, .depth = input.depth, .velocity = input.velocity}))
+        out["warnings"].push_back(mistake);
+}
+
 Result<> add_frame(const std::filesystem::path& path, Json& out) {
     Result<FrameFile> frame = darkroom::read_frame(path, {.has_shadow_depths = false});
     if (!frame) {
@@ -176,6 +189,7 @@ Result<> add_frame(const std::filesystem::path& path, Json& out) {
     if (frame->frame_index) out["frame_index"] = *frame->frame_index;
     if (!frame->lights.empty()) out["lights"] = lights_of(frame->lights);
     if (!frame->warnings.empty()) out["warnings"] = frame->warnings;
+    add_mistakes(*frame, out);
     // A picture may be larger than what GPUs develop.
     if (const Result<Json> look = default_look_of(*frame))
         out["default_look"] = *look;
