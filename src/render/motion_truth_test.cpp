@@ -181,12 +181,13 @@ TEST(RenderGpuMotion, TheCheckOfHostsFindsNoMistake) {
     Renderer renderer = motion_renderer();
     const Shot shot = shoot(renderer, standing(moving_scene()), off_centre);
     std::vector<float> depth, velocity;
-    for (std::uint32_t y = 0; y < extent.height; ++y)
-        for (std::uint32_t x = 0; x < extent.width; ++x) {
+    for (std::uint32_t y = 0; y < motion_extent.height; ++y)
+        for (std::uint32_t x = 0; x < motion_extent.width; ++x) {
             depth.push_back(shot.depth.at(x, y)[0]);
             velocity.insert(velocity.end(), {shot.velocity.at(x, y)[0], shot.velocity.at(x, y)[1]});
         }
-    TemporalFrame frame{.camera = renderer.frame().camera, .extent = extent, .depth = depth, .velocity = velocity};
+    TemporalFrame frame{
+        .camera = renderer.frame().camera, .extent = motion_extent, .depth = depth, .velocity = velocity};
     for (const std::string& mistake : check_temporal(frame)) ADD_FAILURE() << mistake;
     frame.camera.velocity.has_jitter = true;
     const std::vector<std::string> found = check_temporal(frame);

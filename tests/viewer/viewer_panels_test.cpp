@@ -10,7 +10,7 @@ namespace darkroom::test {
 
 namespace {
 
-const std::string scenes = std::string(test::source_folder) + "/scenes/";
+const std::string shipped_scenes = std::string(test::source_folder) + "/shipped_scenes/";
 
 struct Shown {
     const char* name;
@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Windows, CliViewerPanels,
                          [](const auto& of) { return std::string(of.param.name); });
 
 TEST_P(CliViewerPanels, AreMovedClosedAndRemembered) {
-    ASSERT_EQ(run({"render", scenes + "dungeon.scene.toml", "--size", "160x90", "-o", path("r.png"), "--frame",
+    ASSERT_EQ(run({"render", shipped_scenes + "dungeon.scene.toml", "--size", "160x90", "-o", path("r.png"), "--frame",
                    path("frame.exr")})
                   .code,
               0);
@@ -103,14 +103,14 @@ class CliViewerSpeed : public ViewerFixture {
 };
 
 TEST_F(CliViewerSpeed, WhatMovesHasFewerPixelsAndWhatIsStoredAll) {
-    start({"play", scenes + "showcase.scene.toml", "--size", "1280x720"});
+    start({"play", shipped_scenes + "showcase.scene.toml", "--size", "1280x720"});
     EXPECT_TRUE(wait_until([&] { return divisor() == "1280x720 / 2" || divisor() == "1280x720 / 4"; }, 60))
         << divisor();
     EXPECT_EQ(shot().width, 1280U);
     press("p", "P pause: on");
     EXPECT_TRUE(wait_until([&] { return divisor() == "1280x720 / 1"; }, 60)) << divisor();
     leave();
-    start({"play", scenes + "showcase.scene.toml", "--size", "1280x720", "--full-size"});
+    start({"play", shipped_scenes + "showcase.scene.toml", "--size", "1280x720", "--full-size"});
     std::this_thread::sleep_for(std::chrono::seconds(5));
     EXPECT_EQ(divisor(), "1280x720 / 1");
     leave();
