@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any domain. AMD, "FidelityFX Super Resolution 1.0", 2021, robust contrast-adaptive sharpening (RCAS); but that the range
-// of values ends at the brightest pixel where that is above 1, and the result within the span of the five pixels.
+// of values goes on where the brightest pixel is above 1, and the result stays within the span of the five pixels.
 #include "shared/sanitize.glsl"
 
 // The strongest that a neighbour may weigh: beyond it the published method amplifies noise.
@@ -16,7 +16,8 @@ vec4 sharpen(Pixel pixel, Sharpen parameters) {
     vec3 w = sharpen_at(before.x, texel.y), o = sharpen_at(behind.x, texel.y);
     vec3 low = min(min(n, s), min(w, o)), high = max(max(n, s), max(w, o));
     vec3 darkest = min(low, e), brightest = max(high, e);
-    float peak = max(max(brightest.r, brightest.g), max(brightest.b, 1.0));
+    // Beyond 1 there is as much room above the brightest as it lies above 1.
+    float peak = max(2.0 * max(brightest.r, max(brightest.g, brightest.b)) - 1.0, 1.0);
 
     // How much all neighbours may weigh until a channel would reach 0 or the peak, were they all as `low` or `high`.
     vec3 down = max(darkest, 0.0) / max(4.0 * high, 1e-30), up = (peak - brightest) / max(4.0 * (peak - low), 1e-30);

@@ -26,8 +26,9 @@ inline ReferenceImage sharpen_reference(const void* parameters, const ReferenceI
             };
             const Rgba n = finite(0, -1), s = finite(0, 1), w = finite(-1, 0), e = finite(1, 0), own = finite(0, 0);
             constexpr double Rgba::*channels[] = {&Rgba::r, &Rgba::g, &Rgba::b};
-            double peak = 1, lobe = -std::numeric_limits<double>::infinity();
-            for (const auto c : channels) peak = std::max({peak, n.*c, s.*c, w.*c, e.*c, own.*c});
+            double most = 1, lobe = -std::numeric_limits<double>::infinity();
+            for (const auto c : channels) most = std::max({most, n.*c, s.*c, w.*c, e.*c, own.*c});
+            const double peak = 2 * most - 1;
             for (const auto c : channels) {
                 const double low = std::min({n.*c, s.*c, w.*c, e.*c}), high = std::max({n.*c, s.*c, w.*c, e.*c});
                 const double hit_min = high > 0 ? std::max(std::min(low, own.*c), 0.0) / (4 * high) : 0;
