@@ -17,16 +17,24 @@ const float taa_cubic = -0.6;   // slope of the filter of the past (R. Keys, 198
 // a frame is worth keeping.
 const float taa_loss = 2.0;
 const float taa_reach = 1.25;  // how far the past may lie off the frame's mean: deviations of the frame's colours,
-const float taa_still_noise = 3.0, taa_moving_noise = 1.0;  // and of samples off the past
+const float taa_still_noise = 3.0, taa_moving_noise = 0.5;  // and of samples off the past
 const float taa_most_reactive = 0.9;
 
-// What of the inverse distances beside is nearer, and where.
-void taa_nearest(ivec2 texel, ivec2 limit, inout float inverse, inout ivec2 at) {
+// Of the samples beside, the nearest and the farthest, and where.
+struct TaaEdge {
+    float nearest, farthest;
+    ivec2 near_at, far_at;
+};
+void taa_look(ivec2 texel, ivec2 limit, inout TaaEdge edge) {
     ivec2 inside = clamp(texel, ivec2(0), limit);
     float here = load(taa_distance, inside).r;
-    if (here > inverse) {
-        inverse = here;
-        at = inside;
+    if (here > edge.nearest) {
+        edge.nearest = here;
+        edge.near_at = inside;
+    }
+    if (here < edge.farthest) {
+        edge.farthest = here;
+        edge.far_at = inside;
     }
 }
 
@@ -96,16 +104,15 @@ void shade(Pixel pixel, out vec4 result[2]) {
     ivec2 limit = size(taa_color) - 1, middle = clamp(ivec2(floor(place)), ivec2(0), limit);
 
     // The edge of what is in front moves with it: the motion of the nearest of the sample and the four beside it.
-    float own = load(taa_distance, middle).r, inverse = own;
-    ivec2 at = middle;
-    taa_nearest(middle - ivec2(1, 0), limit, inverse, at);
-    taa_nearest(middle + ivec2(1, 0), limit, inverse, at);
-    taa_nearest(middle - ivec2(0, 1), limit, inverse, at);
-    taa_nearest(middle + ivec2(0, 1), limit, inverse, at);
-    if (inverse <= own * (1.0 + taa_edge)) {
-        inverse = own;
-        at = middle;
-    }
+    float own = load(taa_distance, middle).r;
+    TaaEdge edge = TaaEdge(own, own, middle, middle);
+    taa_look(middle - ivec2(1, 0), limit, edge);
+    taa_look(middle + ivec2(1, 0), limit, edge);
+    taa_look(middle - ivec2(0, 1), limit, edge);
+    taa_look(middle + ivec2(0, 1), limit, edge);
+    bool is_edge = edge.nearest > own * (1.0 + taa_edge);
+    float inverse = is_edge ? edge.nearest : own;
+    ivec2 at = is_edge ? edge.near_at : middle;
     vec2 motion = sanitize(load(taa_velocity, at)).xy * custom[1].xy, before = output_place + motion;
     vec2 extent = vec2(pixel.size), middle_before = floor(before - 0.5) + 0.5, f = before - middle_before;
 
@@ -131,6 +138,11 @@ void shade(Pixel pixel, out vec4 result[2]) {
         color = mix(past, color, now.weight / (frames + now.weight));
         noise += (abs(now.luma - past.x) - noise) * max(0.1, 1.0 / (frames + 1.0));
     }
+    // Where an edge moves before what is behind it, samples will be off for another reason; and the thing beside its edge
+    // leaves them behind, if that stands still.
+    vec2 behind = sanitize(load(taa_velocity, edge.far_at)).xy * custom[1].xy;
+    float parts = clamp(4.0 * length(motion - behind) - 0.4, 0.0, 1.0);
+    noise *= 1.0 - parts * (is_edge ? 1.0 : 1.0 - min(4.0 * length(behind), 1.0));
     float dither = taa_dither(pixel.texel, custom[3].w);
     result[0] = vec4(taa_rounded(taa_light(color, unit), dither), sample_linear(taa_color, place / vec2(limit + 1)).a);
     result[1] = vec4(taa_packed(vec2(frames + now.weight, noise), dither), 0.0, 1.0);

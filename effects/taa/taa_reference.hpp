@@ -84,7 +84,7 @@ namespace taa {
 using Toned = std::array<double, 3>;
 
 // The same numbers as in taa_gather.glsl.
-constexpr double edge = 0.03, nearer = 0.02, cubic = -0.6, loss = 2, reach = 1.25, still_noise = 3, moving_noise = 1,
+constexpr double edge = 0.03, nearer = 0.02, cubic = -0.6, loss = 2, reach = 1.25, still_noise = 3, moving_noise = 0.5,
                  most_reactive = 0.9;
 
 inline Toned toned(const Rgba& c, double unit) {
@@ -248,17 +248,19 @@ class Gather {
         };
         const std::int64_t i0 = inside(px, picture_.width), j0 = inside(py, picture_.height);
         const double own = distance_.clamped(i0, j0).r;
-        double inverse = own;
-        std::int64_t at_i = i0, at_j = j0;
+        double nearest = own, farthest = own;
+        std::int64_t at_i = i0, at_j = j0, far_i = i0, far_j = j0;
         constexpr std::array<std::array<int, 2>, 4> beside{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
         for (const auto& [di, dj] : beside) {
             const double here = distance_.clamped(i0 + di, j0 + dj).r;
-            if (!(here > inverse)) continue;
-            inverse = here;
-            at_i = std::clamp<std::int64_t>(i0 + di, 0, std::int64_t{picture_.width} - 1);
-            at_j = std::clamp<std::int64_t>(j0 + dj, 0, std::int64_t{picture_.height} - 1);
+            const std::int64_t i = std::clamp<std::int64_t>(i0 + di, 0, std::int64_t{picture_.width} - 1),
+                               j = std::clamp<std::int64_t>(j0 + dj, 0, std::int64_t{picture_.height} - 1);
+            if (here > nearest) nearest = here, at_i = i, at_j = j;
+            if (here < farthest) farthest = here, far_i = i, far_j = j;
         }
-        if (inverse <= own * (1 + edge)) inverse = own, at_i = i0, at_j = j0;
+        const bool is_edge = nearest > own * (1 + edge);
+        if (!is_edge) at_i = i0, at_j = j0;
+        const double inverse = is_edge ? nearest : own;
         std::array<double, 2> moved = motion(at_i, at_j, inverse);
         moved = {moved[0] / x_scale_, moved[1] / y_scale_};
         const double bx = x + 0.5 + moved[0], by = y + 0.5 + moved[1];
@@ -290,6 +292,10 @@ class Gather {
             color = sum(sum({}, held, 1 - alpha), color, alpha);
             noise += (std::abs(frame.luma - held[0]) - noise) * std::max(0.1, 1 / (frames + 1));
         }
+        std::array<double, 2> behind = motion(far_i, far_j, farthest);
+        behind = {behind[0] / x_scale_, behind[1] / y_scale_};
+        const double parts = std::clamp(4 * std::hypot(moved[0] - behind[0], moved[1] - behind[1]) - 0.4, 0.0, 1.0);
+        noise *= 1 - parts * (is_edge ? 1 : 1 - std::min(4 * std::hypot(behind[0], behind[1]), 1.0));
         // Roots, as the device keeps and filters them.
         kept = {std::sqrt(std::clamp((frames + frame.weight) / 128, 0.0, 1.0)), std::sqrt(std::min(noise, 1.0)), 0, 1};
         out = light(color, unit_, sample_reference(picture_, px / picture_.width, py / picture_.height).a);

@@ -182,9 +182,9 @@ TEST(EffectTaa, GpuMatchesReference) {
             for (const KernelStage kernels : {KernelStage::Compute, KernelStage::Raster}) {
                 const std::vector<ReferenceImage> out = on_gpu({}, shots, output, kernels);
                 for (std::size_t i = 0; i < shots.size(); ++i) {
-                    // A step of a half a frame, and distances in halves where two surfaces are as near to a bound.
-                    EXPECT_LE(share_beyond(out[i], expected[i], 3e-3), 0.002) << in.width << " " << speed << " " << i;
-                    EXPECT_LE(share_beyond(out[i], expected[i], 0.05), 0.0005) << in.width << " " << speed << " " << i;
+                    // Counts of frames are rounded to roots in 8 bits: a tenth of a count below 1.
+                    EXPECT_LE(share_beyond(out[i], expected[i], 4e-3), 0.03) << in.width << " " << speed << " " << i;
+                    EXPECT_LE(share_beyond(out[i], expected[i], 0.04), 0.001) << in.width << " " << speed << " " << i;
                 }
             }
         }
@@ -201,8 +201,8 @@ TEST(EffectTaa, GpuMatchesReferenceWithAMaskAndAnExposure) {
     const Taa taa{.sharpness = 0.8f};
     const std::vector<ReferenceImage> expected = by_reference(taa, shots, output), out = on_gpu(taa, shots, output);
     for (std::size_t i = 0; i < shots.size(); ++i) {
-        EXPECT_LE(share_beyond(out[i], expected[i], 6e-3), 0.004) << i;
-        EXPECT_LE(share_beyond(out[i], expected[i], 0.05), 0.0005) << i;
+        EXPECT_LE(share_beyond(out[i], expected[i], 6e-3), 0.03) << i;
+        EXPECT_LE(share_beyond(out[i], expected[i], 0.04), 0.001) << i;
     }
 }
 
@@ -211,8 +211,8 @@ TEST(EffectTaa, AStillPictureComesNearTheTruth) {
         const std::vector<Shot> shots = shots_of(world_at(0), in, output, 32);
         const std::vector<ReferenceImage> out = by_reference({}, shots, output);
         const ReferenceImage truth = truth_of(world_at(0), output, 0);
-        // 12 dB nearer than a frame by itself.
-        EXPECT_LE(mean_square(out.back(), truth), mean_square(out.front(), truth) / 16) << in.width;
+        // 8 dB nearer than a frame by itself, which is filtered already.
+        EXPECT_LE(mean_square(out.back(), truth), mean_square(out.front(), truth) / 6.3) << in.width;
     }
 }
 
@@ -229,8 +229,8 @@ TEST(EffectTaa, AFlatFieldKeepsItsLight) {
     for (const double value : {0.0, 0.001, 0.37, 12.0, 40000.0}) {
         const World flat = [value](double, double, std::uint32_t) { return Seen{{value, value / 2, value, 1}}; };
         const ReferenceImage out = on_gpu({}, shots_of(flat, {5, 4}, {9, 7}, 40), {9, 7}).back();
-        // Rounded up or down, by what is lost: never twice.
-        for (const Rgba& pixel : out.pixels) EXPECT_NEAR(pixel.r, value, value * 0x1p-9) << value;
+        // Rounded up or down, by what is lost: never twice. What is toned is 1 - 1 / (1 + light), in 24 bits.
+        for (const Rgba& pixel : out.pixels) EXPECT_NEAR(pixel.r, value, value * (0x1p-9 + value * 0x1p-22)) << value;
     }
 }
 
@@ -347,7 +347,7 @@ TEST(EffectTaa, OddSizesAndASinglePixel) {
                                  {VkExtent2D{7, 1}, VkExtent2D{10, 2}},
                                  {VkExtent2D{3, 11}, VkExtent2D{7, 13}}}) {
         const std::vector<Shot> shots = shots_of(world_at(0), in, to, 3);
-        EXPECT_LE(test::worst_difference(on_gpu({}, shots, to)[2], by_reference({}, shots, to)[2]), 4e-3)
+        EXPECT_LE(test::worst_difference(on_gpu({}, shots, to)[2], by_reference({}, shots, to)[2]), 8e-3)
             << in.width << "x" << in.height;
     }
 }
