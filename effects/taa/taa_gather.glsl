@@ -13,9 +13,9 @@
 const float taa_edge = 0.03;    // by so much of a distance a sample beside is another surface
 const float taa_nearer = 0.02;  // by so much of a distance something else was in front
 const float taa_cubic = -0.6;   // slope of the filter of the past (R. Keys, 1981): -0.5 is Catmull-Rom, and softer
-// What the filter loses of the past goes with f (1 - f) of the place between pixels: half way between four, no more than
-// a frame is worth keeping.
-const float taa_loss = 2.0;
+// What the filter loses of the past goes with f (1 - f) of the place between pixels: half way between four, half
+// of a frame is worth keeping.
+const float taa_loss = 3.5;
 const float taa_reach = 1.25;  // how far the past may lie off the frame's mean: deviations of the frame's colours,
 const float taa_still_noise = 3.0, taa_moving_noise = 0.5;  // and of samples off the past
 const float taa_most_reactive = 0.9;
