@@ -84,8 +84,8 @@ namespace taa {
 using Toned = std::array<double, 3>;
 
 // The same numbers as in taa_gather.glsl.
-constexpr double edge = 0.03, nearer = 0.02, cubic = -0.6, loss = 3.5, reach = 1.25, still_noise = 3, moving_noise = 0.5,
-                 most_reactive = 0.9;
+constexpr double edge = 0.03, nearer = 0.02, cubic = -0.6, loss = 3.5, reach = 1.25, still_noise = 3,
+                 moving_noise = 0.5, most_reactive = 0.9;
 
 inline Toned toned(const Rgba& c, double unit) {
     const double scale = 1 / (unit + std::max({c.r, c.g, c.b}));
