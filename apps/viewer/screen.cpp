@@ -87,6 +87,7 @@ void Screen::draw(const Input& input) {
     const VkRect2D area = picture_area(input.window, input.scale, input.source.frames() > 0);
     if (EditPanels* const shown = panels())
         shown->draw({.source = input.source,
+                     .playback = input.playback,
                      .composer = input.view.composer(),
                      .window = input.window,
                      .scale = input.scale,

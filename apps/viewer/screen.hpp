@@ -34,6 +34,7 @@ class Screen {
         double passed = 0;        ///< seconds since the last frame
         bool is_counted = false;  ///< it is these that lines are shown for, and not those of a clock
         std::size_t number = 0;
+        Playback& playback;
         bool is_paused = false;
         const darkroom::Inspection* inspection = nullptr;
         std::string_view camera;               ///< how it moves, in a word

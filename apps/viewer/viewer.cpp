@@ -186,7 +186,7 @@ void Viewer::move_time(double passed) {
         return;
     }
     time_ += delta_time_;
-    if (source_->frames() > 0) played_ += delta_time_;
+    if (!playback_.advance(delta_time_)) is_paused_ = true;
 }
 
 LiveMoment Viewer::moment() const {
@@ -195,10 +195,7 @@ LiveMoment Viewer::moment() const {
     out.previous_orbit = last_orbit_;
     out.is_post_off = !is_post_on_ && !is_off() && !screen_.is_comparing();
     out.draw.exposure = darkroom::exposure_of(document_->look());
-    if (source_->frames() > 0) {
-        const double rate = job_.frame_desc.frames_per_second.value_or(1 / job_.step);
-        out.number = static_cast<std::size_t>(std::llround(std::floor(played_ * rate + 1e-6))) % source_->frames();
-    }
+    out.number = playback_.number();
     return out;
 }
 
@@ -266,6 +263,7 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .frames_a_second = frames_a_second(),
                   .console = interface_->console()});
     list_places();
+                  .playback = playback_,
     for (const std::string& command : screen_.take_commands()) run_command(command);
     if (const auto place = screen_.messages().take_chosen()) open_place(*place);
     EditPanels* const panels = screen_.panels();
@@ -273,10 +271,8 @@ void Viewer::draw_screen(const PresentFrame& frame) {
     remember_panels();
     if (panels->take_fullscreen()) obey(KeyAction::Fullscreen, 0);
     if (panels->take_key_sheet()) obey(KeyAction::KeySheet, 0);
-    if (panels->take_pause()) is_paused_ = !is_paused_;
     if (const auto file = panels->take_opened()) open_subject(*file);
-    if (const std::optional<std::size_t> chosen = panels->take_number(); chosen && *chosen != number)
-        played_ = static_cast<double>(*chosen) / job_.frame_desc.frames_per_second.value_or(1 / job_.step);
+    if (panels->take_pause()) toggle_pause();
 }
 
 std::array<bool, side_count> Viewer::shown_sides() const {

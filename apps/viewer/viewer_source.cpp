@@ -44,6 +44,7 @@ Result<> Viewer::make_source() {
 void Viewer::take_scene(std::unique_ptr<SceneSource> scene) {
     scene_ = scene.get();
     source_ = std::move(scene);
+    playback_ = {};
     if (!job_.is_edit) ground_.emplace(scene_->scene(), scene_->assets());
     is_cut_ = true;
 }
@@ -52,6 +53,7 @@ void Viewer::take_frames(std::unique_ptr<FrameSource> frames) {
     scene_ = nullptr;
     last_orbit_.reset();
     source_ = std::move(frames);
+    playback_ = Playback(source_->frames(), job_.frame_desc.frames_per_second.value_or(1 / job_.step));
     is_cut_ = true;
 }
 
@@ -119,7 +121,6 @@ void Viewer::take_opened() {
     job_.scene = opened->scene ? opened->file : std::filesystem::path();
     job_.frames = std::move(opened->files);
     camera_->reset();
-    played_ = 0;
     if (opened->scene) {
         time_ = previous_time_ = opened->scene->scene().time;
         take_scene(std::move(opened->scene));

@@ -17,6 +17,7 @@
 #include "develop/readback.hpp"
 #include "edit/document.hpp"
 #include "gui.hpp"
+#include "playback.hpp"
 #include "preview_scale.hpp"
 #include "screen.hpp"
 #include "viewer.hpp"
@@ -61,6 +62,9 @@ class Viewer {
     void obey_keys();
     void obey(KeyAction action, std::uint32_t function_key);
     void toggle_effects(std::uint32_t function_key);
+    void obey_camera(KeyAction action);
+    void toggle_pause();
+    void step_frame(long frames);
     /// At the second time, where something would be lost.
     void leave();
     void run_command(const std::string& command);
@@ -169,7 +173,7 @@ class Viewer {
     double passed_ = 0;                               ///< seconds since the frame before
     bool is_post_on_ = true, is_paused_ = false, is_leaving_ = false;
     double time_ = 0, previous_time_ = 0, delta_time_ = 0;
-    double played_ = 0;  ///< seconds of a sequence
+    Playback playback_;  ///< of a sequence
     Clock::time_point last_turn_ = Clock::now(), last_look_at_files_ = Clock::now();
     std::optional<darkroom::scene::OrbitOverride> last_orbit_;
     darkroom::edit::Watch source_files_;

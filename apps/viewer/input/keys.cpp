@@ -33,6 +33,8 @@ constexpr std::array table{
     Key{GLFW_KEY_Z, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT, KeyAction::Redo, "Ctrl+Shift+Z", "makes it again", false, true},
     Key{GLFW_KEY_Y, GLFW_MOD_CONTROL, KeyAction::Redo, "Ctrl+Y", "the same", false, true},
     Key{GLFW_KEY_P, 0, KeyAction::Pause, "P", "stops the time, and lets it go on"},
+    Key{GLFW_KEY_COMMA, 0, KeyAction::StepBack, ",", "of a sequence: one frame back"},
+    Key{GLFW_KEY_PERIOD, 0, KeyAction::StepForth, ".", "of a sequence: one frame on"},
     Key{GLFW_KEY_SPACE, 0, KeyAction::ResetCamera, "Space", "the scene's own camera", false, true},
     Key{GLFW_KEY_F, 0, KeyAction::FrameAll, "F", "frames all", false, true},
     Key{GLFW_KEY_V, 0, KeyAction::CameraKind, "V", "the camera orbits, or flies", false, true},

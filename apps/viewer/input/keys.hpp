@@ -30,6 +30,8 @@ enum class KeyAction : std::uint8_t {
     Undo,
     Redo,
     Pause,
+    StepBack,
+    StepForth,
     ResetCamera,
     FrameAll,
     CameraKind,

@@ -93,22 +93,16 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             tell(document_->can_redo() ? fmt::format("redo: {}", document_->redo_name()) : "nothing to redo");
             return document_->redo();
         case KeyAction::Pause:
-            return flip(is_paused_, "P pause");
+            toggle_pause();
+            return tell(fmt::format("P pause: {}", on_off(is_paused_)));
+        case KeyAction::StepBack:
+            return step_frame(-1);
+        case KeyAction::StepForth:
+            return step_frame(1);
         case KeyAction::ResetCamera:
-            camera_->reset();
-            return tell("Space: the scene's camera");
-        case KeyAction::FrameAll: {
-            if (!has_scene) return;
-            const VkExtent2D extent = picture_extent();
-            camera_->frame_all(scene_->snapshot(),
-                               static_cast<float>(extent.width) / static_cast<float>(extent.height));
-            return tell("F: frame all");
-        }
-        case KeyAction::CameraKind: {
-            const bool flies = camera_->kind() == CameraRig::Kind::Fly;
-            camera_->set_kind(flies ? CameraRig::Kind::Orbit : CameraRig::Kind::Fly);
-            return tell(flies ? "V: the camera orbits" : "V: the camera flies");
-        }
+        case KeyAction::FrameAll:
+        case KeyAction::CameraKind:
+            return obey_camera(action);
         case KeyAction::Compare:
             if (edit == nullptr) return;
             edit->toggle_compare();
@@ -117,12 +111,42 @@ void Viewer::obey(KeyAction action, std::uint32_t number) {
             screen_.toggle_key_sheet();
             return tell(fmt::format("? keys: {}", on_off(screen_.has_key_sheet())));
         case KeyAction::Leave:
-            if (screen_.has_key_sheet()) return screen_.toggle_key_sheet();
+            if (screen_.has_key_sheet()) return obey(KeyAction::KeySheet, 0);
             if (window_->is_cursor_captured()) return window_->capture_cursor(false);
             if (screen_.has_console()) return screen_.toggle_console();
             if (gui_->has_popup() || gui_->wants_keys()) return;
             return leave();
     }
+}
+
+void Viewer::obey_camera(KeyAction action) {
+    if (action == KeyAction::ResetCamera) {
+        camera_->reset();
+        return tell("Space: the scene's camera");
+    }
+    if (action == KeyAction::FrameAll) {
+        if (scene_ == nullptr) return;
+        const VkExtent2D extent = picture_extent();
+        camera_->frame_all(scene_->snapshot(), static_cast<float>(extent.width) / static_cast<float>(extent.height));
+        return tell("F: frame all");
+    }
+    const bool flies = camera_->kind() == CameraRig::Kind::Fly;
+    camera_->set_kind(flies ? CameraRig::Kind::Orbit : CameraRig::Kind::Fly);
+    tell(flies ? "V: the camera orbits" : "V: the camera flies");
+}
+
+// At its end a sequence begins anew.
+void Viewer::toggle_pause() {
+    is_paused_ = !is_paused_;
+    if (!is_paused_ && playback_.is_at_end()) playback_.seek(playback_.first());
+}
+
+void Viewer::step_frame(long frames) {
+    if (playback_.frames() == 0) return tell("no sequence is shown: there are no frames to step through");
+    is_paused_ = true;
+    playback_.step(frames);
+    tell(fmt::format("frame {} of {}: {}", playback_.number() + 1, playback_.frames(),
+                     source_->shown_frame(playback_.number())));
 }
 
 void Viewer::leave() {

@@ -191,22 +191,6 @@ void EditPanels::draw_status(const Input& input, const PictureView& picture) {
     tip("What was said last. A click lists all of it.");
 }
 
-void EditPanels::draw_timeline(const Input& input) {
-    if (ImGui::Button(input.is_paused ? "Play" : "Pause", {4.5F * ImGui::GetFontSize(), 0})) is_pause_wanted_ = true;
-    ImGui::SameLine();
-    int number = static_cast<int>(input.number);
-    const std::string shown =
-        fmt::format("{} of {}  {}", input.number + 1, input.source.frames(), input.source.shown_frame(input.number));
-    ImGui::SetNextItemWidth(-ImGui::CalcTextSize(shown.c_str()).x - 2 * ImGui::GetStyle().ItemSpacing.x);
-    const bool is_moved = ImGui::SliderInt("##frame", &number, 0, static_cast<int>(input.source.frames()) - 1, "");
-    look_.note_place("view/frame");
-    ImGui::SameLine();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(shown.c_str());
-    if (is_moved)
-        number_ = static_cast<std::size_t>(std::clamp(number, 0, static_cast<int>(input.source.frames()) - 1));
-}
-
 void EditPanels::draw_below(const Input& input, PictureView& picture) {
     if (!ImGui::BeginTabBar("##tabs")) return;
     const auto tab = [&](const char* name, Tab which, const auto& draw) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/viewer/panels/panel_layout.hpp"
+#include "apps/viewer/playback.hpp"
 #include "apps/viewer/source/live_source.hpp"
 #include "apps/viewer/source/picture_view.hpp"
 #include "develop/inspect/inspector.hpp"
@@ -38,6 +39,7 @@ class EditPanels {
     /// What there is to be shown.
     struct Input {
         LiveSource& source;
+        Playback& playback;
         darkroom::Composer& composer;
         VkExtent2D window{};
         float scale = 1;
@@ -71,7 +73,6 @@ class EditPanels {
     [[nodiscard]] std::uint32_t watched_level() const { return level_; }
     /// How it is shown; the image is whoever's has it.
     [[nodiscard]] const darkroom::window::PaneView& watched_view() const { return image_view_; }
-    [[nodiscard]] std::optional<std::size_t> take_number() { return std::exchange(number_, std::nullopt); }
     /// The file that is to be shown in place of the present scene or frame.
     [[nodiscard]] std::optional<std::filesystem::path> take_opened() { return std::exchange(opened_, std::nullopt); }
     [[nodiscard]] bool take_fullscreen() { return std::exchange(is_fullscreen_wanted_, false); }
@@ -92,11 +93,13 @@ class EditPanels {
 
     // edit_panels.cpp
     void draw_view_bar(PictureView& picture);
-    void draw_timeline(const Input& input);
     void draw_status(const Input& input, const PictureView& picture);
     void draw_below(const Input& input, PictureView& picture);
     void draw_images(const Input& input);
     void draw_pixel(const Input& input) const;
+
+    // timeline.cpp
+    void draw_timeline(const Input& input);
 
     darkroom::panels::LookPanels look_;
     darkroom::panels::TimingHistory times_;
@@ -116,7 +119,6 @@ class EditPanels {
     std::uint32_t level_ = 0;
     darkroom::window::PaneView image_view_{.transfer = darkroom::window::PaneTransfer::SceneLinear};
     std::optional<VkOffset2D> pixel_;
-    std::optional<std::size_t> number_;
 };
 
 }  // namespace app

@@ -72,14 +72,16 @@ std::shared_ptr<FrameSource::Decoded> FrameSource::find(std::size_t number) cons
 void FrameSource::work() {
     std::unique_lock lock(mutex_);
     while (!is_ending_) {
-        const std::size_t after = (wanted_ + 1) % files_.size();
+        // What is looked at stays while others are read ahead.
+        if (const auto shown = std::ranges::find(kept_, wanted_, &Decoded::number); shown != kept_.end())
+            kept_.splice(kept_.begin(), kept_, shown);
         const auto is_known = [&](std::size_t number) { return find(number) != nullptr || failed_.contains(number); };
-        const bool is_missing = !is_known(wanted_);
-        if (!is_missing && is_known(after)) {
+        std::size_t number = wanted_, ahead = 0;
+        while (ahead <= most_ahead && is_known(number)) number = (wanted_ + ++ahead) % files_.size();
+        if (ahead > most_ahead) {
             changed_.wait(lock);
             continue;
         }
-        const std::size_t number = is_missing ? wanted_ : after;
         lock.unlock();
         Result<std::shared_ptr<Decoded>> made = decode(number);
         lock.lock();
