@@ -44,6 +44,7 @@ Result<> Viewer::run() {
     }
     if (Result<> done = presenter_->wait(); !done) return done;
     write_config();
+    if (journal_) journal_->end();
     finish_stores(true);
     return failed_.empty() ? Result<>() : darkroom::user_error(failed_);
 }
@@ -161,6 +162,7 @@ Result<> Viewer::turn() {
     reload();
     follow_document();
     is_resting_ = !is_due();
+    write_journal();
     has_rested_ = has_rested_ || is_resting_;
     if (is_resting_) return {};
     const Result<std::optional<PresentFrame>> frame = presenter_->begin(window_->extent());
@@ -232,7 +234,10 @@ Result<> Viewer::show(const PresentFrame& frame) {
     if (Result<> done = gui_->draw(frame); !done) return done;
     store_window(frame);
     // Who waits for the window may press keys now.
-    if (++shown_frames_ == 1) tell("ready");
+    if (++shown_frames_ == 1) {
+        tell("ready");
+        offer_unsaved();
+    }
     return read_scopes(frame);
 }
 

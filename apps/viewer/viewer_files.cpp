@@ -118,6 +118,27 @@ Result<> Viewer::read_config() {
                            [&](darkroom::Look& look) { return darkroom::edit::take_values(look, console.composer()); });
 }
 
+// Whoever takes them sees what they change, and can undo it.
+void Viewer::offer_unsaved() {
+    if (!job_.is_edit || is_fixed()) return;
+    journal_.emplace(config_folder());
+    const std::optional<std::string> text = journal_->left_behind(*document_);
+    if (!text) return;
+    const std::string name = document_->file().empty() ? "a look without a name" : shown(document_->file().filename());
+    const auto take = [this, text = *text] {
+        journal_->begin();
+        settle("unsaved edits", document_->take_unsaved(text));
+    };
+    screen_.editor()->look().ask(
+        fmt::format("Edits of {} were not saved when its window ended. They are still there.", name),
+        {{"Take them", take}, {"Throw them away", [this] { journal_->begin(); }}});
+    tell(fmt::format("unsaved edits of {} are there", name));
+}
+
+void Viewer::write_journal() {
+    if (journal_) settle("journal", journal_->follow(*document_));
+}
+
 void Viewer::write_config() {
     if (!has_config()) return;
     std::error_code error;

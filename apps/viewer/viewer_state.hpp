@@ -17,6 +17,7 @@
 #include "develop/readback.hpp"
 #include "edit/document.hpp"
 #include "gui.hpp"
+#include "journal.hpp"
 #include "playback.hpp"
 #include "preview_scale.hpp"
 #include "screen.hpp"
@@ -136,6 +137,8 @@ class Viewer {
     void remember_panels();
     [[nodiscard]] darkroom::Result<> read_config();
     void write_config();
+    void offer_unsaved();
+    void write_journal();
     void store_picture(const darkroom::window::PresentFrame& frame);
     void store_window(const darkroom::window::PresentFrame& frame);
     void finish_stores(bool waits);
@@ -156,6 +159,7 @@ class Viewer {
     std::optional<KnownPanels> known_panels_;
     VkExtent2D panels_of_{};  ///< the window whose panels are shown
     std::optional<CameraRig> camera_;
+    std::optional<Journal> journal_;  ///< of edit
     std::optional<darkroom::scene::Ground> ground_;  ///< that is walked on
 
     darkroom::render::DrawOptions draw_;

@@ -60,6 +60,10 @@ class LookDocument {
     /// The same into another file, which becomes the document's, and is overwritten. In another folder it is that of a
     /// look, whatever the document's was. Errors: the look names files, which are relative to the folder that it is in.
     Result<> save_as(const std::filesystem::path& file);
+    /// What save() would write; without a file, a look's file. Errors are save()'s.
+    [[nodiscard]] Result<std::string> unsaved_text() const;
+    /// The look that such a text says, as a step of undo. Errors: those of the text.
+    Result<> take_unsaved(std::string_view text);
     /// Reads what has changed on disk: the file, or one that the look names. True: the look is another, as a step of
     /// undo. An error, "file:line:column: ...", leaves it, and comes once for each state of the files.
     Result<bool> reload_if_changed();

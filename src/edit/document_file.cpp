@@ -182,6 +182,21 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
     return {};
 }
 
+Result<std::string> LookDocument::unsaved_text() const {
+    if (file_.empty()) return write_look(look_);
+    Result<std::string> text = splice_look(read_text_, read_, look_);
+    return text ? text : splice_look(text_, saved_, look_);
+}
+
+Result<> LookDocument::take_unsaved(std::string_view text) {
+    Result<Look> now = read(text, look_);
+    if (!now) return failure(std::move(now));
+    return edit("unsaved edits", [&](Look& look) -> Result<> {
+        look = *now;
+        return {};
+    });
+}
+
 Result<bool> LookDocument::reload_if_changed() {
     std::vector<std::filesystem::path> changed = watch_.take_changes();
     if (changed.empty()) return false;

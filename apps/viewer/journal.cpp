@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#include "journal.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <span>
+
+#include "core/files.hpp"
+
+namespace app {
+
+using darkroom::Result;
+
+namespace {
+
+constexpr std::chrono::milliseconds between_writes{1000};
+constexpr std::size_t most_bytes = std::size_t{4} << 20;
+constexpr std::string_view first_line = "# Unsaved edits of process ";
+
+/// Is the process that the first line names at work?
+bool is_being_written(std::string_view text) {
+    if (!text.starts_with(first_line)) return false;
+    const pid_t process =
+        static_cast<pid_t>(std::strtol(std::string(text.substr(first_line.size(), 12)).c_str(), nullptr, 10));
+    return process > 0 && process != getpid() && kill(process, 0) == 0;
+}
+
+}  // namespace
+
+std::filesystem::path Journal::file_of(const darkroom::edit::LookDocument& document) const {
+    const std::filesystem::path& file = document.file();
+    if (!file.empty()) return file.parent_path() / fmt::format(".{}.unsaved", file.filename().string());
+    return folder_.empty() ? folder_ : folder_ / "unnamed.unsaved";
+}
+
+std::optional<std::string> Journal::left_behind(const darkroom::edit::LookDocument& document) {
+    const std::filesystem::path file = file_of(document);
+    std::error_code error;
+    if (file.empty() || !std::filesystem::is_regular_file(file, error)) return std::nullopt;
+    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = most_bytes});
+    if (!bytes) return std::nullopt;
+    std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    if (!text.starts_with(first_line)) return std::nullopt;
+    // Two windows over one look: the journal is the other one's.
+    is_held_ = true;
+    if (is_being_written(text)) return std::nullopt;
+    return text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
+}
+
+Result<> Journal::follow(const darkroom::edit::LookDocument& document) {
+    const Clock::time_point now = Clock::now();
+    if (is_held_ || has_failed_ || now - looked_at_ < between_writes) return {};
+    looked_at_ = now;
+    const std::filesystem::path file = file_of(document);
+    if (!document.is_changed() || file != written_) end();
+    if (!document.is_changed() || file.empty() || (version_ == document.version() && !written_.empty())) return {};
+    const Result<std::string> text = document.unsaved_text();
+    if (!text) return {};  // saving says why
+    std::error_code error;
+    if (document.file().empty()) std::filesystem::create_directories(folder_, error);
+    const std::string all = fmt::format("{}{}\n{}", first_line, getpid(), *text);
+    if (Result<> done = darkroom::write_file(file, std::as_bytes(std::span(all))); !done) {
+        has_failed_ = true;
+        return done;
+    }
+    written_ = file;
+    version_ = document.version();
+    return {};
+}
+
+void Journal::end() {
+    if (written_.empty()) return;
+    std::error_code error;
+    std::filesystem::remove(written_, error);
+    written_.clear();
+}
+
+}  // namespace app
