@@ -116,6 +116,10 @@ void Screen::draw_picture(const Input& input, const VkRect2D& area) {
     if (input.compared.is_given())
         shown.second = darkroom::window::PaneView{.image = input.compared, .transfer = input.compared_transfer};
     EditPanels* const edit = panels();
+    if (panels_ && shown.second) {
+        shown.first_name = panels_->name_of(left());
+        shown.second_name = panels_->name_of(right());
+    }
     if (edit != nullptr) shown.marked = edit->pixel();
     if (input.watched.is_given() && edit != nullptr) {
         shown.first = edit->watched_view();

@@ -129,6 +129,7 @@ Result<> Viewer::start_interface() {
 
 darkroom::Look Viewer::look_of(Side side) const {
     if (side == Side::Off) return darkroom::switched_off(document_->look());
+    if (side == Side::Other) return other_look_;
     return side == Side::Look ? document_->look() : document_->saved_look();
 }
 
@@ -161,8 +162,8 @@ Result<> Viewer::turn() {
     finish_seeing();
     reload();
     follow_document();
-    is_resting_ = !is_due();
     write_journal();
+    is_resting_ = !is_due();
     has_rested_ = has_rested_ || is_resting_;
     if (is_resting_) return {};
     const Result<std::optional<PresentFrame>> frame = presenter_->begin(window_->extent());
@@ -262,18 +263,20 @@ void Viewer::draw_screen(const PresentFrame& frame) {
                   .passed = is_fixed() ? delta_time_ : passed_,
                   .is_counted = is_fixed(),
                   .number = number,
+                  .playback = playback_,
                   .is_paused = is_paused_,
                   .inspection = inspection_ ? &*inspection_ : nullptr,
                   .camera = camera_word(),
                   .frames_a_second = frames_a_second(),
                   .console = interface_->console()});
     list_places();
-                  .playback = playback_,
     for (const std::string& command : screen_.take_commands()) run_command(command);
     if (const auto place = screen_.messages().take_chosen()) open_place(*place);
     EditPanels* const panels = screen_.panels();
     if (panels == nullptr) return;
     remember_panels();
+    if (const auto file = panels->take_other()) take_other(*file);
+    if (const auto event = panels->look().take_fired()) fire(*event);
     if (panels->take_fullscreen()) obey(KeyAction::Fullscreen, 0);
     if (panels->take_key_sheet()) obey(KeyAction::KeySheet, 0);
     if (const auto file = panels->take_opened()) open_subject(*file);

@@ -109,6 +109,30 @@ void Viewer::open_subject(const std::filesystem::path& file) {
     });
 }
 
+void Viewer::take_other(const std::filesystem::path& look) {
+    darkroom::LookOptions options = job_.look_options;
+    options.folder = look.parent_path();
+    Result<darkroom::Look> read = darkroom::read_look(look, options);
+    settle("other look", read ? Result<>() : failure(read.error()));
+    if (!read) return;
+    other_look_ = std::move(*read);
+    if (const auto& view = views_[static_cast<std::size_t>(Side::Other)]) settle("other look", view->show(other_look_));
+    screen_.editor()->set_other(darkroom::printable(look.filename().string()));
+    tell(fmt::format("compares with {}", darkroom::printable(look.filename().string())));
+}
+
+void Viewer::fire(const std::string& event) {
+    std::size_t fired = 0;
+    for (const auto& any : views_)
+        if (any) fired = std::max(fired, any->composer().fire(event));
+    std::string_view why;
+    if (scene_ == nullptr)
+        why = ": a stored frame has no time for them";
+    else if (is_paused_)
+        why = ": P lets the time run";
+    tell(fmt::format("fired {}: {} pulse{}{}", event, fired, fired == 1 ? "" : "s", why));
+}
+
 void Viewer::take_opened() {
     if (opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
     Result<Opened> opened = opening_.get();

@@ -102,6 +102,8 @@ class Viewer {
     void watch_source();
     void reload_source();
     void open_subject(const std::filesystem::path& file);
+    void take_other(const std::filesystem::path& look);
+    void fire(const std::string& event);
     void take_opened();
     void name_window();
 
@@ -135,10 +137,10 @@ class Viewer {
     /// Panels lie as they did in a window of this size.
     void recall_panels();
     void remember_panels();
-    [[nodiscard]] darkroom::Result<> read_config();
-    void write_config();
     void offer_unsaved();
     void write_journal();
+    [[nodiscard]] darkroom::Result<> read_config();
+    void write_config();
     void store_picture(const darkroom::window::PresentFrame& frame);
     void store_window(const darkroom::window::PresentFrame& frame);
     void finish_stores(bool waits);
@@ -151,15 +153,16 @@ class Viewer {
     std::unique_ptr<LiveSource> source_;
     SceneSource* scene_ = nullptr;  ///< the source, if it is one
     std::optional<darkroom::edit::LookDocument> document_;
+    darkroom::Look other_look_;   ///< to compare with
     std::uint64_t followed_ = 0;  ///< version of the document that is on the screen
     std::array<std::unique_ptr<LookView>, side_count> views_;
     std::unique_ptr<LiveInterface> interface_;
     std::unique_ptr<Gui> gui_;
     Screen screen_;
+    std::optional<Journal> journal_;  ///< of edit
     std::optional<KnownPanels> known_panels_;
     VkExtent2D panels_of_{};  ///< the window whose panels are shown
     std::optional<CameraRig> camera_;
-    std::optional<Journal> journal_;  ///< of edit
     std::optional<darkroom::scene::Ground> ground_;  ///< that is walked on
 
     darkroom::render::DrawOptions draw_;

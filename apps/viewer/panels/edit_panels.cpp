@@ -22,7 +22,7 @@ using darkroom::window::PaneChannels;
 using darkroom::window::PaneTransfer;
 
 constexpr darkroom::ParamInfo exposure_row{.name = "exposure", .unit = {"stops"}, .range = {-8, 8}};
-constexpr std::array sides{"look", "saved", "off"};
+constexpr std::array sides{"look", "saved", "off", "other"};
 constexpr std::array channels{"RGB", "red", "green", "blue", "alpha", "luminance"};
 
 /// `width`: in heights of the font.
@@ -126,9 +126,20 @@ void EditPanels::draw_view_bar(PictureView& picture) {
     tip("Compares two of the look, the look as it was saved, and none. The divider can be dragged.");
     flow.next(9.6F * em + gap);
     ImGui::BeginDisabled(!is_comparing_);
+    const bool had_other = left_ == Side::Other || right_ == Side::Other;
     combo("##left", left_, sides, 4.8F);
+    look_.note_place("view/left");
     ImGui::SameLine(0, gap);
     combo("##right", right_, sides, 4.8F);
+    look_.note_place("view/right");
+    const bool has_other = left_ == Side::Other || right_ == Side::Other;
+    if (has_other && !had_other) choose_other();
+    if (has_other) {
+        flow.next(checkbox_width("File..."));
+        if (ImGui::Button("File...")) choose_other();
+        look_.note_place("view/other");
+        tip("Chooses the look to compare with.");
+    }
     ImGui::EndDisabled();
     flow.next(6 * em);
     ImGui::SetNextItemWidth(6 * em);
@@ -153,6 +164,26 @@ void EditPanels::draw_view_bar(PictureView& picture) {
     look_.note_place("view/fit");
     tip("Shows all of the picture, or a pixel on a pixel. The wheel zooms where no camera wants it.");
     view_rows_ = flow.rows();
+}
+
+void EditPanels::choose_other() {
+    look_.files().open({.title = "A look to compare with",
+                        .start = look_.folder(),
+                        .extensions = {".toml"},
+                        .then = [this](const std::filesystem::path& file) { wanted_other_ = file; }});
+}
+
+std::string EditPanels::name_of(Side side) const {
+    switch (side) {
+        case Side::Saved:
+            return "as saved";
+        case Side::Off:
+            return "without effects";
+        case Side::Other:
+            return other_;
+        default:
+            return "this look";
+    }
 }
 
 void EditPanels::draw_status(const Input& input, const PictureView& picture) {

@@ -18,9 +18,9 @@
 
 namespace app {
 
-/// What can be seen of a frame: through the look that is edited, as its file has it, without any.
-enum class Side : std::uint8_t { Look, Saved, Off };
-inline constexpr std::size_t side_count = 3;
+/// What can be seen of a frame: through the look that is edited, as its file has it, without any, through another look.
+enum class Side : std::uint8_t { Look, Saved, Off, Other };
+inline constexpr std::size_t side_count = 4;
 
 class EditPanels {
   public:
@@ -61,8 +61,16 @@ class EditPanels {
     // What its user wants.
     [[nodiscard]] bool is_comparing() const { return is_comparing_; }
     void toggle_compare() { is_comparing_ = !is_comparing_; }
-    [[nodiscard]] Side left() const { return left_; }
-    [[nodiscard]] Side right() const { return right_; }
+    [[nodiscard]] Side left() const { return there(left_); }
+    [[nodiscard]] Side right() const { return there(right_); }
+    /// What a side is called in the picture.
+    [[nodiscard]] std::string name_of(Side side) const;
+    /// The file of another look to compare with.
+    [[nodiscard]] std::optional<std::filesystem::path> take_other() {
+        return std::exchange(wanted_other_, std::nullopt);
+    }
+    /// It is there from now on; empty: it is not.
+    void set_other(std::string name) { other_ = std::move(name); }
     [[nodiscard]] bool wants_scopes() const { return tab_ == Tab::Scopes; }
     /// The pixel whose way through the stack is shown; nothing: nobody asks.
     [[nodiscard]] std::optional<VkOffset2D> pixel() const { return tab_ == Tab::Pixel ? pixel_ : std::nullopt; }
@@ -91,15 +99,15 @@ class EditPanels {
     void begin_panel(const char* name, const VkRect2D& area, bool& is_there);
     void end_panel(const char* name);
 
+    // timeline.cpp
+    void draw_timeline(const Input& input);
+
     // edit_panels.cpp
     void draw_view_bar(PictureView& picture);
     void draw_status(const Input& input, const PictureView& picture);
     void draw_below(const Input& input, PictureView& picture);
     void draw_images(const Input& input);
     void draw_pixel(const Input& input) const;
-
-    // timeline.cpp
-    void draw_timeline(const Input& input);
 
     darkroom::panels::LookPanels look_;
     darkroom::panels::TimingHistory times_;
@@ -114,7 +122,13 @@ class EditPanels {
     bool is_messages_wanted_ = false;  ///< their tab comes to the front
     std::optional<std::filesystem::path> opened_;
     bool is_comparing_ = false, is_pause_wanted_ = false;
+    /// Until another look has been chosen, what is saved stands for it.
+    [[nodiscard]] Side there(Side side) const { return side == Side::Other && other_.empty() ? Side::Saved : side; }
+    void choose_other();
+
     Side left_ = Side::Look, right_ = Side::Off;
+    std::string other_;  ///< the name of the other look's file
+    std::optional<std::filesystem::path> wanted_other_;
     std::string image_;
     std::uint32_t level_ = 0;
     darkroom::window::PaneView image_view_{.transfer = darkroom::window::PaneTransfer::SceneLinear};

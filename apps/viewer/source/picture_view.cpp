@@ -13,7 +13,8 @@ namespace app {
 namespace {
 
 constexpr float least_zoom = 1.0F / 16, most_zoom = 64;
-constexpr float grip = 6;  ///< how near to the divider a press takes it, in pixels
+/// How near to the divider a press takes it, in heights of the font.
+constexpr float grip_height = 1.6F;
 
 }  // namespace
 
@@ -40,7 +41,8 @@ void PictureView::draw(const Shown& shown, const VkRect2D& area) {
     }
     if (zoom_ == 0) center_x_ = center_y_ = 0.5F;
     const float zoom = zoom_ > 0 ? zoom_ : fitted;
-    if (shown.can_zoom && !io.WantCaptureMouse && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0)) {
+    const bool is_middle = !io.WantCaptureMouse && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0);
+    if (shown.can_zoom && (is_middle || (is_panning_ && !is_dragging_))) {
         center_x_ -= io.MouseDelta.x / (zoom * width);
         center_y_ -= io.MouseDelta.y / (zoom * height);
     }
@@ -51,6 +53,8 @@ void PictureView::draw(const Shown& shown, const VkRect2D& area) {
                       std::round(corner.y + room.y / 2 - center_y_ * height * zoom)};
     const ImVec2 to{from.x + width * zoom, from.y + height * zoom};
 
+    const float grip = grip_height * ImGui::GetFontSize();
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) is_panning_ = false;
     if (!shown.second) {
         is_dragging_ = false;
     } else {
@@ -62,6 +66,9 @@ void PictureView::draw(const Shown& shown, const VkRect2D& area) {
         if (is_dragging_ || (is_free && std::abs(mouse.x - at) < grip))
             ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     }
+    // What is larger than its area is taken by the hand.
+    if (shown.can_zoom && zoom_ > fitted && is_free && !is_dragging_ && ImGui::IsMouseClicked(ImGuiMouseButton_Left))
+        is_panning_ = true;
     pane_.view = shown.first;
     pane_.second = shown.second;
     pane_.is_nearest = zoom >= 2;
@@ -70,6 +77,7 @@ void PictureView::draw(const Shown& shown, const VkRect2D& area) {
     list->PushClipRect(corner, end);
     list->AddRectFilled(corner, end, ImGui::ColorConvertFloat4ToU32(darkroom::panels::surround_color));
     if (shown.first.image.is_given()) list->AddImage(pane_.texture(), from, to);
+    if (shown.second) draw_names(shown, area, from.x + pane_.divider * (to.x - from.x));
     if (shown.marked) {
         const ImVec2 middle{from.x + (static_cast<float>(shown.marked->x) + 0.5F) * zoom,
                             from.y + (static_cast<float>(shown.marked->y) + 0.5F) * zoom};
@@ -87,6 +95,21 @@ void PictureView::draw(const Shown& shown, const VkRect2D& area) {
     if (pixel.x >= 0 && pixel.y >= 0 && pixel.x < static_cast<std::int32_t>(shown.extent.width) &&
         pixel.y < static_cast<std::int32_t>(shown.extent.height))
         pointed_ = pixel;
+}
+
+// On either side of the divider, at the top of the picture.
+void PictureView::draw_names(const Shown& shown, const VkRect2D& area, float divider) const {
+    ImDrawList* const list = ImGui::GetBackgroundDrawList();
+    const float pad = std::round(ImGui::GetFontSize() / 3), left = static_cast<float>(area.offset.x);
+    const float right = left + static_cast<float>(area.extent.width);
+    const float at = std::clamp(divider, left, right), top = static_cast<float>(area.offset.y) + 2 * pad;
+    const auto name = [&](const std::string& text, float x) {
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        list->AddRectFilled({x, top}, {x + size.x + 2 * pad, top + size.y + 2 * pad}, IM_COL32(16, 16, 16, 200), pad);
+        list->AddText({x + pad, top + pad}, IM_COL32(230, 230, 230, 255), text.c_str());
+    };
+    name(shown.first_name, at - ImGui::CalcTextSize(shown.first_name.c_str()).x - 4 * pad);
+    name(shown.second_name, at + 2 * pad);
 }
 
 }  // namespace app

@@ -5,6 +5,7 @@
 #include <vulkan/vulkan.h>
 
 #include <optional>
+#include <string>
 
 #include "window/pane.hpp"
 
@@ -15,6 +16,7 @@ class PictureView {
     struct Shown {
         darkroom::window::PaneView first;
         std::optional<darkroom::window::PaneView> second;  ///< right of the divider
+        std::string first_name, second_name;               ///< where there are two
         VkExtent2D extent{};                               ///< of the picture, in pixels
         std::optional<VkOffset2D> marked;                  ///< a pixel that stands out
         bool can_zoom = false;                             ///< else the mouse is the camera's
@@ -25,8 +27,8 @@ class PictureView {
     [[nodiscard]] darkroom::window::Pane& pane() { return pane_; }
     /// The picture's pixel under the mouse; nothing: it is elsewhere, or over a panel.
     [[nodiscard]] std::optional<VkOffset2D> pointed() const { return pointed_; }
-    /// Is the divider being dragged?
-    [[nodiscard]] bool is_busy() const { return is_dragging_; }
+    /// Is the divider or the picture being dragged?
+    [[nodiscard]] bool is_busy() const { return is_dragging_ || is_panning_; }
     /// All of it, or a pixel of the picture on one of the window.
     void fit() { zoom_ = 0; }
     void set_zoom(float zoom) { zoom_ = zoom; }
@@ -36,7 +38,9 @@ class PictureView {
     darkroom::window::Pane pane_;
     float zoom_ = 0;
     float center_x_ = 0.5F, center_y_ = 0.5F;  ///< of the picture, in the middle of the area
-    bool is_dragging_ = false;
+    void draw_names(const Shown& shown, const VkRect2D& area, float divider) const;
+
+    bool is_dragging_ = false, is_panning_ = false;
     std::optional<VkOffset2D> pointed_;
 };
 

@@ -8,6 +8,7 @@
 #include "core/text/param_text.hpp"
 #include "panels/look/parameter_row.hpp"
 #include "panels/panel_state.hpp"
+#include "panels/widgets/icons.hpp"
 #include "panels/widgets/text_field.hpp"
 
 namespace darkroom::panels {
@@ -56,6 +57,12 @@ void draw_mover(PanelState& state, edit::Mover mover) {
     const std::string name = edit::name_of(state.look(), mover);
     draw_head(name, mover.is_layer ? "Blended over the values of the stack, by its weight."
                                    : "Added to a value when its event is fired, and dies down.");
+    if (!mover.is_layer) {
+        const std::string& event = state.look().pulses[mover.number].event;
+        if (ImGui::Button("Fire")) state.fired = event;
+        state.note(fmt::format("fire/{}", event));
+        tooltip("Starts all pulses of this event now.");
+    }
     std::vector<std::string> names;
     for (const edit::MovedValue& value : values) names.push_back(shown_name(value.row.name));
     const Columns columns = Columns::of(names);
