@@ -56,6 +56,27 @@ std::vector<std::uint32_t> effects_of(const Plan& plan) {
 /// What stands over a pass alone: its part, or its effect where it is all of it.
 std::string own_name(const PlanPass& pass) { return part_of(pass).empty() ? title_of(pass) : part_of(pass); }
 
+/// Broken where words end, so that every line fits into the width; else nothing.
+std::vector<std::string> lines_of(const std::string& text, float width) {
+    std::vector<std::string> out{""};
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find_first_of("+ ", begin), text.size() - 1) + 1;
+        const std::string word = text.substr(begin, end - begin);
+        if (ImGui::CalcTextSize(word.c_str()).x > width) return {};
+        if (!out.back().empty() && ImGui::CalcTextSize((out.back() + word).c_str()).x > width) out.emplace_back();
+        out.back() += word;
+        begin = end;
+    }
+    return out;
+}
+
+/// What a name takes above its column: lines, or one along the column.
+float height_of_name(const std::string& name, float column) {
+    const std::vector<std::string> lines = lines_of(name, column - 6);
+    return lines.empty() ? ImGui::CalcTextSize(name.c_str()).x + 6
+                         : static_cast<float>(lines.size()) * ImGui::GetFontSize() + 4;
+}
+
 std::string byte_text(std::uint64_t bytes) {
     if (bytes < 1024) return fmt::format("{} B", bytes);
     const double kibibytes = static_cast<double>(bytes) / 1024;
@@ -199,7 +220,12 @@ class Picture {
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
         if (size.x + 6 <= max.x - min.x) return label(text, min, max, dark);
         const ImVec2 corner = place(min), end = place(max);
-        if (end.x - corner.x < size.y * 0.8f) return;
+        const std::vector<std::string> lines = lines_of(text, max.x - min.x - 5);
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            const float top = (corner.y + end.y - static_cast<float>(lines.size()) * size.y) / 2;
+            plot_.list->AddText({corner.x + 3, top + static_cast<float>(i) * size.y}, dark, lines[i].c_str());
+        }
+        if (!lines.empty() || end.x - corner.x < size.y * 0.8f) return;
         // Written where nothing cuts it off, then turned by a quarter and put into its place, from the bottom upwards.
         const ImVec2 from = place({0, 0});
         const int first = plot_.list->VtxBuffer.Size;
@@ -278,10 +304,13 @@ namespace {
 /// 0: each has room in its column.
 float height_of_names(const Plan& plan, float width) {
     const float column = width / static_cast<float>(std::max<std::size_t>(plan.passes.size(), 1));
-    float longest = 0;
-    for (const PlanPass& pass : plan.passes)
-        longest = std::max(longest, ImGui::CalcTextSize(own_name(pass).c_str()).x + 6);
-    return longest <= column || column < ImGui::GetFontSize() * 0.8f ? 0 : longest;
+    if (column < ImGui::GetFontSize() * 0.8f) return 0;
+    float highest = 0;
+    for (const PlanPass& pass : plan.passes) {
+        const float height = height_of_name(own_name(pass), column);
+        highest = std::max(highest, part_of(pass).empty() ? height - 1.25f * ImGui::GetFontSize() : height);
+    }
+    return highest;
 }
 
 }  // namespace
