@@ -25,12 +25,7 @@ std::size_t times(const std::string& what, const std::string& in) {
 
 class CliViewerEdit : public ViewerFixture {
   protected:
-    void SetUp() override {
-        ViewerFixture::SetUp();
-        setenv("XDG_CONFIG_HOME", path("config").c_str(), 1);
-    }
     void TearDown() override {
-        unsetenv("XDG_CONFIG_HOME");
         unsetenv("VISUAL");
         ViewerFixture::TearDown();
     }

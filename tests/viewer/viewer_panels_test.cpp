@@ -10,8 +10,6 @@ namespace darkroom::test {
 
 namespace {
 
-const std::string shipped_scenes = std::string(test::source_folder) + "/shipped_scenes/";
-
 struct Shown {
     const char* name;
     const char* size;
@@ -22,14 +20,6 @@ struct Shown {
 class CliViewerPanels : public ViewerFixture, public testing::WithParamInterface<Shown> {
   protected:
     [[nodiscard]] int dots_per_inch() const override { return GetParam().dots_per_inch; }
-    void SetUp() override {
-        ViewerFixture::SetUp();
-        setenv("XDG_CONFIG_HOME", path("config").c_str(), 1);
-    }
-    void TearDown() override {
-        unsetenv("XDG_CONFIG_HOME");
-        ViewerFixture::TearDown();
-    }
     void open(const std::string& frame) {
         std::vector<std::string> line{"edit", frame, "--size", GetParam().size};
         if (GetParam().is_fullscreen) line.emplace_back("--fullscreen");
@@ -61,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(Windows, CliViewerPanels,
                          [](const auto& of) { return std::string(of.param.name); });
 
 TEST_P(CliViewerPanels, AreMovedClosedAndRemembered) {
-    ASSERT_EQ(run({"render", shipped_scenes + "dungeon.scene.toml", "--size", "160x90", "-o", path("r.png"), "--frame",
+    ASSERT_EQ(run({"render", scenes_folder + "dungeon.scene.toml", "--size", "160x90", "-o", path("r.png"), "--frame",
                    path("frame.exr")})
                   .code,
               0);
@@ -103,14 +93,14 @@ class CliViewerSpeed : public ViewerFixture {
 };
 
 TEST_F(CliViewerSpeed, WhatMovesHasFewerPixelsAndWhatIsStoredAll) {
-    start({"play", shipped_scenes + "showcase.scene.toml", "--size", "1280x720"});
+    start({"play", scenes_folder + "showcase.scene.toml", "--size", "1280x720"});
     EXPECT_TRUE(wait_until([&] { return divisor() == "1280x720 / 2" || divisor() == "1280x720 / 4"; }, 60))
         << divisor();
     EXPECT_EQ(shot().width, 1280U);
     press("p", "P pause: on");
     EXPECT_TRUE(wait_until([&] { return divisor() == "1280x720 / 1"; }, 60)) << divisor();
     leave();
-    start({"play", shipped_scenes + "showcase.scene.toml", "--size", "1280x720", "--full-size"});
+    start({"play", scenes_folder + "showcase.scene.toml", "--size", "1280x720", "--full-size"});
     std::this_thread::sleep_for(std::chrono::seconds(5));
     EXPECT_EQ(divisor(), "1280x720 / 1");
     leave();

@@ -17,8 +17,11 @@
 #include <thread>
 
 #include "tests/cli/cli_support.hpp"
+#include "tests/places.hpp"
 
 namespace darkroom::test {
+
+inline const std::string scenes_folder = std::string(source_folder) + "/scenes/";
 
 /// A program that runs beside the test, ended with this object.
 class Process {
@@ -73,19 +76,28 @@ class Process {
     std::optional<int> code_;
 };
 
+/// The greatest difference of two pictures.
+inline double difference(const Picture& a, const Picture& b) {
+    const Result<Comparison> result = compare(a, b);
+    EXPECT_TRUE(result) << result.error().text;
+    return result ? result->max_error : 1;
+}
+
 class ViewerFixture : public CliFixture {
   protected:
     void SetUp() override {
         CliFixture::SetUp();
+        // What windows keep for their user is the test's own.
+        setenv("XDG_CONFIG_HOME", path("config").c_str(), 1);
         if (!has("Xvfb") || !has("openbox") || !has("xdotool"))
             GTEST_SKIP() << "packages xvfb, openbox and xdotool are needed to open windows";
         std::array<int, 2> ends{};
         ASSERT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
         // Without -noreset it begins anew, and loses who is just connecting, when the last of the others leaves.
-        display_ = std::make_unique<Process>(
-            std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1920x1080x24",
-                                     "-nolisten", "tcp", "-noreset", "-dpi", std::to_string(dots_per_inch())},
-            path("xvfb.log"), path("xvfb.err"), path(""), ends[1]);
+        display_ =
+            std::make_unique<Process>(std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen",
+                                                               "0", "1920x1080x24", "-nolisten", "tcp", "-noreset"},
+                                      path("xvfb.log"), path("xvfb.err"), path(""), ends[1]);
         close(ends[1]);
         std::string number;
         char digit = 0;
@@ -96,8 +108,11 @@ class ViewerFixture : public CliFixture {
         manager_ = std::make_unique<Process>(std::vector<std::string>{"openbox", "--sm-disable"}, path("openbox.log"),
                                              path("openbox.err"), path(""));
         ASSERT_TRUE(wait_until([] { return shell("xdotool get_desktop") == 0; }, 30)) << "no window manager";
+        const std::string set = "xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER";
+        if (dots_per_inch() != 96 && shell(fmt::format("{} 'Xft.dpi: {}'", set, dots_per_inch())) != 0)
+            GTEST_SKIP() << "package x11-utils is needed to scale a display";
     }
-    /// Of the display: at 192 all is twice as large.
+    /// Of the display: at 192 all is twice as large, if the program xprop is there.
     [[nodiscard]] virtual int dots_per_inch() const { return 96; }
     void TearDown() override {
         viewer_.reset();
@@ -105,6 +120,7 @@ class ViewerFixture : public CliFixture {
         manager_.reset();
         display_.reset();
         unsetenv("DISPLAY");
+        unsetenv("XDG_CONFIG_HOME");
         CliFixture::TearDown();
     }
 
@@ -224,7 +240,8 @@ class ViewerFixture : public CliFixture {
                 command(question);
                 const std::string text = said();
                 const std::size_t at = text.find(begin, before);
-                if (at != std::string::npos) answer = text.substr(at + begin.size(), text.find('\n', at) - at);
+                if (at != std::string::npos)
+                    answer = text.substr(at + begin.size(), text.find('\n', at) - at - begin.size());
                 return at != std::string::npos;
             },
             60);

@@ -10,19 +10,11 @@ namespace darkroom::test {
 
 namespace {
 
-const std::string scenes = std::string(test::source_folder) + "/scenes/";
-
-double difference(const Picture& a, const Picture& b) {
-    const Result<Comparison> result = compare(a, b);
-    EXPECT_TRUE(result) << result.error().text;
-    return result ? result->max_error : 1;
-}
-
 class CliViewer : public ViewerFixture {};
 
 TEST_F(CliViewer, APictureIsThatOfRender) {
     for (const auto& [scene, size] : {std::pair("dungeon", "320x180"), std::pair("showcase", "333x217")}) {
-        const std::string file = scenes + scene + ".scene.toml";
+        const std::string file = scenes_folder + scene + ".scene.toml";
         const Outcome rendered = run({"render", file, "--size", size, "--fps", "60", "--samples", "1", "--msaa", "4",
                                       "--fxaa-enabled", "off", "-o", path("render.png")});
         ASSERT_EQ(rendered.code, 0) << rendered.err;
@@ -35,7 +27,7 @@ TEST_F(CliViewer, APictureIsThatOfRender) {
 }
 
 TEST_F(CliViewer, EveryFlagOfThePicturesIsObeyed) {
-    const std::string file = scenes + "forge.scene.toml";
+    const std::string file = scenes_folder + "forge.scene.toml";
     const auto pictures = [&](const std::vector<std::string>& flags) {
         std::vector<std::string> render{"render",    file, "--size", "160x90", "--fps", "60",
                                         "--samples", "1",  "--msaa", "4",      "-o",    path("render.png")};
@@ -69,11 +61,11 @@ TEST_F(CliViewer, EveryFlagOfThePicturesIsObeyed) {
 }
 
 TEST_F(CliViewer, AStoredFrameIsDevelopedAsByDevelop) {
-    ASSERT_EQ(run({"render", scenes + "dungeon.scene.toml", "--size", "161x97", "-o", path("r.png"), "--frame",
+    ASSERT_EQ(run({"render", scenes_folder + "dungeon.scene.toml", "--size", "161x97", "-o", path("r.png"), "--frame",
                    path("frame.exr")})
                   .code,
               0);
-    const std::string look = scenes + "dungeon.scene.toml";
+    const std::string look = scenes_folder + "dungeon.scene.toml";
     ASSERT_EQ(
         run({"develop", path("frame.exr"), "--look", look, "--fxaa-enabled", "off", "-o", path("developed.png")}).code,
         0);
@@ -96,8 +88,8 @@ TEST_P(CliViewerKeys, DoWhatTheySay) {
         if (is_play) leave();
         EXPECT_EQ(complained(), "");
     };
-    start({GetParam(), scenes + "showcase.scene.toml", "--size", is_play ? "320x180" : "1280x720", "--bloom-intensity",
-           "0.3", "--fog-density", "0.05", "--dither-intensity", "0.1", "--ssao-intensity", "1"});
+    start({GetParam(), scenes_folder + "showcase.scene.toml", "--size", is_play ? "320x180" : "1280x720",
+           "--bloom-intensity", "0.3", "--fog-density", "0.05", "--dither-intensity", "0.1", "--ssao-intensity", "1"});
     press("p", "P pause: on");
     const Picture before = shot();
     for (const auto& [key, line] :
@@ -122,7 +114,7 @@ TEST_P(CliViewerKeys, DoWhatTheySay) {
     press("ctrl+c", "stored frame-");
     press("shift+F12", "stored darkroom-window-");
     end();
-    start({GetParam(), scenes + "dungeon.scene.toml", "--size", "320x180", "--paused"});
+    start({GetParam(), scenes_folder + "dungeon.scene.toml", "--size", "320x180", "--paused"});
     const Picture light = shot();
     press("F10", "F10 volumetric: off");
     EXPECT_GT(difference(light, shot()), 0) << "F10 changes the picture";
@@ -132,7 +124,7 @@ TEST_P(CliViewerKeys, DoWhatTheySay) {
 }
 
 TEST_F(CliViewer, ACapturedFrameDevelopsToThePicture) {
-    const std::string scene = scenes + "showcase.scene.toml";
+    const std::string scene = scenes_folder + "showcase.scene.toml";
     start({"play", scene, "--size", "320x180", "--fxaa-enabled", "off"});
     press("p", "P pause: on");
     const Picture shown = shot();
@@ -145,7 +137,7 @@ TEST_F(CliViewer, ACapturedFrameDevelopsToThePicture) {
 }
 
 TEST_F(CliViewer, WalkingChangesTheView) {
-    start({"play", scenes + "dungeon.scene.toml", "--size", "320x180"});
+    start({"play", scenes_folder + "dungeon.scene.toml", "--size", "320x180"});
     const Picture before = shot();
     ASSERT_EQ(shell("xdotool keydown w sleep 1 keyup w"), 0);
     EXPECT_GT(difference(before, shot()), 0.1);
@@ -156,7 +148,7 @@ TEST_F(CliViewer, EditsAreUndoneSavedAndReadAgain) {
     const std::string look = write("my.toml",
                                    "# mine\n[post_process]\nbloom_enabled = true  # it glows\nbloom_intensity = 0.2\n"
                                    "fog_density = 0.05\n");
-    start({"edit", scenes + "showcase.scene.toml", "--look", look, "--size", "1280x720"});
+    start({"edit", scenes_folder + "showcase.scene.toml", "--look", look, "--size", "1280x720"});
     press("p", "P pause: on");
     const Picture before = shot();
     press("F5", "F5 bloom: off");
@@ -187,7 +179,7 @@ TEST_F(CliViewer, SlidersAndTheOrderOfTheStackFollowTheMouse) {
         "[[stack]]\neffect = \"bloom\"\nintensity = 0.2  # slid\n\n"
         "[[stack]]\neffect = \"exposure\"\nexposure = 0.4\n\n[[stack]]\neffect = \"tonemap\"\n";
     const std::string look = write("my.toml", text);
-    start({"edit", scenes + "showcase.scene.toml", "--look", look, "--size", "1280x720"});
+    start({"edit", scenes_folder + "showcase.scene.toml", "--look", look, "--size", "1280x720"});
     press("p", "P pause: on");
     const Picture before = shot();
     click("stack/bloom");
@@ -211,9 +203,10 @@ TEST_F(CliViewer, SlidersAndTheOrderOfTheStackFollowTheMouse) {
 }
 
 TEST_F(CliViewer, ObeysStandardInput) {
-    EXPECT_EQ(run({"play", scenes + "showcase.scene.toml", "--size", "96x54", "--commands", "--frames", "2"}).code, 0)
+    EXPECT_EQ(
+        run({"play", scenes_folder + "showcase.scene.toml", "--size", "96x54", "--commands", "--frames", "2"}).code, 0)
         << "the end of what is said is not the window's";
-    start({"edit", scenes + "showcase.scene.toml", "--size", "320x180"});
+    start({"edit", scenes_folder + "showcase.scene.toml", "--size", "320x180"});
     press("p", "P pause: on");
     const Picture before = shot();
     command("exposure.exposure 3\nexposure.exposure");
@@ -226,7 +219,7 @@ TEST_F(CliViewer, ObeysStandardInput) {
 }
 
 TEST_F(CliViewer, SurvivesAStormOfSizes) {
-    start({"play", scenes + "showcase.scene.toml", "--size", "320x180", "--fxaa-enabled", "off", "--paused"});
+    start({"play", scenes_folder + "showcase.scene.toml", "--size", "320x180", "--fxaa-enabled", "off", "--paused"});
     constexpr int sizes = 200;
     std::mt19937 random(7);
     std::string command = "xdotool";
@@ -235,7 +228,7 @@ TEST_F(CliViewer, SurvivesAStormOfSizes) {
     ASSERT_EQ(shell(command), 0);
     ASSERT_EQ(shell(fmt::format("xdotool windowsize --sync {} 301 203", window())), 0);
     EXPECT_TRUE(wait_until([&] { return shot().width == 301; }, 60));
-    const Outcome rendered = run({"render", scenes + "showcase.scene.toml", "--size", "301x203", "--fps", "60",
+    const Outcome rendered = run({"render", scenes_folder + "showcase.scene.toml", "--size", "301x203", "--fps", "60",
                                   "--samples", "1", "--msaa", "4", "--fxaa-enabled", "off", "-o", path("render.png")});
     ASSERT_EQ(rendered.code, 0);
     const Picture expected = picture("render.png");
@@ -245,7 +238,7 @@ TEST_F(CliViewer, SurvivesAStormOfSizes) {
 }
 
 TEST_F(CliViewer, GoesOnAfterItWasMinimised) {
-    start({"play", scenes + "showcase.scene.toml", "--size", "320x180"});
+    start({"play", scenes_folder + "showcase.scene.toml", "--size", "320x180"});
     ASSERT_EQ(shell("xdotool windowminimize --sync " + window()), 0);
     std::this_thread::sleep_for(std::chrono::seconds(1));
     ASSERT_TRUE(viewer().is_running());
@@ -274,17 +267,18 @@ TEST_F(CliViewer, TakesTheFlagsOfRender) {
 TEST_F(CliViewer, NeedsADisplay) {
     unsetenv("DISPLAY");
     for (const char* const mode : {"play", "edit"})
-        expect_refused({mode, scenes + "dungeon.scene.toml"}, 2, "no window can be opened");
+        expect_refused({mode, scenes_folder + "dungeon.scene.toml"}, 2, "no window can be opened");
 }
 
 TEST_F(CliViewer, RefusesWhatItCannotShow) {
     expect_refused({"play"}, 1, "a scene, a model or a frame is needed");
-    expect_refused({"play", scenes + "dungeon.scene.toml", "b.exr"}, 1, "one scene or model at a time");
-    expect_refused({"edit", scenes + "dungeon.scene.toml", "--present", "often"}, 1, "vsync, mailbox or immediate");
-    expect_refused({"edit", scenes + "dungeon.scene.toml", "--range", "wide"}, 1, "standard or high");
-    expect_refused({"play", scenes + "dungeon.scene.toml", "--peak-nits", "5"}, 1, "[100, 10000] cd/m2");
+    expect_refused({"play", scenes_folder + "dungeon.scene.toml", "b.exr"}, 1, "one scene or model at a time");
+    expect_refused({"edit", scenes_folder + "dungeon.scene.toml", "--present", "often"}, 1,
+                   "vsync, mailbox or immediate");
+    expect_refused({"edit", scenes_folder + "dungeon.scene.toml", "--range", "wide"}, 1, "standard or high");
+    expect_refused({"play", scenes_folder + "dungeon.scene.toml", "--peak-nits", "5"}, 1, "[100, 10000] cd/m2");
     expect_refused({"edit", path("missing.exr")}, 1, "missing.exr");
-    expect_refused({"edit", scenes + "dungeon.scene.toml", "--screenshot", path("none/a.png")}, 1, "none");
+    expect_refused({"edit", scenes_folder + "dungeon.scene.toml", "--screenshot", path("none/a.png")}, 1, "none");
 }
 
 }  // namespace
