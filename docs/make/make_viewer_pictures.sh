@@ -11,6 +11,8 @@ for tool in Xvfb openbox xdotool oiiotool; do
 done
 work=$(mktemp -d)
 processes=()
+# Panels as they lie at first, whatever who calls this has made of them.
+export XDG_CONFIG_HOME=$work/config
 trap 'kill "${processes[@]}" 2>/dev/null || true; wait; rm -rf "$work"' EXIT
 
 mkfifo "$work/number" "$work/commands"
