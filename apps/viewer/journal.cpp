@@ -2,10 +2,10 @@
 #include "journal.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
 #include <unistd.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <span>
 
 #include "core/files.hpp"
@@ -20,12 +20,20 @@ constexpr std::chrono::milliseconds between_writes{1000};
 constexpr std::size_t most_bytes = std::size_t{4} << 20;
 constexpr std::string_view first_line = "# Unsaved edits of process ";
 
+/// One that has ended, and that nobody has asked for its end yet, is not at work any more.
+bool is_at_work(long process) {
+    std::ifstream file(fmt::format("/proc/{}/stat", process));
+    std::string text;
+    std::getline(file, text);
+    const std::size_t end = text.rfind(')');
+    return end != std::string::npos && end + 2 < text.size() && text[end + 2] != 'Z' && text[end + 2] != 'X';
+}
+
 /// Is the process that the first line names at work?
 bool is_being_written(std::string_view text) {
     if (!text.starts_with(first_line)) return false;
-    const pid_t process =
-        static_cast<pid_t>(std::strtol(std::string(text.substr(first_line.size(), 12)).c_str(), nullptr, 10));
-    return process > 0 && process != getpid() && kill(process, 0) == 0;
+    const long process = std::strtol(std::string(text.substr(first_line.size(), 12)).c_str(), nullptr, 10);
+    return process != getpid() && is_at_work(process);
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST_F(CliViewerTasks, WhatWasNotSavedIsOfferedAgain) {
     press("F8", "F8 fog: off");
     ASSERT_TRUE(wait_until([&] { return std::filesystem::exists(journal); }, 30));
     kill(viewer().id(), SIGKILL);
-    EXPECT_TRUE(viewer().wait(std::chrono::seconds(10)));
+    ASSERT_EQ(viewer().wait(std::chrono::seconds(60)), 128);
     EXPECT_EQ(content(look), text);
 
     start({"edit", path("frame.exr"), "--look", look, "--size", "1280x720"});
