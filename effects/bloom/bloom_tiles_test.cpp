@@ -90,14 +90,15 @@ ReferenceImage picture_of(VkExtent2D extent) {
     return test::round_to_float(picture);
 }
 
-/// Kernels round packed floats themselves, halves the driver, which may cut off where shared memory takes the nearest.
+/// Kernels round packed floats themselves, to a step of six bits another way where a compiler contracts otherwise;
+/// halves the driver, which may cut off where shared memory takes the nearest.
 void expect_the_same(VkExtent2D extent, std::span<const Bloom> blooms, std::span<const VkRect2D> regions) {
     const test::Host host(picture_of(extent));
     const auto compare = [&](bool is_lean, bool is_packed) {
         const auto tiles = developed(host, blooms, regions, is_lean, Form::Tiles, is_packed),
                    kernels = developed(host, blooms, regions, is_lean, Form::Kernels, is_packed);
         ASSERT_EQ(tiles.size(), kernels.size());
-        const double allowed = is_packed ? 0 : 9 * 0x1p-10;
+        const double allowed = !is_packed ? 9 * 0x1p-10 : gpu::test::is_lavapipe() ? 0 : 0x1p-6;
         for (std::size_t i = 0; i < tiles.size(); ++i)
             EXPECT_LE(worst_part(tiles[i], kernels[i]), allowed)
                 << extent.width << "x" << extent.height << ", frame " << i << (is_packed ? ", packed" : ", halves")

@@ -74,7 +74,7 @@ TEST_F(ComposeKernelCounts, BloomHasFourShadersAndItsJoin) {
     test::set_word(composer, bloom, "reach", 0);  // pixels: all levels count, however low the picture is
     std::size_t passes = 0;
     EXPECT_EQ(pipelines_of([&] { passes = composer.compile(desc()).value().passes.size(); }), 2u * (4 + 1));
-    EXPECT_GE(passes, 8u);
+    EXPECT_GE(passes, gpu::test::context().traits.is_software ? 8U : 5U) << "a GPU makes several levels in one";
 }
 
 TEST_F(ComposeKernelCounts, AnEffectInFrontMakesItsOwnKernelsAndTheTail) {

@@ -456,6 +456,7 @@ void expect_sound_images(const Plan& plan) {
 
 TEST_F(ComposePlan, ImagesHaveNamesPlacesAndLifetimes) {
     if (find_effect("frame_blend") == nullptr) GTEST_SKIP() << "this build has no effect frame_blend";
+    const gpu::test::PlannedFor planned(true);
     add(composer, "bloom");
     add(composer, "gaussian_blur");
     add(composer, "frame_blend");

@@ -141,7 +141,7 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
     command.add_flag("--strict", is_strict_, "Unknown keys and values out of range in a look are errors").group(group);
     command
         .add_flag("--no-postprocess", is_off_,
-                  "The look's exposure, and tone mapping and encoding at their defaults; nothing else")
+                  "Only the look's exposure, default tone mapping and default encoding")
         .group(group);
     command
         .add_option(

@@ -123,13 +123,15 @@ TEST_F(ComposeMemoryHooks, ASubAllocatorGivesTheSamePicture) {
     SubAllocator memory;
     {
         Device device = adopted(memory);
-        EXPECT_EQ(test::worst_difference(developed(device), developed(gpu::test::device())), 0);
+        // The adopted device has fewer features, so that some of a GPU's halves are other formats there.
+        const double rounded = gpu::test::is_lavapipe() ? 0 : 0x1p-11;
+        EXPECT_LE(test::worst_difference(developed(device), developed(gpu::test::device())), rounded);
         EXPECT_GT(memory.at_an_offset, 5);
         EXPECT_GT(memory.for_one_buffer, 0);
         EXPECT_LT(memory.for_one_image + memory.for_one_buffer, memory.pieces) << "transients share a piece";
     }
     EXPECT_EQ(memory.live, 0);
-    EXPECT_LE(memory.blocks(), 3U);
+    EXPECT_LE(memory.blocks(), gpu::test::is_lavapipe() ? 3U : 4U) << "images may have memory of their own type";
 }
 
 TEST_F(ComposeMemoryHooks, TheHistoriesOfAPlanShareAPiece) {

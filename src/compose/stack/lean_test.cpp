@@ -103,7 +103,8 @@ TEST_F(ComposeLean, PlacesAreThoseOfTheCompleteKernels) {
                         complete.push_back(host.run(composer));
                     } else {
                         composer.wait_for_kernels();
-                        EXPECT_EQ(test::worst_difference(host.run(composer), complete[i]), 0)
+                        // Compilers that contract otherwise put a sample into the next division of a texel.
+                        EXPECT_LE(test::worst_difference(host.run(composer), complete[i]), 2 * gpu::test::filter_step())
                             << stack.front() << " and " << stack.size() - 1 << " more, values " << i;
                     }
                 }

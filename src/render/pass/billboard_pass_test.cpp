@@ -85,7 +85,9 @@ Bounds lit(const Pixels& pixels) {
 
 void expect_color(vec4 found, vec4 expected, float tolerance = 2e-3F) {
     for (int i = 0; i < 4; ++i)
-        EXPECT_NEAR(found[i], expected[i], tolerance * std::max(1.0F, expected[i])) << "channel " << i;
+        EXPECT_NEAR(found[i], expected[i],
+                    (tolerance + static_cast<float>(gpu::test::filter_step())) * std::max(1.0F, expected[i]))
+            << "channel " << i;
 }
 
 scene::Particle particle(vec3 position, vec4 color, float size = 4) {
