@@ -58,6 +58,12 @@ std::optional<std::string> Journal::left_behind(const darkroom::edit::LookDocume
     return text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
 }
 
+void Journal::begin(const darkroom::edit::LookDocument& document) {
+    is_held_ = false;
+    written_ = file_of(document);
+    version_ = ~std::uint64_t{0};  // none of the document's
+}
+
 Result<> Journal::follow(const darkroom::edit::LookDocument& document) {
     const Clock::time_point now = Clock::now();
     if (is_held_ || has_failed_ || now - looked_at_ < between_writes) return {};

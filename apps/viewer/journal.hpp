@@ -20,8 +20,8 @@ class Journal {
     /// What a former process has left of this look, and nobody writes any more: as LookDocument::take_unsaved reads it.
     /// Nothing is written before begin().
     [[nodiscard]] std::optional<std::string> left_behind(const darkroom::edit::LookDocument& document);
-    /// It is dealt with: from now on edits are written.
-    void begin() { is_held_ = false; }
+    /// It is dealt with: from now on the file is ours, and edits are written.
+    void begin(const darkroom::edit::LookDocument& document);
     /// Once a frame: what is not saved is in the file within a second or two, and where all is saved there is none.
     /// Errors: the file cannot be written; told once.
     [[nodiscard]] darkroom::Result<> follow(const darkroom::edit::LookDocument& document);

@@ -126,12 +126,12 @@ void Viewer::offer_unsaved() {
     if (!text) return;
     const std::string name = document_->file().empty() ? "a look without a name" : shown(document_->file().filename());
     const auto take = [this, text = *text] {
-        journal_->begin();
+        journal_->begin(*document_);
         settle("unsaved edits", document_->take_unsaved(text));
     };
     screen_.editor()->look().ask(
         fmt::format("Edits of {} were not saved when its window ended. They are still there.", name),
-        {{"Take them", take}, {"Throw them away", [this] { journal_->begin(); }}});
+        {{"Take them", take}, {"Throw them away", [this] { journal_->begin(*document_); }}});
     tell(fmt::format("unsaved edits of {} are there", name));
 }
 
