@@ -33,10 +33,11 @@ TEST(ComposeHalf, EveryHalfComesBackAndNothingElseIsOne) {
         EXPECT_FALSE(exact_half(none)) << none;
 }
 
-/// Every effect of the flat table that is on, and those that depend on the frame's number.
+/// Every effect of the flat table that is on, and those that depend on the frame's number; but not what gathers frames,
+/// since the same one comes several times.
 void fill(Composer& composer) {
     for (const EffectInfo* const effect : all_effects())
-        if (effect->flat.documented >= 0) composer.add(*effect, nullptr, {.source = scene_color});
+        if (effect->flat.documented >= 0 && !effect->makes_output) composer.add(*effect, nullptr, {.source = scene_color});
 }
 
 ImageRef reference_to(const support::Picture& picture) {
