@@ -139,7 +139,7 @@ TEST_F(CliHabits, QuietIsSilentAndVerboseSaysMore) {
 
 // Without a display they are as far as the window when they end.
 TEST_F(CliHabits, FlagsOfWindowsAreTaken) {
-    EXPECT_NE(run({"play", "--help-keys"}).out.find("walks (play)"), std::string::npos);
+    EXPECT_NE(run({"play", "--help-keys"}).out.find("walks; with Shift it runs  [play]"), std::string::npos);
     unsetenv("DISPLAY");
     expect_refused({"edit", path("empty.scene.toml"), "--auto-orbit", "--fullscreen"}, 2, "no window can be opened");
 }

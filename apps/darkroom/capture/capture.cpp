@@ -255,7 +255,10 @@ int run(const Options& options) {
 Command add_capture(CommandFlags program) {
     const CommandFlags command = program.add_command(
         "capture", "Draws what temporal filters are given of a scene, at several sizes, and its truth");
-    command.examples("darkroom capture scene.toml --frames 0-1 --scales 1,2 --samples 4 --size 64x36 -o captured");
+    command.examples(
+        "darkroom capture scene.toml --frames 0-1 --scales 1,2 --samples 4 --size 64x36 -o captured\n"
+        "darkroom capture scene.toml --frames 0-1 --truth-frames 1 --samples 4 --size 64x36 -o truth\n"
+        "darkroom capture scene.toml --frames 0 --scales 1.5 --mean linear --samples 4 --size 64x36 -o linear");
     const auto options = std::make_shared<Options>();
     command.add_option("SCENE", options->scene, "A scene (.toml) or a model (.glb, .gltf)").required();
     command.add_option("-o,--output,--out", options->folder, "The folder; it is made where it is not there")

@@ -248,7 +248,10 @@ int run(const Options& options) {
 Command add_judge(CommandFlags program) {
     const CommandFlags command =
         program.add_command("judge", "Says how far the pictures of a temporal filter are from the truth of a capture");
-    command.examples("darkroom judge --truth captured --test pictures -o judgement");
+    command.examples(
+        "darkroom judge --truth captured --test captured/1x\n"
+        "darkroom judge --truth captured --test captured/1x -o judgement\n"
+        "darkroom judge --truth captured --test captured/1x --frames 1 --json");
     const auto options = std::make_shared<Options>();
     command.add_option("--truth", options->truth, "A folder of `darkroom capture`").type_name("DIR").required();
     command
