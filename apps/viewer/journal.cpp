@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <span>
 
 #include "core/files.hpp"
@@ -20,11 +19,16 @@ constexpr std::chrono::milliseconds between_writes{1000};
 constexpr std::size_t most_bytes = std::size_t{4} << 20;
 constexpr std::string_view first_line = "# Unsaved edits of process ";
 
+Result<std::string> text_of(const std::filesystem::path& file) {
+    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = most_bytes});
+    if (!bytes) return darkroom::failure(bytes.error());
+    const void* const data = bytes->data();
+    return std::string(static_cast<const char*>(data), bytes->size());
+}
+
 /// One that has ended, and that nobody has asked for its end yet, is not at work any more.
 bool is_at_work(long process) {
-    std::ifstream file(fmt::format("/proc/{}/stat", process));
-    std::string text;
-    std::getline(file, text);
+    const std::string text = text_of(fmt::format("/proc/{}/stat", process)).value_or("");
     const std::size_t end = text.rfind(')');
     return end != std::string::npos && end + 2 < text.size() && text[end + 2] != 'Z' && text[end + 2] != 'X';
 }
@@ -48,14 +52,12 @@ std::optional<std::string> Journal::left_behind(const darkroom::edit::LookDocume
     const std::filesystem::path file = file_of(document);
     std::error_code error;
     if (file.empty() || !std::filesystem::is_regular_file(file, error)) return std::nullopt;
-    const Result<std::vector<std::byte>> bytes = darkroom::read_file(file, {.max_size = most_bytes});
-    if (!bytes) return std::nullopt;
-    std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    if (!text.starts_with(first_line)) return std::nullopt;
+    const Result<std::string> text = text_of(file);
+    if (!text || !text->starts_with(first_line)) return std::nullopt;
     // Two windows over one look: the journal is the other one's.
     is_held_ = true;
-    if (is_being_written(text)) return std::nullopt;
-    return text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
+    if (is_being_written(*text)) return std::nullopt;
+    return text->substr(std::min(text->find('\n'), text->size() - 1) + 1);
 }
 
 void Journal::begin(const darkroom::edit::LookDocument& document) {
