@@ -68,7 +68,7 @@ TEST_P(CliViewerPanels, AreMovedClosedAndRemembered) {
     leave();
 
     open(path("frame.exr"));
-    EXPECT_EQ(middle("splitter/Stack"), stack);
+    EXPECT_EQ(middle("splitter/Stack")[0], stack[0]) << "it is higher without the status line";
     EXPECT_NEAR(middle("splitter/Below")[1], below[1] + 26 * scale(), 26 * scale());
     EXPECT_EQ(place("panel/Picture"), picture);
     choose("Parameters");
@@ -78,7 +78,7 @@ TEST_P(CliViewerPanels, AreMovedClosedAndRemembered) {
         EXPECT_GT(place("panel/Picture")[3], picture[3]);
     }
     choose("Put panels back");
-    EXPECT_NE(middle("splitter/Stack"), stack);
+    EXPECT_NE(middle("splitter/Stack")[0], stack[0]);
     press("question", "? keys: on");
     press("Escape", "? keys: off");
     leave();
