@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Runs at build time: compiles every kernel in both stages, so that a mistake in a shader breaks the build with file
-// and line.
+// and line. What it made lies in the folder that its argument names, for the tests of the compilers of GPUs.
 
 #include <cstdio>
 
 #include "every_kernel.hpp"
 #include "gpu/shader/shader.hpp"
 
-int main() {
+int main(int argc, char** argv) {
     using namespace darkroom;
     std::vector<gpu::ShaderSource> sources;
     for (const gpu::Stage stage : {gpu::Stage::Compute, gpu::Stage::Raster}) {
@@ -25,7 +25,7 @@ int main() {
                                .text = gpu::kernel_source(kernel.spec, stage),
                                .stage = is_compute ? gpu::ShaderStage::Compute : gpu::ShaderStage::Fragment});
     }
-    gpu::ShaderCompiler compiler{std::filesystem::path()};
+    gpu::ShaderCompiler compiler{argc > 1 ? std::filesystem::path(argv[1]) : std::filesystem::path()};
     int failures = 0;
     for (const auto& spirv : compiler.compile_all(sources)) {
         if (spirv) continue;
