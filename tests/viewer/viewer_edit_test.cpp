@@ -31,8 +31,8 @@ class CliViewerEdit : public ViewerFixture {
     }
     /// Of one frame without a camera, which is quick to develop.
     std::string frame(const std::string& name) {
-        EXPECT_EQ(run({"render", std::string(test::source_folder) + "/scenes/dungeon.scene.toml", "--size", "160x90",
-                       "-o", path("r.png"), "--frame", path(name)})
+        EXPECT_EQ(run({"render", scenes_folder + "dungeon.scene.toml", "--size", "160x90", "-o", path("r.png"),
+                       "--frame", path(name)})
                       .code,
                   0);
         return path(name);
@@ -225,9 +225,9 @@ TEST_F(CliViewerEdit, TheConsoleCompletesAndRecalls) {
 }
 
 TEST_F(CliViewerEdit, PlayKeepsItsConfigurationAndBindsItsFirstFrame) {
-    const std::string look = std::string(test::source_folder) + "/looks/visor.toml";
-    const std::vector<std::string> arguments{
-        "play", std::string(test::source_folder) + "/scenes/dungeon.scene.toml", "--look", look, "--size", "320x180"};
+    const std::string look = looks_folder + "visor.toml";
+    const std::vector<std::string> arguments{"play",   scenes_folder + "dungeon.scene.toml", "--look", look, "--size",
+                                             "320x180"};
     start(arguments);
     command("contrast 1.25");
     command("contrast");

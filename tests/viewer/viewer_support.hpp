@@ -21,8 +21,6 @@
 
 namespace darkroom::test {
 
-inline const std::string scenes_folder = std::string(source_folder) + "/scenes/";
-
 /// A program that runs beside the test, ended with this object.
 class Process {
   public:
@@ -85,10 +83,18 @@ inline double difference(const Picture& a, const Picture& b) {
 
 class ViewerFixture : public CliFixture {
   protected:
+    /// Of copies, with what they name: windows leave files beside what they edit.
+    std::string scenes_folder, looks_folder;
+
     void SetUp() override {
         CliFixture::SetUp();
+        scenes_folder = path("scenes/");
+        looks_folder = path("looks/");
         // What windows keep for their user is the test's own.
         setenv("XDG_CONFIG_HOME", path("config").c_str(), 1);
+        for (const char* const folder : {"scenes", "looks", "hud", "controllers"})
+            std::filesystem::copy(std::filesystem::path(source_folder) / folder, path(folder),
+                                  std::filesystem::copy_options::recursive);
         if (!has("Xvfb") || !has("openbox") || !has("xdotool"))
             GTEST_SKIP() << "packages xvfb, openbox and xdotool are needed to open windows";
         std::array<int, 2> ends{};

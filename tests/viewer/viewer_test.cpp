@@ -52,7 +52,7 @@ TEST_F(CliViewer, EveryFlagOfThePicturesIsObeyed) {
                                                {"--chromatic-aberration", "0.05"},
                                                {"--tonemap-curve", "agx"},
                                                {"--dither-intensity", "0.1"},
-                                               {"--layer", std::string(test::source_folder) + "/looks/daze.toml"},
+                                               {"--layer", looks_folder + "daze.toml"},
                                                {"--no-postprocess", "--exposure", "3"}}) {
         const auto [rendered, shown] = pictures(flags);
         EXPECT_GT(difference(plain, shown), 2.0 / 255) << flags.front();
