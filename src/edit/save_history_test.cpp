@@ -83,10 +83,21 @@ constexpr const char* stack =
     "# mine\n[[stack]]\neffect = \"bloom\"   # first\nintensity = 0.20\n\n\n[[stack]]\neffect = \"exposure\"\n"
     "exposure = 1.50\n# then\n[[stack]]\neffect = \"tonemap\"\n";
 
+constexpr const char* moved =
+    "[post_process]\nvignette_intensity = 0.2\nfog_density = 0.05\n\n# when it hurts\n[[pulse]] # hits\n"
+    "event = \"hit\"\nparameter = \"vignette.intensity\"\namount = 0.25 # strong\n# and red\n[[pulse]]\n"
+    "event = \"hit\"\nparameter = \"fog.color\"\namount = [0.1, 0.0, 0.0]\n\n\n[[layer]]\nname = \"cave\"\n"
+    "distance = { near = 4, far = 12, point = [0, 1, -8] } # of the cave\n"
+    "values = { exposure = 0.5, \"fog.enabled\" = true } # dark\n\n"
+    "[[layer]]\nname = 'night'\nweight = 0.5\n[layer.values]\nvignette.intensity = 0.75\n";
+constexpr const char* moved_inline =
+    "pulse = [ { event = \"hit\", parameter = \"exposure\", amount = 1 } ]\n[[stack]]\neffect = \"exposure\"\n"
+    "[[layer]]\nname = \"dark\"\n[layer.values.exposure]\nexposure = 0.1\n[[stack]]\neffect = \"tonemap\"\n";
+
 class DocumentHistory : public testing::Test {
   protected:
     void SetUp() override {
-        for (const char* const name : {"bloom", "fog", "exposure", "tonemap", "blend", "ui_warp"})
+        for (const char* const name : {"bloom", "fog", "exposure", "tonemap", "blend", "ui_warp", "vignette"})
             if (find_effect(name) == nullptr) GTEST_SKIP() << "this build has no effect " << name;
     }
 };
@@ -111,7 +122,7 @@ TEST_F(DocumentHistory, UndoBehindASaveGivesTheBytesBack) {
 
 TEST_F(DocumentHistory, RandomEditsSavesAndStepsBackGiveEachStateItsBytes) {
     std::mt19937 random(27);
-    std::vector<std::string> texts{flat, stack};
+    std::vector<std::string> texts{flat, stack, moved, moved_inline};
     for (const auto& shipped : fs::directory_iterator(std::string(darkroom::test::source_folder) + "/looks"))
         if (shipped.path().extension() == ".toml") texts.push_back(text_of(shipped.path()));
     std::size_t saves = 0;
@@ -142,6 +153,52 @@ TEST_F(DocumentHistory, RandomEditsSavesAndStepsBackGiveEachStateItsBytes) {
         EXPECT_FALSE(saved.document().is_changed());
     }
     EXPECT_GE(saves, 100U);
+}
+
+TEST_F(DocumentHistory, PulsesAndLayersComeAndGoWithTheirText) {
+    Saved saved(moved);
+    ASSERT_TRUE(saved.is_open());
+    const auto done = [](const Result<std::size_t>& made) { return made ? Result<>() : failure(made.error()); };
+    const std::string text = moved;
+    const auto without = [&](const std::string& begin, const std::string& end) {
+        const std::size_t at = text.find(begin);
+        return std::string(text).erase(at, text.find(end) - at);
+    };
+    saved.edit([](Look& look) { return remove_mover(look, {false, 1}); });
+    ASSERT_TRUE(saved.save());
+    EXPECT_EQ(saved.text(), without("# and red", "\n\n[[layer]]"));
+    saved.undo();
+    saved.edit([](Look& look) { return remove_mover(look, {true, 0}); });
+    ASSERT_TRUE(saved.save());
+    EXPECT_EQ(saved.text(), without("[[layer]]\nname = \"cave\"", "[[layer]]\nname = 'night'"));
+    saved.undo();
+    saved.edit([&](Look& look) { return done(add_pulse(look, "jump", "exposure", "exposure")); });
+    saved.edit([&](Look& look) { return done(add_layer(look, "day", "fog", "enabled")); });
+    saved.edit([&](Look& look) { return add_layer_value(look, 1, "fog", "color"); });
+    ASSERT_TRUE(saved.save());
+    const std::string all = saved.text();
+    EXPECT_NE(all.find("amount = [0.1, 0.0, 0.0]\n\n[[pulse]]\nevent = \"jump\"\nparameter = \"exposure.exposure\"\n"),
+              std::string::npos)
+        << all;
+    EXPECT_NE(all.find("vignette.intensity = 0.75\n\"fog.color\" = "), std::string::npos) << all;
+    EXPECT_NE(all.find("\n\n[[layer]]\nname = \"day\"\nweight = 1.0\nvalues = { \"fog.enabled\" = true }\n"),
+              std::string::npos)
+        << all;
+    while (saved.has_undo()) saved.undo();
+    ASSERT_TRUE(saved.save());
+    EXPECT_EQ(saved.text(), moved);
+    const auto refused = [&](const std::function<Result<>(Look&)>& change) {
+        Look look = saved.document().look();
+        const Result<> made = change(look);
+        return made ? std::string() : made.error().text;
+    };
+    EXPECT_NE(refused([&](Look& look) { return done(add_pulse(look, "a b", "fog", "density")); }).find("a b"),
+              std::string::npos);
+    EXPECT_NE(refused([&](Look& look) { return done(add_pulse(look, "hit", "fog", "enabled")); }).find("of numbers"),
+              std::string::npos);
+    EXPECT_NE(refused([&](Look& look) { return done(add_layer(look, "cave", "fog", "density")); }).find("two layers"),
+              std::string::npos);
+    EXPECT_NE(refused([](Look& look) { return remove_layer_value(look, 1, 1); }).find("only value"), std::string::npos);
 }
 
 // What others write is the text from then on: their comments stay, on every way through the steps.

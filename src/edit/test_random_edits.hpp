@@ -9,6 +9,7 @@
 #include <random>
 
 #include "edit/edits.hpp"
+#include "edit/follow/moved_values.hpp"
 #include "looks/look_parts.hpp"
 
 namespace darkroom::edit::test {
@@ -104,6 +105,30 @@ inline Result<> apply_edit(Look& look, const RandomEdit& edit) {
     return set_value(look, edit.entry, edit.row, edit.words);
 }
 
+/// Adds and takes out pulses, layers and their values; may fail.
+inline Result<> random_mover_edit(std::mt19937& random, Look& look) {
+    const bool is_layer = below(random, 2) == 0;
+    const std::vector<Movable> all = movable_values(look, is_layer);
+    const std::size_t count = is_layer ? look.layers.size() : look.pulses.size();
+    const auto done = [](const Result<std::size_t>& made) { return made ? Result<>{} : failure(made.error()); };
+    constexpr std::array names{"hit", "jump", "night", "new"};
+    const std::string name = names[below(random, names.size())];
+    if (all.empty()) return {};
+    const Movable& what = all[below(random, all.size())];
+    const std::uint32_t act = below(random, 6);
+    if (count == 0 || act < 2)
+        return done(is_layer ? add_layer(look, name, what.entry, what.row->name)
+                             : add_pulse(look, name, what.entry, what.row->name));
+    const Mover mover{is_layer, below(random, count)};
+    const std::size_t values = values_of(look, mover).size();
+    if (act < 4) return remove_mover(look, mover);
+    if (is_layer && below(random, 2) == 0)
+        return act == 4 ? add_layer_value(look, mover.number, what.entry, what.row->name)
+                        : remove_layer_value(look, mover.number, below(random, values));
+    const std::uint32_t value = below(random, values);
+    return set_moved(look, mover, value, random_words(random, values_of(look, mover)[value].row));
+}
+
 /// Moves, removes, copies, adds or wires something; may fail, as what a user asks for.
 inline Result<> random_restructuring(std::mt19937& random, Look& look) {
     const std::vector<std::string> names = entry_names(look);
@@ -111,7 +136,10 @@ inline Result<> random_restructuring(std::mt19937& random, Look& look) {
     const std::string before =
         names.empty() || below(random, 4) == 0 ? std::string() : names[below(random, names.size())];
     const auto done = [](const Result<std::string>& made) { return made ? Result<>{} : failure(made.error()); };
-    switch (below(random, 7)) {
+    switch (below(random, 9)) {
+        case 7:
+        case 8:
+            return random_mover_edit(random, look);
         case 0:
         case 1:
             return move_entry(look, entry, before);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <tuple>
 
 #include "looks/apply/look_resources.hpp"
 
@@ -48,6 +49,17 @@ bool says_same(const std::optional<LookUi>& a, const std::optional<LookUi>& b) {
     return a->document == b->document && a->controllers == b->controllers && a->game == b->game;
 }
 
+/// A table of values has no order.
+std::string modulation_of(const Look& look) {
+    Look sorted{.is_flat = look.is_flat, .entries = look.entries, .pulses = look.pulses, .layers = look.layers};
+    for (LookLayer& layer : sorted.layers)
+        std::ranges::sort(layer.values, {},
+                          [](const LookLayer::Value& value) { return std::tie(value.entry, value.parameter); });
+    std::string out;
+    write_modulation(out, sorted);
+    return out;
+}
+
 bool has_same_files(const LookEntry& a, const LookEntry& b) {
     return a.effect == b.effect &&
            std::ranges::equal(a.resources, b.resources, {}, &LookResource::data, &LookResource::data);
@@ -66,10 +78,7 @@ bool says_same(const Look& a, const Look& b) {
         !says_same(a.ui, b.ui) || !has_same_ui(a, b) ||
         !std::ranges::equal(entries_of(a, false), entries_of(b, false), is_same_entry))
         return false;
-    std::string of_a, of_b;
-    write_modulation(of_a, a);
-    write_modulation(of_b, b);
-    return of_a == of_b;
+    return modulation_of(a) == modulation_of(b);
 }
 
 bool is_same(const Look& a, const Look& b) {

@@ -140,19 +140,4 @@ Result<> set_moved(Look& look, Mover mover, std::size_t value, Words words) {
     return {};
 }
 
-bool has_same_movers(const Look& a, const Look& b) {
-    const auto is_same_value = [](const LookLayer::Value& x, const LookLayer::Value& y) {
-        return x.entry == y.entry && x.parameter == y.parameter;
-    };
-    const auto is_same_pulse = [](const LookPulse& x, const LookPulse& y) {
-        return x.event == y.event && x.entry == y.entry && x.parameter == y.parameter;
-    };
-    const auto is_same_layer = [&](const LookLayer& x, const LookLayer& y) {
-        return x.name == y.name && x.file == y.file && x.distance.has_value() == y.distance.has_value() &&
-               (!x.file.empty() || std::ranges::equal(x.values, y.values, is_same_value));
-    };
-    return std::ranges::equal(a.pulses, b.pulses, is_same_pulse) &&
-           std::ranges::equal(a.layers, b.layers, is_same_layer);
-}
-
 }  // namespace darkroom::edit

@@ -7,6 +7,7 @@
 #include <darkroom/look.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace darkroom::edit {
@@ -31,7 +32,25 @@ struct MovedValue {
 [[nodiscard]] std::string name_of(const Look& look, Mover mover);
 /// Sets the value of this number. Errors: it is out of range; near is not before far; the mover is not there.
 Result<> set_moved(Look& look, Mover mover, std::size_t value, std::span<const std::uint32_t> words);
-/// Have both looks the same pulses and layers, of whatever values?
-[[nodiscard]] bool has_same_movers(const Look& a, const Look& b);
+
+/// What a pulse, or a layer, may move, in the look's order.
+struct Movable {
+    std::string entry;
+    const ParamInfo* row = nullptr;
+};
+[[nodiscard]] std::vector<Movable> movable_values(const Look& look, bool is_layer);
+/// Adds a pulse behind the others. An entry whose amount it moves is woken, as by reading. Returns its number. Errors:
+/// the event is no name; nothing of this name can be added to; there are as many as there may be.
+[[nodiscard]] Result<std::size_t> add_pulse(Look& look, std::string_view event, std::string_view entry,
+                                            std::string_view parameter);
+/// Adds a layer of one value, its present one, with its whole weight. Errors: as above; another has this name.
+[[nodiscard]] Result<std::size_t> add_layer(Look& look, std::string_view name, std::string_view entry,
+                                            std::string_view parameter);
+/// Adds a value to a layer: its present one. Errors: as above; the layer has it, or its values are those of a file.
+Result<> add_layer_value(Look& look, std::size_t layer, std::string_view entry, std::string_view parameter);
+/// Takes the value of this number, as values_of has them, out of a layer. Errors: it is none of its values; it is the
+/// only one.
+Result<> remove_layer_value(Look& look, std::size_t layer, std::size_t value);
+Result<> remove_mover(Look& look, Mover mover);
 
 }  // namespace darkroom::edit

@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
 
 #include "core/text/param_text.hpp"
 #include "edit/follow/compare.hpp"
-#include "edit/follow/moved_values.hpp"
-#include "edit/splice/stack_blocks.hpp"
+#include "edit/splice/list_blocks.hpp"
+#include "edit/splice/splice_movers.hpp"
 #include "edit/splice/toml_editor.hpp"
 #include "looks/apply/look_resources.hpp"
 #include "looks/apply/look_stack.hpp"
@@ -41,10 +40,9 @@ class Splicer {
     Splicer(TomlEditor editor, const Look& was, const Look& is) : editor_(std::move(editor)), was_(was), is_(is) {}
 
     Result<std::string> run() {
-        if (!has_same_movers(was_, is_))
-            return user_error("there are other pulses or layers than before, which is not written back");
-        for (const auto step : {&Splicer::write_picture, &Splicer::write_ui, &Splicer::write_movers})
+        for (const auto step : {&Splicer::write_picture, &Splicer::write_ui})
             if (Result<> done = (this->*step)(); !done) return failure(std::move(done));
+        if (Result<> done = splice_movers(editor_, was_, is_); !done) return failure(std::move(done));
         return editor_.text();
     }
 
@@ -95,56 +93,6 @@ class Splicer {
             if (Result<> done = editor_.set(game, name, game_text(value)); !done) return done;
         }
         return {};
-    }
-
-    // Pulses and layers.
-
-    Result<> write_movers() {
-        for (std::size_t i = 0; i < is_.pulses.size(); ++i)
-            if (Result<> done = write_mover({"pulse", std::to_string(i)}, {false, i}); !done) return done;
-        for (std::size_t i = 0; i < is_.layers.size(); ++i)
-            if (Result<> done = write_mover({"layer", element_of(is_.layers[i].name)}, {true, i}); !done) return done;
-        return {};
-    }
-
-    Result<> write_mover(const TomlPath& table, Mover mover) {
-        const std::vector<MovedValue> before = values_of(was_, mover), now = values_of(is_, mover);
-        for (std::size_t i = 0; i < std::min(before.size(), now.size()); ++i) {
-            if (before[i].words == now[i].words) continue;
-            TomlPath place = table;
-            if (!now[i].table.empty()) place.push_back(now[i].table);
-            std::string key(now[i].row.name);
-            if (!now[i].entry.empty()) std::tie(place, key) = place_of(place, now[i]);
-            if (Result<> done = editor_.set(place, key, format(now[i].row, now[i].words)); !done) return done;
-        }
-        return {};
-    }
-
-    /// Which of the text's layers has this name: one that changes nothing is in no look.
-    std::string element_of(std::string_view name) const {
-        for (std::size_t i = 0;; ++i) {
-            const TomlItem* const item = editor_.find({"layer", std::to_string(i), "name"});
-            if (item == nullptr) return {};
-            const std::string value = editor_.text().substr(item->value_begin, item->end - item->value_begin);
-            const toml::parse_result read = toml::parse("name = " + value);
-            if (read && read.table()["name"].value_or(std::string_view()) == name) return std::to_string(i);
-        }
-    }
-
-    /// The table and the key of a layer's value, which may be written as "bloom.intensity", bloom_intensity or with
-    /// a table for the entry.
-    std::pair<TomlPath, std::string> place_of(const TomlPath& values, const MovedValue& value) const {
-        const std::string_view effect = std::string_view(value.entry).substr(0, value.entry.find('#'));
-        for (const std::string_view name : {value.row.name, value.row.formerly}) {
-            if (name.empty()) continue;
-            const std::string dotted = fmt::format("{}.{}", value.entry, name), flat = flat_key(effect, name);
-            for (const std::string& key : {dotted, flat})
-                if (has_key(values, key)) return {values, key};
-            TomlPath nested = values;
-            nested.push_back(value.entry);
-            if (has_key(nested, name)) return {nested, std::string(name)};
-        }
-        return {values, fmt::format("{}.{}", value.entry, value.row.name)};
     }
 
     // The flat tables.
@@ -265,11 +213,11 @@ class Splicer {
     Result<> make_stack() {
         const auto place = editor_.remove_table(flat_path);
         if (!place) return failure(place.error());
-        std::vector<StackElement> elements;
+        std::vector<ListElement> elements;
         for (const LookEntry* const entry : stacked(is_)) elements.push_back({std::nullopt, pairs_of(*entry)});
         if (elements.empty()) return editor_.set({}, "stack", "[]");
         const std::string eol(editor_.line_end()), &text = editor_.text();
-        std::string blocks = blocks_of(elements, eol);
+        std::string blocks = blocks_of("stack", elements, eol);
         if (*place < text.size())
             blocks += text[*place] == '\n' || text[*place] == '\r' ? std::string() : eol;
         else if (!text.empty())
@@ -279,11 +227,11 @@ class Splicer {
 
     Result<> write_stack() {
         const std::vector<const LookEntry*> before = stacked(was_), now = stacked(is_);
-        if (stack_size(editor_) != before.size())
+        if (list_size(editor_, "stack") != before.size())
             return user_error(fmt::format("the text has {} entries in its stack, where {} were read",
-                                          stack_size(editor_), before.size()));
+                                          list_size(editor_, "stack"), before.size()));
         const std::vector<const LookEntry*> others = counterparts(is_, was_);
-        std::vector<StackElement> elements;
+        std::vector<ListElement> elements;
         bool is_arranged = now.size() == before.size();
         for (const LookEntry* const entry : now) {
             const LookEntry* const other = others[static_cast<std::size_t>(entry - is_.entries.data())];
@@ -297,7 +245,11 @@ class Splicer {
             elements.push_back({number, {}});
             if (Result<> done = write_entry({"stack", std::to_string(number)}, *other, *entry); !done) return done;
         }
-        return is_arranged ? Result<>{} : arrange_stack(editor_, elements);
+        if (is_arranged) return {};
+        if (!elements.empty()) return arrange_list(editor_, "stack", elements);
+        // Without the list, the text would be that of a flat look.
+        if (const auto removed = editor_.remove_table({"stack"}); !removed) return failure(removed.error());
+        return editor_.set({}, "stack", "[]");
     }
 
     Result<> write_entry(const TomlPath& table, const LookEntry& before, const LookEntry& entry) {

@@ -11,8 +11,8 @@ namespace darkroom::edit {
 
 /// `text`: a look or a scene that reads as `was`. Returns one that reads as `is`. Values are replaced where they stand,
 /// numbers by their shortest form; a value that stands nowhere gets a key behind those of its effect; entries of
-/// [[stack]] are moved and taken out with the comments above them. Errors: `text` is no TOML, or does not have the
-/// entries of `was`; the pulses and layers are not those of `was`, whose values alone are written here.
+/// [[stack]], [[pulse]] and [[layer]] are moved and taken out with the comments above them. Errors: `text` is no TOML,
+/// or does not have the entries of `was`.
 [[nodiscard]] Result<std::string> splice_look(std::string_view text, const Look& was, const Look& is);
 
 }  // namespace darkroom::edit

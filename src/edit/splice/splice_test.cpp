@@ -315,8 +315,9 @@ TEST_F(Splice, WhatCannotBeSplicedIsAnError) {
         look.pulses.clear();
         return Result<>();
     };
-    const std::string pulse = "[[pulse]]\nevent = \"hit\"\nparameter = \"exposure\"\namount = 1\n";
-    EXPECT_NE(error(pulse, without_pulses).find("pulses"), std::string::npos);
+    const std::string pulse =
+        "[[pulse]]\nevent = \"hit\"\nparameter = \"exposure\"\namount = 1\n[other]\na = 1\n[pulse.more]\na = 1\n";
+    EXPECT_NE(error(pulse, without_pulses).find("pulse: its entries are not whole blocks"), std::string::npos);
     const Look look = default_look();
     EXPECT_FALSE(splice_look("[post_process\n", look, look));
     Look stack = read("[[stack]]\neffect = \"exposure\"\n");

@@ -13,8 +13,6 @@ namespace darkroom {
 
 namespace {
 
-constexpr std::size_t most_pulses = 256, most_layers = 32;
-
 /// Has this entry no part in the picture, as its look has it?
 bool is_idle(const LookEntry& entry) {
     const EffectInfo& effect = *entry.effect;

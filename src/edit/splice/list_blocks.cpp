@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "edit/splice/stack_blocks.hpp"
+#include "edit/splice/list_blocks.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,10 +10,8 @@ namespace darkroom::edit {
 
 namespace {
 
-const TomlPath stack_path{"stack"};
-
-/// A block [[stack]]: its comments, its header, its keys, up to the end of its last line; and what stands between it
-/// and what comes next.
+/// A block such as [[stack]]: its comments, its header, its keys, up to the end of its last line; and what stands
+/// between it and what comes next.
 struct Block {
     std::size_t begin = 0, end = 0, next = 0;
     std::string text, gap;
@@ -22,15 +20,17 @@ struct Block {
 
 class Blocks {
   public:
-    explicit Blocks(TomlEditor& editor) : editor_(editor), text_(editor.text()) {}
+    Blocks(TomlEditor& editor, std::string_view key)
+        : editor_(editor), key_(key), path_{std::string(key)}, text_(editor.text()) {}
 
-    Result<> arrange(std::span<const StackElement> elements) {
+    Result<> arrange(std::span<const ListElement> elements) {
         if (Result<> done = find(); !done) return done;
         const std::string eol(editor_.line_end());
         std::vector<Block> now;
-        for (const StackElement& element : elements) {
-            now.push_back(element.now ? blocks_[*element.now]
-                                      : Block{.text = block_of(element, eol), .gap = eol + eol, .is_followed = true});
+        for (const ListElement& element : elements) {
+            now.push_back(element.now
+                              ? blocks_[*element.now]
+                              : Block{.text = block_of(key_, element, eol), .gap = eol + eol, .is_followed = true});
             // What stands behind the last of a row of blocks is not its own.
             if (!now.back().is_followed) now.back().gap = eol + eol;
         }
@@ -49,11 +49,14 @@ class Blocks {
             out += text_.substr(blocks_[last].next, rest - blocks_[last].next);
             i = last + 1;
         }
+        // Behind the last of a text nothing has to be kept apart.
+        if (elements.empty() && blocks_.back().next == text_.size())
+            while (out.ends_with(eol + eol)) out.erase(out.size() - eol.size());
         return editor_.replace(0, text_.size(), out);
     }
 
-    static std::string block_of(const StackElement& element, std::string_view eol) {
-        std::string out = "[[stack]]";
+    static std::string block_of(std::string_view key, const ListElement& element, std::string_view eol) {
+        std::string out = fmt::format("[[{}]]", key);
         for (const std::string& pair : element.pairs) out.append(eol).append(pair);
         return out;
     }
@@ -80,8 +83,8 @@ class Blocks {
         return end;
     }
 
-    static bool is_block(const TomlItem& item) {
-        return item.kind == TomlItem::Kind::ArrayTable && item.path.size() == 2 && item.path[0] == stack_path[0];
+    [[nodiscard]] bool is_block(const TomlItem& item) const {
+        return item.kind == TomlItem::Kind::ArrayTable && item.path.size() == 2 && item.path[0] == key_;
     }
 
     Result<> find() {
@@ -109,25 +112,28 @@ class Blocks {
             blocks_.push_back(std::move(block));
         }
         const auto all =
-            std::ranges::count_if(items, [](const TomlItem& item) { return is_within(item.path, stack_path); });
+            std::ranges::count_if(items, [&](const TomlItem& item) { return is_within(item.path, path_); });
         if (blocks_.empty() || known != static_cast<std::size_t>(all))
-            return user_error(
-                "stack: its entries are not whole blocks [[stack]] of the text, so none can be moved, "
-                "added or taken out there");
+            return user_error(fmt::format(
+                "{0}: its entries are not whole blocks [[{0}]] of the text, so none can be moved, added or taken out "
+                "there",
+                key_));
         return {};
     }
 
     TomlEditor& editor_;
+    std::string_view key_;
+    TomlPath path_;
     std::string_view text_;
     std::vector<Block> blocks_;
 };
 
 /// The same for `stack = [{ ... }, { ... }]`.
-Result<> arrange_inline(TomlEditor& editor, const TomlItem& array, std::span<const StackElement> elements) {
+Result<> arrange_inline(TomlEditor& editor, const TomlItem& array, std::span<const ListElement> elements) {
     const std::string_view text = editor.text();
     std::vector<std::pair<std::size_t, std::size_t>> now;
     for (const TomlItem& item : editor.items())
-        if (item.path.size() == 2 && is_within(item.path, stack_path)) now.emplace_back(item.value_begin, item.end);
+        if (item.path.size() == 2 && is_within(item.path, array.path)) now.emplace_back(item.value_begin, item.end);
     // What stands in front of the first, between two, and behind the last.
     std::string lead, tail, between = ", ";
     if (!now.empty()) {
@@ -136,9 +142,10 @@ Result<> arrange_inline(TomlEditor& editor, const TomlItem& array, std::span<con
         if (now.size() > 1) between = text.substr(now[0].second, now[1].first - now[0].second);
     }
     if ((lead + tail + between).find('#') != std::string::npos)
-        return user_error("stack: its list holds comments, so entries cannot be moved, added or taken out there");
+        return user_error(fmt::format(
+            "{}: its list holds comments, so entries cannot be moved, added or taken out there", array.path[0]));
     std::string out = "[" + lead;
-    for (const StackElement& element : elements) {
+    for (const ListElement& element : elements) {
         if (&element != elements.data()) out += between;
         if (element.now)
             out += text.substr(now[*element.now].first, now[*element.now].second - now[*element.now].first);
@@ -151,27 +158,30 @@ Result<> arrange_inline(TomlEditor& editor, const TomlItem& array, std::span<con
 
 }  // namespace
 
-std::size_t stack_size(const TomlEditor& editor) {
-    return static_cast<std::size_t>(std::ranges::count_if(editor.items(), [](const TomlItem& item) {
-        return item.path.size() == 2 && is_within(item.path, stack_path) &&
+std::size_t list_size(const TomlEditor& editor, std::string_view key) {
+    const TomlPath path{std::string(key)};
+    return static_cast<std::size_t>(std::ranges::count_if(editor.items(), [&](const TomlItem& item) {
+        return item.path.size() == 2 && is_within(item.path, path) &&
                (item.kind == TomlItem::Kind::ArrayTable || item.is_inside);
     }));
 }
 
-Result<> arrange_stack(TomlEditor& editor, std::span<const StackElement> elements) {
-    if (const TomlItem* const array = editor.find(stack_path)) return arrange_inline(editor, *array, elements);
-    if (!elements.empty()) return Blocks(editor).arrange(elements);
-    // Without the list, the text would be that of a flat look.
-    const auto removed = editor.remove_table(stack_path);
-    if (!removed) return failure(removed.error());
-    return editor.set({}, "stack", "[]");
+Result<> arrange_list(TomlEditor& editor, std::string_view key, std::span<const ListElement> elements) {
+    if (const TomlItem* const array = editor.find({std::string(key)})) return arrange_inline(editor, *array, elements);
+    if (list_size(editor, key) > 0) return Blocks(editor, key).arrange(elements);
+    const std::string& text = editor.text();
+    const std::string_view eol = editor.line_end();
+    const std::size_t end = text.size();
+    std::string blocks = blocks_of(key, elements, eol);
+    if (end > 0) blocks.insert(0, text.ends_with('\n') ? std::string(eol) : fmt::format("{0}{0}", eol));
+    return editor.replace(end, end, blocks);
 }
 
-std::string blocks_of(std::span<const StackElement> elements, std::string_view line_end) {
+std::string blocks_of(std::string_view key, std::span<const ListElement> elements, std::string_view line_end) {
     std::string out;
-    for (const StackElement& element : elements) {
+    for (const ListElement& element : elements) {
         if (!out.empty()) out += line_end;
-        out += Blocks::block_of(element, line_end);
+        out += Blocks::block_of(key, element, line_end);
         out += line_end;
     }
     return out;
