@@ -29,6 +29,13 @@ struct LookPart {
     bool operator==(const LookPart&) const = default;
 };
 
+/// A pulse or a layer that is being put together, or another value of a layer.
+struct NewMover {
+    bool is_layer = false;
+    std::optional<std::size_t> layer{};  ///< gets another value
+    std::string name{}, entry{}, parameter{};
+};
+
 struct PanelState {
     edit::LookDocument* document = nullptr;
     const Plan* plan = nullptr;
@@ -42,11 +49,14 @@ struct PanelState {
 
     std::string renamed{}, new_name{};  ///< the entry whose name is being typed
     bool is_renaming_new = false;
-    bool shows_numbers = false;          ///< in place of wheels and curves
-    std::string filter{};                ///< of the list of effects to add
-    std::size_t add_row = 0;             ///< of that list, where the keyboard is
-    std::optional<std::string> fired{};  ///< an event, by its button
-    std::string wanted{};                ///< the entry that an edit has made, to be selected
+    bool shows_numbers = false;             ///< in place of wheels and curves
+    std::string filter{};                   ///< of the list of effects to add
+    std::size_t add_row = 0;                ///< of that list, where the keyboard is
+    std::optional<std::string> fired{};     ///< an event, by its button
+    std::string wanted{};                   ///< the entry that an edit has made, to be selected
+    std::optional<LookPart> wanted_part{};  ///< the same of a part
+    NewMover new_mover{};
+    std::uint64_t last_selected = 0;  ///< LookEntry::id: the selected entry, or the one before the part
 
     struct Edit {
         std::string what;
@@ -95,6 +105,9 @@ void draw_part_panel(PanelState& state);
 void draw_plan_panel(const Plan* plan, bool is_compiling);
 /// The popup that lists what can be added, while it is open.
 void draw_add_menu(PanelState& state);
+/// A button that opens the popup in which a pulse, a layer or a value of one is put together. `place`: its name.
+void draw_add_mover(PanelState& state, const NewMover& what, const char* label, const char* help,
+                    const std::string& place);
 /// What is asked, over everything else.
 void draw_question(PanelState& state);
 

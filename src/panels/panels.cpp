@@ -55,7 +55,13 @@ void PanelState::settle() {
     const Edit now = *std::exchange(pending, std::nullopt);
     const bool was_flat = look().is_flat;
     wanted.clear();
-    if (messages.settle("edit", document->edit(now.what, now.change, now.merge)) && !wanted.empty()) select(wanted);
+    wanted_part.reset();
+    const bool is_done = messages.settle("edit", document->edit(now.what, now.change, now.merge));
+    if (is_done && !wanted.empty()) select(wanted);
+    if (is_done && wanted_part) {
+        selected = 0;
+        part = wanted_part;
+    }
     if (was_flat && !look().is_flat) messages.note(fmt::format("{}: the flat table is a stack now", now.what));
 }
 

@@ -43,16 +43,17 @@ void indent_widget(const std::string& name, const Columns& columns) {
     if (is_tall(name, columns)) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + mark_width());
 }
 
-/// True: reset.
-bool draw_menu(const RowLine& line) {
-    bool resets = false;
-    if (!ImGui::BeginPopup("menu")) return resets;
-    resets = ImGui::MenuItem("Reset", "double-click");
+RowAct draw_menu(PanelState& state, const RowLine& line) {
+    RowAct act = RowAct::None;
+    if (!ImGui::BeginPopup("menu")) return act;
+    if (ImGui::MenuItem("Reset", "double-click")) act = RowAct::Reset;
+    if (line.more != nullptr && ImGui::MenuItem(line.more)) act = RowAct::More;
+    if (line.more != nullptr) state.note(line.place + ".more");
     ImGui::Separator();
     if (!line.flag.empty() && ImGui::MenuItem("Copy as flag")) ImGui::SetClipboardText(line.flag.c_str());
     if (ImGui::MenuItem("Copy as TOML")) ImGui::SetClipboardText(line.toml.c_str());
     ImGui::EndPopup();
-    return resets;
+    return act;
 }
 
 bool has_double_click_of_its_own(Kind kind) { return kind == Kind::Curve || kind == Kind::Toggle; }
@@ -141,10 +142,10 @@ RowOutcome draw_row(PanelState& state, const RowLine& line, const Columns& colum
     resets |= is_double;
     if (edit.is_begun && !is_double) state.document->end_merge();
     if (opens_menu) ImGui::OpenPopup("menu");
-    resets |= draw_menu(line);
+    const RowAct chosen = draw_menu(state, line);
     ImGui::PopID();
-    if (resets)
-        out.act = RowAct::Reset;
+    if (resets || chosen != RowAct::None)
+        out.act = resets ? RowAct::Reset : chosen;
     else if (edit.is_changed && !holds_still)
         out.act = RowAct::Change;
     return out;

@@ -33,8 +33,9 @@ struct RowLine {
     std::span<const std::uint32_t> defaults;  ///< of this row
     std::string place;                        ///< "bloom.intensity"
     std::string flag, toml;                   ///< "--bloom-intensity 0.08" or none, "bloom_intensity = 0.08"
+    const char* more = nullptr;               ///< another item of its menu
 };
-enum class RowAct : std::uint8_t { None, Change, Reset };
+enum class RowAct : std::uint8_t { None, Change, Reset, More };
 struct RowOutcome {
     RowAct act = RowAct::None;
     std::vector<std::uint32_t> words;  ///< of a change

@@ -40,9 +40,13 @@ void draw_value_row(PanelState& state, edit::Mover mover, std::size_t number, co
         .defaults = value.defaults,
         .place = prefix + "." + own,
         .flag = {},
-        .toml = fmt::format("{} = {}", value.entry.empty() ? own : '"' + own + '"', format(value.row, value.words))};
+        .toml = fmt::format("{} = {}", value.entry.empty() ? own : '"' + own + '"', format(value.row, value.words)),
+        .more = value.table == "values" ? "Take out of the layer" : nullptr};
     const RowOutcome outcome = draw_row(state, line, columns);
     if (outcome.act == RowAct::None) return;
+    if (outcome.act == RowAct::More)
+        return state.edit(fmt::format("{} without {}", edit::name_of(state.look(), mover), shown_name(own)),
+                          [=](Look& look) { return edit::remove_layer_value(look, mover.number, number); });
     state.edit(
         fmt::format("{} {}", edit::name_of(state.look(), mover), shown_name(own)),
         [=, words = outcome.act == RowAct::Reset ? value.defaults : outcome.words](Look& look) {
@@ -55,14 +59,33 @@ void draw_mover(PanelState& state, edit::Mover mover) {
     const std::vector<edit::MovedValue> values = edit::values_of(state.look(), mover);
     if (values.empty()) return state.part.reset();
     const std::string name = edit::name_of(state.look(), mover);
-    draw_head(name, mover.is_layer ? "Blended over the values of the stack, by its weight."
-                                   : "Added to a value when its event is fired, and dies down.");
+    const bool has_own_values = mover.is_layer && state.look().layers[mover.number].file.empty();
+    const char* sentence = "Added to a value when its event is fired, and dies down.";
+    if (mover.is_layer) sentence = "Blended over the values of the stack, by its weight.";
+    if (has_own_values)
+        sentence =
+            "Blended over the values of the stack, by its weight. The menu of a value, on the right button, takes it "
+            "out.";
+    draw_head(name, sentence);
     if (!mover.is_layer) {
         const std::string& event = state.look().pulses[mover.number].event;
         if (ImGui::Button("Fire")) state.fired = event;
         state.note(fmt::format("fire/{}", event));
         tooltip("Starts all pulses of this event now.");
+        ImGui::SameLine();
     }
+    if (has_own_values) {
+        draw_add_mover(state, {.is_layer = true, .layer = mover.number}, "Add a value",
+                       "Adds a value that the layer has of its own.", "layer/add_value");
+        ImGui::SameLine();
+    }
+    if (ImGui::Button("Remove")) {
+        state.part.reset();
+        state.edit(fmt::format("remove {}", name), [mover](Look& look) { return edit::remove_mover(look, mover); });
+    }
+    state.note("mover/remove");
+    tooltip(mover.is_layer ? "Takes the layer out of the look." : "Takes the pulse out of the look.");
+    if (!state.part) return;
     std::vector<std::string> names;
     for (const edit::MovedValue& value : values) names.push_back(shown_name(value.row.name));
     const Columns columns = Columns::of(names);

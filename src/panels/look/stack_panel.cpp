@@ -50,9 +50,9 @@ class StackList {
         const bool has_document = look_.ui && !look_.ui->document.empty();
         for (const std::size_t index : ui)
             if (has_document || look_.entries[index].id == state_.selected) draw_entry(index, {});
-        if (!look_.pulses.empty()) draw_heading("Pulses");
+        draw_mover_heading(false);
         for (std::size_t i = 0; i < look_.pulses.size(); ++i) draw_mover({false, i}, fmt::format("stack/pulse/{}", i));
-        if (!look_.layers.empty()) draw_heading("Layers");
+        draw_mover_heading(true);
         for (std::size_t i = 0; i < look_.layers.size(); ++i)
             draw_mover({true, i}, fmt::format("stack/layer/{}", look_.layers[i].name));
     }
@@ -61,6 +61,16 @@ class StackList {
         ImGui::Spacing();
         ImGui::Separator();
         ImGui::TextDisabled("%s", text);
+    }
+
+    void draw_mover_heading(bool is_layer) {
+        draw_heading(is_layer ? "Layers" : "Pulses");
+        const float width = ImGui::CalcTextSize("+").x + 2 * ImGui::GetStyle().FramePadding.x;
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+        draw_add_mover(state_, {.is_layer = is_layer}, "+",
+                       is_layer ? "Adds a layer: values that go over those of the stack, by its weight."
+                                : "Adds a pulse: what is added to a value when its event is fired.",
+                       is_layer ? "stack/add_layer" : "stack/add_pulse");
     }
 
     void draw_mover(edit::Mover mover, const std::string& place) {
@@ -340,6 +350,7 @@ class StackList {
 }  // namespace
 
 void draw_stack_panel(PanelState& state) {
+    if (state.selected != 0) state.last_selected = state.selected;
     // Lines of a list stand closer together than those of a form.
     const ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {spacing.x, std::round(spacing.y / 4)});

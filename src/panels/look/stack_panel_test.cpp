@@ -178,6 +178,47 @@ TEST(PanelStack, AddingKeepsAFlatTableOrAsks) {
     }
 }
 
+TEST(PanelStack, PulsesAndLayersComeAndGo) {
+    if (find_effect("bloom") == nullptr) GTEST_SKIP() << "this build has no effect bloom";
+    TestPanels own(stack_of_all(), tall_panel);
+    own.select("bloom");
+    const auto make = [&](const std::string& button, const std::string& name) {
+        own.click(button);
+        own.gui.frame(2);
+        own.gui.type(name);
+        own.click("mover/add");
+        own.gui.frame(2);
+    };
+    make("stack/add_pulse", "hit");
+    ASSERT_EQ(own.document.look().pulses.size(), 1U);
+    EXPECT_EQ(own.document.look().pulses[0].event, "hit");
+    EXPECT_EQ(own.document.look().pulses[0].entry, "bloom");
+    EXPECT_EQ(own.document.undo_name(), "add pulse hit");
+    EXPECT_TRUE(own.has("fire/hit")) << "it is selected";
+    own.click("mover/remove");
+    EXPECT_TRUE(own.document.look().pulses.empty());
+    own.panels.undo();
+    EXPECT_EQ(own.document.look().pulses.size(), 1U);
+
+    make("stack/add_pulse", "no name");
+    EXPECT_EQ(own.document.look().pulses.size(), 1U) << "it cannot be added";
+    own.gui.key(ImGuiKey_Escape);
+    own.gui.frame(2);
+
+    make("stack/add_layer", "night");
+    ASSERT_EQ(own.document.look().layers.size(), 1U);
+    own.click("layer/add_value");
+    own.gui.frame(2);
+    own.click("mover/add");
+    own.gui.frame(2);
+    EXPECT_EQ(own.document.look().layers[0].values.size(), 1U) << "it has this one already";
+    EXPECT_FALSE(own.panels.messages().is_empty());
+    own.click("mover/remove");
+    EXPECT_TRUE(own.document.look().layers.empty());
+    while (own.document.can_undo()) own.document.undo();
+    EXPECT_FALSE(own.document.is_changed());
+}
+
 TEST(PanelStack, ArrowsAndEnterAdd) {
     TestPanels own(stack_of_all(), tall_panel);
     const std::size_t before = own.names().size();
