@@ -102,6 +102,7 @@ void LookDocument::undo() {
     if (undo_.empty()) return;
     Step step = std::move(undo_.back());
     undo_.pop_back();
+    keep_effects(step.look, look_);
     redo_.push_back({std::move(step.what), look_});
     merge_.clear();
     take(std::move(step.look));
@@ -111,6 +112,7 @@ void LookDocument::redo() {
     if (redo_.empty()) return;
     Step step = std::move(redo_.back());
     redo_.pop_back();
+    keep_effects(step.look, look_);
     remember(std::move(step.what));
     merge_.clear();
     take(std::move(step.look));

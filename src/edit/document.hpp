@@ -65,7 +65,8 @@ class LookDocument {
     /// The look that such a text says, as a step of undo. Errors: those of the text.
     Result<> take_unsaved(std::string_view text);
     /// Reads what has changed on disk: the file, or one that the look names. True: the look is another, as a step of
-    /// undo. An error, "file:line:column: ...", leaves it, and comes once for each state of the files.
+    /// undo; but an effect is the one that its file holds now on both sides of every step. An error, "file:line:column:
+    /// ...", leaves it, and comes once for each state of the files.
     Result<bool> reload_if_changed();
     /// Did the last reading of a change fail?
     [[nodiscard]] bool is_broken() const { return is_broken_; }
@@ -87,6 +88,8 @@ class LookDocument {
     Result<> check(const Look& next) const;
     void watch_files();
     Result<bool> reload();
+    /// Entries of files' effects are of those that the files hold now, and keep the values that both have.
+    void keep_effects(Look& look, const Look& now) const;
     /// `is_spliced`: into the text that was read; else all is written anew.
     Result<> write(const std::filesystem::path& file, bool is_spliced);
     Result<Look> read(std::string_view text, const Look& ids_of);

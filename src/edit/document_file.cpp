@@ -216,6 +216,22 @@ Result<Look> LookDocument::read(std::string_view text, const Look& ids_of) {
     return read;
 }
 
+// One that the present look does not name may have changed unseen.
+void LookDocument::keep_effects(Look& look, const Look& now) const {
+    for (LookEntry& entry : look.entries) {
+        if (entry.effect_file.empty()) continue;
+        const auto found = std::ranges::find(now.entries, entry.effect_file, &LookEntry::effect_file);
+        LookEntry read{};
+        if (found == now.entries.end())
+            if (Result<LookEntry> made = custom_entry(options_.folder / entry.effect_file)) read = std::move(*made);
+        const LookEntry& newest = found == now.entries.end() ? read : *found;
+        if (newest.effect == nullptr || is_same(*newest.effect, *entry.effect)) continue;
+        entry.words = carried_over(entry, *newest.effect);
+        entry.effect = newest.effect;
+        entry.effect_owner = newest.effect_owner;
+    }
+}
+
 Result<bool> LookDocument::reload() {
     std::string text;
     if (!file_.empty()) {
@@ -256,8 +272,11 @@ Result<bool> LookDocument::reload() {
         is_changed_ = !says_same(look_, saved_);
         return false;
     }
-    remember("Reload");
-    redo_.clear();
+    keep_effects(look_, next);
+    if (!is_same(next, look_)) {
+        remember("Reload");
+        redo_.clear();
+    }
     end_merge();
     take(std::move(next));
     return true;

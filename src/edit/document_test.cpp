@@ -261,6 +261,40 @@ TEST_F(Document, NamedFilesAreReadAgain) {
     EXPECT_NE(text_of(path).find("exposure = 2.0\n"), std::string::npos);
 }
 
+TEST_F(Document, StepsKeepTheEffectThatItsFileHoldsNow) {
+    const std::string head = "// @effect tint: Tints.\n// @param float amount = 1 in [0, 1]: How much.\n";
+    const std::string more = "// @param float more = 0.5 in [0, 1]: More.\n";
+    const std::string body = "vec4 tint(vec4 color, Pixel pixel, Tint parameters) { return color; }\n";
+    write("tint.glsl", head + body);
+    const fs::path path = write("a.toml",
+                                "[[stack]]\neffect = \"exposure\"\n[[stack]]\neffect = \"tint.glsl\"\n"
+                                "amount = 0.25\n");
+    LookDocument document = open(path, {.allows_custom_effects = true});
+    must(expose(document, 2));
+    const auto words = [&] { return document.look().entries.at(1).words.size(); };
+    const auto amount = [&] { return std::bit_cast<float>(document.look().entries.at(1).words[0]); };
+
+    write("tint.glsl", head + more + body);
+    EXPECT_EQ(reloaded(document), "new");
+    EXPECT_EQ(words(), 2U);
+    EXPECT_NE(document.undo_name(), "Reload") << "what the look says has not changed";
+    document.undo();
+    EXPECT_EQ(exposure(document.look()), 1);
+    EXPECT_EQ(words(), 2U) << "the file's present effect";
+    EXPECT_EQ(amount(), 0.25F);
+    EXPECT_FALSE(document.is_changed());
+    document.redo();
+    EXPECT_EQ(words(), 2U);
+
+    // While no entry is of it, nobody looks at its file.
+    must(document.edit("remove", [](Look& look) { return remove_entry(look, "tint"); }));
+    write("tint.glsl", head + body);
+    EXPECT_EQ(reloaded(document), "same");
+    document.undo();
+    EXPECT_EQ(words(), 1U);
+    EXPECT_EQ(amount(), 0.25F);
+}
+
 TEST_F(Document, TellsWhatItsFilePassedOver) {
     const fs::path path = write("a.toml", "[post_process]\nexposure = 2\nbogus = 3\n");
     LookDocument document = open(path);
