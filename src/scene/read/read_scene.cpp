@@ -263,6 +263,8 @@ Result<Scene> scene_of_model(const std::filesystem::path& path, NamedFiles named
                 .folder = path.parent_path(),
                 .has_grid = false,
                 .named_files = named_files};
+    // Mid grey: nobody judges colours against blue.
+    scene.environment.background = vec3(0.18F);
     scene.entities.push_back({.name = "model", .model = ModelReference{.asset = (error ? path : whole).string()}});
     return scene;
 }
