@@ -244,18 +244,22 @@ Result<> Viewer::show(const PresentFrame& frame) {
 
 void Viewer::draw_screen(const PresentFrame& frame) {
     LookView& look = *views_[static_cast<std::size_t>(Side::Look)];
-    const auto shown = [&](Side side) { return views_[static_cast<std::size_t>(side)].get(); };
-    const LookView* const left = shown(is_off() && !screen_.is_comparing() ? Side::Off : screen_.left());
-    const LookView* const right = screen_.is_comparing() ? shown(screen_.right()) : nullptr;
-    using darkroom::window::PaneTransfer;
+    using darkroom::window::PaneView;
+    const auto shown = [&](Side side) {
+        if (side == Side::Other && other_picture_) return other_picture_->pane();
+        const LookView* const view = views_[static_cast<std::size_t>(side)].get();
+        return view != nullptr ? PaneView{.image = view->picture(), .transfer = view->transfer()} : PaneView{};
+    };
+    const PaneView left = shown(is_off() && !screen_.is_comparing() ? Side::Off : screen_.left());
+    const PaneView right = screen_.is_comparing() ? shown(screen_.right()) : PaneView{};
     const std::size_t number = moment().number;
     screen_.draw({.source = *source_,
                   .view = look,
-                  .picture = left != nullptr ? left->picture() : darkroom::ImageRef{},
-                  .compared = right != nullptr ? right->picture() : darkroom::ImageRef{},
+                  .picture = left.image,
+                  .compared = right.image,
                   .watched = look.watched(),
-                  .transfer = left != nullptr ? left->transfer() : PaneTransfer::Encoded,
-                  .compared_transfer = right != nullptr ? right->transfer() : PaneTransfer::Encoded,
+                  .transfer = left.transfer,
+                  .compared_transfer = right.transfer,
                   .extent = full_extent_,
                   .divisor = divisor_,
                   .window = frame.extent,
@@ -287,7 +291,8 @@ std::array<bool, side_count> Viewer::shown_sides() const {
     std::array<bool, side_count> out{};
     out[static_cast<std::size_t>(is_off() ? Side::Off : Side::Look)] = true;
     if (screen_.is_comparing())
-        for (const Side side : {screen_.left(), screen_.right()}) out[static_cast<std::size_t>(side)] = true;
+        for (const Side side : {screen_.left(), screen_.right()})
+            if (side != Side::Other || !other_picture_) out[static_cast<std::size_t>(side)] = true;
     return out;
 }
 
@@ -325,6 +330,7 @@ Result<> Viewer::prepare(const PresentFrame& frame, VkExtent2D extent) {
 
 Result<> Viewer::record(const PresentFrame& frame, VkExtent2D extent) {
     if (Result<> done = source_->record(frame.commands); !done) return done;
+    if (other_picture_) other_picture_->record(*device_, frame.commands);
     const Result<LookView*> look = view(Side::Look);
     if (!look) return failure(look.error());
     for (const auto& any : views_)

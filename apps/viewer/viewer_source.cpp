@@ -65,6 +65,7 @@ void Viewer::watch_source() {
 
 // The new one is made beside the frames, which go on with the old one.
 void Viewer::reload_source() {
+    take_other_picture();
     if (opening_.valid()) return take_opened();
     if (!coming_.valid()) {
         if (!source_files_.take_change()) return;
@@ -109,12 +110,42 @@ void Viewer::open_subject(const std::filesystem::path& file) {
     });
 }
 
-void Viewer::take_other(const std::filesystem::path& look) {
+void Viewer::take_other(const std::filesystem::path& file) {
+    if (!is_picture_file(file)) return take_other_look(file);
+    if (other_coming_.valid()) return;
+    other_file_ = file;
+    other_coming_ = std::async(std::launch::async,
+                               [file] { return caught(file, [&] { return darkroom::read_comparable(file); }); });
+}
+
+void Viewer::take_other_picture() {
+    if (!other_coming_.valid() || other_coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    Result<darkroom::ComparablePicture> read = other_coming_.get();
+    settle("other look", read ? Result<>() : failure(read.error()));
+    if (!read) return;
+    const VkExtent2D extent{read->picture.width, read->picture.height};
+    Result<> idle = presenter_->wait();
+    Result<ComparedPicture> made =
+        idle ? ComparedPicture::create(*device_, std::move(*read)) : Result<ComparedPicture>(failure(std::move(idle)));
+    settle("other look", made ? Result<>() : failure(made.error()));
+    if (!made) return;
+    other_picture_ = std::move(*made);
+    const std::string name = darkroom::printable(other_file_.filename().string());
+    screen_.editor()->set_other(name);
+    const bool is_as_large = extent.width == full_extent_.width && extent.height == full_extent_.height;
+    tell(fmt::format("compares with {}{}", name,
+                     is_as_large ? "" : fmt::format(", {}x{}", extent.width, extent.height)));
+}
+
+void Viewer::take_other_look(const std::filesystem::path& look) {
     darkroom::LookOptions options = job_.look_options;
     options.folder = look.parent_path();
     Result<darkroom::Look> read = darkroom::read_look(look, options);
     settle("other look", read ? Result<>() : failure(read.error()));
     if (!read) return;
+    if (other_picture_)
+        if (Result<> done = presenter_->wait(); !done) return settle("other look", done);
+    other_picture_.reset();
     other_look_ = std::move(*read);
     if (const auto& view = views_[static_cast<std::size_t>(Side::Other)]) settle("other look", view->show(other_look_));
     screen_.editor()->set_other(darkroom::printable(look.filename().string()));

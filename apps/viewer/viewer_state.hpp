@@ -11,6 +11,7 @@
 #include "apps/viewer/input/keys.hpp"
 #include "apps/viewer/input/known_panels.hpp"
 #include "apps/viewer/input/line_input.hpp"
+#include "apps/viewer/source/compared_picture.hpp"
 #include "apps/viewer/source/live_interface.hpp"
 #include "apps/viewer/source/look_view.hpp"
 #include "develop/inspect/inspector.hpp"
@@ -102,7 +103,10 @@ class Viewer {
     void watch_source();
     void reload_source();
     void open_subject(const std::filesystem::path& file);
-    void take_other(const std::filesystem::path& look);
+    /// To compare with: a look, or a picture, which is read beside the frames.
+    void take_other(const std::filesystem::path& file);
+    void take_other_look(const std::filesystem::path& look);
+    void take_other_picture();
     void fire(const std::string& event);
     void take_opened();
     void name_window();
@@ -153,7 +157,10 @@ class Viewer {
     std::unique_ptr<LiveSource> source_;
     SceneSource* scene_ = nullptr;  ///< the source, if it is one
     std::optional<darkroom::edit::LookDocument> document_;
-    darkroom::Look other_look_;   ///< to compare with
+    darkroom::Look other_look_;                     ///< to compare with
+    std::optional<ComparedPicture> other_picture_;  ///< in its place
+    std::filesystem::path other_file_;              ///< of that picture
+    std::future<darkroom::Result<darkroom::ComparablePicture>> other_coming_;
     std::uint64_t followed_ = 0;  ///< version of the document that is on the screen
     std::array<std::unique_ptr<LookView>, side_count> views_;
     std::unique_ptr<LiveInterface> interface_;
@@ -212,6 +219,7 @@ class Viewer {
         std::filesystem::path window, frame;
     } wanted_;  ///< of the next frame
     std::deque<Store> stores_;
+
 
     std::unique_ptr<darkroom::Inspector> inspector_;
     struct Inspected {

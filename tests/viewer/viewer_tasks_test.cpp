@@ -77,6 +77,16 @@ TEST_F(CliViewerTasks, ScrubsASequenceAndComparesTwoLooks) {
     std::this_thread::sleep_for(std::chrono::seconds(1));
     type("other.toml");
     press("Return", "compares with other.toml");
+    const auto window = [&](const char* number) {
+        press("shift+F12", fmt::format("stored darkroom-window-{}.png", number));
+        return picture(fmt::format("darkroom-window-{}.png", number));
+    };
+    const Picture two_looks = window("0001");
+    click("view/other");
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    type("r.png");
+    press("Return", "compares with r.png");
+    EXPECT_GT(difference(two_looks, window("0002")), 0.05) << "a picture is beside the look";
     EXPECT_EQ(complained(), "");
     leave();
 }

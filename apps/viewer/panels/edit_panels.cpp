@@ -123,7 +123,7 @@ void EditPanels::draw_view_bar(PictureView& picture) {
     flow.next(checkbox_width("A/B"));
     ImGui::Checkbox("A/B", &is_comparing_);
     look_.note_place("view/compare");
-    tip("Compares two of the look, the look as it was saved, and none. The divider can be dragged.");
+    tip("Compares two of the look, the look as it was saved, none, and another file. The divider can be dragged.");
     flow.next(9.6F * em + gap);
     ImGui::BeginDisabled(!is_comparing_);
     const bool had_other = left_ == Side::Other || right_ == Side::Other;
@@ -138,7 +138,7 @@ void EditPanels::draw_view_bar(PictureView& picture) {
         flow.next(checkbox_width("File..."));
         if (ImGui::Button("File...")) choose_other();
         look_.note_place("view/other");
-        tip("Chooses the look to compare with.");
+        tip("Chooses the look, or the picture, to compare with.");
     }
     ImGui::EndDisabled();
     flow.next(6 * em);
@@ -167,9 +167,9 @@ void EditPanels::draw_view_bar(PictureView& picture) {
 }
 
 void EditPanels::choose_other() {
-    look_.files().open({.title = "A look to compare with",
+    look_.files().open({.title = "A look, or a picture, to compare with",
                         .start = look_.folder(),
-                        .extensions = {".toml"},
+                        .extensions = {".toml", ".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"},
                         .then = [this](const std::filesystem::path& file) { wanted_other_ = file; }});
 }
 

@@ -65,7 +65,7 @@ class EditPanels {
     [[nodiscard]] Side right() const { return there(right_); }
     /// What a side is called in the picture.
     [[nodiscard]] std::string name_of(Side side) const;
-    /// The file of another look to compare with.
+    /// The file of another look, or of a picture, to compare with.
     [[nodiscard]] std::optional<std::filesystem::path> take_other() {
         return std::exchange(wanted_other_, std::nullopt);
     }
