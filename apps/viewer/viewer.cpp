@@ -25,6 +25,10 @@ namespace {
 /// A longer frame was none: the machine slept, or a driver compiled.
 constexpr double longest_frame = 0.25;
 
+bool is_device_lost(const darkroom::Error& error) {
+    return error.text.ends_with(darkroom::gpu::result_name(VK_ERROR_DEVICE_LOST));
+}
+
 VkExtent2D least_of(VkExtent2D a, VkExtent2D b) { return {std::min(a.width, b.width), std::min(a.height, b.height)}; }
 
 }  // namespace
@@ -38,7 +42,9 @@ int Viewer::exit_code(int code) const { return device_ ? finish(*device_, code) 
 Result<> Viewer::run() {
     if (Result<> done = open(); !done) return done;
     while (!is_leaving_) {
-        if (Result<> done = turn(); !done) return done;
+        Result<> done = turn();
+        if (!done && is_device_lost(done.error())) done = make_anew(done.error());
+        if (!done) return done;
         if (window_->is_closing()) leave();
         if (is_fixed() && shown_frames_ >= *job_.frames_to_show) break;
     }
@@ -53,16 +59,7 @@ Result<> Viewer::open() {
     Result<darkroom::window::Window> window = darkroom::window::Window::create(job_.window);
     if (!window) return failure(std::move(window));
     window_.emplace(std::move(*window));
-    if (Result<> done = make_device(); !done) return done;
-    Result<darkroom::window::Presenter> presenter = darkroom::window::Presenter::create(
-        *device_, {.presentation = job_.presentation,
-                   .frames_in_flight = frames_in_flight,
-                   .range = job_.range,
-                   .peak_nits = job_.peak_nits,
-                   .make_surface = [this](VkInstance instance) { return window_->make_surface(instance); }});
-    if (!presenter) return failure(std::move(presenter));
-    presenter_.emplace(std::move(*presenter));
-    if (Result<> done = make_source(); !done) return done;
+    if (Result<> done = open_device(); !done) return done;
     document_.emplace(std::move(*job_.document));
     screen_ = Screen(job_.is_edit ? &*document_ : nullptr);
     is_post_on_ = !job_.is_off;
@@ -71,46 +68,10 @@ Result<> Viewer::open() {
     time_ = previous_time_ = job_.time.value_or(scene_ != nullptr ? scene_->scene().time : 0);
     previous_time_ = std::max(0.0, time_ - job_.step);
     camera_.emplace(job_.is_edit ? CameraRig::Kind::Orbit : CameraRig::Kind::Walk, job_.orbit);
-    interface_ = std::make_unique<LiveInterface>(
-        *device_, is_fixed(), frames_in_flight,
-        [this](darkroom::Severity, std::string_view line) { print(std::string(line)); },
-        has_config() ? config_file().parent_path() : std::filesystem::path());
     tell_warnings();
     screen_.messages().set_folder(document_->options().folder);
-    const Result<LookView*> look = view(Side::Look);
-    if (!look) return failure(look.error());
-    if (Result<> done = start_interface(); !done) return done;
-    Result<std::unique_ptr<Gui>> gui =
-        Gui::create(device_->context(), *window_,
-                    {.format = presenter_->format(), .color = presenter_->color(), .slots = frames_in_flight});
-    if (!gui) return failure(std::move(gui));
-    gui_ = std::move(*gui);
+    if (Result<> done = open_views(); !done) return done;
     if (!job_.is_edit && !is_fixed() && scene_ != nullptr) tell("a click takes the mouse to look round, Esc frees it");
-    return {};
-}
-
-// What a window of high range needs is asked for, and done without where it is not there.
-Result<> Viewer::make_device() {
-    std::vector<const char*> instance, device{darkroom::window::Presenter::device_extension};
-    std::ranges::copy(window_->instance_extensions(), std::back_inserter(instance));
-    const auto create = [&] {
-        return darkroom::Device::create(
-            {.select = job_.device, .log = log_sink(), .instance_extensions = instance, .device_extensions = device});
-    };
-    Result<darkroom::Device> made = darkroom::machine_error("");
-    if (job_.range == darkroom::window::DynamicRange::High) {
-        instance.push_back(VK_EXT_SWAPCHAIN_COLOR_SPACE_EXTENSION_NAME);
-        device.push_back(VK_EXT_HDR_METADATA_EXTENSION_NAME);
-        made = create();
-        if (!made) {
-            device.pop_back();
-            made = create();
-        }
-        if (!made) instance.pop_back();
-    }
-    if (!made) made = create();
-    if (!made) return failure(std::move(made));
-    device_ = std::make_unique<darkroom::Device>(std::move(*made));
     return {};
 }
 

@@ -41,7 +41,6 @@ class Viewer {
 
     // viewer.cpp
     [[nodiscard]] darkroom::Result<> open();
-    [[nodiscard]] darkroom::Result<> make_device();
     [[nodiscard]] bool is_high_range() const;
     [[nodiscard]] darkroom::Result<> start_interface();
     [[nodiscard]] darkroom::Result<> turn();
@@ -59,6 +58,16 @@ class Viewer {
     [[nodiscard]] bool is_off() const { return !is_post_on_ && (scene_ == nullptr || interface_->is_given()); }
     [[nodiscard]] bool is_fixed() const { return job_.frames_to_show.has_value(); }
     [[nodiscard]] darkroom::Look look_of(Side side) const;
+
+    // viewer_device.cpp
+    /// The device, what shows pictures with it, and the source.
+    [[nodiscard]] darkroom::Result<> open_device();
+    [[nodiscard]] darkroom::Result<> make_device();
+    /// What the source is seen through.
+    [[nodiscard]] darkroom::Result<> open_views();
+    /// A device that was lost takes all along that was made with it: what its user has done stays.
+    [[nodiscard]] darkroom::Result<> make_anew(const darkroom::Error& error);
+    void let_go_of_device();
 
     // viewer_keys.cpp
     void obey_keys();
@@ -220,6 +229,7 @@ class Viewer {
     } wanted_;  ///< of the next frame
     std::deque<Store> stores_;
 
+    std::deque<Clock::time_point> lost_at_;          ///< devices, lately
 
     std::unique_ptr<darkroom::Inspector> inspector_;
     struct Inspected {

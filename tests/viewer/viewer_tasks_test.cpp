@@ -103,6 +103,26 @@ TEST_F(CliViewerTasks, FiresAPulse) {
     leave();
 }
 
+TEST_F(CliViewerTasks, ALostDeviceIsMadeAnew) {
+    const std::string library = std::string(test::binary_folder) + "/bin/darkroom_lose_device.so";
+    if (!std::filesystem::exists(library)) GTEST_SKIP() << "sanitizers want to be first";
+    const std::string look = write("my.toml", "[post_process]\nbloom_intensity = 0.2\nfog_density = 0.05\n");
+    start({"edit", frame("frame.exr"), "--look", look, "--size", "1280x720"}, {"env", "LD_PRELOAD=" + library});
+    press("F8", "F8 fog: off");
+    const Picture before = shot();
+    for (int i = 0; i < 2; ++i) {
+        const std::size_t known = count("the device was made anew");
+        kill(viewer().id(), SIGUSR1);
+        press("F5");  // whoever rests submits nothing
+        EXPECT_TRUE(wait_until([&] { return count("the device was made anew") > known; }, 120))
+            << said() << complained();
+        press("ctrl+z", "undo: F5 bloom: off");
+        EXPECT_EQ(difference(before, shot()), 0) << "the look goes on";
+    }
+    press("ctrl+s", "saved my.toml");
+    leave();
+}
+
 TEST_F(CliViewerTasks, WhatWasNotSavedIsOfferedAgain) {
     const std::string text = "[post_process]\nbloom_intensity = 0.2\nfog_density = 0.05\n";
     const std::string look = write("my.toml", text);
