@@ -71,6 +71,8 @@ Result<> Viewer::open() {
     tell_warnings();
     screen_.messages().set_folder(document_->options().folder);
     if (Result<> done = open_views(); !done) return done;
+    if (EditPanels* const panels = screen_.editor())
+        panels->look().set_thumbnails([this](const darkroom::EffectInfo& effect) { return thumbnail_of(effect); });
     if (!job_.is_edit && !is_fixed() && scene_ != nullptr) tell("a click takes the mouse to look round, Esc frees it");
     return {};
 }
@@ -190,6 +192,7 @@ Result<> Viewer::show(const PresentFrame& frame) {
         if (views_[side]) settle(fmt::format("plan {}", side), views_[side]->planned());
     tell_source_warnings();
     store_picture(frame);
+    show_thumbnails(frame);
     if (Result<> done = gui_->begin(window_->scale()); !done) return done;
     if (gui_->has_typed('?')) obey(KeyAction::KeySheet, 0);
     draw_screen(frame);

@@ -73,6 +73,9 @@ void Viewer::let_go_of_device() {
     if (opening_.valid()) opening_.wait();
     coming_ = {};
     opening_ = {};
+    thumbnails_.reset();
+    thumbnails_frame_.reset();
+    has_thumbnails_ = false;
     presenter_.reset();  // waits for what is under way
     gui_.reset();
     stores_.clear();

@@ -45,6 +45,7 @@ bool Viewer::is_due() {
         if (frames_due_ > 0) --frames_due_;
         return true;
     }
+    if (has_thumbnails_ && thumbnails_ && (thumbnails_frame_ || thumbnails_->has_new())) return true;
     const bool is_old = now - last_turn_ >= between_frames;
     if ((is_old && (is_coming() || screen_.is_over())) || has_come_to_rest()) return true;
     // What a frame measured is shown by another, which measures nothing.

@@ -89,6 +89,43 @@ Result<> Viewer::read_scopes(const darkroom::window::PresentFrame& frame) {
     return {};
 }
 
+// Begun when the menu opens, of the frame that is shown then, and left when it closes.
+void Viewer::show_thumbnails(const darkroom::window::PresentFrame& frame) {
+    EditPanels* const panels = screen_.panels();
+    const bool is_wanted = panels != nullptr && panels->look().is_adding() && !source_->display_picture();
+    if (!is_wanted) {
+        if (thumbnails_) thumbnails_->stop();
+        has_thumbnails_ = false;
+        return;
+    }
+    if (!has_thumbnails_) {
+        // Those of the last time may still be on the screen.
+        if (thumbnails_)
+            if (Result<> done = presenter_->wait(); !done) return settle("thumbnails", done);
+        thumbnails_.reset();
+        Result<std::unique_ptr<Thumbnails>> made = Thumbnails::create(*device_, source_->frame(), document_->look());
+        settle("thumbnails", made ? Result<>() : failure(made.error()));
+        has_thumbnails_ = true;
+        if (!made) return;
+        thumbnails_ = std::move(*made);
+        thumbnails_->record_frame(frame.commands);
+        thumbnails_frame_ = frame.number;
+        return;
+    }
+    if (!thumbnails_) return;
+    if (thumbnails_frame_ && presenter_->is_finished(*thumbnails_frame_)) {
+        thumbnails_frame_.reset();
+        thumbnails_->begin();
+    }
+    thumbnails_->record(frame.commands);
+}
+
+darkroom::panels::Thumbnail Viewer::thumbnail_of(const darkroom::EffectInfo& effect) {
+    if (!has_thumbnails_ || !thumbnails_) return {};
+    const darkroom::window::Pane* const pane = thumbnails_->of(effect);
+    return {.texture = pane != nullptr ? pane->texture() : nullptr, .aspect = thumbnails_->aspect()};
+}
+
 void Viewer::finish_seeing() {
     while (!inspected_.empty() && presenter_->is_finished(inspected_.front().frame)) {
         if (inspector_)

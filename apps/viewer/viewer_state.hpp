@@ -14,6 +14,7 @@
 #include "apps/viewer/source/compared_picture.hpp"
 #include "apps/viewer/source/live_interface.hpp"
 #include "apps/viewer/source/look_view.hpp"
+#include "apps/viewer/source/thumbnails.hpp"
 #include "develop/inspect/inspector.hpp"
 #include "develop/readback.hpp"
 #include "edit/document.hpp"
@@ -97,6 +98,8 @@ class Viewer {
     [[nodiscard]] darkroom::Result<> inspect(VkCommandBuffer commands, const darkroom::Frame& frame);
     [[nodiscard]] darkroom::Result<> read_scopes(const darkroom::window::PresentFrame& frame);
     void finish_seeing();
+    void show_thumbnails(const darkroom::window::PresentFrame& frame);
+    [[nodiscard]] darkroom::panels::Thumbnail thumbnail_of(const darkroom::EffectInfo& effect);
 
     // viewer_source.cpp
     /// Another scene, or frames, in place of those that are shown.
@@ -229,6 +232,9 @@ class Viewer {
     } wanted_;  ///< of the next frame
     std::deque<Store> stores_;
 
+    std::unique_ptr<Thumbnails> thumbnails_;
+    std::optional<std::uint64_t> thumbnails_frame_;  ///< whose copy is on its way to them
+    bool has_thumbnails_ = false;                    ///< somebody looks at them
     std::deque<Clock::time_point> lost_at_;          ///< devices, lately
 
     std::unique_ptr<darkroom::Inspector> inspector_;

@@ -17,6 +17,8 @@
 
 namespace darkroom::panels {
 
+struct Thumbnail;
+
 using LookChange = std::function<Result<>(Look&)>;
 
 /// What a file that is chosen is for.
@@ -49,6 +51,8 @@ struct PanelState {
 
     std::string renamed{}, new_name{};  ///< the entry whose name is being typed
     bool is_renaming_new = false;
+    std::function<Thumbnail(const EffectInfo& effect)> thumbnails{};
+    int adding_frame = -1;                  ///< of ImGui: the last one in which the list of effects to add was open
     bool shows_numbers = false;             ///< in place of wheels and curves
     std::string filter{};                   ///< of the list of effects to add
     std::size_t add_row = 0;                ///< of that list, where the keyboard is

@@ -246,6 +246,12 @@ std::string LookPanels::selected() const {
 
 void LookPanels::select(std::string_view entry) { state_->select(entry); }
 
+void LookPanels::set_thumbnails(ThumbnailOf thumbnails) { state_->thumbnails = std::move(thumbnails); }
+bool LookPanels::is_adding() const {
+    const int passed = ImGui::GetFrameCount() - state_->adding_frame;
+    return state_->adding_frame >= 0 && (passed == 0 || passed == 1);
+}
+
 void LookPanels::show_numbers(bool shows_numbers) { state_->shows_numbers = shows_numbers; }
 
 const WidgetPlaces& LookPanels::places() {

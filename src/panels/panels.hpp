@@ -35,6 +35,14 @@ namespace darkroom::panels {
 
 struct PanelState;
 
+/// A picture as ImGui's texture; null: it is on its way.
+struct Thumbnail {
+    void* texture = nullptr;
+    float aspect = 1;  ///< width / height
+};
+/// What an effect that is added would make of the picture.
+using ThumbnailOf = std::function<Thumbnail(const EffectInfo& effect)>;
+
 class LookPanels {
   public:
     /// The document must outlive the panels, or be replaced by show().
@@ -82,6 +90,10 @@ class LookPanels {
     /// Name of the selected entry; empty: none.
     [[nodiscard]] std::string selected() const;
     void select(std::string_view entry);
+    /// For the list of effects that can be added: asked in every frame, of those that are seen.
+    void set_thumbnails(ThumbnailOf thumbnails);
+    /// Is that list open?
+    [[nodiscard]] bool is_adding() const;
     /// Effects whose parameters have wheels and curves show lines of numbers instead.
     void show_numbers(bool shows_numbers);
     /// Where widgets are, noted from now on while they are drawn.

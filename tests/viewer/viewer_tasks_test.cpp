@@ -123,6 +123,29 @@ TEST_F(CliViewerTasks, ALostDeviceIsMadeAnew) {
     leave();
 }
 
+TEST_F(CliViewerTasks, TheListOfEffectsShowsWhatTheyDo) {
+    start({"edit", frame("frame.exr"), "--size", "1280x720"});
+    click("stack/add");
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    type("vignette");
+    const auto [left, top, right, bottom] = place("add/vignette.picture");
+    int shots = 0;
+    const auto has_picture = [&] {
+        const std::string file = fmt::format("darkroom-window-{:04}.png", ++shots);
+        press("shift+F12", "stored " + file);
+        const Picture window = picture(file);
+        float least = 1, most = 0;
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x) {
+                const float green = window.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))[1];
+                least = std::min(least, green);
+                most = std::max(most, green);
+            }
+        return most - least > 0.2F;
+    };
+    EXPECT_TRUE(wait_until(has_picture, 60));
+}
+
 TEST_F(CliViewerTasks, WhatWasNotSavedIsOfferedAgain) {
     const std::string text = "[post_process]\nbloom_intensity = 0.2\nfog_density = 0.05\n";
     const std::string look = write("my.toml", text);

@@ -13,6 +13,7 @@
 #include "edit/edits.hpp"
 #include "edit/effect_uses.hpp"
 #include "panels/panel_state.hpp"
+#include "panels/panels.hpp"
 #include "panels/widgets/icons.hpp"
 #include "panels/widgets/text_field.hpp"
 #include "panels/widgets/value_widgets.hpp"
@@ -127,16 +128,41 @@ std::string heading_of(std::string_view purpose) {
     return out;
 }
 
-/// A name and what it costs, and below them the effect's sentence, as one thing to be clicked.
-bool draw_effect(const EffectInfo& effect, bool is_chosen) {
+/// The room of a picture, in heights of the font.
+constexpr float picture_width = 6, picture_height = 3.4F;
+
+/// As large as it fits into its room, in the middle.
+void draw_thumbnail(PanelState& state, const EffectInfo& effect, ImVec2 corner) {
+    const float em = ImGui::GetFontSize();
+    const ImVec2 room{picture_width * em, picture_height * em};
+    if (!ImGui::IsRectVisible(corner, {corner.x + room.x, corner.y + room.y})) return;
+    const Thumbnail found = state.thumbnails(effect);
+    const ImVec2 size{std::min(room.x, room.y * found.aspect), std::min(room.y, room.x / found.aspect)};
+    const ImVec2 from{std::round(corner.x + (room.x - size.x) / 2), std::round(corner.y + (room.y - size.y) / 2)};
+    const ImVec2 to{from.x + size.x, from.y + size.y};
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    if (found.texture != nullptr)
+        list.AddImage(found.texture, from, to);
+    else
+        list.AddRectFilled(from, to, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    if (state.places) (*state.places)[fmt::format("add/{}.picture", effect.name)] = {from, to};
+}
+
+/// A name and what it costs, and below them the effect's sentence, as one thing to be clicked; beside them what it
+/// makes of the picture.
+bool draw_effect(PanelState& state, const EffectInfo& effect, bool is_chosen) {
     const ImGuiStyle& style = ImGui::GetStyle();
-    const float indent = ImGui::GetFontSize(), width = ImGui::GetContentRegionAvail().x;
+    const float em = ImGui::GetFontSize(), width = ImGui::GetContentRegionAvail().x;
+    const bool has_picture = state.thumbnails != nullptr;
+    const float indent = has_picture ? (picture_width + 0.5F) * em : em;
     const std::string doc(effect.doc);
     const float wrap = width - indent;
-    const float height =
+    const float text =
         ImGui::GetTextLineHeight() + ImGui::CalcTextSize(doc.c_str(), nullptr, false, wrap).y + style.ItemSpacing.y;
+    const float height = has_picture ? std::max(text, picture_height * em) : text;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const bool is_pressed = ImGui::Selectable("##effect", is_chosen, 0, {0, height});
+    if (has_picture) draw_thumbnail(state, effect, corner);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImU32 dim = ImGui::GetColorU32(ImGuiCol_TextDisabled);
     const char* const cost = costs().at(&effect);
@@ -153,7 +179,7 @@ void draw_effects(PanelState& state, std::span<const Offered> wanted, bool moved
         const auto& [purpose, effect] = wanted[i];
         if (i == 0 || purpose != wanted[i - 1].purpose) ImGui::TextDisabled("%s", heading_of(purpose).c_str());
         ImGui::PushID(effect);
-        if (draw_effect(*effect, i == state.add_row)) add(state, *effect);
+        if (draw_effect(state, *effect, i == state.add_row)) add(state, *effect);
         if (moved && i == state.add_row) ImGui::SetScrollHereY();
         state.note(fmt::format("add/{}", effect->name));
         ImGui::PopID();
@@ -164,9 +190,10 @@ void draw_effects(PanelState& state, std::span<const Offered> wanted, bool moved
 }  // namespace
 
 void draw_add_menu(PanelState& state) {
-    const float em = ImGui::GetFontSize();
-    ImGui::SetNextWindowSize({24 * em, std::min(36 * em, ImGui::GetIO().DisplaySize.y * 0.7f)});
+    const float em = ImGui::GetFontSize(), width = state.thumbnails ? 30 : 24;
+    ImGui::SetNextWindowSize({width * em, std::min(36 * em, ImGui::GetIO().DisplaySize.y * 0.7f)});
     if (!ImGui::BeginPopup("add")) return;
+    state.adding_frame = ImGui::GetFrameCount();
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, std::round(em / 3)});
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);

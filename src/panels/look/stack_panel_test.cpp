@@ -219,6 +219,33 @@ TEST(PanelStack, PulsesAndLayersComeAndGo) {
     EXPECT_FALSE(own.document.is_changed());
 }
 
+TEST(PanelStack, AsksForPicturesOfEffectsThatAreSeen) {
+    TestPanels own(stack_of_all(), tall_panel);
+    std::map<std::string_view, int> asked;
+    own.panels.set_thumbnails([&](const EffectInfo& effect) {
+        ++asked[effect.name];
+        return Thumbnail{.aspect = 2};
+    });
+    own.gui.frame(2);
+    EXPECT_TRUE(asked.empty());
+    EXPECT_FALSE(own.panels.is_adding());
+    own.click("stack/add");
+    own.gui.frame(2);
+    EXPECT_TRUE(own.panels.is_adding());
+    EXPECT_GT(asked.size(), 3U);
+    EXPECT_LT(asked.size(), std::max<std::size_t>(all_effects().size() / 2, 20)) << "the others are not seen";
+    for (const auto& [name, count] : asked) {
+        const WidgetPlace place = own.place(fmt::format("add/{}.picture", name));
+        EXPECT_NEAR(place.most.x - place.least.x, 2 * (place.most.y - place.least.y), 1) << name;
+    }
+    own.gui.key(ImGuiKey_Escape);
+    own.gui.frame(2);
+    asked.clear();
+    own.gui.frame(2);
+    EXPECT_TRUE(asked.empty());
+    EXPECT_FALSE(own.panels.is_adding());
+}
+
 TEST(PanelStack, ArrowsAndEnterAdd) {
     TestPanels own(stack_of_all(), tall_panel);
     const std::size_t before = own.names().size();

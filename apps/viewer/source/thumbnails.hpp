@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// What effects that are not in a look yet would make of the present picture, small, for who chooses one. Only those are
+// made that somebody looks at, one after the other, on a thread of their own.
+
+#include <condition_variable>
+#include <darkroom/composer.hpp>
+#include <darkroom/look.hpp>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "develop/readback.hpp"
+#include "gpu/resource/resources.hpp"
+#include "window/pane.hpp"
+
+namespace app {
+
+class Thumbnails {
+  public:
+    /// Of a frame that is on its way to main memory, through `look`. Errors: VkResult.
+    [[nodiscard]] static darkroom::Result<std::unique_ptr<Thumbnails>> create(darkroom::Device& device,
+                                                                              const darkroom::Frame& frame,
+                                                                              darkroom::Look look);
+    Thumbnails(const Thumbnails&) = delete;
+    Thumbnails& operator=(const Thumbnails&) = delete;
+    ~Thumbnails();
+
+    /// Reads the frame, and begins: what record_frame() has recorded has finished.
+    void record_frame(VkCommandBuffer commands) const { frame_read_.record(commands); }
+    void begin();
+    /// Makes no more; does not wait for the one that is being made.
+    void stop();
+
+    /// Asks for one, which comes with a later frame. The pane stays where it is.
+    [[nodiscard]] const darkroom::window::Pane* of(const darkroom::EffectInfo& effect);
+    [[nodiscard]] float aspect() const;
+    /// Has one been made that is in no image yet?
+    [[nodiscard]] bool has_new() const;
+    /// Copies what is new into the image that panes show.
+    void record(VkCommandBuffer commands);
+
+  private:
+    struct Small;  ///< the frame in main memory, with fewer pixels
+    struct Cell {
+        std::size_t number = 0;
+        darkroom::window::Pane pane;
+        bool is_shown = false;
+    };
+    Thumbnails(darkroom::Device& device, const darkroom::Frame& frame, darkroom::Look look,
+               darkroom::FrameReadback read);
+    [[nodiscard]] VkOffset2D corner_of(std::size_t cell) const;
+    void make_all(const std::stop_token& token);
+
+    darkroom::Device& device_;
+    darkroom::Frame frame_;
+    darkroom::Look look_;
+    darkroom::FrameReadback frame_read_;
+    VkExtent2D extent_{};  ///< of each
+    std::uint32_t divisor_ = 1;
+    darkroom::gpu::Image atlas_;
+    darkroom::gpu::Buffer staging_;
+    bool is_drawn_ = false;  ///< the atlas has been written to
+
+    mutable std::mutex mutex_;  ///< guards the next three
+    std::condition_variable_any changed_;
+    std::deque<const darkroom::EffectInfo*> wanted_;
+    std::deque<std::pair<const darkroom::EffectInfo*, std::vector<std::uint8_t>>> made_;
+    std::map<const darkroom::EffectInfo*, Cell> cells_;
+    std::jthread thread_;
+};
+
+}  // namespace app
