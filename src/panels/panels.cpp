@@ -183,7 +183,10 @@ void LookPanels::draw_bar() {
     }
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(fitting(name, ImGui::GetContentRegionAvail().x, KeptPart::End).c_str());
-    tooltip((document.is_changed() ? file + ": changed since it was saved" : file).c_str());
+    std::string sentence =
+        document.file().empty() ? "The look has no file yet." : fmt::format("The look is in {}.", file);
+    if (document.is_changed()) sentence += " It has changed since it was saved.";
+    tooltip(sentence.c_str());
     ImGui::PopID();
 }
 
