@@ -143,7 +143,7 @@ TEST_F(CliViewerTasks, TheListOfEffectsShowsWhatTheyDo) {
             }
         return most - least > 0.2F;
     };
-    EXPECT_TRUE(wait_until(has_picture, 60));
+    EXPECT_TRUE(wait_until(has_picture, 240));
 }
 
 TEST_F(CliViewerTasks, WhatWasNotSavedIsOfferedAgain) {

@@ -64,7 +64,10 @@ class StackList {
     }
 
     void draw_mover_heading(bool is_layer) {
-        draw_heading(is_layer ? "Layers" : "Pulses");
+        ImGui::Spacing();
+        ImGui::Separator();
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", is_layer ? "Layers" : "Pulses");
         const float width = ImGui::CalcTextSize("+").x + 2 * ImGui::GetStyle().FramePadding.x;
         ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
         draw_add_mover(state_, {.is_layer = is_layer}, "+",

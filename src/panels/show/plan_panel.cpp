@@ -58,7 +58,7 @@ void draw_plan_panel(const Plan* plan, bool is_compiling) {
                                        bytes_text(plan->transient_bytes), is_compiling ? ", compiling..." : "")
                                .c_str());
     ImGui::PopTextWrapPos();
-    tooltip(fmt::format("{} without sharing memory; a frame reads {} and writes {}",
+    tooltip(fmt::format("Without sharing memory they would take {}. A frame reads {} and writes {}.",
                         bytes_text(plan->transient_bytes_unaliased), bytes_text(plan->bytes_read()),
                         bytes_text(plan->bytes_written()))
                 .c_str());
