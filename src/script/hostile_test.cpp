@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Scripts that mean harm: the frame loop goes on, within a millisecond over the budget.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <ctime>
 #include <darkroom/effects.hpp>
@@ -140,10 +143,12 @@ std::vector<Attack> attacks() {
 class ControllersHostile : public ::testing::TestWithParam<Attack> {};
 
 // The time is the CPU's, which other work on the machine does not add to; caches that it has emptied do, hence other
-// runs, and what a script says of its time is compared over all frames.
+// runs, of which each frame's least counts, and what a script says of its time is compared over all frames.
 TEST_P(ControllersHostile, LeaveTheFrameLoopRunning) {
-    double least_over = 1e9;
-    for (int run = 0; run < most_runs && least_over >= most_over(); ++run) {
+    std::array<double, 40> least;
+    least.fill(1e9);
+    const auto over = [&] { return *std::ranges::max_element(least) - budget_ms; };
+    for (int run = 0; run < most_runs && over() >= most_over(); ++run) {
         ControllersBed bed({.milliseconds_per_frame = budget_ms});
         for (const EffectInfo* const effect : all_effects()) bed.composer.add(*effect, nullptr);
         bed.game = {{"health", 100.0}, {"ammo", 5.0}};
@@ -155,29 +160,31 @@ TEST_P(ControllersHostile, LeaveTheFrameLoopRunning) {
             bed.load("engine.on_frame('last', function() engine.cvar_set('contrast', 1 + engine.time() / 100) end)",
                      "last"),
             "");
-        double worst = 0, told = 0, all = 0;
-        for (int i = 1; i <= 40; ++i) {
+        double told = 0, all = 0;
+        int late = 0;
+        for (std::size_t i = 1; i <= least.size(); ++i) {
             const double before = thread_milliseconds();
-            bed.frame(i);
+            bed.frame(static_cast<double>(i));
             const double taken = thread_milliseconds() - before;
             ASSERT_LE(bed.controllers->bytes(), std::size_t{16} << 20);
             EXPECT_LE(bed.controllers->microseconds() / 1e3, taken);
             told += bed.controllers->microseconds() / 1e3;
             all += taken;
-            worst = std::max(worst, taken);
-            ASSERT_FLOAT_EQ(bed.now("tone", 1), static_cast<float>(1 + i / 100.0)) << "frame " << i;
-            ASSERT_FLOAT_EQ(bed.now("tone", 0), static_cast<float>(1 + i / 100.0)) << "frame " << i;
+            least[i - 1] = std::min(least[i - 1], taken);
+            const auto now = static_cast<float>(1 + static_cast<double>(i) / 100);
+            ASSERT_FLOAT_EQ(bed.now("tone", 1), now) << "frame " << i;
+            late += std::abs(bed.now("tone", 0) - now) < 1e-4F ? 0 : 1;
         }
+        EXPECT_LE(late, 2) << "frames in which a hiccup cut the last one off";
         EXPECT_GE(told, 0.5 * all - 4) << "what they say of themselves";
-        least_over = std::min(least_over, worst - budget_ms);
         for (const std::string& line : bed.said) EXPECT_LT(line.size(), 8000u);
         EXPECT_LT(bed.said.size(), 40 * 25u);
         EXPECT_EQ(bed.load(slot("engine.cvar_set('r_ui_warp', 0.5)")), "") << "a better one can take its place";
         bed.frame(100);
         EXPECT_EQ(bed.now("warp"), 0.5f);
     }
-    RecordProperty("milliseconds over", std::to_string(least_over));
-    EXPECT_LT(least_over, most_over());
+    RecordProperty("milliseconds over", std::to_string(over()));
+    EXPECT_LT(over(), most_over());
 }
 
 // Objects that are kept for many frames, until there are as many as may be: then to collect them is the most work.
@@ -196,6 +203,16 @@ TEST(ControllersMemory, AFullStateCostsNoMoreThanAFrame) {
         EXPECT_NE(bed.said.back().find("budget of memory"), std::string::npos) << bed.said.back();
     }
     EXPECT_LT(least_over, most_over());
+}
+
+// At each depth another room is left behind the stack of Lua for the lines that tell of the error, which must not need
+// it.
+TEST(ControllersTrace, AnErrorIsToldAtEveryDepthOfTheStack) {
+    ControllersBed bed;
+    for (int depth = 1; depth <= 600; ++depth)
+        EXPECT_EQ(bed.load(fmt::format(
+                      "local function f(n) if n == 0 then error('deep') end return 1 + f(n - 1) end f({})", depth)),
+                  "test:1: deep");
 }
 
 // Counted in instructions, so that a picture does not depend on the machine.
