@@ -365,14 +365,18 @@ std::string source_of(const KernelSpec& spec, Stage stage, const std::optional<F
 std::string kernel_source(const KernelSpec& spec, Stage stage) { return KernelText(spec, stage).source; }
 
 std::string without_file_names(std::string_view source) {
-    constexpr std::string_view line = "\n#line ";
+    constexpr std::string_view line = "#line ";
     std::string out;
     out.reserve(source.size());
-    for (std::size_t at = source.find(line); at != std::string_view::npos; at = source.find(line)) {
-        out += source.substr(0, source.find_first_of("\"\n", at + line.size()));
-        source.remove_prefix(std::min(source.find('\n', at + line.size()), source.size()));
+    std::size_t copied = 0;
+    // There are far fewer of these marks than lines.
+    for (std::size_t at = source.find('#'); at != std::string_view::npos; at = source.find('#', at + 1)) {
+        if (at == 0 || source[at - 1] != '\n' || !source.substr(at).starts_with(line)) continue;
+        const std::size_t name = std::min(source.find_first_of("\"\n", at), source.size());
+        out += source.substr(copied, name - copied);
+        copied = std::min(source.find('\n', at), source.size());
     }
-    return out.append(source);
+    return out.append(source.substr(copied));
 }
 
 KernelText::KernelText(const KernelSpec& spec, Stage stage) {

@@ -16,6 +16,7 @@ namespace {
 // 128 components, less the 7 of what every vertex shader may write: position, point size, clip and cull distance.
 constexpr std::size_t most_flat_vectors = 30;
 constexpr std::uint32_t components_of_vertices = 128;
+constexpr std::string_view custom = "custom";
 
 /// NAME[1], NAME(1), vec4 NAME(int index) and its NAME[1 + index]. An array whose index is found out for each pixel
 /// must stay in memory.
@@ -85,16 +86,15 @@ std::uint32_t first_member_vector(const KernelSpec& spec) { return first_custom_
 
 bool takes_flat_values(const KernelSpec& spec, Stage stage) { return stage == Stage::Raster && spec.is_software; }
 
-WordsOfBlocks::WordsOfBlocks(const KernelSpec& spec) : asked_{"size", "load_clamped", "sample_linear"} {
-    asked_.reserve(asked_.size() + spec.frame.size() + spec.members.size());
+WordsOfBlocks::WordsOfBlocks(const KernelSpec& spec) : has_custom_(spec.custom_vectors > 0) {
+    for (const std::string_view function : {"size", "load_clamped", "sample_linear"}) asked_.insert(function);
     for (const BlockMember& member : spec.frame) asked_.insert(member.name);
     for (const BlockMember& member : spec.members) asked_.insert(member.name);
 }
 
 void WordsOfBlocks::visit(std::string_view word, const GlslScanner& after) {
     if (asked_.contains(word)) found.insert(word);
-    constexpr std::string_view custom = "custom";
-    if (word.size() >= custom.size() && word.find(custom) != std::string_view::npos)
+    if (has_custom_ && word.size() >= custom.size() && word.find(custom) != std::string_view::npos)
         has_literal_indices &= is_literal(after);
 }
 

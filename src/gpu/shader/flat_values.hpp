@@ -13,6 +13,7 @@
 
 #include "gpu/kernel/kernel.hpp"
 #include "gpu/shader/glsl_scan.hpp"
+#include "gpu/shader/word_set.hpp"
 
 namespace darkroom::gpu {
 
@@ -40,7 +41,8 @@ class WordsOfBlocks {
     bool has_literal_indices = true;  ///< of custom, also by way of an entry's NAME_custom()
 
   private:
-    std::unordered_set<std::string_view> asked_;
+    WordSet asked_;
+    bool has_custom_;  ///< else no word is looked at for that
 };
 [[nodiscard]] FlatValues flat_values(const KernelSpec& spec, const WordsOfBlocks& words);
 

@@ -57,9 +57,23 @@ Token GlslScanner::next() {
 }
 
 Token GlslScanner::next_word() {
-    Token token = next();
-    while (token.kind != Token::Kind::Word && token.kind != Token::Kind::End) token = next();
-    return token;
+    while (at_ < text_.size()) {
+        const char first = text_[at_];
+        if (is(first, space)) {
+            ++at_;
+        } else if (is(first, letter) && !is_after_dot_) {
+            return next();
+        } else if (is(first, letter | digit)) {
+            at_ = end_of(text_, at_, letter | digit);
+            is_after_dot_ = false;
+        } else if (first == '#' || first == '/') {
+            next();
+        } else {
+            is_after_dot_ = first == '.';
+            ++at_;
+        }
+    }
+    return {};
 }
 
 Token GlslScanner::peek() const {

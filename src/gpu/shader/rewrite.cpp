@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "gpu/shader/word_set.hpp"
+
 namespace darkroom::gpu {
 
 namespace {
@@ -49,11 +51,13 @@ std::string rewrite_image_calls(std::string_view body, std::span<const std::stri
                                 std::span<const std::string_view> images, const VisitWord& visit) {
     std::string result;
     result.reserve(body.size() + body.size() / 4);
+    WordSet names;
+    for (const std::string_view function : functions) names.insert(function);
     std::size_t copied = 0;  // up to where the body is in the result
     GlslScanner scanner(body);
     for (Token token = scanner.next_word(); token.kind != End; token = scanner.next_word()) {
         if (visit) visit(token.text, scanner);
-        if (!contains(functions, token.text)) continue;
+        if (!names.contains(token.text)) continue;
         const Call call = read_call(scanner, images);
         if (call.image.empty()) continue;
         result.append(body.substr(copied, scanner.place() - copied));
