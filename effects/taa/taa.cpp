@@ -72,6 +72,30 @@ PassImage motion_of_camera(PassBuilder& builder, PassImage distance) {
                         .constants = motion_constants});
 }
 
+template <bool has_transparency>
+void mask_constants(const void*, const PassContext&, std::span<PassVector> out) {
+    out[0] = {has_transparency ? static_cast<float>(taa::mask_per_change) : 0.0f, 0, 0, 0};
+}
+
+/// What the past tells little of.
+PassImage mask(PassBuilder& builder) {
+    const PassImage reactive = builder.frame_image(FrameImage::Reactive);
+    const bool has_transparency = builder.has_frame_image(FrameImage::Transparency);
+    if (!has_transparency && !builder.has_frame_image(FrameImage::Reactive)) return reactive;
+    return builder.add(
+        {.name = "mask",
+         .shader = "taa_mask.glsl",
+         .inputs = {{.name = "taa_color", .image = builder.picture(), .is_loaded = true},
+                    {.name = "taa_transparency",
+                     .image = builder.frame_image(FrameImage::Transparency),
+                     .is_loaded = true},
+                    {.name = "taa_reactive", .image = reactive, .is_loaded = true},
+                    {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true}},
+         .output = builder.create({.name = "mask", .format = VK_FORMAT_R8G8_UNORM}),
+         .custom_vectors = 1,
+         .constants = has_transparency ? mask_constants<true> : mask_constants<false>});
+}
+
 void sharpen_constants(const void* parameters, const PassContext&, std::span<PassVector> out) {
     out[0] = {static_cast<float>(taa_sharpening(taa_of(parameters))), 0, 0, 0};
 }
@@ -97,7 +121,7 @@ void build(PassBuilder& builder) {
                     {.name = "taa_distance", .image = inverse, .is_loaded = true},
                     {.name = "taa_distance_before", .image = distance.previous, .is_loaded = true},
                     {.name = "taa_velocity", .image = motion, .is_loaded = true},
-                    {.name = "taa_reactive", .image = builder.frame_image(FrameImage::Reactive), .is_loaded = true},
+                    {.name = "taa_mask", .image = mask(builder), .is_loaded = true},
                     {.name = "taa_exposure", .image = builder.frame_image(FrameImage::Exposure), .is_loaded = true},
                     {.name = "taa_light_before", .image = light.previous},
                     {.name = "taa_kept_before", .image = kept.previous}},
@@ -130,7 +154,7 @@ const EffectInfo& effect_info(const Taa&) {
         .files = embedded_files("taa"),
         .touch = Touch::History,
         .accepts = Domains::only(Domain::SceneLinear),
-        .needs = {FrameImage::Depth, FrameImage::Reactive, FrameImage::Exposure},
+        .needs = {FrameImage::Depth, FrameImage::Reactive, FrameImage::Transparency, FrameImage::Exposure},
         .flat = {.documented = 41, .scene_linear = 42},
         .makes_output = true,
         .build = build,

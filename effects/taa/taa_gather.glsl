@@ -18,7 +18,9 @@ const float taa_cubic = -0.6;   // slope of the filter of the past (R. Keys, 198
 const float taa_loss = 3.5;
 const float taa_reach = 1.25;  // how far the past may lie off the frame's mean: deviations of the frame's colours,
 const float taa_still_noise = 3.0, taa_moving_noise = 0.5;  // and of samples off the past
-const float taa_most_reactive = 0.9;
+// As far as the frame's own colours are apart: where light changes, samples are off the past, too, and the past must not
+// stay for it.
+const float taa_most_noise = 0.5;
 
 // Of the samples beside, the nearest and the farthest, and where.
 struct TaaEdge {
@@ -117,11 +119,12 @@ void shade(Pixel pixel, out vec4 result[2]) {
     vec2 extent = vec2(pixel.size), middle_before = floor(before - 0.5) + 0.5, f = before - middle_before;
 
     float frames = 0.0, noise = 0.0;
+    vec2 mask = load(taa_mask, middle).rg;
     bool is_inside = all(greaterThan(before, vec2(0.0))) && all(lessThan(before, extent));
     if (custom[3].z > 0.5 && is_inside && !taa_was_hidden(at, inverse, before * custom[0].xy + custom[1].zw)) {
         vec2 kept = taa_unpacked(sample_linear(taa_kept_before, before / extent).rg);
         frames = min(kept.x, 1.0 / (custom[4].x + taa_loss * dot(f, 1.0 - f)));
-        frames *= 1.0 - taa_most_reactive * clamp(load(taa_reactive, middle).r, 0.0, 1.0);
+        frames *= 1.0 - mask.x;
         noise = kept.y;
     }
     TaaNow now = taa_now(middle, limit, vec2(middle) + 0.5 - place, unit,
@@ -134,15 +137,19 @@ void shade(Pixel pixel, out vec4 result[2]) {
         // frame and not in the next.
         float of_samples = noise * mix(taa_still_noise, taa_moving_noise, min(length(motion) * 4.0, 1.0));
         vec3 beyond = abs(away) / max(now.deviation * taa_reach + of_samples, vec3(1e-3));
-        past = now.mean + away / max(max(beyond.x, beyond.y), max(beyond.z, 1.0));
+        float most = max(max(beyond.x, beyond.y), max(beyond.z, 1.0));
+        past = now.mean + away / most;
+        frames /= most;  // it counts as much less as it had to be drawn
         color = mix(past, color, now.weight / (frames + now.weight));
-        noise += (abs(now.luma - past.x) - noise) * max(0.1, 1.0 / (frames + 1.0));
+        float off = min(abs(now.luma - past.x), taa_most_noise * now.deviation.x);
+        noise += (off - noise) * max(0.1, 1.0 / (frames + 1.0));
     }
     // Where an edge moves before what is behind it, samples will be off for another reason; and the thing beside its edge
     // leaves them behind, if that stands still.
     vec2 behind = sanitize(load(taa_velocity, edge.far_at)).xy * custom[1].xy;
     float parts = clamp(4.0 * length(motion - behind) - 0.4, 0.0, 1.0);
     noise *= 1.0 - parts * (is_edge ? 1.0 : 1.0 - min(4.0 * length(behind), 1.0));
+    noise *= 1.0 - mask.y;  // nor are particles a reason to keep what is off
     float dither = taa_dither(pixel.texel, custom[3].w);
     result[0] = vec4(taa_rounded(taa_light(color, unit), dither), sample_linear(taa_color, place / vec2(limit + 1)).a);
     result[1] = vec4(taa_packed(vec2(frames + now.weight, noise), dither), 0.0, 1.0);

@@ -83,9 +83,9 @@ namespace taa {
 
 using Toned = std::array<double, 3>;
 
-// The same numbers as in taa_gather.glsl.
+// The same numbers as in taa_gather.glsl and taa_mask.glsl.
 constexpr double edge = 0.03, nearer = 0.02, cubic = -0.6, loss = 3.5, reach = 1.25, still_noise = 3,
-                 moving_noise = 0.5, most_reactive = 0.9;
+                 moving_noise = 0.5, most_noise = 0.5, mask_per_change = 4;
 
 inline Toned toned(const Rgba& c, double unit) {
     const double scale = 1 / (unit + std::max({c.r, c.g, c.b}));
@@ -241,6 +241,22 @@ class Gather {
                     double{c.previous_jitter[1]}};
     }
 
+    double mask(std::int64_t i, std::int64_t j) const {
+        const double given = input_.reactive == nullptr ? 0 : finite_reference(input_.reactive->clamped(i, j).r);
+        double change = 0;
+        if (input_.transparency != nullptr) {
+            const Rgba with = shown(picture_.clamped(i, j)), without = shown(input_.transparency->clamped(i, j));
+            change =
+                std::max({std::abs(with.r - without.r), std::abs(with.g - without.g), std::abs(with.b - without.b)});
+        }
+        return std::clamp(std::max(mask_per_change * change, given), 0.0, 1.0);
+    }
+    Rgba shown(const Rgba& c) const {
+        const double r = finite_light_reference(c.r), g = finite_light_reference(c.g), b = finite_light_reference(c.b);
+        const double scale = 1 / (unit_ + std::max({r, g, b}));
+        return {r * scale, g * scale, b * scale, 1};
+    }
+
     void gather(std::uint32_t x, std::uint32_t y, Rgba& out, Rgba& kept) const {
         const double px = (x + 0.5) * x_scale_ + jitter(0), py = (y + 0.5) * y_scale_ + jitter(1);
         const auto inside = [](double v, std::uint32_t n) {
@@ -265,7 +281,7 @@ class Gather {
         moved = {moved[0] / x_scale_, moved[1] / y_scale_};
         const double bx = x + 0.5 + moved[0], by = y + 0.5 + moved[1];
         const double fx = bx - 0.5 - std::floor(bx - 0.5), fy = by - 0.5 - std::floor(by - 0.5);
-        double frames = 0, noise = 0;
+        double frames = 0, noise = 0, around = 0;
         const bool has_past = light_before_ != nullptr && bx > 0 && by > 0 && bx < width_ && by < height_;
         if (has_past && !was_hidden(at_i, at_j, inverse, bx * x_scale_ + double{input_.camera.previous_jitter[0]},
                                     by * y_scale_ + double{input_.camera.previous_jitter[1]})) {
@@ -273,9 +289,7 @@ class Gather {
             noise = before.g * before.g;
             frames = std::min(before.r * before.r * 128,
                               1 / (1 / taa_most_frames(taa_) + loss * (fx * (1 - fx) + fy * (1 - fy))));
-            if (input_.reactive != nullptr)
-                frames *=
-                    1 - most_reactive * std::clamp(finite_reference(input_.reactive->clamped(i0, j0).r), 0.0, 1.0);
+            frames *= 1 - mask(i0, j0);
         }
         const Now frame = now(i0, j0, static_cast<double>(i0) + 0.5 - px, static_cast<double>(j0) + 0.5 - py,
                               std::lerp(exponents_.wide, exponents_.narrow, std::min(frames, 1.0)));
@@ -288,14 +302,19 @@ class Gather {
             for (std::size_t c = 0; c < 3; ++c)
                 beyond = std::max(beyond, std::abs(away[c]) / std::max(frame.deviation[c] * reach + of_samples, 1e-3));
             const Toned held = sum(frame.mean, away, 1 / beyond);
+            frames /= beyond;
             const double alpha = frame.weight / (frames + frame.weight);
             color = sum(sum({}, held, 1 - alpha), color, alpha);
-            noise += (std::abs(frame.luma - held[0]) - noise) * std::max(0.1, 1 / (frames + 1));
+            const double off = std::min(std::abs(frame.luma - held[0]), most_noise * frame.deviation[0]);
+            noise += (off - noise) * std::max(0.1, 1 / (frames + 1));
         }
         std::array<double, 2> behind = motion(far_i, far_j, farthest);
         behind = {behind[0] / x_scale_, behind[1] / y_scale_};
         const double parts = std::clamp(4 * std::hypot(moved[0] - behind[0], moved[1] - behind[1]) - 0.4, 0.0, 1.0);
         noise *= 1 - parts * (is_edge ? 1 : 1 - std::min(4 * std::hypot(behind[0], behind[1]), 1.0));
+        for (int dj = -1; dj <= 1; ++dj)
+            for (int di = -1; di <= 1; ++di) around = std::max(around, mask(i0 + di, j0 + dj));
+        noise *= 1 - around;
         // Roots, as the device keeps and filters them.
         kept = {std::sqrt(std::clamp((frames + frame.weight) / 128, 0.0, 1.0)), std::sqrt(std::min(noise, 1.0)), 0, 1};
         out = light(color, unit_, sample_reference(picture_, px / picture_.width, py / picture_.height).a);

@@ -20,7 +20,7 @@ using test::must;
 
 /// A frame as a renderer would bring it. Layers without pixels are not given.
 struct Shot {
-    ReferenceImage color, depth{}, velocity{}, reactive{}, exposure{};
+    ReferenceImage color, depth{}, velocity{}, reactive{}, transparency{}, exposure{};
     Camera camera{.depth = DepthKind::Planar};
     double delta_time = 1.0 / 60;
 };
@@ -97,6 +97,7 @@ std::vector<ReferenceImage> by_reference(const Taa& parameters, const std::vecto
                                                     .images = {{FrameImage::Depth, given(shot.depth)},
                                                                {FrameImage::Velocity, given(shot.velocity)},
                                                                {FrameImage::Reactive, given(shot.reactive)},
+                                                               {FrameImage::Transparency, given(shot.transparency)},
                                                                {FrameImage::Exposure, given(shot.exposure)}},
                                                     .target_extent = output,
                                                     .camera = shot.camera,
@@ -123,6 +124,7 @@ std::vector<ReferenceImage> on_gpu(const Taa& parameters, const std::vector<Shot
     desc.is_velocity_plain = true;
     if (given(first.velocity) != nullptr) desc.velocity = {VK_FORMAT_R32G32_SFLOAT};
     if (given(first.reactive) != nullptr) desc.reactive = {VK_FORMAT_R32_SFLOAT};
+    if (given(first.transparency) != nullptr) desc.transparency = {VK_FORMAT_R32G32B32A32_SFLOAT};
     if (given(first.exposure) != nullptr) desc.exposure = {VK_FORMAT_R32_SFLOAT};
     desc.target_extent = output;
     desc.kernels = kernels;
@@ -140,6 +142,7 @@ std::vector<ReferenceImage> on_gpu(const Taa& parameters, const std::vector<Shot
         lend(shot.depth, VK_FORMAT_R32_SFLOAT, frame.depth);
         lend(shot.velocity, VK_FORMAT_R32G32_SFLOAT, frame.velocity);
         lend(shot.reactive, VK_FORMAT_R32_SFLOAT, frame.reactive);
+        lend(shot.transparency, VK_FORMAT_R32G32B32A32_SFLOAT, frame.transparency);
         lend(shot.exposure, VK_FORMAT_R32_SFLOAT, frame.exposure);
         frame.target = test::image_ref(target);
         must(host.record(composer, frame));
@@ -190,12 +193,15 @@ TEST(EffectTaa, GpuMatchesReference) {
         }
 }
 
-TEST(EffectTaa, GpuMatchesReferenceWithAMaskAndAnExposure) {
+TEST(EffectTaa, GpuMatchesReferenceWithMasksAndAnExposure) {
     std::vector<Shot> shots = shots_of(world_at(0.6), {32, 19}, output, 6);
     for (std::size_t i = 0; i < shots.size(); ++i) {
         shots[i].reactive = ReferenceImage(32, 19, {0, 0, 0, 1});
         for (std::uint32_t y = 4; y < 12; ++y)
             for (std::uint32_t x = 3; x < 20; ++x) shots[i].reactive.at(x, y).r = 0.1 * x;
+        shots[i].transparency = shots[i].color;
+        for (std::uint32_t y = 2; y < 9; ++y)
+            for (std::uint32_t x = 8; x < 30; ++x) shots[i].transparency.at(x, y).g *= 0.05 * x;
         shots[i].exposure = ReferenceImage(1, 1, {0.5 + 0.25 * static_cast<double>(i), 0, 0, 1});
     }
     const Taa taa{.sharpness = 0.8f};
@@ -304,6 +310,58 @@ TEST(EffectTaa, AReactiveMaskLetsThePastGo) {
     const double quick = on_gpu({}, shots, output).back().at(20, 20).r;
     EXPECT_NEAR(quick, 0.12, 0.002);
     EXPECT_LE(slow, quick);
+}
+
+/// Embers of three pixels, three pixels a frame to the right, before a wall that stands still.
+Seen wall_behind_embers(double x, double y, bool has_embers, std::uint32_t frame) {
+    const double along = std::fmod(x - 3.0 * frame + 300, 21), across = std::fmod(y, 9);
+    const bool is_ember = has_embers && along < 3 && across < 3;
+    const double wall = 0.2 + 0.1 * std::sin(0.8 * x) * std::sin(0.6 * y);
+    return {is_ember ? Rgba{3, 1.5, 0.3, 1} : Rgba{wall, wall, wall, 1}};
+}
+
+TEST(EffectTaa, NothingTrailsBehindParticlesForMoreThanTwoFrames) {
+    const auto world = [](bool has_embers) -> World {
+        return [has_embers](double x, double y, std::uint32_t frame) {
+            return wall_behind_embers(x, y, has_embers, frame);
+        };
+    };
+    for (const VkExtent2D in : {output, VkExtent2D{32, 19}}) {
+        std::vector<Shot> shots = shots_of(world(true), in, output, 24);
+        const std::vector<Shot> behind = shots_of(world(false), in, output, 24);
+        for (std::size_t i = 0; i < shots.size(); ++i) shots[i].transparency = behind[i].color;
+        const ReferenceImage out = on_gpu({}, shots, output).back(), wall = on_gpu({}, behind, output).back();
+        double worst = 0;
+        for (std::uint32_t y = 0; y < output.height; ++y)
+            for (std::uint32_t x = 0; x < output.width; ++x) {
+                const double along = std::fmod(x + 0.5 - 3.0 * 23 + 300, 21);
+                // Behind the embers of this frame and the two before; before them, the frame's pixels are wide.
+                if (along > 21 - 6 || along < 6) continue;
+                worst = std::max(worst, std::abs(out.at(x, y).r - wall.at(x, y).r));
+            }
+        EXPECT_LE(worst, 0.01 * 3) << in.width;
+    }
+}
+
+/// The soft edge of a shadow that moves by 1.5 pixels a frame over a wall that stands still.
+World shadow_on_wall() {
+    return [](double x, double, std::uint32_t frame) {
+        const double lit = std::clamp((x - 1.5 * frame) / 8, 0.0, 1.0), value = 0.8 - 0.6 * lit;
+        return Seen{{value, value, value, 1}};
+    };
+}
+
+TEST(EffectTaa, WhereLightChangesThePastGoes) {
+    const std::vector<Shot> shots = shots_of(shadow_on_wall(), output, output, 24);
+    const ReferenceImage made = by_reference({}, shots, output).back(), truth = truth_of(shadow_on_wall(), output, 23);
+    double worst = 0, behind = 0;
+    for (std::uint32_t x = 4; x < output.width - 4; ++x) {
+        const double off = std::abs(made.at(x, 18).g - truth.at(x, 18).g);
+        worst = std::max(worst, off);
+        if (x + 9 < 1.5 * 23) behind = std::max(behind, off);
+    }
+    EXPECT_LE(worst, 0.15);
+    EXPECT_LE(behind, 0.018) << "of six frames and more before";
 }
 
 TEST(EffectTaa, SharpnessMakesEdgesSteeperAndNoHalos) {
