@@ -102,6 +102,11 @@ say p 'P pause: on'
 click stack/bloom
 point $(part 50 40)
 picture edit
+click stack/add
+# Each effect's picture is made when it is seen.
+sleep 20
+picture add
+xdotool key Escape
 click tab/Scopes
 click view/false_colors
 point $(part 50 40)
