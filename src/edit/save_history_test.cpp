@@ -172,6 +172,14 @@ TEST_F(DocumentHistory, PulsesAndLayersComeAndGoWithTheirText) {
     ASSERT_TRUE(saved.save());
     EXPECT_EQ(saved.text(), without("[[layer]]\nname = \"cave\"", "[[layer]]\nname = 'night'"));
     saved.undo();
+    saved.edit([](Look& look) {
+        const std::vector<MovedValue> values = values_of(look, {true, 0});
+        const auto of_exposure = std::ranges::find(values, "exposure", &MovedValue::entry);
+        return remove_layer_value(look, 0, static_cast<std::size_t>(of_exposure - values.begin()));
+    });
+    ASSERT_TRUE(saved.save());
+    EXPECT_EQ(saved.text(), without("exposure = 0.5, ", "\"fog.enabled\" = true"));
+    saved.undo();
     saved.edit([&](Look& look) { return done(add_pulse(look, "jump", "exposure", "exposure")); });
     saved.edit([&](Look& look) { return done(add_layer(look, "day", "fog", "enabled")); });
     saved.edit([&](Look& look) { return add_layer_value(look, 1, "fog", "color"); });

@@ -134,6 +134,7 @@ TEST_F(CliViewerTasks, TheListOfEffectsShowsWhatTheyDo) {
         const std::string file = fmt::format("darkroom-window-{:04}.png", ++shots);
         press("shift+F12", "stored " + file);
         const Picture window = picture(file);
+        if (window.width < static_cast<std::uint32_t>(right)) return false;
         float least = 1, most = 0;
         for (int y = top; y < bottom; ++y)
             for (int x = left; x < right; ++x) {
