@@ -205,9 +205,7 @@ std::vector<const EffectInfo*> effects_for(Effort effort) {
     // Each kernel is compiled in several forms, so a test in a hurry takes few effects with passes.
     constexpr std::array<std::string_view, 3> with_passes{"dither", "fog", "gaussian_blur"};
     for (const EffectInfo* const info : all_effects()) {
-        // Of what rounding leaves, sharpen makes up to four times as much.
-        const bool is_small = (!info->build && info->name != "sharpen") ||
-                              std::ranges::find(with_passes, info->name) != with_passes.end();
+        const bool is_small = !info->build || std::ranges::find(with_passes, info->name) != with_passes.end();
         if (effort == Effort::Thorough || is_small) effects.push_back(info);
     }
     return effects;

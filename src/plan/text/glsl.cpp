@@ -256,9 +256,10 @@ std::string second_function(const FusedStep& step, std::span<const FusedStep> be
     const std::string suffix = place_suffix(step.place), image = "second" + suffix;
     const std::string name = fmt::format("{}_second{}", step.info->name, suffix);
     const bool has_reading = std::ranges::any_of(before, [&](const FusedStep& other) { return other.reads == image; });
-    if (has_reading) return reading_function(name, image, before);
-    const std::string_view how = step.is_second_resampled ? "sample_linear({0}, pixel.uv)" : "load({0}, pixel.texel)";
-    return fmt::format("vec4 {}(Pixel pixel) {{ return {}; }}\n", name, fmt::format(fmt::runtime(how), image));
+    const std::string plain = step.is_second_resampled ? fmt::format("sample_linear({}, pixel.uv)", image)
+                                                       : fmt::format("load({}, pixel.texel)", image);
+    if (has_reading) return reading_function(name, image, before, plain);
+    return fmt::format("vec4 {}(Pixel pixel) {{ return {}; }}\n", name, plain);
 }
 
 }  // namespace
@@ -330,7 +331,7 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
             reads_picture |= step.reads == picture_name;
             continue;
         }
-        if (step.is_layer) declarations += reading_function("reading_" + suffix, picture_name, {&step, 1});
+        if (step.is_layer) declarations += reading_function("reading_" + suffix, picture_name, {&step, 1}, "");
         std::string layer = step.is_merge   ? fmt::format("load(layer{}, pixel.texel)", suffix)
                             : step.is_layer ? fmt::format("reading_{}(pixel)", suffix)
                             : step.info->touch == Touch::Warp
@@ -365,7 +366,6 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
         code += step.is_certain ? fmt::format("    color = {};\n", layer)
                                 : fmt::format("    if ({}enabled_ != 0u) color = {};\n", prefix, layer);
     }
-    if (reads_picture) declarations += reading_function("reading_picture", picture_name, steps);
 
     std::string helpers;
     const auto include = [&](std::string_view name) {
@@ -398,7 +398,10 @@ Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, 
         declarations += closest_function;
         read = "closest_texel(pixel)";
     }
-    if (reads_picture) read = "reading_picture(pixel)";
+    if (reads_picture) {
+        declarations += reading_function("reading_picture", picture_name, steps, read);
+        read = "reading_picture(pixel)";
+    }
     if (is_alpha) read = "vec4(vec3(clamp(load(picture, pixel.texel).a, 0.0, 1.0)), 1.0)";
     return fmt::format(
         "{}{}#line 1 \"fused kernel\"\nvec4 shade(Pixel pixel) {{\n    vec4 color = {};\n{}    return color;\n}}\n",

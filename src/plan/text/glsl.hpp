@@ -115,9 +115,10 @@ enum class Resampling : std::uint8_t {
 inline constexpr std::string_view picture_name = "picture";
 /// Do the first steps read the picture at other places than the pixel's own?
 [[nodiscard]] bool is_moved(std::span<const FusedStep> steps);
-/// `vec4 NAME(Pixel pixel)`: an image through the maps and taps that read it.
+/// `vec4 NAME(Pixel pixel)`: an image through the maps and taps that read it. `plain`: how it is read where none of them
+/// is on, as in the kernel that has none; empty: one always is.
 [[nodiscard]] std::string reading_function(std::string_view name, std::string_view image,
-                                           std::span<const FusedStep> steps);
+                                           std::span<const FusedStep> steps, std::string_view plain);
 /// The body of a fused kernel: reads image `picture` (or only its alpha, as a grey picture), applies the steps in
 /// order, finishes for the target. `finish_word`: Conversion::word() of a lean kernel.
 [[nodiscard]] Result<std::string> fused_body(std::span<const FusedStep> steps, Finish finish, Resampling resampling,

@@ -24,11 +24,14 @@ std::string statement(const FusedStep& step, const std::string& text) {
 
 }  // namespace
 
-std::string reading_function(std::string_view name, std::string_view image, std::span<const FusedStep> steps) {
-    std::string maps, taps, parts;
-    bool always_parts = false;
+std::string reading_function(std::string_view name, std::string_view image, std::span<const FusedStep> steps,
+                             std::string_view plain) {
+    std::string maps, taps, parts, any;
+    bool always_parts = false, is_always_read = plain.empty();
     for (const FusedStep& step : steps) {
         if (step.reads != image) continue;
+        is_always_read |= step.is_certain;
+        any += fmt::format("{}{}", any.empty() ? "" : " || ", enabled(step));
         if (step.info->touch == Touch::Tap) {
             taps += statement(step, fmt::format("color = {};", call(step, "color, ")));
             continue;
@@ -41,9 +44,10 @@ std::string reading_function(std::string_view name, std::string_view image, std:
     const auto sample = [&](char channel) {
         return fmt::format("sample_linear({}, barrel(place.uv, place.barrel.{}))", image, channel);
     };
-    std::string out =
-        fmt::format("vec4 {}(Pixel pixel) {{\n    Place place = Place(pixel.uv, vec3(0.0));\n{}    vec4 color = {};\n",
-                    name, maps, sample('g'));
+    const std::string unread = is_always_read ? "" : fmt::format("    if (!({})) return {};\n", any, plain);
+    std::string out = fmt::format(
+        "vec4 {}(Pixel pixel) {{\n{}    Place place = Place(pixel.uv, vec3(0.0));\n{}    vec4 color = {};\n", name, unread,
+        maps, sample('g'));
     if (!parts.empty())
         out += fmt::format("    {}{{\n        color.r = {}.r;\n        color.b = {}.b;\n    }}\n",
                            always_parts ? "" : fmt::format("if ({}) ", parts), sample('r'), sample('b'));
