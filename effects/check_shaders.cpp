@@ -19,11 +19,13 @@ int main(int argc, char** argv) {
             std::fprintf(stderr, "error: %s\n", kernels.error().text.c_str());
             return 1;
         }
-        const bool is_compute = stage == gpu::Stage::Compute;
-        for (const NamedKernel& kernel : *kernels)
+        for (const NamedKernel& kernel : *kernels) {
+            const gpu::Stage own = kernel.spec.compute ? gpu::Stage::Compute : stage;
+            const bool is_compute = own == gpu::Stage::Compute;
             sources.push_back({.name = kernel.name + (is_compute ? " (compute)" : " (raster)"),
-                               .text = gpu::kernel_source(kernel.spec, stage),
+                               .text = gpu::kernel_source(kernel.spec, own),
                                .stage = is_compute ? gpu::ShaderStage::Compute : gpu::ShaderStage::Fragment});
+        }
     }
     gpu::ShaderCompiler compiler{argc > 1 ? std::filesystem::path(argv[1]) : std::filesystem::path()};
     int failures = 0;
