@@ -133,15 +133,12 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
             .type_name("FILE")
             .group(group);
     command.add_option("--order", order_, "Order of the flat table").type_name("documented|scene_linear").group(group);
-    command
-        .add_option("--set", sets_, "Any parameter of an entry, by its name: bloom#2.intensity=0.3, bloom.opacity=0.5")
+    command.add_option("--set", sets_, "Any parameter of an entry, by its name: bloom#2.intensity=0.3")
         .type_name("ENTRY.PARAM=VALUE")
         .repeated()
         .group(group);
     command.add_flag("--strict", is_strict_, "Unknown keys and values out of range in a look are errors").group(group);
-    command
-        .add_flag("--no-postprocess", is_off_,
-                  "Only the look's exposure, default tone mapping and default encoding")
+    command.add_flag("--no-postprocess", is_off_, "Only the look's exposure, default tone mapping and default encoding")
         .group(group);
     command
         .add_option(
