@@ -155,7 +155,7 @@ TEST(Precedence, AmountsSwitchAndNothingElse) {
                                       "dither_intensity",      "vignette_intensity", "volumetric_density",
                                       "chromatic_aberration",  "radial_blur",        "motion_blur_shutter_angle",
                                       "god_rays_intensity",    "perturb_amount",     "classic_bloom_intensity",
-                                      "arena_bloom_intensity", "film_grain_amount"};
+                                      "arena_bloom_intensity", "film_grain_amount",  "lens_flare_intensity"};
     std::set<std::string> switches;
     for_every_flat_row([&](const EffectInfo& effect, const ParamInfo& row) {
         const std::string key = flat_key(effect.name, row.name), enabled = flat_key(effect.name, "enabled");

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
+#include <darkroom/effects/lens_flare.hpp>
+
+#include "lens_flare/lens_flare_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr auto lens_flare_rows = describe(
+    field<&LensFlare::intensity>("How much of the flare is added.", {0, 16}).as_amount(),
+    field<&LensFlare::threshold>("Light above this flares.", {0, 65504}),
+    field<&LensFlare::ghosts>("Ghosts of each light, on both sides of the middle by turns.", {0, 16}),
+    field<&LensFlare::spacing>("How much smaller, and nearer to the middle, each ghost is than the one before.",
+                               {0, 2}),
+    field<&LensFlare::halo>("Strength of the halo, to that of a ghost.", {0, 4}),
+    field<&LensFlare::halo_radius>("Radius of the halo of a light in the middle, in heights of the picture.", {0, 1}),
+    field<&LensFlare::dispersion>("How much larger ghosts are in red, and smaller in blue.", {0, 0.2}),
+    field<&LensFlare::blades>("Blades of the aperture: an even number has as many rays, an odd one twice as many.",
+                              {3, 16}),
+    field<&LensFlare::starburst>("How much of the flare lies in the rays of the aperture.", {0, 1}),
+    field<&LensFlare::tint>("Colour that the flare is multiplied by.", {0, 4}));
+
+constexpr std::uint32_t most_ghosts = 16;
+
+const LensFlare& flare_of(const void* parameters) { return *static_cast<const LensFlare*>(parameters); }
+
+void part_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const LensFlare& flare = flare_of(parameters);
+    out[0] = {static_cast<float>(context.frame_extent.width) / static_cast<float>(context.frame_extent.height),
+              static_cast<float>(flare.ghosts), static_cast<float>(lens_flare_rays(flare)), flare.dispersion};
+    out[1] = {flare.halo_radius, flare.halo, flare.starburst, 0};
+    for (std::int32_t ghost = 0; ghost < flare.ghosts; ++ghost) {
+        const auto [r, g, b] = lens_flare_color(flare, ghost);
+        out[static_cast<std::size_t>(2 + ghost)] = {static_cast<float>(lens_flare_scale(flare, ghost)),
+                                                    static_cast<float>(r), static_cast<float>(g),
+                                                    static_cast<float>(b)};
+    }
+}
+
+void build(PassBuilder& builder) {
+    const std::uint32_t part = builder.from_max_extent(bright_part);
+    const PassImage bright = builder.add({.name = "bright",
+                                          .shader = "lens_flare_bright.glsl",
+                                          .inputs = {{.name = "lens_flare_source", .image = builder.source()}},
+                                          .output = builder.create({.name = "bright", .denominator = part})});
+    const PassImage light = builder.add({.name = "blur",
+                                         .shader = "lens_flare_blur.glsl",
+                                         .inputs = {{.name = "lens_flare_light", .image = bright}},
+                                         .output = builder.create({.name = "light", .denominator = part})});
+    const PassImage flare = builder.add({.name = "parts",
+                                         .shader = "lens_flare_parts.glsl",
+                                         .inputs = {{.name = "lens_flare_light", .image = light}},
+                                         .output = builder.create({.name = "flare", .denominator = part}),
+                                         .custom_vectors = 2 + most_ghosts,
+                                         .constants = part_constants});
+    builder.side("lens_flare_flare", flare, {0, 0, 0, 0});
+}
+
+}  // namespace
+
+const EffectInfo& effect_info(const LensFlare&) {
+    static const EffectInfo info{
+        .name = "lens_flare",
+        .doc = "Ghosts of what is bright, and a halo, as lenses reflect them.",
+        .parameters = lens_flare_rows.table(),
+        .files = embedded_files("lens_flare"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::SceneLinear),
+        .flat = {.documented = 57, .scene_linear = 61},
+        .build = build,
+        .reference = lens_flare_reference,
+        .is_identity =
+            [](const void* parameters) {
+                const LensFlare& flare = flare_of(parameters);
+                return flare.intensity == 0.0f || (flare.ghosts == 0 && flare.halo == 0.0f);
+            },
+        .threshold = [](const void* parameters) -> std::optional<float> {
+            const LensFlare& flare = flare_of(parameters);
+            if (flare.intensity == 0.0f || (flare.ghosts == 0 && flare.halo == 0.0f)) return {};
+            return flare.threshold;
+        },
+    };
+    return info;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The light above a threshold in a small picture, and its blur: what halation, flares, streaks and dirt are made of.
+// How small it is, and in double precision what their kernels make.
+
+#include <vulkan/vulkan.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <darkroom/pass_builder.hpp>
+#include <darkroom/reference.hpp>
+#include <span>
+
+#include "shared/halve_reference.hpp"
+#include "shared/sample_reference.hpp"
+
+namespace darkroom {
+
+/// What part of each side the small picture has: a quarter about 1080 lines, and less of more, so that it has as many
+/// texels.
+inline std::uint32_t bright_part(VkExtent2D extent) {
+    std::uint32_t part = 4;
+    while (part < 32 && extent.height >= part * 405) part *= 2;
+    return part;
+}
+
+/// The mean of bilinear taps, two pixels apart, of each what exceeds the threshold: c max(b - threshold, 0) / b,
+/// b = max(r, g, b). Not a number and negative light count as 0.
+inline ReferenceImage bright_reference(const ReferenceImage& picture, double threshold) {
+    const std::uint32_t part = bright_part({picture.width, picture.height});
+    ReferenceImage from = picture;
+    for (Rgba& color : from.pixels) {
+        color = clean_reference(color);
+        color = {std::clamp(color.r, -65504.0, 65504.0), std::clamp(color.g, -65504.0, 65504.0),
+                 std::clamp(color.b, -65504.0, 65504.0), 1};
+    }
+    ReferenceImage out(std::max(picture.width / part, 1u), std::max(picture.height / part, 1u), {0, 0, 0, 1});
+    const std::uint32_t across = std::max(picture.width / out.width / 2, 1u);
+    const std::uint32_t down = std::max(picture.height / out.height / 2, 1u);
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x)
+            for (std::uint32_t j = 0; j < down; ++j)
+                for (std::uint32_t i = 0; i < across; ++i) {
+                    const Rgba tap = sample_reference(from, (x + (i + 0.5) / across) / out.width,
+                                                      (y + (j + 0.5) / down) / out.height);
+                    const Rgba light{std::max(tap.r, 0.0), std::max(tap.g, 0.0), std::max(tap.b, 0.0), 1};
+                    const double brightness = std::max({light.r, light.g, light.b});
+                    const double kept = std::max(brightness - threshold, 0.0) / std::max(brightness, 1e-6);
+                    out.at(x, y) = weighed_sum_reference(out.at(x, y), light, kept / (across * down));
+                }
+    return out;
+}
+
+/// Texels to one side that a Gaussian has at most: an even number, two to a tap.
+inline constexpr std::size_t light_reach = 40;
+
+/// Weights of texels 0, 1, 2 ..., which with those of the other side sum to 1.
+inline std::array<double, light_reach + 1> light_weights(double variance) {
+    std::array<double, light_reach + 1> weights{};
+    const auto reach = std::min(static_cast<std::size_t>(std::ceil(3 * std::sqrt(variance))), light_reach);
+    double sum = 0;
+    for (std::size_t i = 0; i <= reach; ++i) {
+        weights[i] = std::exp(-0.5 * static_cast<double>(i * i) / variance);
+        sum += i == 0 ? weights[i] : 2 * weights[i];
+    }
+    for (double& weight : weights) weight /= sum;
+    return weights;
+}
+
+/// The vectors of a kernel that blurs along one axis: a texel's step, the middle's weight, how many pairs of texels
+/// follow; then two pairs a vector, each a bilinear tap: how many steps away, and what it counts.
+inline constexpr std::uint32_t light_line_vectors = 1 + light_reach / 4;
+inline void fill_light_line(std::span<PassVector> out, VkExtent2D extent, bool is_down, double variance) {
+    const auto weights = light_weights(variance);
+    float pairs = 0;
+    for (std::size_t i = 0; i < light_reach / 2; ++i) {
+        const double first = weights[2 * i + 1], second = weights[2 * i + 2], both = first + second;
+        const double place = both > 0 ? static_cast<double>(2 * i + 1) + second / both : 0;
+        out[1 + i / 2][i % 2 * 2] = static_cast<float>(place);
+        out[1 + i / 2][i % 2 * 2 + 1] = static_cast<float>(both);
+        if (both > 0) pairs = static_cast<float>(i + 1);
+    }
+    out[0] = {is_down ? 0 : 1 / static_cast<float>(extent.width), is_down ? 1 / static_cast<float>(extent.height) : 0,
+              static_cast<float>(weights[0]), pairs};
+}
+
+inline ReferenceImage blur_light_reference(const ReferenceImage& image, double variance) {
+    const auto weights = light_weights(variance);
+    constexpr auto reach = static_cast<std::int64_t>(light_reach);
+    ReferenceImage across(image.width, image.height, {0, 0, 0, 1}), out = across;
+    for (const bool is_down : {false, true})
+        for (std::uint32_t y = 0; y < image.height; ++y)
+            for (std::uint32_t x = 0; x < image.width; ++x)
+                for (std::int64_t i = -reach; i <= reach; ++i) {
+                    const double weight = weights[static_cast<std::size_t>(std::abs(i))];
+                    if (weight == 0) continue;
+                    Rgba& sum = (is_down ? out : across).at(x, y);
+                    sum = weighed_sum_reference(sum, is_down ? across.clamped(x, y + i) : image.clamped(x + i, y),
+                                                weight);
+                }
+    return out;
+}
+
+/// Of about a quarter of the sides: the mean of four bilinear taps.
+inline ReferenceImage quarter_light_reference(const ReferenceImage& image, std::uint32_t width, std::uint32_t height) {
+    ReferenceImage out(std::max(width, 1u), std::max(height, 1u), {0, 0, 0, 1});
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x)
+            for (const double dy : {0.25, 0.75})
+                for (const double dx : {0.25, 0.75})
+                    out.at(x, y) = weighed_sum_reference(
+                        out.at(x, y), sample_reference(image, (x + dx) / out.width, (y + dy) / out.height), 0.25);
+    return out;
+}
+
+}  // namespace darkroom
