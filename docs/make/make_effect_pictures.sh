@@ -55,6 +55,7 @@ pair radial_blur forge --radial-blur 0 -- --radial-blur 0.8
 pair chromatic_aberration forge --chromatic-aberration 0 -- --chromatic-aberration 3
 pair film_grain street -- --film-grain-amount 0.06 --film-grain-size 6
 pair lens_flare street --bloom-enabled off -- --bloom-enabled off --lens-flare-intensity 0.15
+pair halation street --bloom-enabled off -- --bloom-enabled off --halation-intensity 0.6
 pair dither dungeon --dither-enabled off -- --dither-intensity 0.05
 stack god_rays dungeon '[[stack]]
 effect = "god_rays"

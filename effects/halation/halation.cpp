@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
+#include <darkroom/effects/halation.hpp>
+
+#include "halation/halation_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr auto halation_rows = describe(
+    field<&Halation::intensity>("How much of the light comes back.", {0, 1}).as_amount(),
+    field<&Halation::threshold>("Light above this comes back.", {0, 65504}),
+    field<&Halation::radius>("Standard deviation of the near glow, of a picture of 1080 lines; the far one is three "
+                             "times as wide.",
+                             {4, 32}, unit::pixels),
+    field<&Halation::spread>("How much of the glow is the far one.", {0, 1}),
+    field<&Halation::tint>("Colour of what comes back: red goes deepest.", {0, 1}),
+    field<&Halation::conserves_energy>("What comes back is missing where it came from: the picture has as much light "
+                                       "as before."));
+
+const Halation& halation_of(const void* parameters) { return *static_cast<const Halation*>(parameters); }
+
+template <bool is_far, bool is_down>
+void line_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const VkExtent2D extent = context.output_extent;
+    const double texels = halation_near_texels(halation_of(parameters), is_far ? extent.height * 4 : extent.height);
+    fill_light_line(out, extent, is_down, is_far ? halation_far_variance(texels) : halation_near_variance(texels));
+}
+
+template <bool is_far>
+PassImage blurred(PassBuilder& builder, PassImage image, std::uint32_t part) {
+    const std::string name = is_far ? "far" : "near";
+    const auto line = [&](const std::string& way, ConstantsFunction constants) {
+        image = builder.add({.name = name + " " + way,
+                             .shader = "halation_line.glsl",
+                             .inputs = {{.name = "halation_light", .image = image}},
+                             .output = builder.create({.name = name + " " + way, .denominator = part}),
+                             .custom_vectors = light_line_vectors,
+                             .constants = constants});
+    };
+    line("across", line_constants<is_far, false>);
+    line("down", line_constants<is_far, true>);
+    return image;
+}
+
+void build(PassBuilder& builder) {
+    const std::uint32_t part = builder.from_max_extent(bright_part);
+    const PassImage bright = builder.add({.name = "bright",
+                                          .shader = "halation_bright.glsl",
+                                          .inputs = {{.name = "halation_source", .image = builder.picture()}},
+                                          .output = builder.create({.name = "bright", .denominator = part})});
+    const PassImage near = blurred<false>(builder, bright, part);
+    const PassImage quarter = builder.add({.name = "quarter",
+                                           .shader = "halation_quarter.glsl",
+                                           .inputs = {{.name = "halation_light", .image = near}},
+                                           .output = builder.create({.name = "quarter", .denominator = 4 * part})});
+    builder.side("halation_near", near, {0, 0, 0, 0});
+    builder.side("halation_far", blurred<true>(builder, quarter, 4 * part), {0, 0, 0, 0});
+}
+
+}  // namespace
+
+const EffectInfo& effect_info(const Halation&) {
+    static const EffectInfo info{
+        .name = "halation",
+        .doc = "The film's base throws bright light back, red first.",
+        .parameters = halation_rows.table(),
+        .files = embedded_files("halation"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::SceneLinear),
+        .flat = {.documented = 69, .scene_linear = 69},
+        .build = build,
+        .reference = halation_reference,
+        .is_identity = [](const void* parameters) { return halation_of(parameters).intensity == 0.0f; },
+        .threshold = [](const void* parameters) -> std::optional<float> {
+            const Halation& halation = halation_of(parameters);
+            if (halation.intensity == 0.0f) return {};
+            return halation.threshold;
+        },
+    };
+    return info;
+}
+
+}  // namespace darkroom
