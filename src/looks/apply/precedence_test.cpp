@@ -151,11 +151,23 @@ TEST(Precedence, AMisspeltKeyIsNamedWithTheOneThatIsMeant) {
 
 // Of files and flags an amount switches its effect, of flags the falloff of fog, too. Nothing else does.
 TEST(Precedence, AmountsSwitchAndNothingElse) {
-    const std::set<std::string> named{
-        "bloom_intensity",           "ssao_intensity",     "fog_density",          "dither_intensity",
-        "vignette_intensity",        "volumetric_density", "chromatic_aberration", "radial_blur",
-        "motion_blur_shutter_angle", "god_rays_intensity", "perturb_amount",       "classic_bloom_intensity",
-        "arena_bloom_intensity",     "film_grain_amount",  "lens_flare_intensity", "halation_intensity"};
+    const std::set<std::string> named{"bloom_intensity",
+                                      "ssao_intensity",
+                                      "fog_density",
+                                      "dither_intensity",
+                                      "vignette_intensity",
+                                      "volumetric_density",
+                                      "chromatic_aberration",
+                                      "radial_blur",
+                                      "motion_blur_shutter_angle",
+                                      "god_rays_intensity",
+                                      "perturb_amount",
+                                      "classic_bloom_intensity",
+                                      "arena_bloom_intensity",
+                                      "film_grain_amount",
+                                      "lens_flare_intensity",
+                                      "halation_intensity",
+                                      "anamorphic_streaks_intensity"};
     std::set<std::string> switches;
     for_every_flat_row([&](const EffectInfo& effect, const ParamInfo& row) {
         const std::string key = flat_key(effect.name, row.name), enabled = flat_key(effect.name, "enabled");

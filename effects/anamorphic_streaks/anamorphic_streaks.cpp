@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
+#include <darkroom/effects/anamorphic_streaks.hpp>
+
+#include <vector>
+
+#include "anamorphic_streaks/anamorphic_streaks_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr auto anamorphic_streaks_rows = describe(
+    field<&AnamorphicStreaks::intensity>("How much of the light is drawn out and added.", {0, 64}).as_amount(),
+    field<&AnamorphicStreaks::threshold>("Light above this streaks.", {0, 65504}),
+    field<&AnamorphicStreaks::length>("Distance at which a streak has fallen to 1/e, of a picture of 1080 lines.",
+                                      {8, 512, Scale::Log}, unit::pixels),
+    field<&AnamorphicStreaks::tint>("Colour that the streaks are multiplied by.", {0, 4}));
+
+const AnamorphicStreaks& streaks_of(const void* parameters) {
+    return *static_cast<const AnamorphicStreaks*>(parameters);
+}
+
+template <std::uint32_t step>
+void line_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const double decay = anamorphic_streaks_decay(streaks_of(parameters), context.frame_extent.width,
+                                                  context.frame_extent.height, context.output_extent.width);
+    const auto weights = anamorphic_streaks_weights(decay, step);
+    for (std::size_t i = 0; i < 4; ++i) out[0][i] = static_cast<float>(weights[i]);
+    // Both sides hold the light, so it counts once less; all together is 1.
+    const double side = anamorphic_streaks_side(decay), both = 2 * side - 1;
+    out[1] = {static_cast<float>(1U << 2 * step), static_cast<float>(side / both), static_cast<float>(1 / both), 0};
+}
+
+void build(PassBuilder& builder) {
+    const std::uint32_t part = builder.from_max_extent(bright_part);
+    const auto image = [&](const std::string& name) { return builder.create({.name = name, .denominator = part}); };
+    const PassImage light = builder.add({.name = "bright",
+                                         .shader = "anamorphic_streaks_bright.glsl",
+                                         .inputs = {{.name = "anamorphic_streaks_source", .image = builder.source()}},
+                                         .output = image("bright")});
+    PassImage right = light, left = light;
+    const auto inputs = [&] {
+        return std::vector<KernelPassDesc::Input>{{.name = "anamorphic_streaks_right", .image = right},
+                                                  {.name = "anamorphic_streaks_left", .image = left}};
+    };
+    constexpr std::array<ConstantsFunction, anamorphic_streaks_steps - 1> constants{
+        line_constants<0>, line_constants<1>, line_constants<2>};
+    for (std::size_t step = 0; step < constants.size(); ++step) {
+        const std::string number = std::to_string(step + 1);
+        const std::vector<PassImage> sides = builder.add_all({.name = "line " + number,
+                                                              .shader = "anamorphic_streaks_line.glsl",
+                                                              .inputs = inputs(),
+                                                              .output = image("right " + number),
+                                                              .more_outputs = {image("left " + number)},
+                                                              .custom_vectors = 2,
+                                                              .constants = constants[step]});
+        if (sides.size() < 2) return;
+        right = sides[0];
+        left = sides[1];
+    }
+    KernelPassDesc join{.name = "join",
+                        .shader = "anamorphic_streaks_join.glsl",
+                        .inputs = inputs(),
+                        .output = image("drawn"),
+                        .custom_vectors = 2,
+                        .constants = line_constants<anamorphic_streaks_steps - 1>};
+    join.inputs.push_back({.name = "anamorphic_streaks_light", .image = light});
+    builder.side("anamorphic_streaks_drawn", builder.add(join), {0, 0, 0, 0});
+}
+
+}  // namespace
+
+const EffectInfo& effect_info(const AnamorphicStreaks&) {
+    static const EffectInfo info{
+        .name = "anamorphic_streaks",
+        .doc = "What is bright draws a line of light across the picture.",
+        .parameters = anamorphic_streaks_rows.table(),
+        .files = embedded_files("anamorphic_streaks"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::SceneLinear),
+        .flat = {.documented = 56, .scene_linear = 65},
+        .build = build,
+        .reference = anamorphic_streaks_reference,
+        .is_identity = [](const void* parameters) { return streaks_of(parameters).intensity == 0.0f; },
+        .threshold = [](const void* parameters) -> std::optional<float> {
+            const AnamorphicStreaks& streaks = streaks_of(parameters);
+            if (streaks.intensity == 0.0f) return {};
+            return streaks.threshold;
+        },
+    };
+    return info;
+}
+
+}  // namespace darkroom
