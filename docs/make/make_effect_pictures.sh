@@ -57,6 +57,7 @@ pair film_grain street -- --film-grain-amount 0.06 --film-grain-size 6
 pair lens_flare street --bloom-enabled off -- --bloom-enabled off --lens-flare-intensity 0.15
 pair halation street --bloom-enabled off -- --bloom-enabled off --halation-intensity 0.6
 pair anamorphic_streaks street --bloom-enabled off -- --bloom-enabled off --anamorphic-streaks-intensity 1.0
+pair lens_dirt street --bloom-enabled off -- --bloom-enabled off --lens-dirt-intensity 6.0
 pair dither dungeon --dither-enabled off -- --dither-intensity 0.05
 stack god_rays dungeon '[[stack]]
 effect = "god_rays"

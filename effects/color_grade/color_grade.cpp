@@ -160,7 +160,7 @@ const EffectInfo& effect_info(const ColorGrade&) {
         .files = embedded_files("color_grade"),
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
-        .flat = {.documented = 65, .scene_linear = 66, .starts_on = true},
+        .flat = {.documented = 65, .scene_linear = 67, .starts_on = true},
         .maps_colors = true,
         .build = [](PassBuilder& builder) { builder.end_constants(vectors, constants); },
         .reference = pointwise_reference<ColorGrade, color_grade_reference>,

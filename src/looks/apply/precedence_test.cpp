@@ -167,7 +167,8 @@ TEST(Precedence, AmountsSwitchAndNothingElse) {
                                       "film_grain_amount",
                                       "lens_flare_intensity",
                                       "halation_intensity",
-                                      "anamorphic_streaks_intensity"};
+                                      "anamorphic_streaks_intensity",
+                                      "lens_dirt_intensity"};
     std::set<std::string> switches;
     for_every_flat_row([&](const EffectInfo& effect, const ParamInfo& row) {
         const std::string key = flat_key(effect.name, row.name), enabled = flat_key(effect.name, "enabled");
