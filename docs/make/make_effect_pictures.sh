@@ -46,7 +46,7 @@ pair ssao dungeon --exposure 6 --ssao-enabled off --volumetric-enabled off -- --
 pair volumetric dungeon --volumetric-enabled off -- --volumetric-density 30
 pair fog courtyard --fog-enabled off -- --fog-density 0.05
 pair bloom forge --bloom-enabled off -- --bloom-intensity 0.12
-pair auto_exposure dungeon --auto-exposure-enabled off -- --auto-exposure-enabled on
+pair auto_exposure dungeon --exposure 1 --auto-exposure-enabled off -- --exposure 1 --auto-exposure-enabled on
 pair exposure courtyard --exposure 0.4 -- --exposure 1.2
 pair tonemap showcase --tonemap-curve linear -- --tonemap-curve aces_narkowicz
 saturated=(--tonemap-curve linear --color-grade-saturation 2.5)
