@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The mean along one direction, custom[0].xy in texels; custom[0].zw: a radius in parts of the height, as whole texels and a
 // share of the next. In the picture's own domain; NaN counts as 0, infinity as 65504.
-#include "shared/finite.glsl"
 #include "shared/sanitize.glsl"
 
 vec3 box_blur_clean(vec4 color, bool is_clean) {

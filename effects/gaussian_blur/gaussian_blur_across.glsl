@@ -2,7 +2,7 @@
 // The blur along the lines, in the picture's own domain. NaN counts as 0, infinity as 65504.
 #include "gaussian_blur_sum.glsl"
 #include "gaussian_blur_taps.glsl"
-#include "shared/finite.glsl"
+#include "shared/sanitize.glsl"
 
 vec4 shade(Pixel pixel) {
     vec4 own = load(gaussian_blur_input, pixel.texel);

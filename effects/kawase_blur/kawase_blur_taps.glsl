@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // What the passes share. `is_clean`: no texel is NaN or infinite.
-#include "shared/finite.glsl"
 #include "shared/sanitize.glsl"
 
 vec3 kawase_blur_tap(vec2 uv, bool is_clean) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Any domain. Eight taps along the line through the centre; distances in uv.
-#include "shared/finite.glsl"
 #include "shared/sanitize.glsl"
 
 vec4 radial_blur(Pixel pixel, RadialBlur parameters) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// shared/finite.glsl and shared/sanitize.glsl in double precision: NaN counts as 0, and no number is beyond what half
+// shared/sanitize.glsl in double precision: NaN counts as 0, and no number is beyond what half
 // precision holds.
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 // where the centre lies at fraction f between b and c of the texels a b c d, their weights are
 //     (1-f, 2-f, 1+f, f) / 4,
 // (1 3 3 1) / 8 of an even side; at any fraction all texels of the picture count alike. NaN counts as 0, infinity as 65504.
-#include "shared/finite.glsl"
 #include "shared/sanitize.glsl"
 #include "shared/halve_sum.glsl"
 

@@ -13,4 +13,10 @@ vec4 sanitize(vec4 value) {
 // Of light, which is not negative: that becomes 0, too. All shaders are compiled so that a clamp takes NaN to its lower end.
 vec3 sanitize_light(vec3 value) { return clamp(value, 0.0, 65504.0); }
 
+// Is a sum free of NaN and infinity? Then so was all that was summed, and a filter that asks once need not ask at every
+// tap.
+bool is_finite(vec3 value) {
+    return all(notEqual(floatBitsToUint(value) & 0x7f800000u, uvec3(0x7f800000u)));
+}
+
 #endif

@@ -10,6 +10,7 @@
 
 #include "shared/camera_reference.hpp"
 #include "shared/finite_reference.hpp"
+#include "shared/rcas_reference.hpp"
 #include "shared/sample_reference.hpp"
 
 namespace darkroom {
@@ -336,30 +337,16 @@ class Gather {
 
 /// taa_sharpen.glsl.
 inline ReferenceImage sharpened(const ReferenceImage& picture, double strength, double unit) {
-    constexpr double Rgba::*channels[] = {&Rgba::r, &Rgba::g, &Rgba::b};
+    const auto scaled = [](const Rgba& c, double scale) { return Rgba{c.r * scale, c.g * scale, c.b * scale, c.a}; };
     ReferenceImage shown = picture, out = picture;
-    for (Rgba& c : shown.pixels) {
-        const double scale = 1 / (unit + std::max({c.r, c.g, c.b}));
-        c = {c.r * scale, c.g * scale, c.b * scale, c.a};
-    }
+    for (Rgba& c : shown.pixels) c = scaled(c, 1 / (unit + std::max({c.r, c.g, c.b})));
     for (std::uint32_t y = 0; y < out.height; ++y)
         for (std::uint32_t x = 0; x < out.width; ++x) {
             const auto at = [&](int dx, int dy) { return shown.clamped(std::int64_t{x} + dx, std::int64_t{y} + dy); };
-            const Rgba n = at(0, -1), s = at(0, 1), w = at(-1, 0), o = at(1, 0), own = at(0, 0);
-            double most = 0.1875;
-            for (const auto c : channels) {
-                const double low = std::min({n.*c, s.*c, w.*c, o.*c}), high = std::max({n.*c, s.*c, w.*c, o.*c});
-                most = std::min({most, std::min(low, own.*c) / std::max(4 * high, 1e-30),
-                                 (1 - std::max(high, own.*c)) / std::max(4 - 4 * low, 1e-30)});
-            }
-            const double lobe = -most * strength;
-            Rgba sharp = own;
-            for (const auto c : channels)
-                sharp.*c =
-                    std::clamp((lobe * (n.*c + s.*c + w.*c + o.*c) + own.*c) / (4 * lobe + 1),
-                               std::min({n.*c, s.*c, w.*c, o.*c, own.*c}), std::max({n.*c, s.*c, w.*c, o.*c, own.*c}));
-            const double scale = unit / std::max(1 - std::max({sharp.r, sharp.g, sharp.b}), 1e-7);
-            for (const auto c : channels) out.at(x, y).*c = std::min(sharp.*c * scale, 65504.0);
+            const Rgba sharp = rcas_reference({at(0, 0), at(0, -1), at(0, 1), at(-1, 0), at(1, 0)}, 1, strength);
+            const Rgba light = scaled(sharp, unit / std::max(1 - std::max({sharp.r, sharp.g, sharp.b}), 1e-7));
+            out.at(x, y) = {std::min(light.r, 65504.0), std::min(light.g, 65504.0), std::min(light.b, 65504.0),
+                            light.a};
         }
     return out;
 }
