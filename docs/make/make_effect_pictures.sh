@@ -84,6 +84,8 @@ effect = "posterize"
 levels = 5'
 samples=1 stack fxaa courtyard '' '[[stack]]
 effect = "fxaa"'
+samples=1 stack smaa courtyard '' '[[stack]]
+effect = "smaa"'
 stack sharpen showcase '' '[[stack]]
 effect = "sharpen"
 stops = 0.0'

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
+#include <darkroom/effects/smaa.hpp>
+
+#include "shared/scene_images.hpp"
+#include "smaa/smaa_reference.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr auto smaa_rows = describe(
+    field<&Smaa::quality>("How far the ends of an edge are searched."),
+    field<&Smaa::detection>("What is compared to find edges."),
+    field<&Smaa::threshold>("Difference of code values, or of their luma, that makes an edge.", {0.02, 0.5}),
+    field<&Smaa::contrast>("An edge beside one so many times stronger is none: what is seen is the stronger one.",
+                           {1, 8}),
+    field<&Smaa::corner_rounding>(
+        "How much of what an edge takes off a corner it takes: 0 keeps corners as they are, 1 rounds them.", {0, 1}),
+    field<&Smaa::predication>("How much lower the threshold is where the frame's depth jumps, and how much higher "
+                              "elsewhere; 0 reads no depth.",
+                              {0, 1})
+        .at_compile());
+
+void build(PassBuilder& builder) {
+    const bool has_depth = static_cast<const Smaa*>(builder.parameters())->predication > 0.0f &&
+                           builder.has_frame_image(FrameImage::Depth);
+    KernelPassDesc edges{.name = "edges",
+                         .shader = has_depth ? "smaa_edges_depth.glsl" : "smaa_edges.glsl",
+                         .inputs = {{.name = "smaa_picture", .image = builder.picture(), .is_loaded = true}},
+                         .output = builder.create({.name = "edges", .format = VK_FORMAT_R8G8_UNORM})};
+    if (has_depth) {
+        edges.inputs.push_back(
+            {.name = "smaa_depth", .image = builder.frame_image(FrameImage::Depth), .is_loaded = true});
+        edges.custom_vectors = 2;
+        edges.constants = depth_vectors;
+    }
+    const PassImage found = builder.add(edges);
+    const PassImage weights =
+        builder.add({.name = "weights",
+                     .shader = "smaa_weights.glsl",
+                     .inputs = {{.name = "smaa_edges", .image = found, .is_loaded = true}},
+                     .output = builder.create({.name = "weights", .format = VK_FORMAT_R8G8B8A8_UNORM})});
+    builder.loaded_side("smaa_weights", weights, {0, 0, 0, 0});
+}
+
+}  // namespace
+
+const EffectInfo& effect_info(const Smaa&) {
+    static const EffectInfo info{
+        .name = "smaa",
+        .doc = "Smooths the stairs of edges by the lines that they stand for.",
+        .parameters = smaa_rows.table(),
+        .files = embedded_files("smaa"),
+        .touch = Touch::Warp,
+        .accepts = Domains::only(Domain::DisplayLinear) | Domains::only(Domain::Encoded),
+        .flat = {.documented = 94, .scene_linear = 94},
+        .build = build,
+        .reference = smaa_reference,
+    };
+    return info;
+}
+
+}  // namespace darkroom

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// SMAA 1x in double precision (Jorge Jimenez et al., "SMAA: Enhanced Subpixel Morphological Antialiasing", 2012): edges
+// with local contrast, the lines that they stand for along rows, columns and diagonals, and what each pixel takes of
+// the one across. Areas under lines are integrated where the paper looks them up: a line at heights a and b over the
+// edge at a pixel's sides has (a+^2 - b+^2) / (2 (a - b)) of area above it.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <darkroom/effects/smaa.hpp>
+#include <darkroom/reference.hpp>
+#include <vector>
+
+#include "shared/finite_reference.hpp"
+
+namespace darkroom {
+
+/// Of a quality: pairs of pixels that a search goes along a line, and steps along a diagonal.
+struct SmaaSteps {
+    int pairs, diagonal;
+};
+constexpr SmaaSteps smaa_steps(SmaaQuality quality) {
+    constexpr std::array<SmaaSteps, 4> steps{{{4, 0}, {8, 0}, {16, 8}, {32, 16}}};
+    return steps[static_cast<std::size_t>(quality)];
+}
+
+/// Jumps of the inverse distance, as a part of the larger one, that predication takes for the edge of a thing.
+inline constexpr double smaa_depth_jump = 0.05;
+/// Steps of a stair, a side each, that make a diagonal: a corner has two, a step of two pixels beside one has three.
+inline constexpr int smaa_least_diagonal = 5;
+
+class SmaaReference {
+  public:
+    SmaaReference(const Smaa& smaa, const ReferenceInput& input)
+        : smaa_(smaa), picture_(*input.picture), depth_(input.depth), steps_(smaa_steps(smaa.quality)) {
+        for (std::int64_t y = 0; y < picture_.height; ++y)
+            for (std::int64_t x = 0; x < picture_.width; ++x) edges_.push_back(edges_of(x, y));
+        for (std::int64_t y = 0; y < picture_.height; ++y)
+            for (std::int64_t x = 0; x < picture_.width; ++x) weights_.push_back(weights_of(x, y));
+    }
+
+    ReferenceImage run() const {
+        ReferenceImage out = picture_;
+        for (std::int64_t y = 0; y < picture_.height; ++y)
+            for (std::int64_t x = 0; x < picture_.width; ++x) blend(x, y, out);
+        return out;
+    }
+
+  private:
+    struct Edges {
+        bool left = false, top = false;
+    };
+    /// Of a pixel: what it takes of the one above, that of it, what it takes of the one to the left, that of it.
+    struct Weights {
+        double up = 0, of_above = 0, left = 0, of_left = 0;
+    };
+    struct Areas {
+        double own = 0, other = 0;
+    };
+    /// A line over a pixel's edge: its heights at both sides, toward the neighbour across.
+    struct Line {
+        double a = 0, b = 0;
+        [[nodiscard]] Areas areas() const {
+            const auto above = [](double from, double to) {
+                const double p = std::max(from, 0.0), q = std::max(to, 0.0);
+                return p * p - q * q;
+            };
+            const double change = a - b;
+            if (change == 0) return {};
+            return {above(-a, -b) / (-2 * change), above(a, b) / (2 * change)};
+        }
+    };
+
+    double difference(std::int64_t x, std::int64_t y, std::int64_t i, std::int64_t j) const {
+        const Rgba &a = picture_.clamped(x, y), &b = picture_.clamped(i, j);
+        if (smaa_.detection == SmaaDetection::Color)
+            return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+        const auto luma = [](const Rgba& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; };
+        return std::abs(luma(a) - luma(b));
+    }
+
+    double threshold(std::int64_t x, std::int64_t y, std::int64_t i, std::int64_t j) const {
+        const double predication{smaa_.predication};
+        if (depth_ == nullptr || predication == 0) return double{smaa_.threshold};
+        const auto inverse = [&](std::int64_t u, std::int64_t v) {
+            return 1 / std::max(depth_->clamped(u, v).r, 1e-4);
+        };
+        const double a = inverse(x, y), b = inverse(i, j);
+        const bool is_jump = std::abs(a - b) > smaa_depth_jump * std::max(a, b);
+        return double{smaa_.threshold} * (is_jump ? 1 - 0.5 * predication : 1 + predication);
+    }
+
+    Edges edges_of(std::int64_t x, std::int64_t y) const {
+        const double left = difference(x, y, x - 1, y), top = difference(x, y, x, y - 1);
+        const bool is_left = left >= threshold(x, y, x - 1, y), is_top = top >= threshold(x, y, x, y - 1);
+        if (!is_left && !is_top) return {};
+        const double most = std::max({left, top, difference(x, y, x + 1, y), difference(x, y, x, y + 1),
+                                      difference(x - 1, y, x - 2, y), difference(x, y - 1, x, y - 2)});
+        const double contrast{smaa_.contrast};
+        return {is_left && left * contrast >= most, is_top && top * contrast >= most};
+    }
+
+    Edges edges(std::int64_t x, std::int64_t y) const {
+        const std::int64_t i = std::clamp<std::int64_t>(x, 0, picture_.width - 1),
+                           j = std::clamp<std::int64_t>(y, 0, picture_.height - 1);
+        return edges_[static_cast<std::size_t>(j * picture_.width + i)];
+    }
+    /// Of a search along the rows `k` pixels from (x, y), `across` of them up or down; or the same of the columns, with
+    /// left and top changing places. `top` goes along the search then.
+    Edges along(std::int64_t x, std::int64_t y, bool is_upright, std::int64_t k, std::int64_t across) const {
+        const Edges e = is_upright ? edges(x + across, y + k) : edges(x + k, y + across);
+        return is_upright ? Edges{e.top, e.left} : e;
+    }
+
+    /// How far the line goes on to either side, how it bends there (half a pixel toward the neighbour across, or away,
+    /// or not), and whether what crosses it there goes on, which makes a corner.
+    struct End {
+        std::int64_t distance = 0;
+        double height = 0;
+        bool is_corner_across = false, is_corner_own = false;
+        bool crosses_both = false;
+    };
+    End end_of(std::int64_t x, std::int64_t y, bool is_upright, int direction) const {
+        const auto at = [&](std::int64_t k, std::int64_t across) { return along(x, y, is_upright, k, across); };
+        // What crosses the line lies before a pixel on the way back, behind it on the way on.
+        const std::int64_t beside = direction < 0 ? 0 : 1;
+        End end;
+        const std::int64_t most = 2 * steps_.pairs - (direction < 0 ? 1 : 0);
+        const auto crossing = [&] { return direction * end.distance + beside; };
+        const auto is_crossed = [&] { return at(crossing(), 0).left || at(crossing(), -1).left; };
+        while (end.distance < most && !is_crossed() && at(direction * (end.distance + 1), 0).top) ++end.distance;
+        // What lies behind the last pair of pixels was not seen.
+        if (direction > 0 && end.distance == most) return end;
+        const bool is_own = at(crossing(), 0).left, is_across = at(crossing(), -1).left;
+        end.height = is_own == is_across ? 0 : is_across ? 0.5 : -0.5;
+        end.crosses_both = is_own && is_across;
+        if (!is_own && !is_across) return end;
+        end.is_corner_own = at(crossing(), 1).left;
+        end.is_corner_across = at(crossing(), -2).left;
+        return end;
+    }
+
+    Areas orthogonal(std::int64_t x, std::int64_t y, bool is_upright) const {
+        End first = end_of(x, y, is_upright, -1), second = end_of(x, y, is_upright, 1);
+        // Where something crosses on both sides, the line may go either way: opposite to the other end, if that bends.
+        if (first.crosses_both) first.height = -second.height;
+        if (second.crosses_both) second.height = -first.height;
+        const double length = static_cast<double>(first.distance + second.distance + 1);
+        const double from = static_cast<double>(first.distance) / length, to = from + 1 / length;
+        Areas out;
+        if (first.height * second.height < 0) {
+            const double change = second.height - first.height;
+            out = Line{first.height + change * from, first.height + change * to}.areas();
+        } else {
+            // From each end to the middle, where the line meets the edge: the integral of 1 - 2 t as far as that is.
+            const auto half = [&](double a, double b) {
+                const double p = std::max(1 - 2 * a, 0.0), q = std::max(1 - 2 * b, 0.0);
+                return (p * p - q * q) * length / 4;
+            };
+            const double area = first.height * half(from, to) + second.height * half(1 - to, 1 - from);
+            out = {std::max(-area, 0.0), std::max(area, 0.0)};
+        }
+        round_corners(first, second, out);
+        return out;
+    }
+
+    void round_corners(const End& first, const End& second, Areas& out) const {
+        const double keep = 1 - double{smaa_.corner_rounding};
+        const bool is_first = first.distance <= second.distance, is_second = second.distance <= first.distance;
+        const double part = is_first && is_second ? 0.5 : 1;
+        const auto factor = [&](bool corner_first, bool corner_second) {
+            return 1 - keep * part * ((is_first && corner_first ? 1 : 0) + (is_second && corner_second ? 1 : 0));
+        };
+        out.own *= factor(first.is_corner_own, second.is_corner_own);
+        out.other *= factor(first.is_corner_across, second.is_corner_across);
+    }
+
+    /// The stair through a pixel's top that rises to the right, or to the left.
+    struct Diagonal {
+        int steps = 0;  ///< sides of pixels, its own top among them
+        Areas areas;
+    };
+    Diagonal diagonal(std::int64_t x, std::int64_t y, bool is_rising) const {
+        const std::int64_t ahead = is_rising ? 1 : -1;
+        const auto top = [&](std::int64_t i, std::int64_t j) { return edges(x + i, y + j).top; };
+        const auto side = [&](std::int64_t i, std::int64_t j) {
+            return edges(x + i + (is_rising ? 0 : 1), y + j).left;
+        };
+        struct Arm {
+            std::int64_t columns = 0;
+            bool ends_upright = false;
+            double end = 0.5;  ///< how far above, or below, the last step's level the line ends
+        };
+        Arm up, down;
+        for (;; ++up.columns) {
+            const std::int64_t k = up.columns, i = ahead * (k + 1), j = -(k + 1);
+            if (k == steps_.diagonal) break;
+            if (!side(i, j)) {
+                if (top(ahead * (k + 1), -k)) up.end = 0;
+                break;
+            }
+            if (!top(i, j)) {
+                up.ends_upright = true;
+                if (side(i, j - 1)) up.end = 1;
+                break;
+            }
+        }
+        for (;; ++down.columns) {
+            const std::int64_t k = down.columns, i = -ahead * k, j = k;
+            if (k == steps_.diagonal) break;
+            if (!side(i, j)) {
+                if (top(i - ahead, j)) down.end = 0;
+                break;
+            }
+            if (!top(i - ahead, j + 1)) {
+                down.ends_upright = true;
+                if (side(i, j + 1)) down.end = 1;
+                break;
+            }
+        }
+        // Flat at one end and steep at the other: a curve, of which the stair is the part of slope 1.
+        if (up.end + down.end == 1) up.end = down.end = 0.5;
+        Diagonal out;
+        out.steps = 1 + static_cast<int>(2 * (up.columns + down.columns)) + (up.ends_upright ? 1 : 0) +
+                    (down.ends_upright ? 1 : 0);
+        const auto columns = static_cast<double>(up.columns + down.columns);
+        const double slope = (columns + up.end + down.end) / (columns + 1);
+        const double at = static_cast<double>(down.columns) * (slope - 1) - down.end;
+        out.areas = Line{at, at + slope}.areas();
+        return out;
+    }
+
+    Weights weights_of(std::int64_t x, std::int64_t y) const {
+        Weights out;
+        const Edges own = edges(x, y);
+        bool is_diagonal = false;
+        if (own.top) {
+            Areas areas;
+            if (steps_.diagonal > 0) {
+                const Diagonal rising = diagonal(x, y, true), falling = diagonal(x, y, false);
+                const bool is_rising = rising.steps >= falling.steps;
+                const Diagonal& longest = is_rising ? rising : falling;
+                is_diagonal = longest.steps >= smaa_least_diagonal;
+                if (is_diagonal) areas = longest.areas;
+            }
+            if (!is_diagonal) areas = orthogonal(x, y, false);
+            out.up = areas.own, out.of_above = areas.other;
+        }
+        // A diagonal is smoothed from above and below alone.
+        if (own.left && !is_diagonal) {
+            const Areas areas = orthogonal(x, y, true);
+            out.left = areas.own, out.of_left = areas.other;
+        }
+        // As an image of 8 bits keeps them.
+        for (double Weights::*const weight : {&Weights::up, &Weights::of_above, &Weights::left, &Weights::of_left})
+            out.*weight = std::round(out.*weight * 255) / 255;
+        return out;
+    }
+
+    Weights weights(std::int64_t x, std::int64_t y) const {
+        if (x >= picture_.width || y >= picture_.height) return {};
+        return weights_[static_cast<std::size_t>(y * picture_.width + x)];
+    }
+
+    void blend(std::int64_t x, std::int64_t y, ReferenceImage& out) const {
+        const Weights own = weights(x, y);
+        const double up = own.up, down = weights(x, y + 1).of_above, left = own.left, right = weights(x + 1, y).of_left;
+        const bool is_level = std::max(left, right) > std::max(up, down);
+        const double before = is_level ? left : up, behind = is_level ? right : down;
+        if (!(before + behind > 0)) return;
+        const double scale = 1 / std::max(before + behind, 1.0);
+        const Rgba& a = is_level ? picture_.clamped(x - 1, y) : picture_.clamped(x, y - 1);
+        const Rgba& b = is_level ? picture_.clamped(x + 1, y) : picture_.clamped(x, y + 1);
+        Rgba& pixel = out.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+        for (double Rgba::*const c : {&Rgba::r, &Rgba::g, &Rgba::b}) {
+            const double from = finite_reference(pixel.*c);
+            pixel.*c =
+                from + scale * (before * (finite_reference(a.*c) - from) + behind * (finite_reference(b.*c) - from));
+        }
+    }
+
+    const Smaa& smaa_;
+    const ReferenceImage& picture_;
+    const ReferenceImage* depth_;
+    SmaaSteps steps_;
+    std::vector<Edges> edges_;
+    std::vector<Weights> weights_;
+};
+
+inline ReferenceImage smaa_reference(const void* parameters, const ReferenceInput& input) {
+    return SmaaReference(*static_cast<const Smaa*>(parameters), input).run();
+}
+
+}  // namespace darkroom
