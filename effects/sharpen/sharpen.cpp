@@ -10,6 +10,7 @@ namespace darkroom {
 namespace {
 
 constexpr auto sharpen_rows = describe(
+    field<&Sharpen::mode>("Which of the two published methods."),
     field<&Sharpen::stops>("Strength in stops: 0 is all that the method allows, each stop less halves it.", {-8, 0}));
 
 }  // namespace

@@ -10,7 +10,14 @@ namespace darkroom {
 
 struct EffectInfo;
 
+enum class SharpenMode : std::uint32_t {
+    Rcas,  ///< robust contrast-adaptive sharpening: for what an upscaler leaves
+    Cas,   ///< contrast-adaptive sharpening: softer, and less of what stands alone
+};
+
 struct Sharpen {
+    /// Which of the two published methods.
+    SharpenMode mode = SharpenMode::Rcas;
     /// Strength in stops: 0 is all that the method allows, each stop less halves it. [-8, 0]
     float stops = -0.5f;
 };

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <darkroom/effects/sharpen.hpp>
 #include <limits>
@@ -50,10 +51,45 @@ TEST(EffectSharpen, IsThePublishedFormulaWithinTheSpanOfThePixels) {
     }
 }
 
+/// CasFilter of ffx_cas.h for a pixel in [0, 1] with better diagonals, as published: a b c, d e f, g h i. `peak` is
+/// what the sharpness makes of it, -1/8 at 0 and -1/5 at 1.
+double published_cas(const std::array<double, 9>& p, double peak) {
+    const auto [a, b, c, d, e, f, g, h, i] = p;
+    double mn = std::min({d, e, f, b, h}), mx = std::max({d, e, f, b, h});
+    mn += std::min({mn, a, c, g, i}), mx += std::max({mx, a, c, g, i});
+    const double amp = std::sqrt(std::clamp(std::min(mn, 2 - mx) / mx, 0.0, 1.0)), w = amp * peak;
+    return std::clamp((b * w + d * w + f * w + h * w + e) / (1 + 4 * w), 0.0, 1.0);
+}
+
+TEST(EffectSharpen, CasIsThePublishedFormulaWithinTheSpanOfThePixels) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(67, 41, 6));
+    // Sharpness 1, 1/2 and 0 of the published code, as stops.
+    for (const double peak : {-1.0 / 5, -1.0 / 6.5, -1.0 / 8}) {
+        const Sharpen sharpen{.mode = SharpenMode::Cas, .stops = static_cast<float>(std::log2(-5 * peak))};
+        const ReferenceImage out = developed(sharpen, picture);
+        ASSERT_EQ(out.pixels.size(), picture.pixels.size());
+        int steeper = 0;
+        for (std::int64_t y = 0; y < picture.height; ++y)
+            for (std::int64_t x = 0; x < picture.width; ++x) {
+                std::array<double, 9> p{};
+                for (std::int64_t k = 0; k < 9; ++k)
+                    p[static_cast<std::size_t>(k)] = picture.clamped(x + k % 3 - 1, y + k / 3 - 1).b;
+                const double least = std::min({p[1], p[3], p[4], p[5], p[7]}),
+                             most = std::max({p[1], p[3], p[4], p[5], p[7]}), expected = published_cas(p, peak);
+                EXPECT_NEAR(out.clamped(x, y).b, std::clamp(expected, least, most), half_a_code) << x << "," << y;
+                steeper += expected > least && expected < most && expected != p[4] ? 1 : 0;
+            }
+        EXPECT_GT(steeper, 500);
+    }
+}
+
+constexpr std::array both_modes{SharpenMode::Rcas, SharpenMode::Cas};
+
 TEST(EffectSharpen, FlatFieldsKeepTheirBitsAndRampsTheirSlope) {
     for (const double value : {0.0, 0.3, 1.0, 7.0, -0.5, 60000.0}) {
         const ReferenceImage flat = test::round_to_float(test::uniform(9, 7, {value, value / 3, value / 7, 0.25}));
-        EXPECT_EQ(test::worst_difference(developed({.stops = 0}, flat), flat), 0) << value;
+        for (const SharpenMode mode : both_modes)
+            EXPECT_EQ(test::worst_difference(developed({.mode = mode, .stops = 0}, flat), flat), 0) << value;
     }
     ReferenceImage ramp(64, 48);
     for (std::uint32_t y = 0; y < ramp.height; ++y)
@@ -61,14 +97,20 @@ TEST(EffectSharpen, FlatFieldsKeepTheirBitsAndRampsTheirSlope) {
             const double value = 0.1 + x / 128.0 + y / 256.0;
             ramp.at(x, y) = {value, 1 - value, value / 2, 1};
         }
-    const ReferenceImage out = developed({.stops = 0}, ramp);
-    for (std::uint32_t y = 1; y + 1 < ramp.height; ++y)
-        for (std::uint32_t x = 1; x + 1 < ramp.width; ++x) EXPECT_NEAR(out.at(x, y).g, ramp.at(x, y).g, half_a_code);
+    for (const SharpenMode mode : both_modes) {
+        const ReferenceImage out = developed({.mode = mode, .stops = 0}, ramp);
+        for (std::uint32_t y = 1; y + 1 < ramp.height; ++y)
+            for (std::uint32_t x = 1; x + 1 < ramp.width; ++x)
+                EXPECT_NEAR(out.at(x, y).g, ramp.at(x, y).g, half_a_code);
+    }
 }
 
 TEST(EffectSharpen, AnEdgeGetsSteeperAndHasNoHalo) {
     // An edge as a filter leaves it; in scene light ten times as bright, too.
-    for (const double white : {0.9, 10.0}) {
+    for (const auto& [mode, white] : {std::pair{SharpenMode::Rcas, 0.9},
+                                      {SharpenMode::Rcas, 10.0},
+                                      {SharpenMode::Cas, 0.9},
+                                      {SharpenMode::Cas, 10.0}}) {
         ReferenceImage edge(16, 8, {0, 0, 0, 1});
         for (std::uint32_t y = 0; y < 8; ++y)
             for (std::uint32_t x = 0; x < 16; ++x) {
@@ -77,7 +119,7 @@ TEST(EffectSharpen, AnEdgeGetsSteeperAndHasNoHalo) {
             }
         double before = 0.5 * white;
         for (const float stops : {-4.0f, -2.0f, -1.0f, 0.0f}) {
-            const ReferenceImage out = developed({.stops = stops}, edge);
+            const ReferenceImage out = developed({.mode = mode, .stops = stops}, edge);
             const double step = out.at(8, 4).r - out.at(7, 4).r;
             EXPECT_GT(step, before) << stops;
             before = step;
@@ -92,9 +134,9 @@ TEST(EffectSharpen, AnEdgeGetsSteeperAndHasNoHalo) {
 TEST(EffectSharpen, GpuMatchesReference) {
     const ReferenceImage display = test::round_to_float(test::random_display(67, 41, 2));
     const ReferenceImage light = test::round_to_float(test::random_hdr(67, 41, 3));
-    for (const float stops : {0.0f, -0.5f, -8.0f})
+    for (const Sharpen& sharpen : {Sharpen{.stops = 0}, Sharpen{.stops = -0.5f}, Sharpen{.stops = -8},
+                                   Sharpen{.mode = SharpenMode::Cas, .stops = 0}, Sharpen{.mode = SharpenMode::Cas}})
         for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
-            const Sharpen sharpen{.stops = stops};
             EXPECT_LE(test::worst_difference(developed(sharpen, display, stage), test::reference_of(sharpen, display)),
                       half_a_code);
             // A quotient of differences of single precision: some 2^-21 of the brightest around.
@@ -106,8 +148,11 @@ TEST(EffectSharpen, GpuMatchesReference) {
 TEST(EffectSharpen, GpuOnTinyPictures) {
     for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 7u}, {9u, 1u}, {2u, 2u}}) {
         const ReferenceImage picture = test::round_to_float(test::random_display(width, height, 3));
-        EXPECT_LE(test::worst_difference(developed({}, picture), test::reference_of(Sharpen{}, picture)), half_a_code)
-            << width << "x" << height;
+        for (const SharpenMode mode : both_modes)
+            EXPECT_LE(test::worst_difference(developed({.mode = mode}, picture),
+                                             test::reference_of(Sharpen{.mode = mode}, picture)),
+                      half_a_code)
+                << width << "x" << height;
     }
 }
 
