@@ -70,6 +70,8 @@ constexpr std::array targets{
     Target{"motion blur, half size", "motion_blur/half", calibration_name, 8.0, "effect/encode"},
     Target{"motion blur, half size, all given", "motion_blur/half, all given", calibration_name, {}, "effect/encode"},
     Target{"motion blur, full size", "motion_blur/full", calibration_name, {}, "effect/encode"},
+    Target{"depth of field, half size", "depth_of_field/half", calibration_name, {}, "effect/encode"},
+    Target{"depth of field, full size", "depth_of_field/full", calibration_name, {}, "effect/encode"},
     Target{"fxaa", "effect/fxaa", calibration_name, 4.0, "effect/encode"},
     Target{"fog in the tail", "tail/fog", calibration_name, 0.6, "tail/fused/auto"},
     Target{"fog in the tail, all given", "tail/fog, all given", calibration_name, {}, "tail/fused/auto"},

@@ -110,6 +110,9 @@ void add_world_chains(std::vector<Recipe>& recipes) {
     for (const char* const resolution : {"half", "full"})
         add_chain(recipes, fmt::format("motion_blur/{}", resolution), motion_blur_stack(resolution), {.world = engine});
     add_chain(recipes, "motion_blur/half, all given", motion_blur_stack("half"), {.world = WorldUse::Planar});
+    for (const char* const resolution : {"half", "full"})
+        add_chain(recipes, fmt::format("depth_of_field/{}", resolution), depth_of_field_stack(resolution),
+                  {.world = engine});
     add_chain(recipes, "tail/fog", foggy_tail_stack({}), {.world = engine});
     add_chain(recipes, "tail/fog, all given", foggy_tail_stack({}), {.world = WorldUse::Planar});
     add_chains(recipes, "documented", documented_stack(), engine);
@@ -222,6 +225,7 @@ Result<std::vector<PassRow>> measure_passes(Bed& bed, std::uint32_t rounds) {
         {"ssao, ground_truth", ssao_stack("ground_truth", "half"), WorldUse::WithoutNormals},
         {"volumetric", stack_of_one("volumetric"), WorldUse::WithoutNormals},
         {"motion_blur", motion_blur_stack("half"), WorldUse::WithoutNormals},
+        {"depth_of_field", depth_of_field_stack("half"), WorldUse::WithoutNormals},
         {"documented", documented_stack(), WorldUse::WithoutNormals}};
     auto submitter = Submitter::create(bed.context);
     if (!submitter) return failure(std::move(submitter));

@@ -147,6 +147,11 @@ Stack motion_blur_stack(const std::string& resolution) {
     return stack_of({{"motion_blur", {{"resolution", resolution}}}});
 }
 
+Stack depth_of_field_stack(const std::string& resolution) {
+    // A lens whose circles are as large as they may be where the frame's depth is not in focus.
+    return stack_of({{"depth_of_field", {{"resolution", resolution}, {"f_stop", 1.0}, {"sensor_height", 240.0}}}});
+}
+
 Stack flat_stack(bool keeps_what_is_off) {
     Stack stack;
     for (const EffectInfo* const effect : all_effects()) {

@@ -45,6 +45,7 @@ using Stack = std::vector<Step>;
 [[nodiscard]] Stack ssao_stack(const std::string& method, const std::string& resolution);
 /// Motion blur alone.
 [[nodiscard]] Stack motion_blur_stack(const std::string& resolution);
+[[nodiscard]] Stack depth_of_field_stack(const std::string& resolution);
 /// The flat table with nothing written in it, in its documented order; keeps_what_is_off as in ApplyOptions.
 [[nodiscard]] Stack flat_stack(bool keeps_what_is_off);
 /// The same as looks have it.

@@ -141,6 +141,12 @@ effect = "frame_blend"'
 trail recursive_blend showcase 60 '[[stack]]
 effect = "recursive_blend"
 weight = 0.9'
+stack depth_of_field street '[[stack]]
+effect = "depth_of_field"
+focus_distance = 4.0
+f_stop = 1.0
+sensor_height = 700.0
+max_radius = 3.0'
 trail motion_blur showcase 12 '[[stack]]
 effect = "motion_blur"
 shutter_angle = 360.0

@@ -168,7 +168,7 @@ const EffectInfo& effect_info(const MotionBlur&) {
         .touch = Touch::Pointwise,
         .accepts = Domains::only(Domain::SceneLinear),
         .needs = {FrameImage::Depth},
-        .flat = {.documented = 45, .scene_linear = 50, .starts_on = false},
+        .flat = {.documented = 47, .scene_linear = 50, .starts_on = false},
         .is_in_traced_light = true,
         .build = build,
         .reference = motion_blur_reference,

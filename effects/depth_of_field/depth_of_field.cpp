@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <darkroom/describe.hpp>
+#include <darkroom/effect.hpp>
+#include <darkroom/effects/depth_of_field.hpp>
+
+#include "depth_of_field/depth_of_field_lens.hpp"
+#include "depth_of_field/depth_of_field_reference.hpp"
+#include "shared/scene_images.hpp"
+
+namespace darkroom {
+
+namespace {
+
+constexpr Unit millimetres{"mm"};
+constexpr std::int32_t most_rings = 8;
+
+constexpr auto depth_of_field_rows = describe(
+    field<&DepthOfField::focus_distance>("Distance along the view axis that is sharp.", {0.01, 1e5, Scale::Log},
+                                         unit::metres),
+    field<&DepthOfField::f_stop>("Focal length over the aperture's diameter: smaller is a wider aperture.",
+                                 {0.5, 64, Scale::Log}),
+    field<&DepthOfField::sensor_height>(
+        "Height of what the picture falls on: with the field of view it gives the focal length.", {1, 1000, Scale::Log},
+        millimetres),
+    field<&DepthOfField::max_radius>("Largest radius of a circle, in hundredths of the picture's height.", {0.1, 4}),
+    field<&DepthOfField::blades>("Straight sides of the aperture; fewer than 3 make a round one.", {0, 11}),
+    field<&DepthOfField::roundness>("How far the blades' sides are bent into a circle.", {0, 1}),
+    field<&DepthOfField::rotation>("Turns the aperture, counterclockwise.", {-180, 180}, unit::degrees),
+    field<&DepthOfField::anamorphic_ratio>("Height of a circle over its width.", {1, 2}),
+    field<&DepthOfField::cats_eye>("How much the barrel of the lens cuts circles in the corners.", {0, 1}),
+    field<&DepthOfField::rings>("Rings of samples about a pixel: n of them are 4 n (n + 1) samples.", {2, most_rings})
+        .as_loop_count(),
+    field<&DepthOfField::resolution>("Size of the picture that is blurred, in each direction.").at_compile());
+
+const DepthOfField& field_of(const void* parameters) { return *static_cast<const DepthOfField*>(parameters); }
+
+/// See depth_of_field_circle.glsl.
+template <std::uint32_t denominator>
+void circle_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const DepthOfField& field = field_of(parameters);
+    const DepthConstants depth = depth_constants(*context.camera);
+    constexpr float pixels{denominator};
+    const ThinLens lens = depth_of_field_lens(field, *context.camera, context.frame_extent.height);
+    const float limit = field.max_radius / 100 * static_cast<float>(context.frame_extent.height);
+    out[0] = depth.distance;
+    out[1] = {static_cast<float>(lens.infinity) / pixels, static_cast<float>(lens.infinity * lens.focus) / pixels,
+              limit / pixels, depth.sky};
+    const DepthOfFieldBlur blur = depth_of_field_blur(denominator);
+    out[2] = {pixels, static_cast<float>(blur.own), static_cast<float>(blur.least), static_cast<float>(blur.slope)};
+}
+
+constexpr std::uint32_t most_pairs = 2 * most_rings * (most_rings + 1);
+
+/// See depth_of_field_gather.glsl.
+template <std::uint32_t denominator>
+void gather_constants(const void* parameters, const PassContext& context, std::span<PassVector> out) {
+    const DepthOfField& field = field_of(parameters);
+    const double width = context.frame_extent.width, height = context.frame_extent.height,
+                 diagonal = std::hypot(width, height);
+    const DepthOfFieldBlur blur = depth_of_field_blur(denominator);
+    const double shift = 2 * double{field.cats_eye} / diagonal;
+    out[0] = {static_cast<float>(blur.least), static_cast<float>(blur.slope), static_cast<float>(width * shift),
+              static_cast<float>(height * shift)};
+    std::size_t next = 1;
+    for (std::uint32_t ring = 1; ring <= most_rings; ++ring)
+        for (std::uint32_t i = 0; i < 8 * ring; i += 2) {
+            const auto one = depth_of_field_place(field, ring, i), other = depth_of_field_place(field, ring, i + 1);
+            out[next++] = {static_cast<float>(one[0]), static_cast<float>(one[1]), static_cast<float>(other[0]),
+                           static_cast<float>(other[1])};
+        }
+}
+
+/// The largest near circle of each tile, by way of small tiles, and then of those around it, too.
+PassImage add_tiles(PassBuilder& builder, PassImage color) {
+    const std::uint32_t tile = builder.from_max_extent(depth_of_field_tile);
+    const auto add = [&](const char* name, const char* shader, PassImage from, std::uint32_t denominator) {
+        return builder.add(
+            {.name = name,
+             .shader = shader,
+             .inputs = {{.name = "depth_of_field_from", .image = from, .is_loaded = true}},
+             .output = builder.create({.name = name, .format = VK_FORMAT_R16_SFLOAT, .denominator = denominator})});
+    };
+    const PassImage small = add("small tiles", "depth_of_field_first_tiles.glsl", color, 8);
+    const PassImage tiles = add("tiles", "depth_of_field_tiles.glsl", small, tile);
+    return add("tiles around", "depth_of_field_around.glsl", tiles, tile);
+}
+
+template <std::uint32_t denominator>
+void build_at(PassBuilder& builder) {
+    const PassImage depth = builder.frame_image(FrameImage::Depth);
+    const auto create = [&](const char* name) { return builder.create({.name = name, .denominator = denominator}); };
+    const PassImage color =
+        builder.add({.name = denominator == 2 ? "half size" : "clean",
+                     .shader = denominator == 2 ? "depth_of_field_half.glsl" : "depth_of_field_clean.glsl",
+                     .inputs = {{.name = "depth_of_field_picture", .image = builder.picture(), .is_loaded = true},
+                                {.name = "depth_of_field_depth", .image = depth, .is_loaded = true}},
+                     .output = create("color and circle"),
+                     .custom_vectors = 3,
+                     .constants = circle_constants<denominator>});
+    const PassImage tiles = add_tiles(builder, color);
+    const std::vector<PassImage> gathered =
+        builder.add_all({.name = "gather",
+                         .shader = "depth_of_field_gather.glsl",
+                         .inputs = {{.name = "depth_of_field_color", .image = color, .is_loaded = true},
+                                    {.name = "depth_of_field_near_tiles", .image = tiles, .is_loaded = true}},
+                         .output = create("behind"),
+                         .more_outputs = {create("near")},
+                         .custom_vectors = 1 + most_pairs,
+                         .constants = gather_constants<denominator>});
+    if (gathered.size() < 2) return;
+    const std::vector<PassImage> filled =
+        builder.add_all({.name = "fill",
+                         .shader = "depth_of_field_fill.glsl",
+                         .inputs = {{.name = "depth_of_field_color", .image = color, .is_loaded = true},
+                                    {.name = "depth_of_field_near_tiles", .image = tiles, .is_loaded = true},
+                                    {.name = "depth_of_field_behind", .image = gathered[0], .is_loaded = true},
+                                    {.name = "depth_of_field_near", .image = gathered[1], .is_loaded = true}},
+                         .output = create("behind, filled"),
+                         .more_outputs = {create("near, filled")}});
+    if (filled.size() < 2) return;
+    builder.side("depth_of_field_behind", filled[0], {});
+    builder.side("depth_of_field_near", filled[1], {});
+    builder.loaded_side("depth_of_field_depth", depth, {});
+    builder.end_constants(3, circle_constants<denominator>);
+}
+
+void build(PassBuilder& builder) {
+    const bool is_half = field_of(builder.parameters()).resolution == DepthOfFieldResolution::Half;
+    is_half ? build_at<2>(builder) : build_at<1>(builder);
+}
+
+}  // namespace
+
+// A pixel may belong to the tile beside its own by the rounding of sizes: hence 8 pixels more.
+std::uint32_t depth_of_field_tile(VkExtent2D extent) { return ((extent.height + 24) / 25 + 15) / 8 * 8; }
+
+const EffectInfo& effect_info(const DepthOfField&) {
+    static const EffectInfo info{
+        .name = "depth_of_field",
+        .doc = "Blurs what lies before and behind the distance that the lens is focused at.",
+        .parameters = depth_of_field_rows.table(),
+        .files = embedded_files("depth_of_field"),
+        .touch = Touch::Pointwise,
+        .accepts = Domains::only(Domain::SceneLinear),
+        .needs = {FrameImage::Depth},
+        .flat = {.documented = 46, .scene_linear = 48, .starts_on = false},
+        .is_in_traced_light = true,
+        .build = build,
+        .reference = depth_of_field_reference,
+    };
+    return info;
+}
+
+}  // namespace darkroom

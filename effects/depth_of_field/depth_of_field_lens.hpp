@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The lens in numbers: what the passes and the reference are told of it.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <darkroom/effects/depth_of_field.hpp>
+#include <darkroom/frame.hpp>
+#include <numbers>
+
+namespace darkroom {
+
+/// Radius of a point's circle at infinity, in pixels of a picture of this height, and the distance that is sharp. At a
+/// distance d the radius is infinity (1 - focus / d): half of A |d - F| / d * f / (F - f) * height / sensor, with the
+/// focal length f, the aperture's diameter A = f / f_stop and F the distance (Potmesil and Chakravarty, "A Lens and
+/// Aperture Camera Model for Synthetic Image Generation", 1981, equation 3).
+struct ThinLens {
+    double infinity = 0, focus = 1;
+};
+
+[[nodiscard]] inline ThinLens depth_of_field_lens(const DepthOfField& field, const Camera& camera, double height) {
+    // A camera whose rays run side by side has no lens.
+    if (camera.projection[11] == 0.0f) return {0, double{field.focus_distance}};
+    const double sensor = double{field.sensor_height} / 1000;
+    const double focal = sensor / 2 * std::abs(double{camera.projection[5]});
+    // Nothing nearer than the focal length can be sharp.
+    const double focus = std::max(double{field.focus_distance}, focal * 1.01);
+    const double aperture = focal / double{field.f_stop};
+    return {aperture / 2 * focal / (focus - focal) * height / sensor, focus};
+}
+
+/// What the passes blur by themselves, in texels of `step` pixels, and from which radius on something counts as
+/// blurred.
+struct DepthOfFieldBlur {
+    double own = 0, least = 0, slope = 1;
+    /// What is left to blur of a circle: of large ones variances are subtracted, small ones stay apart.
+    [[nodiscard]] double left(double radius) const { return radius * radius / std::sqrt(radius * radius + own); }
+};
+[[nodiscard]] inline DepthOfFieldBlur depth_of_field_blur(std::uint32_t step) {
+    // The variance of a disc is a quarter of its radius squared. That of samples at the nearest texel is 1/12; of half
+    // a size also 1/16, the mean of two by two pixels, and 3/16, the bilinear mix of texels at quarters.
+    DepthOfFieldBlur blur{.own = step == 1 ? 4.0 / 12 : 4.0 / 12 + 4.0 / 16 + 4 * 3.0 / 16};
+    // A radius of half a pixel is sharp, one of a texel more is blurred.
+    blur.least = blur.left(0.5 / step);
+    blur.slope = 1 / (blur.left(0.5 / step + 1) - blur.least);
+    return blur;
+}
+
+/// Place `i` of the 8 `ring` ones of a ring, in rings: evenly spread over the area of the aperture's shape. y is down.
+[[nodiscard]] inline std::array<double, 2> depth_of_field_place(const DepthOfField& field, std::uint32_t ring,
+                                                                std::uint32_t i) {
+    constexpr double pi = std::numbers::pi;
+    // Rings are turned against each other, lest there be spokes: the golden ratio.
+    const double offset = ring * (std::numbers::phi - 1);
+    const double turn = (i + offset - std::floor(offset)) / (8.0 * ring);
+    double angle = 2 * pi * turn, radius = ring;
+    if (field.blades >= 3) {
+        // Places along a straight side are as far from each other everywhere.
+        const double sides = field.blades, side = std::floor(turn * sides), along = 2 * (turn * sides - side) - 1;
+        const double bent = std::atan(along * std::tan(pi / sides)), round = double{field.roundness};
+        const double straight = std::cos(pi / sides) / std::cos(bent);
+        angle = 2 * pi * (side + 0.5) / sides + std::lerp(bent, along * pi / sides, round);
+        radius *= std::lerp(straight, 1.0, round);
+    }
+    angle += double{field.rotation} * pi / 180;
+    // A texel gets the light of those that it lies in the circle of: the shape, mirrored.
+    return {-radius * std::cos(angle) / double{field.anamorphic_ratio}, radius * std::sin(angle)};
+}
+
+}  // namespace darkroom

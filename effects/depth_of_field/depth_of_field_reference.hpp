@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// Depth of field in double precision, pass by pass: scattering as gathering in rings, near and far fields apart, after
+// Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare" (2014), and Abadie, "A Life of a Bokeh"
+// (2018). The page has the equations.
+
+#include <algorithm>
+#include <cmath>
+#include <darkroom/effects/depth_of_field.hpp>
+#include <darkroom/reference.hpp>
+#include <numbers>
+
+#include "depth_of_field/depth_of_field_lens.hpp"
+#include "shared/finite_reference.hpp"
+#include "shared/sample_reference.hpp"
+
+namespace darkroom {
+
+/// Radius of a circle in texels of the blurred picture, negative in the near field.
+inline double depth_of_field_reference_circle(const DepthOfField& field, const Camera& camera, double planar,
+                                              std::uint32_t height, std::uint32_t step) {
+    const ThinLens lens = depth_of_field_lens(field, camera, height);
+    const double limit = double{field.max_radius} / 100 * height;
+    // NaN compares as not nearer than the sky.
+    const double inverse = planar < 1e9 ? std::min(1 / std::max(planar, 0.0), 1e4) : 0.0;
+    return std::clamp(lens.infinity * (1 - lens.focus * inverse), -limit, limit) / step;
+}
+
+/// Colour, and the circle in alpha.
+inline ReferenceImage depth_of_field_reference_color(const DepthOfField& field, const ReferenceInput& input,
+                                                     std::uint32_t step) {
+    const ReferenceImage& picture = *input.picture;
+    const std::int64_t right = picture.width - 1, bottom = picture.height - 1;
+    ReferenceImage out(std::max(1u, picture.width / step), std::max(1u, picture.height / step));
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            std::array<double, 4> circles{}, sorted{};
+            std::array<const Rgba*, 4> colors{};
+            for (std::uint32_t i = 0; i < 4; ++i) {
+                const std::int64_t column = std::min(std::int64_t{x} * step + (step == 2 ? i & 1 : 0), right);
+                const std::int64_t row = std::min(std::int64_t{y} * step + (step == 2 ? i >> 1 : 0), bottom);
+                colors[i] = &picture.clamped(column, row);
+                circles[i] = depth_of_field_reference_circle(field, input.camera, input.depth->clamped(column, row).r,
+                                                             picture.height, step);
+            }
+            sorted = circles;
+            std::ranges::sort(sorted);
+            const double own = sorted[(x + y) % 2 == 0 ? 1 : 2];
+            Rgba sum{0, 0, 0, 0};
+            for (std::size_t i = 0; i < 4; ++i) {
+                const double weight =
+                    std::clamp(1.5 + 0.25 * std::abs(own) * step - std::abs(circles[i] - own) * step, 0.0, 1.0);
+                sum = {sum.r + colors[i]->r * weight, sum.g + colors[i]->g * weight, sum.b + colors[i]->b * weight,
+                       sum.a + weight};
+            }
+            out.at(x, y) = {finite_reference(sum.r / sum.a), finite_reference(sum.g / sum.a),
+                            finite_reference(sum.b / sum.a), std::copysign(depth_of_field_blur(step).left(own), own)};
+        }
+    return out;
+}
+
+/// The largest near circle of each tile and those around it; in red.
+inline ReferenceImage depth_of_field_reference_tiles(const ReferenceImage& color, const ReferenceImage& picture) {
+    const std::uint32_t side = depth_of_field_tile({picture.width, picture.height});
+    const auto part = [](std::uint32_t pixels, std::uint32_t of) { return std::max(1u, pixels / of); };
+    const auto largest = [](const ReferenceImage& from, std::uint32_t width, std::uint32_t height, auto&& value) {
+        ReferenceImage out(width, height);
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x)
+                for (std::uint32_t row = y * from.height / height; row * height < (y + 1) * from.height; ++row)
+                    for (std::uint32_t column = x * from.width / width; column * width < (x + 1) * from.width; ++column)
+                        out.at(x, y).r = std::max(out.at(x, y).r, value(from.at(column, row)));
+        return out;
+    };
+    const ReferenceImage small = largest(color, part(picture.width, 8), part(picture.height, 8),
+                                         [](const Rgba& texel) { return std::max(-texel.a, 0.0); });
+    const ReferenceImage tiles = largest(small, part(picture.width, side), part(picture.height, side),
+                                         [](const Rgba& texel) { return texel.r; });
+    ReferenceImage out = tiles;
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x)
+            for (int i = 0; i < 9; ++i)
+                out.at(x, y).r =
+                    std::max(out.at(x, y).r, tiles.clamped(std::int64_t{x} + i % 3 - 1, std::int64_t{y} + i / 3 - 1).r);
+    return out;
+}
+
+/// What is gathered about a texel.
+struct DepthOfFieldReach {
+    double circle = 0, radius = 0, rings_a_texel = 1, spacing = 1;
+    std::uint32_t rings = 1;
+};
+
+inline DepthOfFieldReach depth_of_field_reference_reach(const DepthOfField& field, const ReferenceImage& color,
+                                                        const ReferenceImage& tiles, std::uint32_t x, std::uint32_t y) {
+    DepthOfFieldReach reach;
+    reach.circle = color.at(x, y).a;
+    reach.radius = std::max(tiles.at(x * tiles.width / color.width, y * tiles.height / color.height).r, reach.circle);
+    reach.rings = static_cast<std::uint32_t>(std::clamp(std::ceil(reach.radius), 1.0, double(field.rings)));
+    reach.radius = std::max(reach.radius, 1e-3);
+    reach.rings_a_texel = reach.rings / reach.radius;
+    // The mean square of the samples' distances, that of a disc being half its radius squared.
+    double sum = 0, samples = 1;
+    for (std::uint32_t ring = 1; ring <= reach.rings; ++ring) {
+        const double count = 8.0 * ring * (ring == reach.rings ? 0.5 : 1);
+        sum += count * ring * ring;
+        samples += count;
+    }
+    reach.spacing = reach.radius * std::sqrt(samples / (2 * sum));
+    return reach;
+}
+
+/// Samples that lie in a circle whose radius is given in rings, those on its edge in part.
+inline double depth_of_field_reference_samples(double radius, std::uint32_t rings) {
+    double sum = 1;
+    for (std::uint32_t ring = 1; ring <= rings; ++ring) sum += 8.0 * ring * std::clamp(radius - ring + 0.5, 0.0, 1.0);
+    return sum;
+}
+
+struct DepthOfFieldFields {
+    Rgba behind{0, 0, 0, 0}, near{0, 0, 0, 0};
+};
+
+inline DepthOfFieldFields depth_of_field_reference_gather(const DepthOfField& field, const ReferenceImage& color,
+                                                          const DepthOfFieldReach& reach, std::uint32_t step,
+                                                          const ReferenceImage& picture, std::uint32_t x,
+                                                          std::uint32_t y) {
+    const DepthOfFieldBlur blur = depth_of_field_blur(step);
+    const double diagonal = std::hypot(picture.width, picture.height);
+    DepthOfFieldFields sums;
+    if (reach.radius <= blur.least) return sums;
+    const double away_x = ((x + 0.5) / color.width - 0.5) * 2 * picture.width / diagonal * double{field.cats_eye};
+    const double away_y = ((y + 0.5) / color.height - 0.5) * 2 * picture.height / diagonal * double{field.cats_eye};
+    const double cut = std::hypot(away_x, away_y);
+    const double left = (2 * std::acos(cut / 2) - cut / 2 * std::sqrt(4 - cut * cut)) / std::numbers::pi;
+    const auto add = [](Rgba& sum, const Rgba& texel, double weight) {
+        sum = {sum.r + texel.r * weight, sum.g + texel.g * weight, sum.b + texel.b * weight, sum.a + weight};
+    };
+    for (std::uint32_t ring = 0; ring <= reach.rings; ++ring)
+        for (std::uint32_t i = 0; i < std::max(8 * ring, 1u); ++i) {
+            const auto place = ring == 0 ? std::array<double, 2>{} : depth_of_field_place(field, ring, i);
+            const Rgba& texel =
+                color.clamped(x + static_cast<std::int64_t>(std::floor(place[0] * reach.spacing + 0.5)),
+                              y + static_cast<std::int64_t>(std::floor(place[1] * reach.spacing + 0.5)));
+            const bool is_near = texel.a < 0;
+            const double radius =
+                (is_near ? -texel.a : std::min(texel.a, std::max(reach.circle, 0.0))) * reach.rings_a_texel;
+            const double away =
+                std::max(double(ring), std::hypot(place[0] + away_x * radius, place[1] + away_y * radius));
+            const double covers = (ring == 0 ? 1.0 : std::clamp(radius - (cut == 0 ? ring : away) + 0.5, 0.0, 1.0)) /
+                                  depth_of_field_reference_samples(radius, reach.rings);
+            const double nearness = 1 - double(ring) / (reach.rings + 1);
+            if (is_near)
+                add(sums.near, texel, covers * std::clamp((-texel.a - blur.least) * blur.slope, 0.0, 1.0));
+            else
+                add(sums.behind, texel, reach.circle > 0 ? covers : nearness * nearness);
+        }
+    const auto divided = [](const Rgba& sum, double by) {
+        return Rgba{sum.r / by, sum.g / by, sum.b / by, sum.a / by};
+    };
+    sums.near = divided(sums.near, std::max(left, sums.near.a));
+    const Rgba behind = sums.behind.a > 0 ? sums.behind : sums.near;
+    sums.behind = std::abs(reach.circle) > blur.least ? divided(behind, std::max(behind.a, 1e-6)) : Rgba{0, 0, 0, 0};
+    return sums;
+}
+
+inline ReferenceImage depth_of_field_reference(const void* parameters, const ReferenceInput& input) {
+    const DepthOfField& field = *static_cast<const DepthOfField*>(parameters);
+    const ReferenceImage& picture = *input.picture;
+    const std::uint32_t step = field.resolution == DepthOfFieldResolution::Half ? 2 : 1;
+    const ReferenceImage color = depth_of_field_reference_color(field, input, step);
+    const ReferenceImage tiles = depth_of_field_reference_tiles(color, picture);
+    ReferenceImage behind(color.width, color.height), near = behind;
+    for (std::uint32_t y = 0; y < color.height; ++y)
+        for (std::uint32_t x = 0; x < color.width; ++x) {
+            const auto fields = depth_of_field_reference_gather(
+                field, color, depth_of_field_reference_reach(field, color, tiles, x, y), step, picture, x, y);
+            behind.at(x, y) = fields.behind;
+            near.at(x, y) = fields.near;
+        }
+    const auto filled = [&](const ReferenceImage& from) {
+        ReferenceImage out = from;
+        for (std::uint32_t y = 0; y < from.height; ++y)
+            for (std::uint32_t x = 0; x < from.width; ++x) {
+                const double spacing = depth_of_field_reference_reach(field, color, tiles, x, y).spacing;
+                const double side = 0.5 * std::clamp(spacing - 1, 0.0, 1.0);
+                Rgba sum{0, 0, 0, 0};
+                for (int i = 0; i < 9; ++i) {
+                    const Rgba& texel = from.clamped(std::int64_t{x} + i % 3 - 1, std::int64_t{y} + i / 3 - 1);
+                    const double weight = (i % 3 == 1 ? 1 : side) * (i / 3 == 1 ? 1 : side) / std::pow(1 + 2 * side, 2);
+                    sum = {sum.r + texel.r * weight, sum.g + texel.g * weight, sum.b + texel.b * weight,
+                           sum.a + texel.a * weight};
+                }
+                out.at(x, y) = sum;
+            }
+        return out;
+    };
+    behind = filled(behind);
+    near = filled(near);
+    const DepthOfFieldBlur blur = depth_of_field_blur(step);
+    ReferenceImage out = picture;
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x) {
+            const double u = (x + 0.5) / step / color.width, v = (y + 0.5) / step / color.height;
+            const Rgba over = sample_reference(near, u, v), far = sample_reference(behind, u, v);
+            const double circle =
+                depth_of_field_reference_circle(field, input.camera, input.depth->at(x, y).r, picture.height, step);
+            const double blurred =
+                far.a > 0 ? std::clamp((blur.left(circle) - blur.least) * blur.slope, 0.0, 1.0) : 0.0;
+            Rgba& pixel = out.at(x, y);
+            if (blurred == 0 && over.a == 0) continue;
+            const auto laid = [&](double sharp, double seen, double covering) {
+                const double under = finite_reference(sharp) * (1 - blurred) + seen * blurred / std::max(far.a, 1e-6);
+                return under * (1 - over.a) + covering;
+            };
+            pixel = {laid(pixel.r, far.r, over.r), laid(pixel.g, far.g, over.g), laid(pixel.b, far.b, over.b), pixel.a};
+        }
+    return out;
+}
+
+}  // namespace darkroom
