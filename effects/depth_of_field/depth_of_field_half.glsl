@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Half size: colour and circle of a surface under every two by two pixels. Of their circles it is the second smallest in
-// one texel and the third in the next, as on a chessboard, so that edges neither grow nor shrink.
+// Half size: colour and circle of a surface under every two by two pixels. Of their circles it is the second smallest;
+// where that is of the near field, in every other texel of a chessboard the third, so that edges neither grow nor shrink.
 #include "shared/sanitize.glsl"
 #include "depth_of_field_circle.glsl"
 
@@ -13,7 +13,8 @@ vec4 shade(Pixel pixel) {
                         depth_of_field_circle(load(depth_of_field_depth, d).r));
     float low = max(min(circles.x, circles.y), min(circles.z, circles.w));
     float high = min(max(circles.x, circles.y), max(circles.z, circles.w));
-    float own = ((pixel.texel.x + pixel.texel.y) & 1) == 0 ? min(low, high) : max(low, high);
+    float own = min(low, high);
+    if (own < 0.0 && ((pixel.texel.x + pixel.texel.y) & 1) == 1) own = max(low, high);
     // Of one surface are circles that differ by less than about a pixel, or a quarter.
     vec4 weight = clamp(1.5 + 0.25 * abs(own * custom[2].x) - abs(circles - own) * custom[2].x, 0.0, 1.0);
     vec4 sum = load(depth_of_field_picture, a) * weight.x + load(depth_of_field_picture, b) * weight.y;

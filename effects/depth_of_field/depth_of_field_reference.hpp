@@ -45,7 +45,7 @@ inline ReferenceImage depth_of_field_reference_color(const DepthOfField& field, 
             }
             sorted = circles;
             std::ranges::sort(sorted);
-            const double own = sorted[(x + y) % 2 == 0 ? 1 : 2];
+            const double own = sorted[sorted[1] < 0 && (x + y) % 2 == 1 ? 2 : 1];
             Rgba sum{0, 0, 0, 0};
             for (std::size_t i = 0; i < 4; ++i) {
                 const double weight =
