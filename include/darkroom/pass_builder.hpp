@@ -48,7 +48,7 @@ struct PassBuffer {
 
 struct PassImageDesc {
     std::string name;
-    VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT;
+    VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT;  ///< UNDEFINED: that of pictures between kernels
     /// Mip level 0 is numerator / denominator of the effect's input: floored, at least 1.
     std::uint32_t numerator = 1;
     std::uint32_t denominator = 1;

@@ -44,7 +44,7 @@ graph::ImageDesc Builder::image_desc(const PassImageDesc& desc) const {
     const graph::Size size = desc.is_of_output ? planner_.frame_output() : planner_.values_[input_].size;
     const bool is_absolute = desc.extent.width != 0;
     return {.name = planner_.own_name(fmt::format("{}.{}", planner_.stack_[entry_].desc.name, desc.name)),
-            .format = desc.format,
+            .format = desc.format == VK_FORMAT_UNDEFINED ? planner_.desc_.intermediate : desc.format,
             .size = is_absolute ? graph::Size{.width = desc.extent.width, .height = desc.extent.height}
                                 : size.scaled(desc.numerator, desc.denominator),
             .mip_levels = desc.mip_levels};
