@@ -86,6 +86,14 @@ samples=1 stack fxaa courtyard '' '[[stack]]
 effect = "fxaa"'
 samples=1 stack smaa courtyard '' '[[stack]]
 effect = "smaa"'
+is_wanted upscale && for state in off on; do
+    [[ $state == on ]] && enlarge='[[stack]]
+effect = "upscale"
+[[stack]]
+effect = "sharpen"' || enlarge=
+    printf '%s\n' "$tail_of_stack" "$enlarge" >"$work/$state.toml"
+    picture showcase "upscale_$state.jpg" --look "$work/$state.toml" --render-scale 0.5
+done
 stack sharpen showcase '' '[[stack]]
 effect = "sharpen"
 stops = 0.0'

@@ -10,7 +10,9 @@ namespace app {
 
 bool gathers_frames(const darkroom::Look& look) {
     return look.is_enabled && std::ranges::any_of(look.entries, [](const darkroom::LookEntry& entry) {
-               return entry.state.enabled.on != 0 && entry.effect->makes_output;
+               // Not an upscaler of single frames.
+               return entry.state.enabled.on != 0 && entry.effect->makes_output &&
+                      entry.effect->touch == darkroom::Touch::History;
            });
 }
 
