@@ -108,10 +108,10 @@ double four_digits(double number) {
     return std::round(number / step) * step;
 }
 
-SliderScale::SliderScale(const Range& range, double usual) : range_(range) {
+SliderScale::SliderScale(const Range& range, double usual, bool is_whole) : range_(range) {
     is_log_ = range.scale == Scale::Log;
     const double widest = std::max(std::abs(range.min), std::abs(range.max));
-    const bool is_wide = widest > 8 && widest > 20 * std::abs(usual);
+    const bool is_wide = widest > (is_whole ? 100 : 8) && widest > 20 * std::abs(usual);
     if (!is_log_ && is_wide) knee_ = usual == 0 ? widest / 1000 : std::abs(usual) / 10;
 }
 
@@ -148,7 +148,7 @@ SliderEdit draw_slider(const char* id, const ParamInfo& row, double usual, doubl
         ImGui::PopID();
         return edit;
     }
-    const SliderScale scale(row.range, usual);
+    const SliderScale scale(row.range, usual, row.kind == Kind::Int);
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = std::max(1.0f, ImGui::CalcItemWidth());
     ImGui::InvisibleButton("##slider", {width, ImGui::GetFrameHeight()});

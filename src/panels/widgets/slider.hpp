@@ -12,10 +12,10 @@ namespace darkroom::panels {
 /// How values lie on a slider, from 0 to 1. In equal ratios where the row says so; and nearly so, from about a tenth of
 /// the default on, where the interval is so wide that its uses would lie in the first pixels: with the knee k,
 ///     position ~ sign(v) ln(1 + |v| / k)
-/// which goes through 0 and has both signs. Else evenly.
+/// which goes through 0 and has both signs. Else evenly, and so do whole numbers of at most a hundred.
 class SliderScale {
   public:
-    SliderScale(const Range& range, double usual);
+    SliderScale(const Range& range, double usual, bool is_whole = false);
     [[nodiscard]] double position(double value) const;
     [[nodiscard]] double value(double position) const;
 

@@ -37,6 +37,9 @@ TEST(PanelSlider, WideIntervalsLeaveRoomAboutTheDefault) {
     EXPECT_NEAR(both.position(-6) + both.position(6), 1, 1e-12);
     const SliderScale ratios({0.25, 4, Scale::Log}, 1);
     EXPECT_NEAR(ratios.position(1), 0.5, 1e-12);
+    // Of the blades of an aperture, none at first, four lie before the middle.
+    const SliderScale counts({0, 11}, 0, true);
+    EXPECT_NEAR(counts.value(0.37), 4.07, 1e-9);
     const SliderScale even({0, 1}, 0.5);
     EXPECT_NEAR(even.position(0.25), 0.25, 1e-12);
 }
