@@ -22,15 +22,6 @@ Result<ResourceData> stand_in(const std::filesystem::path&, FileUse use) {
     return ResourceData(ResourceImage{1, 1, {0, 0, 0, 0}});
 }
 
-/// Does a text say this look? What pulses and layers move is woken as it is read.
-bool says(const Look& read, Look look) {
-    const std::vector<std::string> names = entry_names(look);
-    const std::vector<const LookEntry*> others = counterparts(look, read);
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (others[i] != nullptr && others[i]->state.enabled.on != 0 && is_moved(look, names[i])) wake(look.entries[i]);
-    return says_same(read, look);
-}
-
 bool names_files(const Look& look) {
     const auto has_file = [](const LookEntry& entry) { return !entry.effect_file.empty() || !entry.resources.empty(); };
     const auto is_file = [](const LookLayer& layer) { return !layer.file.empty(); };
@@ -159,7 +150,7 @@ Result<> LookDocument::write(const std::filesystem::path& file, bool is_spliced)
         // A custom effect that is wrong just now is no reason to keep the look from its file.
         const bool is_readable = read || (is_spliced && parse_look(text_, shown, checking));
         if (is_readable && !read) return failure(read.error());
-        if (is_readable && !says(*read, look_))
+        if (is_readable && !reads_as(*read, look_))
             return user_error(
                 fmt::format("{}: the look cannot be written so that it reads as the same", printable(shown)));
         return text;

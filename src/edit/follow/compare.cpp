@@ -6,6 +6,8 @@
 #include <tuple>
 
 #include "looks/apply/look_resources.hpp"
+#include "looks/apply/look_stack.hpp"
+#include "looks/look_parts.hpp"
 
 namespace darkroom::edit {
 
@@ -79,6 +81,14 @@ bool says_same(const Look& a, const Look& b) {
         !std::ranges::equal(entries_of(a, false), entries_of(b, false), is_same_entry))
         return false;
     return modulation_of(a) == modulation_of(b);
+}
+
+bool reads_as(const Look& read, Look look) {
+    const std::vector<std::string> names = entry_names(look);
+    const std::vector<const LookEntry*> others = counterparts(look, read);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (others[i] != nullptr && others[i]->state.enabled.on != 0 && is_moved(look, names[i])) wake(look.entries[i]);
+    return says_same(read, look);
 }
 
 bool is_same(const Look& a, const Look& b) {

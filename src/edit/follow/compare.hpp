@@ -10,6 +10,8 @@ namespace darkroom::edit {
 [[nodiscard]] bool has_same(const LookEntry& a, const LookEntry& b, const ParamInfo& row);
 /// Would files of them say the same? LookEntry::id, and what lies in the files that they name, do not count.
 [[nodiscard]] bool says_same(const Look& a, const Look& b);
+/// Is the look what was read of its text? What pulses and layers move is woken as it is read.
+[[nodiscard]] bool reads_as(const Look& read, Look look);
 /// The same, and what they have loaded is one.
 [[nodiscard]] bool is_same(const Look& a, const Look& b);
 /// Do all numbers agree, bit for bit?
