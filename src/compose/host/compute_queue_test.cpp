@@ -85,7 +85,8 @@ TEST_F(ComposeComputeQueue, RunsWhatComputeCan) {
         ++count;
     }
     EXPECT_GT(count, 15U);
-    EXPECT_LE(refused, 3U) << "velocities, the slopes of occlusion and what taa counts are of one or two channels";
+    EXPECT_LE(refused, 5U) << "velocities, the slopes of occlusion, what taa counts, the edges of smaa and the circles of "
+                              "depth_of_field are of one or two channels";
 }
 
 TEST_F(ComposeComputeQueue, NamesWhatNeedsGraphics) {
