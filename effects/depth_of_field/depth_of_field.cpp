@@ -133,9 +133,6 @@ void build(PassBuilder& builder) {
 
 }  // namespace
 
-// A pixel may belong to the tile beside its own by the rounding of sizes: hence 8 pixels more.
-std::uint32_t depth_of_field_tile(VkExtent2D extent) { return ((extent.height + 24) / 25 + 15) / 8 * 8; }
-
 const EffectInfo& effect_info(const DepthOfField&) {
     static const EffectInfo info{
         .name = "depth_of_field",

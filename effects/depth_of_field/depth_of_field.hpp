@@ -3,8 +3,6 @@
 // Depth of field: what lies before or behind the distance that the lens is focused at is seen as circles, by the thin
 // lens. It knows one frame: what a near thing hides is guessed from around it, and transparent things have no depth.
 
-#include <vulkan/vulkan.h>
-
 #include <darkroom/param.hpp>
 
 namespace darkroom {
@@ -37,10 +35,6 @@ struct DepthOfField {
     /// Size of the picture that is blurred, in each direction.
     DepthOfFieldResolution resolution = DepthOfFieldResolution::Half;
 };
-
-/// Side of the square tiles whose largest near circle is known, in pixels, for pictures of at most this extent: a
-/// multiple of 8, and more than the largest radius.
-[[nodiscard]] std::uint32_t depth_of_field_tile(VkExtent2D extent);
 
 [[nodiscard]] const EffectInfo& effect_info(const DepthOfField&);
 

@@ -68,4 +68,9 @@ struct DepthOfFieldBlur {
     return {-radius * std::cos(angle) / double{field.anamorphic_ratio}, radius * std::sin(angle)};
 }
 
+/// Side of the square tiles whose largest near circle is known, in pixels, for pictures of at most this extent: a
+/// multiple of 8, and more than the largest radius. A pixel may belong to the tile beside its own by the rounding of
+/// sizes: hence 8 pixels more.
+inline std::uint32_t depth_of_field_tile(VkExtent2D extent) { return ((extent.height + 24) / 25 + 15) / 8 * 8; }
+
 }  // namespace darkroom
