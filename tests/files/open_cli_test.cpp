@@ -106,6 +106,7 @@ TEST_F(CliOpen, FlagsOfAllCommands) {
                                                {"--lut", {".cube", ".clf", ".png"}},
                                                {"--lut-fade-to", {".cube"}},
                                                {"--arena-grade-table", {".cube", ".png"}},
+                                               {"--lens-dirt-dirt", {".png"}},
                                                {"--perturb-distortion", {".png"}}};
     const std::string frame = path("frame.exr"), scene = path("box.scene.toml");
     const std::map<std::string, Words> commands{
