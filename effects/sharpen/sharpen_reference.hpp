@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <darkroom/effects/sharpen.hpp>
-#include <ranges>
 
 #include "shared/finite_reference.hpp"
 #include "shared/rcas_reference.hpp"
@@ -22,9 +21,9 @@ inline Rgba cas_reference(const std::array<Rgba, 9>& p, double strength) {
     const double peak = 2 * brightest - 1;
     Rgba out = p[0];
     for (double Rgba::*const c : {&Rgba::r, &Rgba::g, &Rgba::b}) {
-        const auto value = [c](const Rgba& pixel) { return pixel.*c; };
-        const auto [low, high] = std::ranges::minmax(p | std::views::take(5) | std::views::transform(value));
-        const auto [lowest, highest] = std::ranges::minmax(p | std::views::transform(value));
+        const auto [low, high] = std::minmax({p[0].*c, p[1].*c, p[2].*c, p[3].*c, p[4].*c});
+        const double lowest = std::min({low, p[5].*c, p[6].*c, p[7].*c, p[8].*c});
+        const double highest = std::max({high, p[5].*c, p[6].*c, p[7].*c, p[8].*c});
         const double both_high = high + highest, least = std::min(low + lowest, 2 * peak - both_high);
         const double room = both_high > 0 ? std::clamp(least / both_high, 0.0, 1.0) : 0;
         const double lobe = -std::sqrt(room) * strength / 5;

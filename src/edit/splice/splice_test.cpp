@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <darkroom/effects.hpp>
 #include <filesystem>
 #include <fstream>
