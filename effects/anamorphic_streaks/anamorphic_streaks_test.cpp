@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <darkroom/effects/anamorphic_streaks.hpp>
-#include <limits>
 
 #include "anamorphic_streaks/anamorphic_streaks_reference.hpp"
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
+#include "shared/test_no_numbers.hpp"
 
 namespace darkroom {
 namespace {
@@ -117,20 +117,14 @@ TEST(EffectAnamorphicStreaks, GpuLeavesDarkPicturesAlone) {
 }
 
 TEST(EffectAnamorphicStreaks, GpuNanAndInfinityStayContained) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-    ReferenceImage picture = test::uniform(64, 48, {0.5, 0.5, 0.5, 1});
-    picture.at(20, 20) = {nan, nan, nan, 1};
-    picture.at(40, 12) = {infinity, -infinity, 0, 1};
-    const ReferenceImage out = developed({}, picture);
-    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
-    for (std::uint32_t y = 0; y < 48; ++y)
-        for (std::uint32_t x = 0; x < 64; ++x) {
-            if ((x == 20 && y == 20) || (x == 40 && y == 12)) continue;
-            EXPECT_TRUE(std::isfinite(out.at(x, y).r) && std::isfinite(out.at(x, y).g)) << x << ", " << y;
+    const ReferenceImage out = developed({}, test::grey_with_no_numbers());
+    test::expect_contained(out);
+    // Beyond the lines beside those that they lie on nothing changes.
+    for (std::uint32_t y = 0; y < out.height; ++y)
+        for (std::uint32_t x = 0; x < out.width; ++x)
             if (y < 8 || y > 24) {
                 EXPECT_EQ(out.at(x, y).r, 0.5) << x << ", " << y;
             }
-        }
 }
 
 }  // namespace

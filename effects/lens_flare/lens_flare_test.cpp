@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <darkroom/effects/lens_flare.hpp>
-#include <limits>
 #include <numbers>
 
 #include "compose/test_stacks/support.hpp"
 #include "gpu/test_support.hpp"
 #include "lens_flare/lens_flare_reference.hpp"
+#include "shared/test_no_numbers.hpp"
 
 namespace darkroom {
 namespace {
@@ -171,17 +171,7 @@ TEST(EffectLensFlare, GpuLeavesDarkPicturesAlone) {
 }
 
 TEST(EffectLensFlare, GpuNanAndInfinityStayContained) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-    ReferenceImage picture = test::uniform(64, 48, {0.5, 0.5, 0.5, 1});
-    picture.at(20, 20) = {nan, nan, nan, 1};
-    picture.at(40, 12) = {infinity, -infinity, 0, 1};
-    const ReferenceImage out = developed({}, picture);
-    ASSERT_EQ(out.pixels.size(), picture.pixels.size());
-    for (std::uint32_t y = 0; y < 48; ++y)
-        for (std::uint32_t x = 0; x < 64; ++x) {
-            if ((x == 20 && y == 20) || (x == 40 && y == 12)) continue;
-            EXPECT_TRUE(std::isfinite(out.at(x, y).r) && std::isfinite(out.at(x, y).g)) << x << ", " << y;
-        }
+    test::expect_contained(developed({}, test::grey_with_no_numbers()));
 }
 
 TEST(EffectLensFlare, TheSmallPictureHasAsManyTexelsAtEverySize) {
