@@ -47,6 +47,13 @@ struct EffectInfo;
 
 inline constexpr std::uint32_t previous_pre_roll = 60;
 
+/// A parameter of one entry: see Composer::parameter(). Another effect in the entry's place has others.
+struct ParameterId {
+    std::uint32_t owner = 0;  ///< 0: none
+    std::uint16_t row = 0;    ///< of the effect's rows
+    std::uint16_t place = 0;  ///< where the entry was when it was found, which is looked at first
+};
+
 /// What belongs to the stack entry, not to the effect.
 struct EntryDesc {
     Handle input;   ///< the picture; default: the entry before
@@ -195,8 +202,14 @@ class Composer {
     Result<> set(Handle, std::string_view parameter, double value);
     template <class Effect>
     Result<> set(Handle handle, const Effect& parameters) {
-        return set_all(handle, effect_info(parameters), &parameters);
+        return set(handle, effect_info(parameters), &parameters);
     }
+    /// All values of an entry of this effect, info.parameters.words() words.
+    Result<> set(Handle, const EffectInfo& info, const void* parameters);
+    /// Finds a parameter once, for set() in every frame, which then compares no names.
+    [[nodiscard]] Result<ParameterId> parameter(Handle, std::string_view name) const;
+    /// As set() by name. Errors: its entry was removed, or has another effect.
+    Result<> set(ParameterId parameter, std::span<const std::uint32_t> words);
     /// A per-frame override by `owner` (a script slot, a timeline): replaces the value, and what layers and pulses make
     /// of it, until dropped; the last owner to set wins. The base value is never touched.
     Result<> set_override(Handle, std::string_view parameter, std::string_view owner,
@@ -272,7 +285,6 @@ class Composer {
 
   private:
     friend class KernelFile;
-    Result<> set_all(Handle, const EffectInfo&, const void* parameters);
     struct State;
     std::unique_ptr<State> state_;
 };

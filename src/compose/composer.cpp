@@ -356,7 +356,39 @@ Result<> Composer::set(Handle handle, std::string_view parameter, double value) 
     return caught("set");
 }
 
-Result<> Composer::set_all(Handle handle, const EffectInfo& info, const void* parameters) try {
+Result<ParameterId> Composer::parameter(Handle handle, std::string_view name) const try {
+    auto found_entry = state_->checked(handle);
+    if (!found_entry) return failure(std::move(found_entry));
+    const plan::Entry& entry = **found_entry;
+    const auto row = State::row(entry, name);
+    if (!row) return failure(row.error());
+    const std::size_t place = std::min<std::size_t>(state_->index_of(handle), 0xffff);
+    return ParameterId{static_cast<std::uint32_t>(entry.history_owner),
+                       static_cast<std::uint16_t>(*row - entry.info->parameters.rows.data()),
+                       static_cast<std::uint16_t>(place)};
+} catch (...) {
+    return caught("parameter");
+}
+
+Result<> Composer::set(ParameterId parameter, std::span<const std::uint32_t> words) try {
+    const auto& stack = state_->stack;
+    const auto is_it = [&](const auto& entry) { return entry->history_owner == parameter.owner; };
+    auto found = stack.begin() + std::min<std::ptrdiff_t>(parameter.place, std::ssize(stack));
+    if (found == stack.end() || !is_it(*found)) found = std::ranges::find_if(stack, is_it);
+    if (found == stack.end() || parameter.row >= (*found)->info->parameters.rows.size())
+        return user_error(fmt::format(
+            "parameter {}: it is none of this composer; its entry may have been removed, or have another effect",
+            parameter.owner));
+    plan::Entry& entry = **found;
+    const ParamInfo& row = entry.info->parameters.rows[parameter.row];
+    if (auto ok = check_value(entry, row, words); !ok) return ok;
+    std::copy(words.begin(), words.end(), entry.base.begin() + row.word);
+    return {};
+} catch (...) {
+    return caught("set");
+}
+
+Result<> Composer::set(Handle handle, const EffectInfo& info, const void* parameters) try {
     auto found_entry = state_->checked(handle);
     if (!found_entry) return failure(std::move(found_entry));
     plan::Entry& entry = **found_entry;

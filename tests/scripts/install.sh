@@ -43,6 +43,8 @@ export PKG_CONFIG_PATH=$library/pkgconfig
 # pkg-config escapes the blank of the path, and eval reads it so.
 eval "'$compiler' -std=c++20 ${flags[*]} '$tree/tests/package/main.cpp' $kept $(pkg-config --cflags --libs darkroom-looks) -o '$work/pkg'"
 "$work/pkg"
+eval "'${CC:-cc}' -std=c99 ${flags[*]} '$tree/tests/package/main.c' $(pkg-config --cflags --libs darkroom) -o '$work/pkg_c'"
+"$work/pkg_c"
 "$prefix/bin/darkroom" --version
 # The module for other files than OpenEXR is found beside the program, wherever that was moved.
 "$prefix/bin/darkroom" info "$tree/tests/goldens/forge.png" >/dev/null

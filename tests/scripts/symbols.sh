@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# symbols.sh LIBRARY...: a shared object or an archive exports C++ symbols of this project and no others, and a shared
-# object needs the C++ runtime and our other libraries alone; that of scripts needs Lua, too.
+# symbols.sh LIBRARY...: a shared object or an archive exports C++ symbols of this project and no others, libdarkroom.so
+# those of the C interface and no others, and a shared object needs the C++ runtime and our other libraries alone; that of scripts needs Lua, too.
 set -euo pipefail
 for library in "$@"; do
     # What is dynamic of an archive is what is global in it.
@@ -9,12 +9,14 @@ for library in "$@"; do
     [[ $library == *.a ]] && kind=--extern-only
     exported=$(nm $kind --defined-only "$library" | sed -nE 's/^[0-9a-f]+ . //p')
     # Functions, variables, tables, types, guards, what is local in functions, and what DarkroomStatic.cmake renames.
-    foreign=$(grep -vE '^(_Z(T[VTIS]|GV)?Z*NK?8darkroom|darkroom\.)' <<<"$exported" | c++filt || true)
+    ours='_Z(T[VTIS]|GV)?Z*NK?8darkroom|darkroom\.' one=_ZN8darkroom
+    [[ $library == */libdarkroom.so* ]] && ours=darkroom_ one=darkroom_
+    foreign=$(grep -vE "^($ours)" <<<"$exported" | c++filt || true)
     if [[ -n $foreign ]]; then
         printf '%s exports what is not ours:\n%s\n' "$library" "$foreign"
         exit 1
     fi
-    grep -q '^_ZN8darkroom' <<<"$exported" || { echo "$library exports nothing of ours" && exit 1; }
+    grep -q "^$one" <<<"$exported" || { echo "$library exports nothing of ours" && exit 1; }
     if nm $kind --undefined-only "$library" | grep -w 'vk[A-Z][A-Za-z0-9]*'; then
         echo "$library calls Vulkan's prototypes, which a host may not have" && exit 1
     fi

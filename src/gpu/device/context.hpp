@@ -75,6 +75,7 @@ class Context {
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
     const VkAllocationCallbacks* allocator = nullptr;  ///< of every object that is created or destroyed
     DeviceMemoryHooks memory_hooks{};                  ///< empty: vkAllocateMemory
+    std::shared_ptr<const void> memory_hooks_owner;    ///< of their `user`, where an interface over this one made it
     VkPipelineCache pipeline_cache = VK_NULL_HANDLE;   ///< finish() makes one unless the host's is here already
     std::size_t most_pipeline_cache_bytes = std::size_t{64} << 20U;  ///< a larger one is not kept
     VkSampler linear_sampler = VK_NULL_HANDLE, nearest_sampler = VK_NULL_HANDLE;

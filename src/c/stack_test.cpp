@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT
+// The C interface without a driver: stacks, values, plans, looks and errors, held against the C++ interface.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <darkroom/effects.hpp>
+#include <limits>
+
+#include "c/call.hpp"
+#include "c/objects.hpp"
+
+namespace darkroom {
+namespace {
+
+template <class T>
+T sized() {
+    T out{};
+    out.struct_size = sizeof out;
+    return out;
+}
+
+/// A stack on an assumed device.
+struct CStack {
+    CStack() {
+        EXPECT_EQ(darkroom_device_assumed(DARKROOM_DEVICE_PROFILE_GPU, &device), DARKROOM_OK);
+        EXPECT_EQ(darkroom_composer_create(device, nullptr, &composer), DARKROOM_OK);
+    }
+    CStack(const CStack&) = delete;
+    CStack& operator=(const CStack&) = delete;
+    ~CStack() {
+        darkroom_composer_destroy(composer);
+        darkroom_device_destroy(device);
+    }
+    DarkroomHandle add(const char* effect, const DarkroomEntryDesc* desc = nullptr) const {
+        DarkroomHandle handle = 0;
+        EXPECT_EQ(darkroom_composer_add(composer, effect, desc, &handle), DARKROOM_OK) << darkroom_error();
+        return handle;
+    }
+    [[nodiscard]] std::string plan() const {
+        auto desc = sized<DarkroomCompileDesc>();
+        desc.max_extent = {640, 360};
+        DarkroomPlan made = nullptr;
+        EXPECT_EQ(darkroom_composer_plan(composer, &desc, &made), DARKROOM_OK) << darkroom_error();
+        const std::string out = darkroom_plan_json(made);
+        darkroom_plan_destroy(made);
+        return out;
+    }
+    DarkroomDevice device = nullptr;
+    DarkroomComposer composer = nullptr;
+};
+
+void expect_error(DarkroomResult result, const char* text, DarkroomResult code = DARKROOM_ERROR_USER) {
+    EXPECT_EQ(result, code);
+    EXPECT_STREQ(darkroom_error(), text);
+}
+
+TEST(CInterface, PlansWhatCppPlans) {
+    const CStack stack;
+    const DarkroomHandle bloom = stack.add("bloom");
+    ASSERT_EQ(darkroom_composer_set_number(stack.composer, bloom, "intensity", 0.5), DARKROOM_OK);
+    auto blend = sized<DarkroomEntryDesc>();
+    blend.input = DARKROOM_SCENE_COLOR;
+    blend.second = darkroom_handle_previous(bloom);
+    blend.blend = DARKROOM_BLEND_SCREEN;
+    blend.opacity = 0.5f;
+    blend.scale_denominator = 2;
+    stack.add("blend", &blend);
+    stack.add("tonemap");
+    stack.add("encode");
+
+    Composer composer(Device::assumed());
+    const Handle same = composer.add(Bloom{.intensity = 0.5f});
+    composer.add(Blend{}, {.input = scene_color,
+                           .second = same.previous(),
+                           .opacity = 0.5f,
+                           .blend = BlendMode::Screen,
+                           .scale = {1, 2}});
+    composer.add(Tonemap{});
+    composer.add(Encode{});
+    EXPECT_EQ(stack.plan(), composer.plan({.max_extent = {640, 360}})->json());
+}
+
+TEST(CInterface, ZeroIsTheDefaultOfEveryStruct) {
+    const CStack stack;
+    const auto entry = sized<DarkroomEntryDesc>();
+    stack.add("tonemap", &entry);
+    auto read = sized<DarkroomEntryDesc>();
+    DarkroomHandle handle = 0;
+    ASSERT_EQ(darkroom_composer_find(stack.composer, "tonemap", &handle), DARKROOM_OK);
+    ASSERT_EQ(darkroom_composer_desc(stack.composer, handle, &read), DARKROOM_OK);
+    EXPECT_EQ(read.opacity, 1);
+    EXPECT_EQ(read.is_disabled, 0u);
+    EXPECT_EQ(read.scale_numerator, 1u);
+    const auto& table = find_effect("tonemap")->parameters;
+    ASSERT_EQ(read.word_count, table.words());
+    EXPECT_TRUE(std::equal(read.words, read.words + read.word_count, table.defaults.begin()));
+}
+
+TEST(CInterface, ValuesByNameTextWordsAndNumber) {
+    const CStack stack;
+    const DarkroomHandle tonemap = stack.add("tonemap");
+    const DarkroomHandle grade = stack.add("color_grade");
+    EXPECT_EQ(darkroom_composer_set_text(stack.composer, tonemap, "curve", "agx"), DARKROOM_OK) << darkroom_error();
+    const ParamInfo& curve = *find_effect("tonemap")->parameters.find("curve");
+    const auto words = stack.composer->composer.words(c::handle_of(tonemap));
+    EXPECT_EQ(curve.choices[words[curve.word]], "agx");
+    EXPECT_EQ(darkroom_composer_set_number(stack.composer, tonemap, "curve", 0), DARKROOM_OK);
+    EXPECT_EQ(words[curve.word], 0u);
+    EXPECT_EQ(darkroom_composer_set_number(stack.composer, tonemap, "curve", 0.5), DARKROOM_ERROR_USER);
+    EXPECT_EQ(darkroom_composer_set_text(stack.composer, grade, "tint", "0.1 0.2"), DARKROOM_ERROR_USER);
+    EXPECT_EQ(darkroom_composer_set_text(stack.composer, tonemap, "curve", "agxx"), DARKROOM_ERROR_USER);
+    EXPECT_NE(std::string_view(darkroom_error()).find("agx"), std::string_view::npos) << darkroom_error();
+    std::uint32_t count = 1;
+    std::uint32_t first = ~0u;
+    EXPECT_EQ(darkroom_composer_words(stack.composer, tonemap, &first, &count), DARKROOM_OK);
+    EXPECT_EQ(first, words[0]);
+    EXPECT_EQ(count, words.size());
+}
+
+TEST(CInterface, AParameterFoundOnceIsSetUntilItsEntryIsAnother) {
+    const CStack stack;
+    const DarkroomHandle first = stack.add("exposure"), bloom = stack.add("bloom");
+    DarkroomParameter intensity = 0;
+    ASSERT_EQ(darkroom_composer_parameter(stack.composer, bloom, "intensity", &intensity), DARKROOM_OK);
+    const auto value = [&] {
+        const ParamInfo& row = *find_effect("bloom")->parameters.find("intensity");
+        return std::bit_cast<float>(stack.composer->composer.words(c::handle_of(bloom))[row.word]);
+    };
+    EXPECT_EQ(darkroom_composer_set_float(stack.composer, intensity, 0.25f), DARKROOM_OK);
+    EXPECT_EQ(value(), 0.25f);
+    // Another place in the stack, another wire.
+    ASSERT_EQ(darkroom_composer_remove(stack.composer, first), DARKROOM_OK);
+    auto desc = sized<DarkroomEntryDesc>();
+    desc.source = DARKROOM_SCENE_COLOR;
+    ASSERT_EQ(darkroom_composer_rewire(stack.composer, bloom, &desc), DARKROOM_OK);
+    EXPECT_EQ(darkroom_composer_set_float(stack.composer, intensity, 0.75f), DARKROOM_OK);
+    EXPECT_EQ(value(), 0.75f);
+    EXPECT_EQ(darkroom_composer_set_float(stack.composer, intensity, -1), DARKROOM_ERROR_USER);
+    EXPECT_EQ(darkroom_composer_set_float(stack.composer, intensity, std::nanf("")), DARKROOM_ERROR_USER);
+    const float two[]{0.5f, 0.5f};
+    EXPECT_EQ(darkroom_composer_set_vector(stack.composer, intensity, two, 2), DARKROOM_ERROR_USER);
+    EXPECT_EQ(value(), 0.75f);
+    // The same handle, but the rows of another effect.
+    ASSERT_EQ(darkroom_composer_replace(stack.composer, bloom, darkroom_effect_find("vignette")), DARKROOM_OK);
+    EXPECT_EQ(darkroom_composer_set_float(stack.composer, intensity, 0.5f), DARKROOM_ERROR_USER);
+    EXPECT_EQ(darkroom_composer_set_float(stack.composer, 0, 0.5f), DARKROOM_ERROR_USER);
+}
+
+TEST(CInterface, ReflectionIsThatOfTheRows) {
+    ASSERT_EQ(darkroom_effect_count(), all_effects().size());
+    for (std::uint32_t i = 0; i < darkroom_effect_count(); ++i) {
+        const EffectInfo& is = *all_effects()[i];
+        const DarkroomEffect effect = darkroom_effect_at(i);
+        EXPECT_EQ(effect, darkroom_effect_find(std::string(is.name).c_str()));
+        auto info = sized<DarkroomEffectInfo>();
+        ASSERT_EQ(darkroom_effect_info(effect, &info), DARKROOM_OK);
+        EXPECT_EQ(info.name, is.name);
+        EXPECT_EQ(info.parameter_count, is.parameters.rows.size());
+        EXPECT_EQ(info.page[0], '#') << is.name;
+        for (std::uint32_t row = 0; row < info.parameter_count; ++row) {
+            const ParamInfo& expected = is.parameters.rows[row];
+            auto got = sized<DarkroomParameterInfo>();
+            ASSERT_EQ(darkroom_effect_parameter(effect, row, &got), DARKROOM_OK);
+            EXPECT_EQ(got.name, expected.name);
+            EXPECT_EQ(got.doc, expected.doc);
+            EXPECT_EQ(got.unit, expected.unit.symbol);
+            EXPECT_EQ(got.min, expected.range.min);
+            EXPECT_EQ(got.max, expected.range.max);
+            EXPECT_EQ(static_cast<Kind>(got.kind), expected.kind);
+            ASSERT_EQ(got.choice_count, expected.choices.size());
+            for (std::uint32_t choice = 0; choice < got.choice_count; ++choice)
+                EXPECT_EQ(got.choices[choice], expected.choices[choice]);
+            EXPECT_EQ(*got.default_words, is.parameters.defaults[expected.word]);
+        }
+        auto beyond = sized<DarkroomParameterInfo>();
+        EXPECT_EQ(darkroom_effect_parameter(effect, info.parameter_count, &beyond), DARKROOM_ERROR_USER);
+    }
+    EXPECT_EQ(darkroom_effect_at(darkroom_effect_count()), nullptr);
+    EXPECT_EQ(darkroom_effect_find("blom"), nullptr);
+}
+
+TEST(CInterface, ErrorsNameFunctionThingAndWhatIsAllowed) {
+    const CStack stack;
+    expect_error(darkroom_composer_add(stack.composer, "blom", nullptr, nullptr),
+                 "darkroom_composer_add: effect 'blom': there is none of that name, did you mean 'bloom'?");
+    expect_error(darkroom_composer_add(nullptr, "bloom", nullptr, nullptr),
+                 "darkroom_composer_add: composer: it is null");
+    const DarkroomHandle bloom = stack.add("bloom");
+    expect_error(darkroom_composer_set_opacity(stack.composer, bloom, 2),
+                 "darkroom_composer_set_opacity: bloom: opacity = 2: allowed is [0, 1]");
+    auto desc = sized<DarkroomEntryDesc>();
+    const std::int32_t none = 9;
+    std::memcpy(&desc.blend, &none, sizeof none);
+    expect_error(darkroom_composer_add(stack.composer, "bloom", &desc, nullptr),
+                 "darkroom_composer_add: blend = 9: allowed is 0 to 8");
+    DarkroomHandle untouched = 77;
+    EXPECT_NE(darkroom_composer_add(stack.composer, "bloom", &desc, &untouched), DARKROOM_OK);
+    EXPECT_EQ(untouched, 77u);
+    // What worked leaves the last error as it was.
+    EXPECT_EQ(darkroom_composer_set_opacity(stack.composer, bloom, 1), DARKROOM_OK);
+    EXPECT_STREQ(darkroom_error(), "darkroom_composer_add: blend = 9: allowed is 0 to 8");
+    auto frames = sized<DarkroomCompileDesc>();
+    frames.max_extent = {64, 64};
+    EXPECT_NE(darkroom_composer_compile(stack.composer, &frames, nullptr), DARKROOM_OK);
+}
+
+TEST(CInterface, StructsOfOtherVersions) {
+    const CStack stack;
+    // A newer program: what this version does not know may be there, and zero.
+    struct {
+        DarkroomEntryDesc known;
+        std::uint64_t newer;
+    } desc{};
+    desc.known.struct_size = sizeof desc;
+    EXPECT_EQ(darkroom_composer_add(stack.composer, "bloom", &desc.known, nullptr), DARKROOM_OK) << darkroom_error();
+    desc.newer = 1;
+    expect_error(darkroom_composer_add(stack.composer, "bloom", &desc.known, nullptr),
+                 fmt::format("darkroom_composer_add: DarkroomEntryDesc: a member behind its first {} bytes is set, which "
+                             "this version does not know",
+                             sizeof(DarkroomEntryDesc))
+                     .c_str());
+    // A size that was forgotten.
+    const DarkroomEntryDesc forgotten{};
+    EXPECT_EQ(darkroom_composer_add(stack.composer, "bloom", &forgotten, nullptr), DARKROOM_ERROR_USER);
+    // Arrays go by the size of their first.
+    struct {
+        DarkroomLayerValue known;
+        std::uint64_t newer;
+    } values[2]{};
+    const float half = 0.5f, quarter = 0.25f;
+    DarkroomHandle bloom = 0;
+    ASSERT_EQ(darkroom_composer_find(stack.composer, "bloom", &bloom), DARKROOM_OK);
+    for (auto& value : values) value.known = {sizeof value, 1, bloom, "intensity", nullptr};
+    values[0].known.words = reinterpret_cast<const std::uint32_t*>(&half);
+    values[1].known.parameter = "opacity";
+    values[1].known.words = reinterpret_cast<const std::uint32_t*>(&quarter);
+    auto layer = sized<DarkroomLayerDesc>();
+    layer.name = "dusk";
+    layer.weight = 1;
+    layer.values = &values[0].known;
+    layer.value_count = 2;
+    ASSERT_EQ(darkroom_composer_add_layer(stack.composer, &layer), DARKROOM_OK) << darkroom_error();
+    std::uint32_t count = 0;
+    float opacity = 0;
+    ASSERT_EQ(darkroom_composer_values_at(stack.composer, bloom, 0, nullptr, nullptr, &count, nullptr, &opacity),
+              DARKROOM_OK);
+    EXPECT_EQ(opacity, 0.25f);
+    EXPECT_STREQ(darkroom_composer_layer_name(stack.composer, 0), "dusk");
+    EXPECT_EQ(darkroom_composer_layer_name(stack.composer, 1), nullptr);
+}
+
+TEST(CInterface, TablesAndPicturesAreCopied) {
+    const CStack stack;
+    std::vector<float> cube(3 * 8, 0.5f);
+    auto table = sized<DarkroomTable>();
+    table.size = 2;
+    table.cube = cube.data();
+    std::uint32_t resource = 0;
+    ASSERT_EQ(darkroom_composer_define_table(stack.composer, &table, &resource), DARKROOM_OK) << darkroom_error();
+    cube.assign(cube.size(), 0);
+    const auto* const kept = find_resource<ColorTable>(&stack.composer->composer.resources(), Resource{resource});
+    ASSERT_NE(kept, nullptr);
+    EXPECT_EQ(kept->cube[5], 0.5f);
+    EXPECT_EQ(kept->max[0], 1);
+    table.size = 257;
+    EXPECT_EQ(darkroom_composer_define_table(stack.composer, &table, &resource), DARKROOM_ERROR_USER);
+    auto picture = sized<DarkroomPicture>();
+    picture.width = picture.height = 2;
+    EXPECT_EQ(darkroom_composer_define_picture(stack.composer, &picture, &resource), DARKROOM_ERROR_USER);
+    picture.rgba = cube.data();
+    ASSERT_EQ(darkroom_composer_define_picture(stack.composer, &picture, &resource), DARKROOM_OK);
+    auto entry = sized<DarkroomEntryDesc>();
+    entry.second = darkroom_composer_picture_of(resource);
+    stack.add("blend", &entry);
+    std::uint32_t count = 0;
+    EXPECT_EQ(darkroom_composer_resources(stack.composer, nullptr, &count), DARKROOM_OK);
+    EXPECT_EQ(count, 2u);
+    EXPECT_EQ(darkroom_composer_forget(stack.composer, resource), DARKROOM_OK);
+    EXPECT_EQ(darkroom_composer_resources(stack.composer, nullptr, &count), DARKROOM_OK);
+    EXPECT_EQ(count, 1u);
+}
+
+TEST(CInterface, CustomEffectsAreEffects) {
+    DarkroomCustomEffect custom = nullptr;
+    const char* const text =
+        "// @effect halved: Half the light.\n"
+        "// @param float amount = 0.5 in [0, 1]: What is left.\n"
+        "vec4 halved(vec4 color, Pixel pixel, Halved parameters) { return color * parameters.amount; }\n";
+    ASSERT_EQ(darkroom_custom_effect_parse(text, "halved.glsl", &custom), DARKROOM_OK) << darkroom_error();
+    const CStack stack;
+    DarkroomHandle handle = 0;
+    ASSERT_EQ(darkroom_composer_add_effect(stack.composer, darkroom_custom_effect_info(custom), nullptr, &handle),
+              DARKROOM_OK)
+        << darkroom_error();
+    darkroom_custom_effect_destroy(custom);
+    DarkroomEffect effect = nullptr;
+    ASSERT_EQ(darkroom_composer_info(stack.composer, handle, &effect), DARKROOM_OK);
+    auto info = sized<DarkroomEffectInfo>();
+    ASSERT_EQ(darkroom_effect_info(effect, &info), DARKROOM_OK);
+    EXPECT_STREQ(info.name, "halved");
+    EXPECT_NE(stack.plan().find("halved"), std::string::npos);
+    EXPECT_EQ(darkroom_custom_effect_parse("no effect", "x.glsl", &custom), DARKROOM_ERROR_USER);
+    EXPECT_EQ(std::string_view(darkroom_error()).find("darkroom_custom_effect_parse: x.glsl:"), 0u) << darkroom_error();
+}
+
+TEST(CInterface, Looks) {
+    DarkroomLook look = nullptr;
+    std::string warned;
+    auto options = sized<DarkroomLookOptions>();
+    options.warn = [](void* user, const char* text) { *static_cast<std::string*>(user) += text; };
+    options.user = &warned;
+    ASSERT_EQ(darkroom_look_parse("[post_process]\nbloom_intensity = 0.3\nbloom_intensty = 1\n", "a.toml", &options, &look),
+              DARKROOM_OK)
+        << darkroom_error();
+    EXPECT_NE(warned.find("a.toml:3"), std::string::npos) << warned;
+    ASSERT_EQ(darkroom_look_override(look, "exposure", "2"), DARKROOM_OK) << darkroom_error();
+    float exposure = 0;
+    ASSERT_EQ(darkroom_look_exposure(look, &exposure), DARKROOM_OK);
+    EXPECT_EQ(exposure, 2);
+    const CStack stack;
+    ASSERT_EQ(darkroom_look_apply(look, stack.composer, nullptr), DARKROOM_OK) << darkroom_error();
+    DarkroomHandle bloom = 0;
+    EXPECT_EQ(darkroom_composer_find(stack.composer, "bloom", &bloom), DARKROOM_OK);
+
+    DarkroomLook other = nullptr;
+    ASSERT_EQ(darkroom_look_parse(darkroom_look_write(look), "b.toml", nullptr, &other), DARKROOM_OK)
+        << darkroom_error();
+    EXPECT_EQ(std::string(darkroom_look_write(look)), darkroom_look_write(other));
+    VkBool32 needs_compile = VK_TRUE;
+    ASSERT_EQ(darkroom_look_override(other, "bloom_intensity", "0.4"), DARKROOM_OK);
+    ASSERT_EQ(darkroom_look_follow(look, other, stack.composer, nullptr, &needs_compile), DARKROOM_OK);
+    EXPECT_EQ(needs_compile, VK_FALSE);
+    EXPECT_NE(darkroom_look_entry_name(other, 0), nullptr);
+    EXPECT_EQ(darkroom_look_parse("[post_process", "c.toml", nullptr, &look), DARKROOM_ERROR_USER);
+    EXPECT_EQ(std::string_view(darkroom_error()).find("darkroom_look_parse: c.toml:1"), 0u) << darkroom_error();
+    darkroom_look_destroy(look);
+    darkroom_look_destroy(other);
+}
+
+TEST(CInterface, WhatIsThrownIntoItStaysInside) {
+    const auto thrown = [](const auto& error) {
+        return c::call("f", [&]() -> Result<> { throw error; });
+    };
+    expect_error(thrown(std::runtime_error("it broke")), "f: it broke", DARKROOM_ERROR_MACHINE);
+    expect_error(thrown(std::bad_alloc()), "f: out of memory", DARKROOM_ERROR_OUT_OF_MEMORY);
+    EXPECT_EQ(thrown(7), DARKROOM_ERROR_MACHINE);
+}
+
+}  // namespace
+}  // namespace darkroom
