@@ -54,6 +54,15 @@ TEST_F(CliBake, TheSameLookGivesTheSameFileAndMoreLooksOrImagesGiveMore) {
     EXPECT_NE(other.bytes, one.bytes) << "an image that is loaded, and a target that is rasterised";
 }
 
+TEST_F(CliBake, AFolderIsAllItsLooks) {
+    const File both = baked({path("dark.toml")});
+    std::filesystem::create_directory(path("looks"));
+    write("looks/no_look.txt", "");
+    EXPECT_NE(run(bake({path("looks")})).err.find("no .toml is in this folder"), std::string::npos);
+    write("looks/dark.toml", "format = 1\n[[stack]]\neffect = \"exposure\"\nexposure = 0.5\n");
+    EXPECT_EQ(baked({path("looks")}).bytes, both.bytes);
+}
+
 TEST_F(CliBake, EveryImageOfAFrameHasAFlag) {
     write("all.toml", "format = 1\n[post_process]\norder = \"scene_linear\"\nssao_enabled = true\n");
     const Words typed{"bake", path("all.toml"), "-o", path("all.dkb"), "--profile", "software", "--size", "64x64"};

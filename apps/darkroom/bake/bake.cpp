@@ -2,8 +2,10 @@
 // darkroom bake: the kernels of looks as a file, for programs that compile none.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <darkroom/kernel_file.hpp>
+#include <filesystem>
 #include <memory>
 
 #include "apps/darkroom/commands.hpp"
@@ -108,15 +110,42 @@ Result<darkroom::Look> look_of(Options& options, const std::string& file) {
     return look;
 }
 
+/// The files that are named, and those of folders that are, in the order of their names.
+Result<std::vector<std::string>> look_files(const std::vector<std::string>& named) {
+    namespace fs = std::filesystem;
+    constexpr std::size_t most = 4096;
+    std::vector<std::string> out;
+    for (const std::string& name : named) {
+        std::error_code error;
+        if (!fs::is_directory(name, error)) {
+            out.push_back(name);
+            continue;
+        }
+        const std::size_t before = out.size();
+        for (fs::directory_iterator file(name, error), end; !error && file != end; file.increment(error)) {
+            if (file->path().extension() != ".toml") continue;
+            if (out.size() == most)
+                return user_error(fmt::format("{}: allowed are at most {} looks", printable(name), most));
+            out.push_back(file->path().string());
+        }
+        if (error) return darkroom::machine_error(fmt::format("{}: {}", printable(name), error.message()));
+        if (out.size() == before) return user_error(fmt::format("{}: no .toml is in this folder", printable(name)));
+        std::ranges::sort(out.begin() + static_cast<std::ptrdiff_t>(before), out.end());
+    }
+    return out;
+}
+
 Result<> bake(Options& options) {
     const Result<darkroom::DeviceProfile> profile = profile_of(options.profile);
     if (!profile) return failure(profile.error());
+    const Result<std::vector<std::string>> looks = look_files(options.looks);
+    if (!looks) return failure(looks.error());
     const MissingFolders folders = options.makes_folder ? MissingFolders::Made : MissingFolders::Told;
     if (Result<> done = check_folder(std::filesystem::path(options.out).parent_path(), folders); !done) return done;
     Result<darkroom::CompileDesc> desc = desc_of(options);
     if (!desc) return failure(std::move(desc));
     darkroom::KernelFile file;
-    for (const std::string& look_file : options.looks) {
+    for (const std::string& look_file : *looks) {
         const Result<darkroom::Look> look = look_of(options, look_file);
         if (!look) return failure(look.error());
         darkroom::Composer composer(darkroom::Device::assumed(*profile));
@@ -153,7 +182,7 @@ Command add_bake(CommandFlags program, std::span<const darkroom::LookEntry> name
         "darkroom bake my.toml -o kernels.dkb --profile gpu --size 1920x1080 --size 2560x1440\n"
         "darkroom bake my.toml -o kernels.dkb --profile software --target-format B8G8R8A8_SRGB");
     const auto options = std::make_shared<Options>();
-    command.add_option("LOOK", options->looks, "Look files or scenes (TOML)").type_name("LOOK").required();
+    command.add_option("LOOK", options->looks, "Look files or scenes (TOML), and folders of them").type_name("LOOK").required();
     command.add_option("-o,--output,--out", options->out, "The file: .dkb").type_name("OUT").required();
     command.add_flag("--mkdir", options->makes_folder, "Makes the folder of the file where it is not there");
     command.add_option("--profile", options->profile, "The kind of device that will run them")
