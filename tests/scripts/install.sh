@@ -36,6 +36,8 @@ CXXFLAGS=${flags[*]} LDFLAGS=$kept cmake -S "$tree/tests/package" -B "$work/cmak
     -DCMAKE_PREFIX_PATH="$prefix" >"$work/log" || { cat "$work/log" && exit 1; }
 cmake --build "$work/cmake" >"$work/log" || { cat "$work/log" && exit 1; }
 "$work/cmake/package"
+"$work/cmake/package_c"
+[[ -s $work/cmake/package_c.dkb ]] || { echo "darkroom_bake made nothing" && exit 1; }
 [[ ! -x $work/cmake/script ]] || "$work/cmake/script"
 [[ ! -x $work/cmake/hud ]] || "$work/cmake/hud"
 
