@@ -611,8 +611,8 @@ DARKROOM_API DarkroomResult darkroom_composer_set_words(DarkroomComposer compose
 DARKROOM_API DarkroomResult darkroom_composer_set_all(DarkroomComposer composer, DarkroomHandle handle,
                                                       const uint32_t* words, uint32_t count);
 
-/// Finds a parameter once, for the functions below, which take a few nanoseconds. It is good until its entry is removed
-/// or gets another effect, and then an error.
+/// Finds a parameter once, for the functions below, which compare no names. It is good until its entry is removed or
+/// gets another effect, and then an error.
 DARKROOM_API DarkroomResult darkroom_composer_parameter(DarkroomComposer composer, DarkroomHandle handle,
                                                         const char* name, DarkroomParameter* parameter);
 DARKROOM_API DarkroomResult darkroom_composer_set_float(DarkroomComposer composer, DarkroomParameter parameter,

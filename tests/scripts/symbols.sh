@@ -23,7 +23,7 @@ for library in "$@"; do
 
     needed=$(readelf -d --wide "$library" | sed -nE 's/.*\(NEEDED\).*\[(.*)\]/\1/p')
     runtime='libstdc\+\+|libm|libgcc_s|libc|libpthread|libdl|ld-linux[-a-z0-9_]*'
-    others=libdarkroom
+    others=libdarkroom_cpp
     [[ $library == *darkroom_script* ]] && others+='|liblua5\.4'
     foreign=$(grep -vE "^(($runtime|$others)\.so\.[0-9.]+)?\$" <<<"$needed" || true)
     if [[ -n $foreign ]]; then
