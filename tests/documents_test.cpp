@@ -177,5 +177,20 @@ TEST_F(CliDocuments, ThePlanIsTheOneThatIsPrinted) {
         << plan.out;
 }
 
+TEST(Documents, AHostInCIsShort) {
+    std::istringstream lines(test::content(source / "examples/embed.c"));
+    bool is_main = false;
+    std::size_t all = 0, ours = 0;
+    for (std::string line; std::getline(lines, line);) {
+        is_main = is_main || line.starts_with("int main");
+        if (!is_main || line.empty()) continue;
+        ++all;
+        if (line.find("arkroom") != std::string::npos && line.find("//") == std::string::npos) ++ours;
+    }
+    EXPECT_GT(ours, 10u);
+    EXPECT_LE(all, 60u);
+    EXPECT_LE(ours, 30u);
+}
+
 }  // namespace
 }  // namespace darkroom

@@ -8,8 +8,7 @@
 #include <darkroom/effects.hpp>
 #include <limits>
 
-#include "c/call.hpp"
-#include "c/objects.hpp"
+#include "c/frame_of.hpp"
 
 namespace darkroom {
 namespace {
@@ -96,6 +95,122 @@ TEST(CInterface, ZeroIsTheDefaultOfEveryStruct) {
     const auto& table = find_effect("tonemap")->parameters;
     ASSERT_EQ(read.word_count, table.words());
     EXPECT_TRUE(std::equal(read.words, read.words + read.word_count, table.defaults.begin()));
+}
+
+TEST(CInterface, AZeroFrameIsTheDefaultFrame) {
+    const CStack stack;
+    const auto no_image = sized<DarkroomImage>();
+    auto zero = sized<DarkroomFrame>();
+    auto light = sized<DarkroomLight>();
+    const auto camera = sized<DarkroomCamera>();
+    zero.color = &no_image;
+    zero.camera = &camera;
+    zero.lights = &light;
+    zero.light_count = 1;
+    const auto frame = c::frame_of(&zero, *stack.composer);
+    ASSERT_TRUE(frame) << frame.error().text;
+    const Frame wanted;
+    EXPECT_EQ(frame->delta_time, wanted.delta_time);
+    EXPECT_EQ(frame->color.layer_count, wanted.color.layer_count);
+    EXPECT_EQ(frame->color.last_stages, wanted.color.last_stages);
+    EXPECT_EQ(frame->color.last_access, wanted.color.last_access);
+    EXPECT_EQ(frame->color.final_stages, wanted.color.final_stages);
+    EXPECT_EQ(frame->color.final_access, wanted.color.final_access);
+    const Camera& is = frame->camera;
+    EXPECT_EQ(is.view, identity_matrix);
+    EXPECT_EQ(is.previous_projection, identity_matrix);
+    EXPECT_EQ(is.near_distance, wanted.camera.near_distance);
+    EXPECT_EQ(is.far_distance, wanted.camera.far_distance);
+    EXPECT_EQ(is.is_y_down, wanted.camera.is_y_down);
+    EXPECT_EQ(is.velocity, wanted.camera.velocity);
+    EXPECT_EQ(is.jump_distance, wanted.camera.jump_distance);
+    EXPECT_EQ(is.jump_angle, wanted.camera.jump_angle);
+    ASSERT_EQ(frame->lights.size(), 1u);
+    EXPECT_EQ(frame->lights[0].direction, Light{}.direction);
+    EXPECT_EQ(frame->lights[0].color, Light{}.color);
+    EXPECT_EQ(frame->lights[0].world_to_cascade, Light{}.world_to_cascade);
+
+    const auto frames = sized<DarkroomCompileDesc>();
+    const auto desc = c::compile_desc_of(&frames);
+    ASSERT_TRUE(desc) << desc.error().text;
+    EXPECT_EQ(desc->color, CompileDesc{}.color);
+    EXPECT_EQ(desc->target, CompileDesc{}.target);
+    EXPECT_EQ(desc->depth, CompileDesc{}.depth);
+    EXPECT_EQ(desc->views, CompileDesc{}.views);
+    EXPECT_EQ(desc->fuse, CompileDesc{}.fuse);
+    EXPECT_EQ(desc->intermediate, CompileDesc{}.intermediate);
+    EXPECT_FALSE(desc->target_color || desc->target_domain || desc->encodes_target);
+}
+
+TEST(CInterface, WhatAFrameSaysArrives) {
+    const CStack stack;
+    auto image = sized<DarkroomImage>();
+    image.mip_level = 1;
+    image.array_layer = 2;
+    image.layer_count = 3;
+    image.region = {{4, 5}, {6, 7}};
+    image.has_barrier_before = VK_TRUE;
+    image.final_stages = VK_PIPELINE_STAGE_2_COPY_BIT;
+    auto camera = sized<DarkroomCamera>();
+    camera.depth = DARKROOM_DEPTH_REVERSED;
+    camera.is_y_up = camera.is_velocity_y_up = camera.velocity_has_jitter = camera.is_cut = VK_TRUE;
+    camera.velocity_sign = DARKROOM_VELOCITY_CURRENT_MINUS_PREVIOUS;
+    camera.velocity_unit = DARKROOM_VELOCITY_NDC;
+    for (int i = 0; i < 16; ++i) camera.previous_view[i] = static_cast<float>(i);
+    camera.jitter[1] = 0.25f;
+    camera.previous_jitter[0] = 0.125f;
+    // A light of a newer program's, twice.
+    struct {
+        DarkroomLight known;
+        std::uint64_t newer;
+    } lights[2]{};
+    lights[0].known.struct_size = lights[1].known.struct_size = sizeof lights[0];
+    lights[1].known.cascade_count = 2;
+    lights[1].known.splits[1] = 9;
+    lights[1].known.world_to_cascade[16] = 8;
+    lights[1].known.cascades = &image;
+    auto watched = sized<DarkroomWatched>();
+    watched.id = 11;
+    watched.target = &image;
+    auto zero = sized<DarkroomFrame>();
+    zero.view = 3;
+    zero.normals = zero.exposure = &image;
+    zero.camera = &camera;
+    zero.lights = &lights[0].known;
+    zero.light_count = 2;
+    zero.watched = &watched;
+    zero.watched_count = 1;
+    zero.frame_index = 12;
+    zero.time = 13;
+    zero.delta_time = -1;
+    const auto frame = c::frame_of(&zero, *stack.composer);
+    ASSERT_TRUE(frame) << frame.error().text;
+    for (const ImageRef* is : {&frame->normals, &frame->exposure, &frame->lights[1].cascades, &frame->watched[0].target}) {
+        EXPECT_EQ(is->mip_level, 1u);
+        EXPECT_EQ(is->array_layer, 2u);
+        EXPECT_EQ(is->layer_count, 3u);
+        EXPECT_EQ(is->region.offset.y, 5);
+        EXPECT_EQ(is->last_stages, VK_PIPELINE_STAGE_2_NONE);
+        EXPECT_EQ(is->last_access, VK_ACCESS_2_NONE);
+        EXPECT_EQ(is->final_stages, VK_PIPELINE_STAGE_2_COPY_BIT);
+        EXPECT_EQ(is->final_access, VK_ACCESS_2_NONE);
+    }
+    EXPECT_EQ(frame->view, 3u);
+    EXPECT_EQ(frame->frame_index, 12u);
+    EXPECT_EQ(frame->time, 13);
+    EXPECT_EQ(frame->delta_time, -1);
+    EXPECT_EQ(frame->watched[0].id, 11u);
+    EXPECT_EQ(frame->camera.depth, DepthKind::Reversed);
+    EXPECT_FALSE(frame->camera.is_y_down);
+    EXPECT_TRUE(frame->camera.is_cut);
+    EXPECT_EQ(frame->camera.velocity, (VelocityKind{VelocityKind::Sign::CurrentMinusPrevious, VelocityKind::Unit::Ndc,
+                                                    false, true}));
+    EXPECT_EQ(frame->camera.previous_view[5], 5);
+    EXPECT_EQ(frame->camera.jitter[1], 0.25f);
+    EXPECT_EQ(frame->camera.previous_jitter[0], 0.125f);
+    EXPECT_EQ(frame->lights[1].cascade_count, 2u);
+    EXPECT_EQ(frame->lights[1].splits[1], 9);
+    EXPECT_EQ(frame->lights[1].world_to_cascade[1][0], 8);
 }
 
 TEST(CInterface, ValuesByNameTextWordsAndNumber) {
