@@ -122,7 +122,11 @@ DarkroomResult darkroom_composer_parameter(DarkroomComposer composer, DarkroomHa
 }
 
 DarkroomResult darkroom_composer_set_float(DarkroomComposer composer, DarkroomParameter parameter, float value) {
-    return darkroom_composer_set_vector(composer, parameter, &value, 1);
+    return call("darkroom_composer_set_float", [&]() -> Result<> {
+        if (auto ok = needs("composer", composer); !ok) return ok;
+        const auto word = std::bit_cast<std::uint32_t>(value);
+        return composer->composer.set(id_of(parameter), std::span(&word, 1));
+    });
 }
 
 DarkroomResult darkroom_composer_set_int(DarkroomComposer composer, DarkroomParameter parameter, int32_t value) {
