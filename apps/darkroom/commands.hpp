@@ -39,6 +39,7 @@ struct Command {
 /// One for each command below it.
 [[nodiscard]] std::vector<Command> add_farm(CommandFlags program, std::span<const darkroom::LookEntry> named);
 [[nodiscard]] Command add_new(CommandFlags program);
+[[nodiscard]] Command add_api(CommandFlags program);
 [[nodiscard]] Command add_completion(CommandFlags program);
 [[nodiscard]] Command add_man(CommandFlags program);
 /// play and edit.

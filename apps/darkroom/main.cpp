@@ -46,6 +46,7 @@ std::vector<app::Command> add_commands(app::CommandFlags program, std::span<cons
         {{"play", "edit"}, [&] { return app::add_viewer(program, named); }},
 #endif
         {{"new"}, [&] { return Commands{app::add_new(program)}; }},
+        {{"api"}, [&] { return Commands{app::add_api(program)}; }},
         // These tell of all others.
         {{},
          [&] {

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+#include "c_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "c_tokens.hpp"
+#include "core/text/param_text.hpp"
+#include "vulkan_types.hpp"
+
+namespace app {
+
+namespace {
+
+using darkroom::Result;
+using Word = CToken::Kind;
+
+constexpr std::array c_types{"void", "char", "float", "double", "int32_t", "uint32_t", "uint64_t", "size_t"};
+constexpr std::size_t max_stars = 3, max_items = 1000, max_length = 65536;
+
+/// Each function that takes a piece of the text says whether it was there; what was wrong first stays.
+class CParser {
+  public:
+    explicit CParser(std::vector<CToken> tokens) : tokens_(std::move(tokens)) {
+        types_.insert(c_types.begin(), c_types.end());
+        for (const VulkanType& type : vulkan_types()) types_.emplace(type.name);
+    }
+    [[nodiscard]] bool parse() {
+        while (peek().kind != Word::End)
+            if (!declaration()) return false;
+        return doc_.empty() || refuse("expected a declaration behind its documentation");
+    }
+    [[nodiscard]] CHeader header() && { return std::move(header_); }
+    [[nodiscard]] std::size_t line() const { return line_; }
+    [[nodiscard]] const std::string& fault() const { return fault_; }
+
+  private:
+    [[nodiscard]] const CToken& peek(std::size_t ahead = 0) const {
+        return tokens_[std::min(at_ + ahead, tokens_.size() - 1)];
+    }
+    [[nodiscard]] bool refuse(std::string fault) {
+        if (fault_.empty()) {
+            fault_ = std::move(fault);
+            line_ = peek().line;
+        }
+        return false;
+    }
+    [[nodiscard]] bool refuse_word(std::string_view expected) {
+        const CToken& token = peek();
+        return refuse(token.kind == Word::End ? fmt::format("expected {} and not the end", expected)
+                                              : fmt::format("expected {} at '{}'", expected, printable(token)));
+    }
+    static std::string printable(const CToken& token) { return darkroom::printable(token.text); }
+
+    [[nodiscard]] bool is(std::string_view text) const {
+        return (peek().kind == Word::Name || peek().kind == Word::Sign) && peek().text == text;
+    }
+    [[nodiscard]] bool skip(std::string_view text) {
+        if (!is(text)) return false;
+        ++at_;
+        return true;
+    }
+    [[nodiscard]] bool expect(std::string_view text) { return skip(text) || refuse_word(fmt::format("'{}'", text)); }
+    [[nodiscard]] bool name(std::string& to, std::string_view begin = "") {
+        if (peek().kind != Word::Name || !peek().text.starts_with(begin))
+            return refuse_word(begin.empty() ? "a name" : fmt::format("a name that begins with {}", begin));
+        to = peek().text;
+        ++at_;
+        return true;
+    }
+    [[nodiscard]] bool number(std::uint64_t& to, std::uint64_t max) {
+        const std::string& text = peek().text;
+        const char* const end = text.data() + text.size();
+        if (peek().kind != Word::Number || std::from_chars(text.data(), end, to).ptr != end ||
+            std::from_chars(text.data(), end, to).ec != std::errc{} || to > max)
+            return refuse_word(fmt::format("a number up to {}", max));
+        ++at_;
+        return true;
+    }
+    /// Of something new.
+    [[nodiscard]] bool add_name(const std::string& name) {
+        return names_.insert(name).second || refuse(fmt::format("{} is there already", name));
+    }
+    [[nodiscard]] bool add_type(const std::string& name) {
+        types_.insert(name);
+        return add_name(name);
+    }
+    [[nodiscard]] std::string take_doc() { return std::exchange(doc_, {}); }
+    void read_docs() {
+        for (; peek().kind == Word::Doc; ++at_) doc_ += (doc_.empty() ? "" : " ") + peek().text;
+    }
+    /// What stands before a member or behind it.
+    [[nodiscard]] bool member_doc(std::string& to) {
+        to = take_doc();
+        if (peek().kind != Word::DocBehind) return true;
+        if (!to.empty()) return refuse("expected documentation before or behind, and not both");
+        to = peek().text;
+        ++at_;
+        return true;
+    }
+
+    [[nodiscard]] bool declaration() {
+        read_docs();
+        if (peek().kind == Word::Define) return constant();
+        if (skip("DARKROOM_API")) return function();
+        if (!skip("typedef")) return peek().kind == Word::End || refuse_word("typedef, DARKROOM_API or #define");
+        if (is("enum")) return enumeration();
+        if (is("const") || (is("struct") && peek(2).text != "{")) return handle();
+        if (is("struct")) return structure();
+        if (peek(1).text == "(") return callback();
+        return alias();
+    }
+
+    [[nodiscard]] bool constant() {
+        CConstant out{.name = peek().text, .doc = take_doc()};
+        ++at_;
+        if (!number(out.value, std::numeric_limits<std::int64_t>::max()) || !add_name(out.name)) return false;
+        header_.constants.push_back(std::move(out));
+        return true;
+    }
+    /// typedef [const] struct NAMEObject* NAME;
+    [[nodiscard]] bool handle() {
+        CHandle out{.doc = take_doc()};
+        std::string tag;
+        (void)skip("const");
+        if (!expect("struct") || !name(tag) || !expect("*") || !name(out.name, "Darkroom")) return false;
+        if (tag != out.name + "Object") return refuse(fmt::format("expected struct {}Object", out.name));
+        if (!expect(";") || !add_type(out.name)) return false;
+        header_.handles.push_back(std::move(out));
+        return true;
+    }
+    [[nodiscard]] bool alias() {
+        CAlias out{.doc = take_doc()};
+        if (!is("uint64_t") && !is("uint32_t") && !is("int32_t")) return refuse_word("an integer's type");
+        if (!name(out.type) || !name(out.name, "Darkroom") || !expect(";") || !add_type(out.name)) return false;
+        header_.aliases.push_back(std::move(out));
+        return true;
+    }
+    /// typedef enum NAME { VALUE = NUMBER, ... } NAME;
+    [[nodiscard]] bool enumeration() {
+        CEnum out{.doc = take_doc()};
+        if (!expect("enum") || !name(out.name, "Darkroom") || !expect("{")) return false;
+        bool is_last = false;
+        while (!is("}")) {
+            if (is_last) return refuse_word("',' or '}'");
+            read_docs();
+            CConstant value;
+            if (!name(value.name, "DARKROOM_") || !add_name(value.name) || !expect("=") ||
+                !number(value.value, std::numeric_limits<std::int32_t>::max()))
+                return false;
+            is_last = !skip(",");
+            if (!member_doc(value.doc)) return false;
+            out.values.push_back(std::move(value));
+        }
+        if (!check_count(out.values.size(), "values") || !end_of_body(out.name)) return false;
+        header_.enums.push_back(std::move(out));
+        return true;
+    }
+    /// typedef struct NAME { uint32_t struct_size; ... } NAME;
+    [[nodiscard]] bool structure() {
+        CStruct out{.doc = take_doc()};
+        if (!expect("struct") || !name(out.name, "Darkroom") || !expect("{")) return false;
+        if (!is("uint32_t") || peek(1).text != "struct_size") return refuse_word("uint32_t struct_size");
+        while (!is("}")) {
+            read_docs();
+            CVariable member;
+            if (!variable(member, false) || !expect(";") || !member_doc(member.doc)) return false;
+            if (std::ranges::count(out.members, member.name, &CVariable::name) != 0)
+                return refuse(fmt::format("{} is there already", member.name));
+            out.members.push_back(std::move(member));
+        }
+        if (!check_count(out.members.size(), "members") || !end_of_body(out.name)) return false;
+        header_.structs.push_back(std::move(out));
+        return true;
+    }
+    [[nodiscard]] bool check_count(std::size_t count, std::string_view things) {
+        if (count == 0 || count > max_items) return refuse(fmt::format("expected 1 to {} {}", max_items, things));
+        return doc_.empty() || refuse(fmt::format("expected one of the {} behind its documentation", things));
+    }
+    [[nodiscard]] bool end_of_body(const std::string& name) {
+        return expect("}") && expect(name) && expect(";") && add_type(name);
+    }
+    /// typedef RESULT (*NAME)(PARAMETERS);
+    [[nodiscard]] bool callback() {
+        CFunction out{.doc = take_doc()};
+        if (!type(out.result) || !expect("(") || !expect("*") || !name(out.name, "Darkroom") || !expect(")") ||
+            !parameters(out) || !add_type(out.name))
+            return false;
+        header_.callbacks.push_back(std::move(out));
+        return true;
+    }
+    /// RESULT NAME(PARAMETERS);
+    [[nodiscard]] bool function() {
+        CFunction out{.doc = take_doc()};
+        if (!type(out.result) || !name(out.name, "darkroom_") || !parameters(out) || !add_name(out.name)) return false;
+        header_.functions.push_back(std::move(out));
+        return true;
+    }
+    [[nodiscard]] bool parameters(CFunction& out) {
+        if (!expect("(")) return false;
+        if (is("void") && peek(1).text == ")") {
+            ++at_;
+        } else {
+            do {
+                CVariable parameter;
+                if (!variable(parameter, true)) return false;
+                if (out.parameters.size() == max_items) return refuse("these are too many parameters");
+                out.parameters.push_back(std::move(parameter));
+            } while (skip(","));
+        }
+        return expect(")") && expect(";");
+    }
+    /// TYPE NAME or TYPE NAME[LENGTH]
+    [[nodiscard]] bool variable(CVariable& out, bool is_parameter) {
+        if (!type(out.type) || !name(out.name)) return false;
+        const bool is_array = skip("[");
+        if (is_array) {
+            std::uint64_t length = 0;
+            if (!number(length, max_length) || length == 0 || !expect("]"))
+                return refuse(fmt::format("expected a length of 1 to {}", max_length));
+            out.type.length = static_cast<std::uint32_t>(length);
+        }
+        // Of a parameter that is an array, what it points to is const.
+        if (out.type.is_const && out.type.stars.empty() && !(is_parameter && is_array))
+            return refuse("expected no const without a pointer");
+        return !is_void(out.type) || refuse("expected another type than void");
+    }
+    [[nodiscard]] bool type(CType& out) {
+        out.is_const = skip("const");
+        if (!types_.contains(peek().text) || peek().kind != Word::Name)
+            return refuse_word("a type of C, of Vulkan (vulkan_types.cpp) or of the header, declared before,");
+        if (!name(out.name)) return false;
+        while (skip("*")) out.stars.push_back(skip("const"));
+        if (out.stars.size() > max_stars) return refuse(fmt::format("expected at most {} stars", max_stars));
+        return out.stars.empty() || !out.stars.back() || refuse("expected no pointer that is const itself");
+    }
+
+    static bool is_void(const CType& type) { return type.name == "void" && type.stars.empty(); }
+
+    std::vector<CToken> tokens_;
+    std::size_t at_ = 0;
+    std::set<std::string, std::less<>> types_, names_;
+    CHeader header_;
+    std::string doc_, fault_;
+    std::size_t line_ = 0;
+};
+
+}  // namespace
+
+Result<CHeader> parse_c_header(std::string_view text, std::string_view shown) {
+    Result<std::vector<CToken>> tokens = c_tokens(text, shown);
+    if (!tokens) return failure(std::move(tokens));
+    CParser parser(std::move(*tokens));
+    if (!parser.parse()) return c_error(text, shown, parser.line(), parser.fault());
+    return std::move(parser).header();
+}
+
+std::string in_c(const CType& type) {
+    std::string out = (type.is_const ? "const " : "") + type.name;
+    for (const bool is_const : type.stars) out += is_const ? "* const" : "*";
+    return out;
+}
+
+std::string in_c(const CVariable& variable) {
+    const std::string end = variable.type.length != 0 ? fmt::format("[{}]", variable.type.length) : "";
+    return fmt::format("{} {}{}", in_c(variable.type), variable.name, end);
+}
+
+}  // namespace app
