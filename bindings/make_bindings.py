@@ -1,0 +1,34 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""make_bindings.py SOURCE FOLDER [LANGUAGE...]: writes what languages call Darkroom by into a folder, of SOURCE,
+which is the program `darkroom` or a file of what its `api --json` says (docs/bindings.md). Another language is a module
+beside this one with a function write(api) that returns the text."""
+
+import importlib
+import os
+import sys
+
+from api import Api
+
+FILES = {"python": "darkroom_ctypes.py", "rust": "darkroom.rs", "csharp": "Darkroom.cs", "zig": "darkroom.zig",
+         "odin": "darkroom.odin"}
+
+
+def main(arguments):
+    languages = arguments[2:] or list(FILES)
+    if len(arguments) < 2 or not set(languages) <= set(FILES):
+        print(f"usage: make_bindings.py SOURCE FOLDER [{'|'.join(FILES)}...]", file=sys.stderr)
+        return 1
+    api = Api.read(arguments[0])
+    os.makedirs(arguments[1], exist_ok=True)
+    for language in languages:
+        path = os.path.join(arguments[1], FILES[language])
+        # Whole or not at all.
+        with open(path + ".part", "w", encoding="utf-8") as file:
+            file.write(importlib.import_module(language).write(api))
+        os.replace(path + ".part", path)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

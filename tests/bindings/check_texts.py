@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""check_texts.py BINDINGS SOURCE FOLDER: every name that the header declares stands in the file of every language, each
+begins with the version, and those that no test compiles say so."""
+
+import os
+import re
+import sys
+
+sys.path.insert(0, sys.argv[1])
+from api import Api  # noqa: E402
+from make_bindings import FILES  # noqa: E402
+
+UNTESTED = {"zig", "odin"}
+
+
+def names_of(api):
+    names = {row["name"] for rows in (api.constants, api.aliases, api.enums, api.handles) for row in rows}
+    names |= {value["name"] for row in api.enums for value in row["values"]}
+    for struct in api.structs:
+        names |= {struct.name} | {member.name for member in struct.members}
+    for function in api.functions + api.callbacks:
+        names.add(function.name)
+    return names
+
+
+def main():
+    api = Api.read(sys.argv[2])
+    names = names_of(api)
+    faults = [] if len(names) > 400 else [f"{sys.argv[2]} has {len(names)} names only"]
+    for language, file in FILES.items():
+        with open(os.path.join(sys.argv[3], file), encoding="utf-8") as opened:
+            text = opened.read()
+        if not re.match(rf"(//|#) Darkroom {re.escape(api.version)} for ", text):
+            faults.append(f"{file} does not begin with the version")
+        if ("Untested" in "".join(text.splitlines(True)[:6])) != (language in UNTESTED):
+            faults.append(f"{file} says otherwise than is so whether it is tested")
+        # What stands in a comment is not declared, nor what is called.
+        code = re.sub(r"(?m)^\s*(//|#).*$", "", text)
+        if language in UNTESTED:
+            for left, right in ("()", "{}", "[]"):
+                if code.count(left) != code.count(right):
+                    faults.append(f"{file}: {code.count(left)} {left} and {code.count(right)} {right}")
+        words = set(re.findall(r"[A-Za-z_][A-Za-z0-9_]*", code))
+        # An alias is its own type in Python, a list of numbers knows it as one.
+        left_out = {row["name"] for row in api.aliases} if language == "python" else set()
+        faults += [f"{file} has no {name}" for name in sorted(names - left_out - words)]
+    print("\n".join(faults[:40]))
+    return 1 if faults else 0
+
+
+sys.exit(main())
