@@ -48,9 +48,15 @@ endif()
 set(DARKROOM_GENERATED ${CMAKE_BINARY_DIR}/generated)
 
 # Sets `code` to the C++ files of the calling folder and of its rooms, and adds their tests to DARKROOM_TEST_SOURCES: what
-# ends with _test.cpp, test_support*.cpp, and rooms whose name begins with test_.
+# ends with _test.cpp, test_support*.cpp, and rooms whose name begins with test_. What ends with _posix or _windows is
+# for these systems alone.
 function(darkroom_sources code)
   file(GLOB sources CONFIGURE_DEPENDS *.cpp */*.cpp)
+  set(other_system windows)
+  if(WIN32)
+    set(other_system posix)
+  endif()
+  list(FILTER sources EXCLUDE REGEX "_${other_system}(_test)?\\.cpp$")
   set(tests ${sources})
   set(is_test "(_test|/test_support[a-z_]*|/test_[a-z_]+/[a-z_]+)\\.cpp$")
   list(FILTER tests INCLUDE REGEX ${is_test})

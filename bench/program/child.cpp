@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "core/files.hpp"
-#include "core/spawn.hpp"
+#include "core/system/spawn.hpp"
 
 namespace darkroom::bench {
 

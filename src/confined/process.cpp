@@ -17,7 +17,7 @@
 #include "confined/exchange.hpp"
 #include "confined/messages.hpp"
 #include "core/program_module.hpp"
-#include "core/spawn.hpp"
+#include "core/system/spawn.hpp"
 #include "core/text/param_text.hpp"
 
 namespace darkroom {

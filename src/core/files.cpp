@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "core/files.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <cerrno>
-#include <csignal>
-#include <cstring>
+#include <cstdint>
+#include <optional>
 #include <system_error>
-#include <tuple>
 #include <utility>
 
-#include "core/spawn.hpp"
+#include "core/system/file.hpp"
+#include "core/system/watched_files.hpp"
 #include "core/text/param_text.hpp"
 
 namespace darkroom {
@@ -25,135 +19,60 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The temporary files that exist, for a signal handler: a table of fixed size, since a handler may neither allocate nor
-// lock. A file that finds no room, or whose name is too long, is written all the same and left by a signal.
-struct Watched {
-    enum State : int { Free, Changing, Used };
-    std::atomic<int> state{Free};
-    std::array<char, 1024> path{};
-};
-std::array<Watched, 256> watched_files;
-static_assert(std::atomic<int>::is_always_lock_free);
-
-int watch(const fs::path& path) noexcept {
-    const std::string& name = path.native();
-    if (name.size() >= watched_files[0].path.size()) return -1;
-    for (std::size_t i = 0; i < watched_files.size(); ++i) {
-        int free = Watched::Free;
-        if (!watched_files[i].state.compare_exchange_strong(free, Watched::Changing)) continue;
-        std::copy_n(name.c_str(), name.size() + 1, watched_files[i].path.data());
-        watched_files[i].state = Watched::Used;
-        return static_cast<int>(i);
-    }
-    return -1;
+Failure io_error(const fs::path& path, const char* doing, const std::error_code& code) {
+    return machine_error(fmt::format("{}: cannot {}: {}", printable(path.string()), doing, code.message()));
 }
 
-void unwatch(int place) noexcept {
-    if (place >= 0) watched_files[static_cast<std::size_t>(place)].state = Watched::Free;
+Failure read_failure(const std::error_code& code) {
+    return machine_error(fmt::format("cannot read: {}", code.message()));
 }
-
-std::atomic<int> creating{0};
-std::atomic<bool> is_ending{false};
-
-/// While one lives, a file may come to be. The handler waits for it on another thread, so no file appears behind it.
-class Creation {
-  public:
-    Creation() {
-        sigset_t all;
-        ::sigfillset(&all);
-        ::pthread_sigmask(SIG_BLOCK, &all, &before_);
-        ++creating;
-        if (!is_ending) return;
-        --creating;
-        for (;;) ::pause();
-    }
-    Creation(const Creation&) = delete;
-    Creation& operator=(const Creation&) = delete;
-    ~Creation() {
-        --creating;
-        ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-    }
-
-  private:
-    sigset_t before_{};
-};
-
-// Only what a handler may call (signal-safety(7)). A file system that hangs is waited for a second at most. The signal
-// that is raised is blocked until the handler returns.
-void remove_watched(int signal) {
-    is_ending = true;
-    for (int wait = 0; wait < 1000 && creating > 0; ++wait) ::poll(nullptr, 0, 1);
-    for (const Watched& file : watched_files)
-        if (file.state == Watched::Used) ::unlink(file.path.data());
-    if (const int process = process_that_ends_with_us; process > 0) ::kill(process, signal);
-    ::signal(signal, SIG_DFL);
-    ::raise(signal);
-}
-
-struct Descriptor {
-    int number = -1;
-
-    explicit Descriptor(int opened) : number(opened) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (number >= 0) ::close(number);
-    }
-};
-
-Failure io_error(const fs::path& path, const char* doing, int code) {
-    return machine_error(fmt::format("{}: cannot {}: {}", printable(path.string()), doing, std::strerror(code)));
-}
-
-Failure read_failure(int code) { return machine_error(fmt::format("cannot read: {}", std::strerror(code))); }
 
 // A wrong name is the user's to mend; a disk that fails is not.
-Failure open_failure(int code) {
-    if (code == ENOENT) return user_error("there is no such file");
-    const std::string text = fmt::format("cannot open: {}", std::strerror(code));
-    return code == ENOTDIR || code == ENAMETOOLONG ? user_error(text) : machine_error(text);
+Failure open_failure(const std::error_code& code) {
+    if (code == std::errc::no_such_file_or_directory) return user_error("there is no such file");
+    const std::string text = fmt::format("cannot open: {}", code.message());
+    const bool is_name_wrong = code == std::errc::not_a_directory || code == std::errc::filename_too_long;
+    return is_name_wrong ? user_error(text) : machine_error(text);
 }
 
 Failure placed(const fs::path& path, const Error& error) {
     return failure(Error{error.fault, fmt::format("{}: {}", printable(path.string()), error.text)});
 }
 
-Failure open_error(const fs::path& path, int code) { return placed(path, Result<>(open_failure(code)).error()); }
-
-const char* kind_of(mode_t mode) {
-    if (S_ISFIFO(mode)) return "a pipe";
-    if (S_ISSOCK(mode)) return "a socket";
-    return "a device";
+Failure open_error(const fs::path& path, const std::error_code& code) {
+    return placed(path, Result<>(open_failure(code)).error());
 }
 
-Result<> check_regular(mode_t mode) {
-    if (S_ISDIR(mode)) return user_error("is a folder, a file is needed");
-    if (S_ISREG(mode)) return {};
-    return user_error(fmt::format("is no regular file but {}", kind_of(mode)));
+Result<> check_regular(FileKind kind) {
+    switch (kind) {
+        case FileKind::Regular:
+            return {};
+        case FileKind::Folder:
+            return user_error("is a folder, a file is needed");
+        case FileKind::Pipe:
+            return user_error("is no regular file but a pipe");
+        case FileKind::Socket:
+            return user_error("is no regular file but a socket");
+        case FileKind::Device:
+            break;
+    }
+    return user_error("is no regular file but a device");
 }
 
 /// Asked before it is opened, since some devices act when they are, and behind it, since a name may have been given to
-/// another file meanwhile. Without waiting: a pipe would be opened when somebody writes into it.
-Result<int> open_regular(const fs::path& path, struct stat& status) {
-    if (::stat(path.c_str(), &status) != 0) return open_failure(errno);
-    if (auto checked = check_regular(status.st_mode); !checked) return failure(std::move(checked));
-    const int number = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (number < 0) return open_failure(errno);
-    Result<> checked;
-    if (::fstat(number, &status) != 0)
-        checked = read_failure(errno);
-    else
-        checked = check_regular(status.st_mode);
-    if (checked) return number;
-    ::close(number);
-    return failure(std::move(checked));
+/// another file meanwhile.
+Result<> open_regular(const fs::path& path, OpenFile& file, FileFacts& facts) {
+    if (const auto failed = facts_of(path, facts)) return open_failure(failed);
+    if (auto checked = check_regular(facts.kind); !checked) return checked;
+    if (const auto failed = file.open(path, OpenFile::How::Read)) return open_failure(failed);
+    if (const auto failed = file.facts(facts)) return read_failure(failed);
+    return check_regular(facts.kind);
 }
 
 Result<std::vector<std::byte>> read_regular(const fs::path& path, const ReadFileOptions& options) {
-    struct stat status {};
-    const Result<int> opened = open_regular(path, status);
-    if (!opened) return failure(opened.error());
-    const Descriptor file(*opened);
+    OpenFile file;
+    FileFacts facts;
+    if (auto opened = open_regular(path, file, facts); !opened) return failure(std::move(opened));
     const auto most = static_cast<std::size_t>(std::min<std::uintmax_t>(options.max_size, PTRDIFF_MAX));
     const std::size_t room = options.takes_start ? std::max<std::size_t>(most, 16) : PTRDIFF_MAX;
 
@@ -161,44 +80,36 @@ Result<std::vector<std::byte>> read_regular(const fs::path& path, const ReadFile
     std::size_t size = 0;
     bool is_start_checked = !options.check_start;
     for (bool is_end = false; !is_end;) {
-        const ssize_t count = ::read(file.number, content.data() + size, content.size() - size);
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return read_failure(errno);
+        std::size_t count = 0;
+        if (const auto failed = file.read(std::span(content).subspan(size), count)) return read_failure(failed);
         is_end = count == 0;
-        size += static_cast<std::size_t>(count);
+        size += count;
         if (!is_end && size < content.size()) continue;
         if (!is_start_checked) {
             is_start_checked = true;
             if (Result<> checked = options.check_start({content.data(), size}); !checked)
                 return failure(std::move(checked));
         }
-        const auto known = std::max<std::uintmax_t>(size, static_cast<std::uintmax_t>(status.st_size));
+        const auto known = std::max<std::uintmax_t>(size, facts.size);
         if (!options.takes_start && known > most)
             return user_error(fmt::format("{} bytes, at most {} are read", known, options.max_size));
         if (size >= room) break;
         // One byte more than the file says it has, so that the usual file ends without another round of growing.
-        if (!is_end) content.resize(std::min(room, std::max(size * 2, static_cast<std::size_t>(status.st_size) + 1)));
+        if (!is_end) content.resize(std::min(room, std::max(size * 2, static_cast<std::size_t>(facts.size) + 1)));
     }
     content.resize(std::min(size, most));
     return content;
 }
 
-Result<> write_all(int descriptor, const fs::path& path, std::span<const std::byte> content) {
-    while (!content.empty()) {
-        const ssize_t count = ::write(descriptor, content.data(), content.size());
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return io_error(path, "write", errno);
-        content = content.subspan(static_cast<std::size_t>(count));
-    }
-    return {};
-}
-
 thread_local std::set<fs::path>* record = nullptr;  // of this thread's ReadRecord
 
-Result<> write_and_close(Descriptor& file, const fs::path& path, std::span<const std::byte> content) {
-    if (auto written = write_all(file.number, path, content); !written) return written;
-    const int descriptor = std::exchange(file.number, -1);
-    if (::close(descriptor) != 0) return io_error(path, "write", errno);
+Result<> write_and_close(OpenFile& file, const fs::path& path, std::span<const std::byte> content,
+                         bool waits_for_disk = false) {
+    std::error_code failed = file.write(content);
+    // Renamed first, the name would stand for an empty file behind a power cut.
+    if (!failed && waits_for_disk) failed = file.reach_disk();
+    if (!failed) failed = file.close();
+    if (failed) return io_error(path, "write", failed);
     return {};
 }
 
@@ -214,43 +125,30 @@ Result<std::vector<std::byte>> read_file(const fs::path& path, const ReadFileOpt
 }
 
 FileStamp stamp_of(const std::filesystem::path& path) {
-    struct stat is {};
-    if (::stat(path.c_str(), &is) != 0) return {};
-    return {static_cast<std::uint64_t>(is.st_size), is.st_mtim.tv_sec, is.st_mtim.tv_nsec, is.st_ino};
+    FileFacts is;
+    if (facts_of(path, is)) return {};
+    return {is.size, is.seconds, is.nanoseconds, is.number};
 }
 
 Result<> write_file(const fs::path& path, std::span<const std::byte> content, bool waits_for_disk) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
+    OpenFile file;
     if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {
-        Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-        if (file.number < 0) return open_error(path, errno);
+        if (const auto failed = file.open(path, OpenFile::How::Write)) return open_error(path, failed);
         return write_and_close(file, path, content);
     }
     auto temporary = AtomicPath::beside(path);
     if (!temporary) return failure(std::move(temporary));
-    Descriptor file(::open(temporary->path().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
-    if (file.number < 0) return open_error(path, errno);
-    if (auto written = write_all(file.number, path, content); !written) return written;
-    // Renamed first, the name would stand for an empty file behind a power cut.
-    if (waits_for_disk && ::fsync(file.number) != 0) return io_error(path, "write", errno);
-    if (auto closed = write_and_close(file, path, {}); !closed) return closed;
+    if (const auto failed = file.open(temporary->path(), OpenFile::How::Truncate)) return open_error(path, failed);
+    if (auto written = write_and_close(file, path, content, waits_for_disk); !written) return written;
     return temporary->commit();
 }
 
-void AtomicPath::remove_on_signals() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        struct sigaction action {};
-        if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
-        action = {};
-        action.sa_handler = remove_watched;
-        ::sigfillset(&action.sa_mask);
-        std::ignore = ::sigaction(signal, &action, nullptr);
-    }
-}
+void AtomicPath::remove_on_signals() { remove_watched_files_on_signals(); }
 
 AtomicPath::AtomicPath(fs::path target, fs::path temporary)
-    : target_(std::move(target)), temporary_(std::move(temporary)), watched_(watch(temporary_)) {}
+    : target_(std::move(target)), temporary_(std::move(temporary)), watched_(watch_file(temporary_)) {}
 
 AtomicPath::AtomicPath(AtomicPath&& other) noexcept
     : target_(std::move(other.target_)),
@@ -272,13 +170,14 @@ AtomicPath& AtomicPath::operator=(AtomicPath&& other) noexcept {
 AtomicPath::~AtomicPath() { discard(); }
 
 void AtomicPath::discard() noexcept {
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    std::error_code ignored;
+    if (!temporary_.empty()) fs::remove(temporary_, ignored);
     forget();
 }
 
 void AtomicPath::forget() noexcept {
     temporary_.clear();
-    unwatch(std::exchange(watched_, -1));
+    unwatch_file(std::exchange(watched_, -1));
 }
 
 Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
@@ -296,31 +195,39 @@ Result<AtomicPath> AtomicPath::beside(const fs::path& target) {
         if (code) break;
         real = real.parent_path() / to;
     }
-    if (fs::is_symlink(fs::symlink_status(real, code))) return open_error(target, ELOOP);
+    if (fs::is_symlink(fs::symlink_status(real, code)))
+        return open_error(target, std::make_error_code(std::errc::too_many_symbolic_link_levels));
     if (fs::exists(status)) {
         // A rename asks only the folder; a file that its owner protected must stay as well.
-        if (::access(real.c_str(), W_OK) != 0) return open_error(target, errno);
+        if (const auto failed = check_writable(real)) return open_error(target, failed);
     }
 
     static std::atomic<unsigned> counter{0};
     for (int attempt = 0; attempt < 100; ++attempt) {
-        const std::string name = fmt::format(".{}.{}.{}.part{}", real.stem().string().substr(0, 100), ::getpid(),
+        const std::string name = fmt::format(".{}.{}.{}.part{}", real.stem().string().substr(0, 100), process_number(),
                                              counter.fetch_add(1), real.extension().string());
         fs::path temporary = real.parent_path() / name;
-        const Creation creation;
-        const Descriptor file(::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666));
-        if (file.number >= 0) {
-            struct stat existing {};
-            if (::stat(real.c_str(), &existing) == 0) std::ignore = ::fchmod(file.number, existing.st_mode & 07777);
-            return AtomicPath(std::move(real), std::move(temporary));
+        std::error_code failed;
+        std::optional<AtomicPath> made;
+        create_watched([&] {
+            OpenFile file;
+            failed = file.open(temporary, OpenFile::How::Create);
+            if (!failed) made = AtomicPath(std::move(real), std::move(temporary));
+        });
+        if (made) {
+            if (fs::exists(status)) fs::permissions(made->temporary_, status.permissions(), code);
+            return std::move(*made);
         }
-        if (errno != EEXIST) return io_error(target, "create", errno);
+        if (failed != std::errc::file_exists) return io_error(target, "create", failed);
     }
     return machine_error(fmt::format("{}: cannot create: no free temporary name beside it", target.string()));
 }
 
 Result<> AtomicPath::commit() {
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) return io_error(target_, "create", errno);
+    // Of one folder, and over what is there: on Windows, too, where it fails while another process has it open.
+    std::error_code failed;
+    fs::rename(temporary_, target_, failed);
+    if (failed) return io_error(target_, "create", failed);
     forget();
     return {};
 }

@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "core/spawn.hpp"
+#include "core/system/spawn.hpp"
 #include "core/text/param_text.hpp"
 
 extern char** environ;

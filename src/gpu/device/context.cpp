@@ -10,6 +10,7 @@
 
 #include "core/files.hpp"
 #include "core/hash.hpp"
+#include "core/system/folders.hpp"
 #include "gpu/device/assumed_device.hpp"
 #include "gpu/device/device_facts.hpp"
 #include "gpu/kernel/kernel_store.hpp"

@@ -4,14 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
 
-#include "core/folders.hpp"
+#include "core/system/folders.hpp"
 
 namespace darkroom::gpu {
 
@@ -126,12 +123,6 @@ void make_cache_folder(const std::filesystem::path& folder) {
     if (folder.empty() || std::filesystem::exists(folder, error)) return;
     make_cache_folder(folder.parent_path());
     if (std::filesystem::create_directory(folder, error)) keep_others_from_writing(folder);
-}
-
-bool is_of_this_user_alone(const std::filesystem::path& path) {
-    struct stat facts {};
-    const bool is_there = ::stat(path.c_str(), &facts) == 0;
-    return is_there && facts.st_uid == ::geteuid() && (facts.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
 }  // namespace darkroom::gpu

@@ -41,7 +41,5 @@ namespace darkroom::gpu {
 /// Makes it and what it lies in, as far as they are not there: others may write to none of those.
 void make_cache_folder(const std::filesystem::path& folder);
 void keep_others_from_writing(const std::filesystem::path& path);
-/// Does it belong to the user of this process, and may nobody else write to it?
-[[nodiscard]] bool is_of_this_user_alone(const std::filesystem::path& path);
 
 }  // namespace darkroom::gpu

@@ -7,9 +7,11 @@
 
 #include <darkroom/result.hpp>
 
+#include "core/system/module.hpp"
+
 namespace darkroom::gpu {
 
 /// vkGetInstanceProcAddr of the loader, which stays open to the end of the process.
-[[nodiscard]] Result<PFN_vkGetInstanceProcAddr> open_vulkan_loader(const char* library = "libvulkan.so.1");
+[[nodiscard]] Result<PFN_vkGetInstanceProcAddr> open_vulkan_loader(const char* library = vulkan_loader_name);
 
 }  // namespace darkroom::gpu

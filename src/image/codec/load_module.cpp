@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "image/codec/load_module.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include "core/program_module.hpp"
+#include "core/system/module.hpp"
 
 namespace darkroom {
 
 Result<const void*> load_module(const char* file, const char* symbol, const char* library) {
-    void* const module = dlopen(program_module(file).c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (module == nullptr) return machine_error(fmt::format("{} cannot be loaded: {}", library, dlerror()));
+    const Result<void*> module = load_library(program_module(file));
+    if (!module) return machine_error(fmt::format("{} cannot be loaded: {}", library, module.error().text));
     using Get = const void* (*)();
-    const auto get = reinterpret_cast<Get>(dlsym(module, symbol));
-    if (get == nullptr) return machine_error(fmt::format("{} cannot be loaded: {}", library, dlerror()));
+    const auto get = reinterpret_cast<Get>(symbol_of(*module, symbol));
+    if (get == nullptr) return machine_error(fmt::format("{} cannot be loaded: {} has no {}", library, file, symbol));
     return get();
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "core/folders.hpp"
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cstdlib>
+
+#include "core/system/folders.hpp"
 
 namespace darkroom {
 
@@ -14,6 +17,12 @@ std::filesystem::path user_cache_folder() {
         return std::filesystem::path(home) / ".cache" / "darkroom";
     }
     return {};
+}
+
+bool is_of_this_user_alone(const std::filesystem::path& path) {
+    struct stat facts {};
+    const bool is_there = ::stat(path.c_str(), &facts) == 0;
+    return is_there && facts.st_uid == ::geteuid() && (facts.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
 }  // namespace darkroom

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/spawn.hpp"
+#include "core/system/spawn.hpp"
 
 #include <unistd.h>
 
