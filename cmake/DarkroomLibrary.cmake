@@ -6,11 +6,36 @@
 # static. Included after the folders they are made of; installed by cmake/install/library.
 # Two libraries of the same objects, because a C++ interface over the C one would write every class a second time.
 
+# Of the library's symbols the host sees those that the version script lets through. On Windows the functions of C are
+# marked in their header, and those of C++ are listed from the objects of its PARTS.
+function(darkroom_export_own_symbols name map)
+  if(WIN32)
+    if(map STREQUAL darkroom_c.map)
+      return()
+    endif()
+    list(TRANSFORM ARGN REPLACE "(.+)" "$<FILTER:$<TARGET_OBJECTS:darkroom_\\1>,EXCLUDE,[.][gp]ch$>" OUTPUT_VARIABLE objects)
+    set(list ${CMAKE_BINARY_DIR}/${name}.objects)
+    set(exports ${CMAKE_BINARY_DIR}/${name}.def)
+    file(GENERATE OUTPUT ${list} CONTENT "$<JOIN:${objects},\n>\n")
+    set(script ${PROJECT_SOURCE_DIR}/cmake/DarkroomExports.cmake)
+    add_custom_command(OUTPUT ${exports} DEPENDS ${objects} ${list} ${script} VERBATIM
+      COMMENT "Listing what ${name} exports"
+      COMMAND ${CMAKE_COMMAND} -DNM=${CMAKE_NM} -DOBJECTS=${list} -DOUTPUT=${exports} -P ${script})
+    target_sources(${name} PRIVATE ${exports})
+    return()
+  endif()
+  set_target_properties(${name} PROPERTIES LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/${map})
+  target_link_options(${name} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/${map})
+  if(NOT DARKROOM_SANITIZE)
+    # A library that is used here and not named would be a surprise for the host.
+    target_link_options(${name} PRIVATE LINKER:-z,defs)
+  endif()
+endfunction()
+
 # Objects, not archives: all of a folder goes in, and what it links comes from the folder's own target. The names of
 # this project are dropped from that list, their objects are already there.
 function(darkroom_shared_library name)
   cmake_parse_arguments(PARSE_ARGV 1 library "" "OUTPUT;EXPORT;MAP" "PARTS")
-  set(map ${PROJECT_SOURCE_DIR}/cmake/${library_MAP})
   add_library(${name} SHARED)
   foreach(part ${library_PARTS})
     target_sources(${name} PRIVATE $<TARGET_OBJECTS:darkroom_${part}>)
@@ -18,13 +43,8 @@ function(darkroom_shared_library name)
       "$<FILTER:$<TARGET_PROPERTY:darkroom_${part},LINK_LIBRARIES>,EXCLUDE,^darkroom_(core|glsl|no_glsl|gpu|graph|plan|compose|effects|custom|toml|tables|looks|script|confined|hud|c)$>")
   endforeach()
   set_target_properties(${name} PROPERTIES OUTPUT_NAME ${library_OUTPUT} EXPORT_NAME ${library_EXPORT}
-    LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-    LINK_DEPENDS ${map})
-  target_link_options(${name} PRIVATE LINKER:--version-script=${map})
-  if(NOT DARKROOM_SANITIZE)
-    # A library that is used here and not named would be a surprise for the host.
-    target_link_options(${name} PRIVATE LINKER:-z,defs)
-  endif()
+    LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  darkroom_export_own_symbols(${name} ${library_MAP} ${library_PARTS})
   target_include_directories(${name} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
     $<BUILD_INTERFACE:${DARKROOM_GENERATED}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   if(NOT library_EXPORT STREQUAL c)

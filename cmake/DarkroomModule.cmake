@@ -30,6 +30,10 @@ target_compile_options(darkroom_options INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GN
 # Without -fno-trapping-math and -fno-math-errno the CPU references stay scalar; neither changes a result.
 target_compile_options(darkroom_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -Wno-missing-field-initializers -fno-trapping-math -fno-math-errno)
+if(WIN32)
+  # Windows 10, whose header is to leave the names min and max alone.
+  target_compile_definitions(darkroom_options INTERFACE NOMINMAX WIN32_LEAN_AND_MEAN _WIN32_WINNT=0x0A00)
+endif()
 if(DARKROOM_SANITIZE STREQUAL thread)
   target_compile_options(darkroom_options INTERFACE -fsanitize=thread)
   target_link_options(darkroom_options INTERFACE -fsanitize=thread)
@@ -75,6 +79,23 @@ function(darkroom_compile_by_room target)
     set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${room})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# A program that is run while the tree is built, from one file: for the system that builds, whatever it builds for. Sets
+# `command` to what runs it, and a custom command depends on.
+function(darkroom_build_program command name source)
+  if(NOT CMAKE_CROSSCOMPILING)
+    add_executable(${name} ${source})
+    target_link_libraries(${name} PRIVATE darkroom_options)
+    set(${command} ${name} PARENT_SCOPE)
+    return()
+  endif()
+  find_program(DARKROOM_BUILD_COMPILER NAMES c++ g++ clang++ REQUIRED)
+  set(program ${CMAKE_BINARY_DIR}/build_programs/${name})
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/build_programs)
+  add_custom_command(OUTPUT ${program} DEPENDS ${source} VERBATIM
+    COMMAND ${DARKROOM_BUILD_COMPILER} -std=c++20 -O2 -o ${program} ${source})
+  set(${command} ${program} PARENT_SCOPE)
 endfunction()
 
 function(darkroom_module name)
