@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Darkroom inside a host that owns Vulkan: the host makes its instance, device, images and command buffer the ordinary
 // way, draws an HDR picture, lets Darkroom record its stack between commands of its own, and saves the result.
-//     embed [PICTURE.ppm]
+//     embed [PICTURE.ppm [KERNELS.dkb]]
+// The second file holds the kernels of the stack, from `darkroom bake`; without it the library compiles them.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -170,6 +172,18 @@ void draw_scene(VkCommandBuffer commands, const Image& hdr) {
     vkCmdEndRendering(commands);
 }
 
+std::vector<std::byte> load(const char* path) {
+    std::vector<std::byte> content;
+    std::FILE* const file = std::fopen(path, "rb");
+    if (file == nullptr) {
+        std::fprintf(stderr, "embed: %s cannot be read\n", path);
+        std::exit(2);
+    }
+    for (int byte = std::fgetc(file); byte != EOF; byte = std::fgetc(file)) content.push_back(std::byte(byte));
+    std::fclose(file);
+    return content;
+}
+
 void save(const char* path, const std::uint8_t* rgba) {
     std::FILE* const file = std::fopen(path, "wb");
     if (file == nullptr) {
@@ -184,6 +198,7 @@ void save(const char* path, const std::uint8_t* rgba) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    const std::vector<std::byte> kernels = argc > 2 ? load(argv[2]) : std::vector<std::byte>();
     Host host;
     create_device(host);
     const Image hdr = create_image(host, VK_FORMAT_R16G16B16A16_SFLOAT,
@@ -220,7 +235,8 @@ int main(int argc, char** argv) {
                                                                  .device = host.device,
                                                                  .queue_family = host.family,
                                                                  .enabled_features = &host.features,
-                                                                 .get_proc = vkGetInstanceProcAddr}));
+                                                                 .get_proc = vkGetInstanceProcAddr,
+                                                                 .kernels = kernels}));
         darkroom::Composer composer(device, {.frames_in_flight = 1});
         composer.add(darkroom::Bloom{.intensity = 0.08f});
         composer.add(darkroom::Exposure{.exposure = 1.5f});

@@ -115,7 +115,7 @@ Device SmallestDevice::adopted() const {
         .enabled_instance_extensions = std::span(extensions).first(host.traits.has_debug_labels),
         .get_proc = instance_proc,
         .log = host.log,
-        .cache_folder = host.cache_folder,
+        .cache_folder = host.cache_folder.string(),
         .caches_on_disk = !host.cache_folder.empty(),
     }));
     Context& context = device.context();
