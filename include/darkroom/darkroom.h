@@ -84,6 +84,7 @@ DARKROOM_API const char* darkroom_error(void);
 // ---------------------------------------------------------------------------------------------------------------------
 // Devices
 
+/// How much a message matters.
 typedef enum DarkroomSeverity {
     DARKROOM_SEVERITY_DEBUG = 0,
     DARKROOM_SEVERITY_INFO = 1,
@@ -99,6 +100,7 @@ typedef enum DarkroomDeviceProfile {
     DARKROOM_DEVICE_PROFILE_SOFTWARE = 1  ///< a driver that runs on the CPU
 } DarkroomDeviceProfile;
 
+/// What darkroom_device_list and darkroom_device_info tell.
 typedef struct DarkroomDeviceInfo {
     uint32_t struct_size;
     uint32_t index;
@@ -111,6 +113,7 @@ typedef struct DarkroomDeviceInfo {
     char reason[512];  ///< why it is not usable
 } DarkroomDeviceInfo;
 
+/// What a headless device is made with.
 typedef struct DarkroomDeviceDesc {
     uint32_t struct_size;
     VkBool32 compiles_only;     ///< for darkroom_composer_statistics alone: null devices are taken too
@@ -151,6 +154,7 @@ typedef struct DarkroomMemory {
 /// Fills in a piece of memory. Called by whoever compiles, edits or destroys, from several threads where several do.
 typedef VkResult (*DarkroomAllocate)(void* user, VkDevice device, const DarkroomMemoryRequest* request,
                                      DarkroomMemory* memory);
+/// Takes a piece of memory back.
 typedef void (*DarkroomFree)(void* user, VkDevice device, const DarkroomMemory* memory);
 
 /// A device that the host has made. Vulkan cannot be asked what was enabled, so the host says it.
@@ -191,6 +195,7 @@ DARKROOM_API DarkroomResult darkroom_device_assumed(DarkroomDeviceProfile profil
 DARKROOM_API DarkroomResult darkroom_device_adopt(const DarkroomAdoptDesc* desc, DarkroomDevice* device);
 /// Composers of the device share what they need of it: it may go first.
 DARKROOM_API void darkroom_device_destroy(DarkroomDevice device);
+/// What the device is.
 DARKROOM_API DarkroomResult darkroom_device_info(DarkroomDevice device, DarkroomDeviceInfo* info);
 /// Messages of the validation layer so far.
 DARKROOM_API DarkroomResult darkroom_device_validation_messages(DarkroomDevice device, uint64_t* count);
@@ -198,6 +203,7 @@ DARKROOM_API DarkroomResult darkroom_device_validation_messages(DarkroomDevice d
 // ---------------------------------------------------------------------------------------------------------------------
 // Effects
 
+/// What a parameter is made of.
 typedef enum DarkroomKind {
     DARKROOM_KIND_FLOAT = 0,
     DARKROOM_KIND_INT = 1,
@@ -211,6 +217,7 @@ typedef enum DarkroomKind {
     DARKROOM_KIND_RESOURCE = 9  ///< the number of a table or picture that was defined; 0: none
 } DarkroomKind;
 
+/// What darkroom_effect_info tells.
 typedef struct DarkroomEffectInfo {
     uint32_t struct_size;
     uint32_t parameter_count;
@@ -223,6 +230,7 @@ typedef struct DarkroomEffectInfo {
     const char* page;      ///< its page, in Markdown; empty for those of a file
 } DarkroomEffectInfo;
 
+/// What darkroom_effect_parameter tells.
 typedef struct DarkroomParameterInfo {
     uint32_t struct_size;
     DarkroomKind kind;
@@ -247,7 +255,9 @@ DARKROOM_API uint32_t darkroom_effect_count(void);
 DARKROOM_API DarkroomEffect darkroom_effect_at(uint32_t index);
 /// Null: there is none of that name.
 DARKROOM_API DarkroomEffect darkroom_effect_find(const char* name);
+/// What the effect is.
 DARKROOM_API DarkroomResult darkroom_effect_info(DarkroomEffect effect, DarkroomEffectInfo* info);
+/// One of its parameters, in the order of DarkroomEffectInfo::parameter_count.
 DARKROOM_API DarkroomResult darkroom_effect_parameter(DarkroomEffect effect, uint32_t index,
                                                       DarkroomParameterInfo* info);
 
@@ -256,6 +266,7 @@ DARKROOM_API DarkroomResult darkroom_custom_effect_load(const char* file, Darkro
 /// `shown_name` stands for the file in errors.
 DARKROOM_API DarkroomResult darkroom_custom_effect_parse(const char* text, const char* shown_name,
                                                          DarkroomCustomEffect* custom);
+/// Composers that hold the effect keep what they need of it.
 DARKROOM_API void darkroom_custom_effect_destroy(DarkroomCustomEffect custom);
 /// Null: `custom` is.
 DARKROOM_API DarkroomEffect darkroom_custom_effect_info(DarkroomCustomEffect custom);
@@ -269,11 +280,13 @@ typedef enum DarkroomDomain {
     DARKROOM_DOMAIN_DISPLAY_LINEAR = 1,
     DARKROOM_DOMAIN_ENCODED = 2
 } DarkroomDomain;
+/// All with a white of D65.
 typedef enum DarkroomPrimaries {
     DARKROOM_PRIMARIES_REC709 = 0,
     DARKROOM_PRIMARIES_REC2020 = 1,
     DARKROOM_PRIMARIES_P3 = 2
 } DarkroomPrimaries;
+/// From light to numbers.
 typedef enum DarkroomTransfer {
     DARKROOM_TRANSFER_LINEAR = 0,
     DARKROOM_TRANSFER_SRGB = 1,
@@ -316,15 +329,18 @@ typedef struct DarkroomImage {
     VkBool32 has_barrier_after;   ///< the host places one
 } DarkroomImage;
 
+/// What the numbers of a depth image mean.
 typedef enum DarkroomDepthKind {
     DARKROOM_DEPTH_STANDARD = 0,  ///< device depth, 0 near .. 1 far
     DARKROOM_DEPTH_REVERSED = 1,  ///< device depth, 1 near .. 0 far
     DARKROOM_DEPTH_PLANAR = 2     ///< distance along the view axis, in scene units; 1e9 and more is sky
 } DarkroomDepthKind;
+/// Of the vectors in a velocity image.
 typedef enum DarkroomVelocitySign {
     DARKROOM_VELOCITY_PREVIOUS_MINUS_CURRENT = 0,
     DARKROOM_VELOCITY_CURRENT_MINUS_PREVIOUS = 1
 } DarkroomVelocitySign;
+/// What they are measured in.
 typedef enum DarkroomVelocityUnit {
     DARKROOM_VELOCITY_PIXELS = 0,
     DARKROOM_VELOCITY_UV = 1,  ///< the picture is 1 wide and 1 high
@@ -404,6 +420,7 @@ typedef struct DarkroomImageUse {
     VkImageUsageFlags usage;  ///< 0: SAMPLED; of a target COLOR_ATTACHMENT
 } DarkroomImageUse;
 
+/// A picture of a plan that frames may look at: darkroom/watch.hpp.
 typedef struct DarkroomWatch {
     uint32_t struct_size;
     uint32_t id;           ///< what frames and answers call it
@@ -421,11 +438,13 @@ typedef enum DarkroomWatchState {
     DARKROOM_WATCH_SHOWN = 4
 } DarkroomWatchState;
 
+/// Which shader stage runs the kernels; both give the same picture.
 typedef enum DarkroomKernelStage {
     DARKROOM_KERNEL_STAGE_AUTO = 0,
     DARKROOM_KERNEL_STAGE_COMPUTE = 1,
     DARKROOM_KERNEL_STAGE_RASTER = 2
 } DarkroomKernelStage;
+/// A choice that the library makes, or the host.
 typedef enum DarkroomChoice {
     DARKROOM_CHOICE_AUTO = 0,
     DARKROOM_CHOICE_NO = 1,
@@ -464,6 +483,7 @@ typedef struct DarkroomCompileDesc {
 // ---------------------------------------------------------------------------------------------------------------------
 // The composer: its stack
 
+/// How one picture goes over another.
 typedef enum DarkroomBlendMode {
     DARKROOM_BLEND_MIX = 0,
     DARKROOM_BLEND_ADD = 1,
@@ -496,6 +516,7 @@ typedef struct DarkroomEntryDesc {
     uint32_t word_count;
 } DarkroomEntryDesc;
 
+/// What a composer is made with.
 typedef struct DarkroomComposerDesc {
     uint32_t struct_size;
     uint32_t frames_in_flight;  ///< 0: 2
@@ -521,6 +542,7 @@ DARKROOM_API void darkroom_jittered(const float projection[16], const float jitt
 /// Appends an effect. `desc` and `handle` may be null.
 DARKROOM_API DarkroomResult darkroom_composer_add(DarkroomComposer composer, const char* effect,
                                                   const DarkroomEntryDesc* desc, DarkroomHandle* handle);
+/// The same for an effect that was found, or is of a file.
 DARKROOM_API DarkroomResult darkroom_composer_add_effect(DarkroomComposer composer, DarkroomEffect effect,
                                                          const DarkroomEntryDesc* desc, DarkroomHandle* handle);
 /// Puts an effect in front of an entry.
@@ -538,6 +560,7 @@ DARKROOM_API DarkroomResult darkroom_composer_replace(DarkroomComposer composer,
 /// Wires an entry anew: all of `desc` but whether it is on, and its words. Needs a compile.
 DARKROOM_API DarkroomResult darkroom_composer_rewire(DarkroomComposer composer, DarkroomHandle handle,
                                                      const DarkroomEntryDesc* desc);
+/// Takes all entries out.
 DARKROOM_API DarkroomResult darkroom_composer_clear(DarkroomComposer composer);
 
 /// A table of colours: a 1D one (a shaper), a 3D one (a cube), or the first before the second.
@@ -562,6 +585,7 @@ typedef struct DarkroomPicture {
 /// For parameters of kind DARKROOM_KIND_RESOURCE, and by darkroom_composer_picture_of as an input. The data is copied.
 DARKROOM_API DarkroomResult darkroom_composer_define_table(DarkroomComposer composer, const DarkroomTable* table,
                                                            uint32_t* resource);
+/// The same for a picture.
 DARKROOM_API DarkroomResult darkroom_composer_define_picture(DarkroomComposer composer, const DarkroomPicture* picture,
                                                              uint32_t* resource);
 /// Frees it with the last plan that was compiled with it.
@@ -576,11 +600,13 @@ DARKROOM_API DarkroomHandle darkroom_handle_previous(DarkroomHandle handle);
 
 /// By an entry's name.
 DARKROOM_API DarkroomResult darkroom_composer_find(DarkroomComposer composer, const char* name, DarkroomHandle* handle);
+/// How many entries the stack has.
 DARKROOM_API DarkroomResult darkroom_composer_size(DarkroomComposer composer, uint32_t* count);
 /// The entry at a place of the stack, from 0.
 DARKROOM_API DarkroomResult darkroom_composer_entry(DarkroomComposer composer, uint32_t index, DarkroomHandle* handle);
 /// Does the handle name an entry of this stack?
 DARKROOM_API DarkroomResult darkroom_composer_check(DarkroomComposer composer, DarkroomHandle handle);
+/// The entry's effect.
 DARKROOM_API DarkroomResult darkroom_composer_info(DarkroomComposer composer, DarkroomHandle handle,
                                                    DarkroomEffect* effect);
 /// What the entry has beside its effect's parameters, and their base values. Texts and words are valid until the stack
@@ -594,8 +620,10 @@ DARKROOM_API DarkroomResult darkroom_composer_words(DarkroomComposer composer, D
 // ---------------------------------------------------------------------------------------------------------------------
 // The composer: values. The next record sees them; nothing is compiled on the calling thread.
 
+/// Switches an entry on or off.
 DARKROOM_API DarkroomResult darkroom_composer_set_enabled(DarkroomComposer composer, DarkroomHandle handle,
                                                           VkBool32 is_enabled);
+/// [0, 1]. Of an entry that was compiled with 1 and has passes of its own, 0 and 1 alone.
 DARKROOM_API DarkroomResult darkroom_composer_set_opacity(DarkroomComposer composer, DarkroomHandle handle,
                                                           float opacity);
 /// A parameter of one number, a toggle (0 or 1), or a choice (its place). Out of range is refused with the interval.
@@ -615,6 +643,7 @@ DARKROOM_API DarkroomResult darkroom_composer_set_all(DarkroomComposer composer,
 /// gets another effect, and then an error.
 DARKROOM_API DarkroomResult darkroom_composer_parameter(DarkroomComposer composer, DarkroomHandle handle,
                                                         const char* name, DarkroomParameter* parameter);
+/// A number.
 DARKROOM_API DarkroomResult darkroom_composer_set_float(DarkroomComposer composer, DarkroomParameter parameter,
                                                         float value);
 /// An integer, a toggle or a choice.
@@ -628,6 +657,7 @@ DARKROOM_API DarkroomResult darkroom_composer_set_vector(DarkroomComposer compos
 DARKROOM_API DarkroomResult darkroom_composer_set_override(DarkroomComposer composer, DarkroomHandle handle,
                                                            const char* parameter, const char* owner,
                                                            const uint32_t* words, uint32_t count);
+/// Takes back what this owner has set.
 DARKROOM_API DarkroomResult darkroom_composer_drop_overrides(DarkroomComposer composer, const char* owner);
 /// The values at the time and from the camera of the last record; `count` as in darkroom_composer_words.
 DARKROOM_API DarkroomResult darkroom_composer_current(DarkroomComposer composer, DarkroomHandle handle, uint32_t* words,
@@ -640,6 +670,7 @@ DARKROOM_API DarkroomResult darkroom_composer_values_at(DarkroomComposer compose
 /// picture of an unbroken one. `delta_time`: seconds between frames; 0: 1/60.
 DARKROOM_API DarkroomResult darkroom_composer_pre_roll(DarkroomComposer composer, double delta_time, uint32_t* frames);
 
+/// How a pulse dies down: darkroom/modulation.hpp.
 typedef enum DarkroomEnvelope {
     DARKROOM_ENVELOPE_LINEAR = 0,
     DARKROOM_ENVELOPE_EXPONENTIAL = 1,
@@ -658,6 +689,7 @@ typedef struct DarkroomPulseDesc {
     float amount[4];        ///< added to each of its numbers, where the envelope is 1
     double duration;        ///< seconds; 0: 0.3
 } DarkroomPulseDesc;
+/// One value of a layer.
 typedef struct DarkroomLayerValue {
     uint32_t struct_size;
     uint32_t word_count;
@@ -677,17 +709,22 @@ typedef struct DarkroomLayerDesc {
     float far_distance;
     float point[3];  ///< of the world
 } DarkroomLayerDesc;
+/// Errors: an entry or parameter that is not there, or is not made of numbers; a duration that is not above 0.
 DARKROOM_API DarkroomResult darkroom_composer_add_pulse(DarkroomComposer composer, const DarkroomPulseDesc* desc);
 /// Starts all pulses of this event anew at `time`, seconds; null: with the next record. `count`, which may be null: how
 /// many there are.
 DARKROOM_API DarkroomResult darkroom_composer_fire(DarkroomComposer composer, const char* event, const double* time,
                                                    uint32_t* count);
+/// Layers are blended in the order they were added. Errors: a name that another layer has, no values, one out of range.
 DARKROOM_API DarkroomResult darkroom_composer_add_layer(DarkroomComposer composer, const DarkroomLayerDesc* desc);
+/// From 0, where the layer changes nothing, to 1, where its values replace the base's.
 DARKROOM_API DarkroomResult darkroom_composer_set_layer_weight(DarkroomComposer composer, const char* name,
                                                                float weight);
 /// Null: there are fewer layers, or no composer.
 DARKROOM_API const char* darkroom_composer_layer_name(DarkroomComposer composer, uint32_t index);
+/// Removes all of them.
 DARKROOM_API DarkroomResult darkroom_composer_remove_pulses(DarkroomComposer composer);
+/// A name that no layer has changes nothing.
 DARKROOM_API DarkroomResult darkroom_composer_remove_layer(DarkroomComposer composer, const char* name);
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -724,7 +761,9 @@ DARKROOM_API const char* darkroom_plan_text(DarkroomPlan plan);
 DARKROOM_API const char* darkroom_plan_json(DarkroomPlan plan);
 /// Of all passes, each input texel counted once.
 DARKROOM_API uint64_t darkroom_plan_bytes_read(DarkroomPlan plan);
+/// Of all passes.
 DARKROOM_API uint64_t darkroom_plan_bytes_written(DarkroomPlan plan);
+/// Composers do not need it.
 DARKROOM_API void darkroom_plan_destroy(DarkroomPlan plan);
 
 /// Records the whole stack. Allocates nothing, waits for nothing, submits nothing. Errors record nothing.
@@ -732,10 +771,12 @@ DARKROOM_API DarkroomResult darkroom_composer_record(DarkroomComposer composer, 
                                                      const DarkroomFrame* frame);
 /// The last recording will not be submitted: what it did to histories and the ring of frames is taken back.
 DARKROOM_API DarkroomResult darkroom_composer_abandon(DarkroomComposer composer);
+/// Of a watch, by DarkroomWatch::id.
 DARKROOM_API DarkroomResult darkroom_composer_watch_state(DarkroomComposer composer, uint32_t id,
                                                           DarkroomWatchState* state);
 /// Waits for kernels that are being built for the present toggles. For headless work, not for frame loops.
 DARKROOM_API DarkroomResult darkroom_composer_wait_for_kernels(DarkroomComposer composer);
+/// GPU time of one pass.
 typedef struct DarkroomPassTime {
     uint32_t struct_size;
     const char* name;
@@ -759,7 +800,9 @@ DARKROOM_API DarkroomResult darkroom_composer_rebind(DarkroomComposer composer, 
 // ---------------------------------------------------------------------------------------------------------------------
 // Kernels made ahead of time: darkroom/kernel_file.hpp
 
+/// An empty file.
 DARKROOM_API DarkroomResult darkroom_kernel_file_create(DarkroomKernelFile* file);
+/// What bytes it gave goes with it.
 DARKROOM_API void darkroom_kernel_file_destroy(DarkroomKernelFile file);
 /// What this stack asks for in frames of `desc`. The composer is on a device of darkroom_device_assumed.
 DARKROOM_API DarkroomResult darkroom_kernel_file_add(DarkroomKernelFile file, DarkroomComposer composer,
@@ -772,6 +815,7 @@ DARKROOM_API DarkroomResult darkroom_kernel_file_bytes(DarkroomKernelFile file, 
 // ---------------------------------------------------------------------------------------------------------------------
 // Looks: darkroom/look.hpp. DARKROOM_ERROR_UNSUPPORTED where the library was built without them.
 
+/// The two shipped orders of the flat table.
 typedef enum DarkroomLookOrder {
     DARKROOM_LOOK_ORDER_DOCUMENTED = 0,
     DARKROOM_LOOK_ORDER_SCENE_LINEAR = 1
@@ -789,6 +833,7 @@ typedef DarkroomResult (*DarkroomLoadResource)(void* user, const char* path, Dar
 /// Takes a warning: "file:line:column: ..." of what was passed over.
 typedef void (*DarkroomWarn)(void* user, const char* text);
 
+/// How a look is read.
 typedef struct DarkroomLookOptions {
     uint32_t struct_size;
     VkBool32 is_strict;              ///< unknown keys and values out of range are errors, not warnings
@@ -808,8 +853,10 @@ DARKROOM_API DarkroomResult darkroom_look_default_of_traced_light(DarkroomLook* 
 /// Errors are "shown_name:line:column: thing, value, what is allowed, nearest name". `options` may be null.
 DARKROOM_API DarkroomResult darkroom_look_parse(const char* text, const char* shown_name,
                                                 const DarkroomLookOptions* options, DarkroomLook* look);
+/// The same of a file.
 DARKROOM_API DarkroomResult darkroom_look_read(const char* path, const DarkroomLookOptions* options,
                                                DarkroomLook* look);
+/// Composers that it was applied to do not need it.
 DARKROOM_API void darkroom_look_destroy(DarkroomLook look);
 /// As a file that reads back as the same look. Null: there is no look.
 DARKROOM_API const char* darkroom_look_write(DarkroomLook look);
@@ -833,6 +880,7 @@ DARKROOM_API DarkroomResult darkroom_look_place_custom(DarkroomLook look, const 
 /// The name of each entry, in order. Null: there are fewer.
 DARKROOM_API const char* darkroom_look_entry_name(DarkroomLook look, uint32_t index);
 
+/// What gets a place in the stack.
 typedef struct DarkroomApplyOptions {
     uint32_t struct_size;
     VkBool32 keeps_what_is_off;  ///< gives effects of the flat table that are off their place
@@ -855,6 +903,7 @@ DARKROOM_API void darkroom_hud_inertia_destroy(DarkroomHudInertia inertia);
 /// `yaw`: degrees; `velocity_z`: of the player, upward. `offset`: in uv.
 DARKROOM_API DarkroomResult darkroom_hud_inertia_step(DarkroomHudInertia inertia, double delta_time, double yaw,
                                                       VkBool32 is_on_ground, double velocity_z, float offset[2]);
+/// Of the last step.
 DARKROOM_API DarkroomResult darkroom_hud_inertia_offset(DarkroomHudInertia inertia, float offset[2]);
 /// At rest, and without a frame before.
 DARKROOM_API DarkroomResult darkroom_hud_inertia_reset(DarkroomHudInertia inertia);
