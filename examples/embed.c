@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Darkroom inside a host in C: the host makes its instance, device, images and command buffer the ordinary way, draws an
 // HDR picture, lets Darkroom record its stack between commands of its own, and saves the result. main() is at the end.
-//     embed_c [PICTURE.ppm]
+//     embed_c [PICTURE.ppm [KERNELS.dkb]]
+// The second file holds the kernels of the stack, from `darkroom bake`; without it the library compiles them.
 
 #include <darkroom/darkroom.h>
 #include <stdio.h>
@@ -204,6 +205,21 @@ static void submit(const Host* host, Output output, Image target) {
     check(vkQueueWaitIdle(host->queue), "vkQueueWaitIdle");
 }
 
+static void* load(const char* path, size_t* size) {
+    FILE* const file = fopen(path, "rb");
+    if (file == NULL) {
+        fprintf(stderr, "embed_c: %s cannot be read\n", path);
+        exit(2);
+    }
+    fseek(file, 0, SEEK_END);
+    *size = (size_t)ftell(file);
+    rewind(file);
+    void* const content = malloc(*size);
+    if (content == NULL || fread(content, 1, *size, file) != *size) exit(2);
+    fclose(file);
+    return content;
+}
+
 static void save(const Host* host, Output output, const char* path) {
     void* mapped = NULL;
     check(vkMapMemory(host->device, output.memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
@@ -241,12 +257,17 @@ int main(int argc, char** argv) {
         create_image(&host, target_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
     const Output output = create_output(&host);
 
+    size_t kernels_size = 0;
+    void* const kernels = argc > 2 ? load(argv[2], &kernels_size) : NULL;
+
     // Once. Darkroom owns nothing of the host's.
     const DarkroomAdoptDesc adopt = {sizeof adopt, .instance = host.instance, .physical_device = host.gpu,
                                      .device = host.device, .queue_family = host.family,
-                                     .enabled_features = &host.features, .get_proc = vkGetInstanceProcAddr};
+                                     .enabled_features = &host.features, .get_proc = vkGetInstanceProcAddr,
+                                     .kernels = kernels, .kernels_size = kernels_size};
     DarkroomDevice device = NULL;
     need(darkroom_device_adopt(&adopt, &device));
+    free(kernels);
     DarkroomComposer composer = NULL;
     need(darkroom_composer_create(device, NULL, &composer));
     DarkroomHandle bloom = 0, exposure = 0;
