@@ -144,9 +144,12 @@ struct Developer::State {
             if (is_wrong(layer.bytes.size(), layer.kept))
                 return user_error(fmt::format("{}: {} bytes, {}x{} pixels need {}", layer.name, layer.bytes.size(),
                                               width, height, pixels * layer.kept));
-            if (is_wrong(layer.halves.size(), layer.kept))
+            if (is_wrong(layer.codes.size(), layer.given))
+                return user_error(fmt::format("{}: {} codes, {}x{} pixels need {}", layer.name, layer.codes.size(),
+                                              width, height, pixels * layer.given));
+            if (is_wrong(layer.halves.size(), layer.given_halves))
                 return user_error(fmt::format("{}: {} halves, {}x{} pixels need {}", layer.name, layer.halves.size(),
-                                              width, height, pixels * layer.kept));
+                                              width, height, pixels * layer.given_halves));
         }
         return {};
     }

@@ -17,10 +17,12 @@
 
 namespace darkroom {
 
-/// Row-major, top row first. Empty spans: not given. Of a layer either the floats or the halves are given.
+/// Row-major, top row first. Empty spans: not given. Of a layer the floats, the halves or the codes are given.
 struct DevelopInput {
     VkExtent2D extent{};
     std::span<const float> color;                                ///< red, green, blue, alpha; scene-linear Rec. 709
+    std::span<const std::uint8_t> color_codes;                   ///< or the same as code values of sRGB
+    std::uint32_t color_channels = 4;                            ///< 3: none of these has alpha, which is then 1
     bool is_color_associated = false;                            ///< as CompileDesc has it
     std::span<const float> depth;                                ///< planar distance
     std::span<const float> normals;                              ///< x, y, z
@@ -28,7 +30,7 @@ struct DevelopInput {
     std::span<const float> reactive;                             ///< one a pixel
     std::span<const float> transparency;                         ///< red, green, blue
     std::span<const float> exposure;                             ///< one
-    std::span<const std::uint16_t> color_halves, normal_halves;  ///< four a pixel, x, y, z, 1 of normals
+    std::span<const std::uint16_t> color_halves, normal_halves;  ///< as color, x, y, z, 1 of normals
     std::span<const std::uint16_t> velocity_halves;              ///< two a pixel
     /// The interface: red, green, blue, alpha, sRGB-encoded, premultiplied after that; as large as the picture that is
     /// made, where DevelopDesc says how large that is.

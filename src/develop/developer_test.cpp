@@ -7,6 +7,7 @@
 #include <darkroom/effects.hpp>
 #include <limits>
 
+#include "core/srgb.hpp"
 #include "gpu/test_run.hpp"
 #include "plan/text/half.hpp"
 
@@ -37,7 +38,8 @@ TEST(ComposeHalf, EveryHalfComesBackAndNothingElseIsOne) {
 /// since the same one comes several times.
 void fill(Composer& composer) {
     for (const EffectInfo* const effect : all_effects())
-        if (effect->flat.documented >= 0 && !effect->makes_output) composer.add(*effect, nullptr, {.source = scene_color});
+        if (effect->flat.documented >= 0 && !effect->makes_output)
+            composer.add(*effect, nullptr, {.source = scene_color});
 }
 
 ImageRef reference_to(const support::Picture& picture) {
@@ -97,6 +99,40 @@ TEST(ComposeDeveloper, ImagesOfTheDeviceAndOfMainMemoryGiveTheSameBytes) {
         EXPECT_EQ(first->bytes, third->bytes);
         EXPECT_EQ(first->pixels, third->pixels);
     }
+}
+
+TEST(ComposeDeveloper, ColoursWithoutAlphaAndCodesAreThoseOfFloats) {
+    if (find_effect("exposure") == nullptr) GTEST_SKIP() << "this build has no effect exposure";
+    constexpr std::size_t count = std::size_t{19} * 7;
+    std::vector<float> four, three, light;
+    std::vector<std::uint16_t> halves;
+    std::vector<std::uint8_t> codes;
+    for (std::size_t i = 0; i < count * 3; ++i) {
+        const float value = static_cast<float>(i % 64) / 16;
+        codes.push_back(static_cast<std::uint8_t>(i * 7 % 256));
+        three.push_back(value);
+        halves.push_back(*exact_half(value));
+        four.push_back(value);
+        light.push_back(static_cast<float>(srgb_decode(codes.back() / 255.0)));
+        if (i % 3 != 2) continue;
+        four.push_back(1);
+        light.push_back(1);
+    }
+    Composer composer(support::device(), {.frames_in_flight = 1});
+    composer.add(*find_effect("exposure"), nullptr);
+    Developer developer(support::device(), {.target = DevelopTarget::EncodedFloat});
+    const auto picture = [&](DevelopInput input) {
+        input.extent = {19, 7};
+        return support::must(developer.develop(composer, input)).pixels;
+    };
+    const std::vector<float> expected = picture({.color = four});
+    EXPECT_EQ(picture({.color = three, .color_channels = 3}), expected);
+    EXPECT_EQ(picture({.color_channels = 3, .color_halves = halves}), expected);
+    EXPECT_EQ(picture({.color_codes = codes, .color_channels = 3}), picture({.color = light}));
+    codes.pop_back();
+    const auto wrong = developer.develop(composer, {.extent = {19, 7}, .color_codes = codes, .color_channels = 3});
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().text, "color: 398 codes, 19x7 pixels need 399");
 }
 
 TEST(ComposeDeveloper, PicturesHaveAnExtentOfTheirOwn) {

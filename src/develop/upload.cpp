@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/srgb.hpp"
 #include "gpu/device/context.hpp"
 #include "plan/text/half.hpp"
 
@@ -19,7 +20,34 @@ VkBufferImageCopy whole(VkExtent2D extent) {
     return {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, .imageExtent = {extent.width, extent.height, 1}};
 }
 
+/// Of codes the light that they stand for; alpha is none.
+void fill_with_codes(const UploadLayer& layer, std::byte* out) {
+    static const std::array<float, 256> light = [] {
+        std::array<float, 256> all{};
+        for (std::size_t code = 0; code < all.size(); ++code)
+            all[code] = static_cast<float>(srgb_decode(static_cast<double>(code) / 255));
+        return all;
+    }();
+    std::array<float, 4> texel{0, 0, 0, 1};
+    for (std::size_t at = 0; at < layer.codes.size(); at += layer.given, out += sizeof texel) {
+        for (std::size_t i = 0; i < 3; ++i) texel[i] = light[layer.codes[at + i]];
+        if (layer.given == 4) texel[3] = static_cast<float>(layer.codes[at + 3]) / 255.0F;
+        std::memcpy(out, texel.data(), sizeof texel);
+    }
+}
+
+void fill_with_halves(const UploadLayer& layer, std::byte* out) {
+    constexpr std::uint16_t one = 0x3c00;
+    std::array<std::uint16_t, 4> texel{0, 0, 0, one};
+    for (std::size_t at = 0; at < layer.halves.size(); at += layer.given_halves, out += layer.texel()) {
+        std::copy_n(layer.halves.begin() + static_cast<std::ptrdiff_t>(at), layer.given_halves, texel.begin());
+        std::memcpy(out, texel.data(), layer.texel());
+    }
+}
+
 void fill(const UploadLayer& layer, std::byte* out) {
+    if (!layer.codes.empty()) return fill_with_codes(layer, out);
+    if (layer.given_halves != layer.kept && !layer.halves.empty()) return fill_with_halves(layer, out);
     const std::span<const std::byte> as_it_is =
         !layer.bytes.empty() ? std::as_bytes(layer.bytes) : std::as_bytes(layer.halves);
     if (!as_it_is.empty()) {
@@ -45,11 +73,18 @@ UploadLayers layers_of(const DevelopInput& input, VkExtent2D output) {
     const auto layer = [&](const char* name, std::span<const float> values, std::span<const std::uint16_t> halves,
                            std::uint32_t given, std::uint32_t kept, VkFormat half, VkFormat whole) -> UploadLayer {
         const bool is_half = half != whole && (!halves.empty() || is_all_half(values));
-        return {name, input.extent, values, halves, {}, given, kept, is_half ? half : whole, is_half};
+        return {name, input.extent, values, halves, {}, {}, given, kept, kept, is_half ? half : whole, is_half};
     };
     constexpr VkFormat half4 = VK_FORMAT_R16G16B16A16_SFLOAT, float4 = VK_FORMAT_R32G32B32A32_SFLOAT;
+    UploadLayer color = layer("color", input.color, input.color_halves, input.color_channels, 4, half4, float4);
+    color.given_halves = input.color_channels;
+    if (!input.color_codes.empty()) {
+        color.codes = input.color_codes;
+        color.format = float4;
+        color.is_half = false;
+    }
     // Depth stays whole: a renderer's planar distance is, too.
-    return {layer("color", input.color, input.color_halves, 4, 4, half4, float4),
+    return {color,
             layer("depth", input.depth, {}, 1, 1, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32_SFLOAT),
             layer("normals", input.normals, input.normal_halves, 3, 4, half4, float4),
             layer("velocity", input.velocity, input.velocity_halves, 2, 2, VK_FORMAT_R16G16_SFLOAT,

@@ -13,19 +13,23 @@
 
 namespace darkroom {
 
-/// A layer of the frame: what it is made of and where it goes. `values`, or `halves` or `bytes` as the image has them.
+/// A layer of the frame: what it is made of and where it goes. `values`, `codes` of sRGB, or `halves`, or `bytes` as
+/// the image has them.
 struct UploadLayer {
     const char* name = "";
     VkExtent2D extent{};
     std::span<const float> values;
     std::span<const std::uint16_t> halves;
-    std::span<const std::uint8_t> bytes;
-    std::uint32_t given = 0;  ///< numbers a pixel in `values`
-    std::uint32_t kept = 0;   ///< numbers a pixel in the image; three-component formats are rarely sampled
+    std::span<const std::uint8_t> bytes, codes;
+    std::uint32_t given = 0;         ///< numbers a pixel in `values` and `codes`
+    std::uint32_t given_halves = 0;  ///< numbers a pixel in `halves`
+    std::uint32_t kept = 0;          ///< numbers a pixel in the image; three-component formats are rarely sampled
     VkFormat format = VK_FORMAT_UNDEFINED;
     bool is_half = false;
 
-    [[nodiscard]] bool is_given() const { return !values.empty() || !halves.empty() || !bytes.empty(); }
+    [[nodiscard]] bool is_given() const {
+        return !values.empty() || !halves.empty() || !bytes.empty() || !codes.empty();
+    }
     [[nodiscard]] VkDeviceSize texel() const { return VkDeviceSize{kept} * (!bytes.empty() ? 1 : is_half ? 2 : 4); }
 };
 /// Colour, depth, normals, velocity, reactive mask, colour before transparency, exposure, interface.
