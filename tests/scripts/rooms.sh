@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$1"
 limit=24
 crowded=$(for files in '*.[ch]pp' '*.glsl'; do
-    find src apps bench tests effects -name "$files" -printf '%h\n' | sort | uniq -c |
+    find src apps bench python tests effects -name "$files" -printf '%h\n' | sort | uniq -c |
         awk -v limit=$limit -v files="$files" '$1 > limit { print $2 " holds " $1 " files " files }'
 done)
 [[ -n $crowded ]] || exit 0

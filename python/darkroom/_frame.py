@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: MIT
+"""Frames and their cameras, and how arrays of others become numpy's."""
+
+import dataclasses
+import math
+import warnings
+
+import numpy
+
+from ._error import Error
+
+_CPU = 1  # DLPack's DLDeviceType kDLCPU
+
+
+def as_array(given, name):
+    """A numpy array over the memory of an array of another library: by DLPack, else by numpy's own protocols."""
+    if isinstance(given, numpy.ndarray):
+        return given
+    if hasattr(given, "__dlpack__") and hasattr(given, "__dlpack_device__"):
+        kind = int(given.__dlpack_device__()[0])
+        if kind != _CPU:
+            raise Error(f"{name}: on DLPack's device {kind}: allowed is {_CPU}, main memory")
+        return numpy.from_dlpack(given)
+    if hasattr(given, "__array__") or hasattr(given, "__array_interface__"):
+        return numpy.asarray(given)
+    return given  # refused, with its type, where it is read
+
+
+def _matrix(value, name):
+    matrix = numpy.asarray(value, dtype=numpy.float32)
+    if matrix.shape != (4, 4) or not numpy.isfinite(matrix).all():
+        raise Error(f"camera.{name}: shape {matrix.shape}: allowed is (4, 4), all finite")
+    return matrix
+
+
+@dataclasses.dataclass
+class Camera:
+    """Where a frame was seen from: matrices as on paper, clip = projection @ view @ world.
+
+    The camera looks along -z, y up; clip space has y down and depth 0 to 1, as Vulkan's. Without `projection` one is
+    made of `fov`, the vertical angle in degrees, and of near and far. Without previous matrices the camera stood still;
+    in a sequence they are those of the frame before. Jitter is in pixels, y down. `is_cut`: nothing of the frame before
+    is related to this one.
+    """
+
+    view: object = None
+    projection: object = None
+    previous_view: object = None
+    previous_projection: object = None
+    fov: float = 45.0
+    near: float = 0.1
+    far: float = 1000.0
+    jitter: tuple = (0.0, 0.0)
+    previous_jitter: tuple = (0.0, 0.0)
+    is_cut: bool = False
+
+    def perspective(self, width, height):
+        """The projection of `fov` for a picture of this size: a numpy array (4, 4) of float32."""
+        if not 0 < self.fov < 180:
+            raise Error(f"camera.fov = {self.fov}: allowed is (0, 180) deg")
+        if not 0 < self.near < self.far:
+            raise Error(f"camera.near = {self.near}: allowed is (0, far = {self.far})")
+        scale = 1 / math.tan(math.radians(self.fov) / 2)
+        depth = -1.0 if math.isinf(self.far) else self.far / (self.near - self.far)
+        out = numpy.zeros((4, 4), numpy.float32)
+        out[0, 0] = scale * height / width
+        out[1, 1] = -scale
+        out[2, 2] = depth
+        out[2, 3] = depth * self.near
+        out[3, 2] = -1
+        return out
+
+    def _matrices(self, width, height):
+        view = numpy.eye(4, dtype=numpy.float32) if self.view is None else _matrix(self.view, "view")
+        if self.projection is None:
+            projection = self.perspective(width, height)
+        else:
+            projection = _matrix(self.projection, "projection")
+        return view, projection
+
+    def _described(self, width, height, before):
+        """What the engine takes. `before`: view and projection of the frame before, or None."""
+        view, projection = self._matrices(width, height)
+        previous_view, previous_projection = before or (view, projection)
+        if self.previous_view is not None:
+            previous_view = _matrix(self.previous_view, "previous_view")
+        if self.previous_projection is not None:
+            previous_projection = _matrix(self.previous_projection, "previous_projection")
+        return {
+            "view": view,
+            "projection": projection,
+            "previous_view": previous_view,
+            "previous_projection": previous_projection,
+            "near": self.near,
+            "far": self.far,
+            "jitter": tuple(float(x) for x in self.jitter),
+            "previous_jitter": tuple(float(x) for x in self.previous_jitter),
+            "is_cut": self.is_cut,
+        }
+
+
+LAYERS = ("depth", "normals", "velocity", "reactive", "transparency", "ui")
+
+
+@dataclasses.dataclass
+class Frame:
+    """One frame: its colour, and what a renderer knows beside it. Arrays of height x width (x channels), top row first.
+
+    color: red, green, blue, and alpha if there is one. Floats (float16, float32) are scene-linear light in Rec. 709;
+    uint8 are code values of sRGB. depth: distance along the view axis; 1e9 and more is sky. normals: x, y, z in world
+    space. velocity: x, y, the previous position minus the present one, in pixels, y down. reactive: 0 to 1.
+    transparency: the colour before anything transparent was drawn. exposure: a number, what light is multiplied by.
+    ui: the interface, uint8 with alpha, sRGB-encoded, premultiplied after that. time: seconds; None: that of the
+    frame's place in its sequence.
+    """
+
+    color: object
+    depth: object = None
+    normals: object = None
+    velocity: object = None
+    reactive: object = None
+    transparency: object = None
+    ui: object = None
+    exposure: float | None = None
+    camera: Camera | None = None
+    time: float | None = None
+    delta_time: float | None = None
+    frame_index: int | None = None
+
+    def _described(self, camera, time, delta_time, frame_index):
+        """What the engine takes; `camera` as Camera._described has it."""
+        out = {
+            "color": as_array(self.color, "color"),
+            "camera": camera,
+            "time": float(time if self.time is None else self.time),
+            "delta_time": float(delta_time if self.delta_time is None else self.delta_time),
+            "frame_index": int(frame_index if self.frame_index is None else self.frame_index),
+        }
+        if self.exposure is not None:
+            out["exposure"] = float(self.exposure)
+        for name in LAYERS:
+            layer = getattr(self, name)
+            if layer is None:
+                continue
+            layer = as_array(layer, name)
+            is_float = isinstance(layer, numpy.ndarray) and layer.dtype.kind == "f"
+            if is_float and not (name == "velocity" and layer.dtype == numpy.float16):
+                layer = layer.astype(numpy.float32, copy=False)
+            out[name] = layer
+        return out
+
+
+def as_frame(given):
+    """A frame, the layers of one by name, or its colour alone."""
+    if isinstance(given, Frame):
+        return given
+    if isinstance(given, dict):
+        known = {field.name for field in dataclasses.fields(Frame)}
+        unknown = sorted(set(given) - known - {"picture"})
+        if unknown:
+            raise Error(f"frame: no layer '{unknown[0]}': allowed is {', '.join(sorted(known))}")
+        return Frame(**{name: layer for name, layer in given.items() if name in known})
+    return Frame(given)
+
+
+def size_of(array, name="color"):
+    """Width and height; (0, 0) of what is no picture, which is refused where it is read."""
+    array = as_array(array, name)
+    if isinstance(array, numpy.ndarray) and array.ndim == 3 and array.shape[0] and array.shape[1]:
+        return array.shape[1], array.shape[0]
+    return 1, 1
+
+
+def warn(texts):
+    """Of the caller of this package."""
+    for text in texts:
+        warnings.warn(text, stacklevel=4)
