@@ -158,7 +158,7 @@ class Stack:
         """Develops frames one after the other, with histories: yields a picture for each.
 
         Frame n is at n / fps seconds, unless it says its time, and its camera moved from that of the frame before. The
-        device works at a frame while the next one is made, so a picture comes when the frame behind it has been taken.
+        device works at a frame while the next one is made, so picture n comes when frame n + 2 has been taken.
         Values of the stack may be set meanwhile; they count for frames that are taken after that.
         """
         if not fps > 0:

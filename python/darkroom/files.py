@@ -158,7 +158,7 @@ def render(scene, *, size=(1920, 1080), look=None, time: float | None = None, fl
         if time is not None:
             words += ["--time", repr(float(time))]
         stored = os.path.join(folder, "frame.exr")
-        picture = run(*words, "--save-frame", stored, "--compression", "zip", *flags)
+        picture = run(*words, "--save-frame", stored, *flags)
         layers = read_frame(stored)
     layers["picture"] = numpy.frombuffer(picture, numpy.uint8).reshape(height, width, 3)
     return layers
