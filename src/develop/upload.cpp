@@ -45,11 +45,18 @@ void fill_with_halves(const UploadLayer& layer, std::byte* out) {
     }
 }
 
+/// What is given as the image has it; empty: it is not.
+std::span<const std::byte> as_kept(const UploadLayer& layer) {
+    if (!layer.bytes.empty()) return std::as_bytes(layer.bytes);
+    if (!layer.halves.empty()) return std::as_bytes(layer.halves);
+    if (!layer.is_half && layer.given == layer.kept) return std::as_bytes(layer.values);
+    return {};
+}
+
 void fill(const UploadLayer& layer, std::byte* out) {
     if (!layer.codes.empty()) return fill_with_codes(layer, out);
     if (layer.given_halves != layer.kept && !layer.halves.empty()) return fill_with_halves(layer, out);
-    const std::span<const std::byte> as_it_is =
-        !layer.bytes.empty() ? std::as_bytes(layer.bytes) : std::as_bytes(layer.halves);
+    const std::span<const std::byte> as_it_is = as_kept(layer);
     if (!as_it_is.empty()) {
         std::memcpy(out, as_it_is.data(), as_it_is.size());
         return;
