@@ -212,6 +212,6 @@ def table(path) -> Table:
         return Table.read(out)
 
 
-def load_resource(path, kind):
+def load_resource(path, is_table):
     """What the engine asks for when a stack names a file that it does not read itself: a table or a picture."""
-    return table(path)._engine if kind == "table" else read(path)
+    return table(path)._engine if is_table else read(path)

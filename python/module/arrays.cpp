@@ -29,6 +29,11 @@ std::string allowed_shape(const LayerRules& rules) {
     return fmt::format("(height, width, {} or {})", rules.least_channels, rules.most_channels);
 }
 
+const char* shorter_samples(const LayerRules& rules) {
+    if (rules.takes_bytes) return "uint8, float16 or ";
+    return rules.takes_halves ? "float16 or " : "";
+}
+
 /// 0: none of those that are allowed.
 std::uint32_t sample_bytes(const py::dtype& type, const LayerRules& rules) {
     if (!type.attr("isnative").cast<bool>()) return 0;
@@ -85,11 +90,10 @@ Layer read_layer(const py::object& object, const LayerRules& rules) {
     const std::uint32_t bytes = sample_bytes(array.dtype(), rules);
     if (bytes == 0)
         raise_user(fmt::format("{}: dtype {}: allowed is {}float32", rules.name, std::string(py::str(array.dtype())),
-                               rules.takes_bytes    ? "uint8, float16 or "
-                               : rules.takes_halves ? "float16 or "
-                                                    : ""));
+                               shorter_samples(rules)));
     const bool is_flat = array.ndim() == 2 && rules.least_channels == 1;
-    const py::ssize_t channels = is_flat ? 1 : array.ndim() == 3 ? array.shape(2) : 0;
+    py::ssize_t channels = is_flat ? 1 : 0;
+    if (array.ndim() == 3) channels = array.shape(2);
     if (channels < rules.least_channels || channels > rules.most_channels || array.shape(0) < 1 || array.shape(1) < 1)
         raise_user(fmt::format("{}: shape {}: allowed is {}, none of them 0", rules.name, shape_text(array),
                                allowed_shape(rules)));

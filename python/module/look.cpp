@@ -60,9 +60,8 @@ class Loader {
             if (!file) return failure(std::move(file));
             return ResourceData(std::move(file->table));
         }
-        const char* const kind = use == FileUse::Table ? "table" : use == FileUse::Numbers ? "numbers" : "picture";
         const py::object load = py::module_::import("darkroom.files").attr("load_resource");
-        return *data_of(load(path.string(), kind), path.string());
+        return *data_of(load(path.string(), use == FileUse::Table), path.string());
     } catch (py::error_already_set& error) {
         if (py::hasattr(error.value(), "text")) return user_error(py::str(error.value().attr("text")));
         return user_error(py::str(error.value()));

@@ -10,6 +10,7 @@ import unittest
 import numpy
 
 import darkroom
+from darkroom import _device, _stack
 from support import Case, light
 
 
@@ -141,15 +142,16 @@ class Threads(Case):
                 ticks[0] += 1
                 time.sleep(0.0005)
 
-        stack, frame = darkroom.Stack().bloom(intensity=0.1).tonemap(), light(480, 270)
-        stack.develop(frame)
+        stack, frame = darkroom.Stack().bloom(intensity=0.1).tonemap(), darkroom.Frame(light(480, 270, channels=4))
+        runner = _device.new_runner("encoded8", 1)
+        _stack.develop_one(runner, stack._look, frame)
         other = threading.Thread(target=count)
         sys.setswitchinterval(1000)
         try:
             other.start()
             for _ in range(500):
                 before = ticks[0]
-                stack.develop(frame)
+                _stack.develop_one(runner, stack._look, frame)  # its picture has four channels: nothing is packed
                 if ticks[0] > before:
                     break
             self.assertGreater(ticks[0], before)

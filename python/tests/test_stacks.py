@@ -7,10 +7,12 @@ import os
 import pathlib
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy
 
 import darkroom
+from darkroom import _device
 from support import Case, light, source
 
 
@@ -124,6 +126,39 @@ class Sequences(Case):
         self.assertEqual(seen[:2], [1.0, 1.0])
         self.assertIn(3.0, seen)
         self.assertGreater(seen[-1], 3.0)
+
+    def test_time_and_camera_go_on(self):
+        taken = []
+
+        class Recorder:
+            def submit(self, look, frame):
+                taken.append(frame)
+
+            def finish(self):
+                return numpy.zeros((27, 48, 3), numpy.uint8)
+
+        moved = numpy.eye(4, dtype=numpy.float32)
+        moved[0, 3] = 2
+        frames = [
+            darkroom.Frame(light(), camera=darkroom.Camera(fov=50)),
+            darkroom.Frame(light(), camera=darkroom.Camera(view=moved, fov=60)),
+            darkroom.Frame(light(), camera=darkroom.Camera(previous_view=moved, is_cut=True), time=9.0, frame_index=70),
+        ]
+        with unittest.mock.patch.object(_device, "new_runner", lambda *arguments: Recorder()):
+            self.assertEqual(len(list(darkroom.Stack().bloom().sequence(frames, fps=25))), 3)
+        self.assertEqual([frame["time"] for frame in taken], [0, 0.04, 9.0])
+        self.assertEqual([frame["delta_time"] for frame in taken], [0.04] * 3)
+        self.assertEqual([frame["frame_index"] for frame in taken], [0, 1, 70])
+        cameras = [frame["camera"] for frame in taken]
+        self.assertEqual([camera["is_cut"] for camera in cameras], [True, False, True])
+        self.assertSame(cameras[0]["previous_view"], cameras[0]["view"])
+        self.assertSame(cameras[1]["view"], moved)
+        self.assertSame(cameras[1]["previous_view"], cameras[0]["view"])
+        self.assertSame(cameras[1]["previous_projection"], cameras[0]["projection"])
+        self.assertSame(cameras[2]["previous_view"], moved)
+        # y down, as tall as fov says: a point at half the angle lies on the upper edge.
+        up = cameras[0]["projection"] @ numpy.float32([0, numpy.tan(numpy.radians(25)), -1, 1])
+        numpy.testing.assert_allclose(up[1] / up[3], -1, rtol=1e-6)
 
     def test_frames_say_what_they_are(self):
         stack = darkroom.Stack().exposure(exposure=1.0)
