@@ -17,7 +17,7 @@ from . import _effects, _engine
 from ._compare import Comparison, compare
 from ._device import device, devices, free, use_device
 from ._error import Error
-from ._frame import Camera, Frame
+from ._frame import Camera, Frame, Light
 from ._stack import Stack, develop
 from ._table import Table
 
@@ -26,7 +26,7 @@ __version__ = _engine.version
 globals().update(_effects.FUNCTIONS)
 
 __all__ = [
-    "Camera", "Comparison", "Error", "Frame", "Stack", "Table", "compare", "develop", "device", "devices", "effect_names",
+    "Camera", "Comparison", "Error", "Frame", "Light", "Stack", "Table", "compare", "develop", "device", "devices", "effect_names",
     "files", "free", "info", "use_device", *_effects.FUNCTIONS,
 ]  # fmt: skip
 

@@ -57,14 +57,15 @@ def page(effect) -> str:
 
 
 # Of layers that are no arrays.
-LAYER_TYPES = {"camera": "Camera", "exposure": "float", "time": "float", "delta_time": "float", "frame_index": "int"}
+LAYER_TYPES = {"camera": "Camera", "lights": "Sequence[Light]", "exposure": "float", "time": "float", "delta_time": "float", "frame_index": "int"}
 
 
 def layers_of(effect):
     """The layers that a function of the effect takes, beside its parameters."""
     taken = {row["name"] for row in effect["parameters"]}
-    wanted = [*effect["needs"], "velocity", "camera", "time", "delta_time", "frame_index"]
-    known = [name for name in wanted if name != "shadows" and name not in taken]
+    needs = ["lights" if name == "shadows" else name for name in effect["needs"]]
+    wanted = [*needs, "velocity", "camera", "time", "delta_time", "frame_index"]
+    known = [name for name in wanted if name not in taken]
     return list(dict.fromkeys(known))
 
 

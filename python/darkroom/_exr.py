@@ -129,7 +129,8 @@ class _Part:
 
 
 def read(path):
-    """The first part that has colour, else the first: channels by name (arrays of height x width), and attributes."""
+    """The first part that has colour, else the first, and all parts by name: `planes` are the channels, arrays of height x
+    width, beside `attributes`."""
     reader = _Reader(path)
     magic, flags = reader.unpack("ii")
     if magic != 20000630:
@@ -152,7 +153,8 @@ def read(path):
         if not 0 <= number < len(parts):
             reader.refuse(f"a chunk is of part {number}: there are {len(parts)}")
         parts[number].put(line, reader.take(size), reader.refuse)
-    return next((part for part in parts if "R" in part.planes or "Y" in part.planes), parts[0])
+    named = {part.attributes["name"][1].decode("utf-8", "replace"): part for part in parts if "name" in part.attributes}
+    return next((part for part in parts if "R" in part.planes), parts[0]), named
 
 
 def _attribute(name, kind, data):

@@ -33,6 +33,13 @@ def _matrix(value, name):
     return matrix
 
 
+def _three(value, name):
+    numbers = tuple(float(x) for x in value)
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise Error(f"{name} = {numbers}: allowed are three finite numbers")
+    return numbers
+
+
 @dataclasses.dataclass
 class Camera:
     """Where a frame was seen from: matrices as on paper, clip = projection @ view @ world.
@@ -99,6 +106,49 @@ class Camera:
         }
 
 
+_MOST_CASCADES = 4
+
+
+@dataclasses.dataclass
+class Light:
+    """A directional light, and where its light reaches: what effects of light in the air read.
+
+    direction: toward the light, in world space. color: linear Rec. 709, times intensity. cascades: up to four square
+    depth maps of one size, float32, 0 near the light to 1; world_to_cascade: their matrices (4, 4), as on paper, to x
+    and y in -1 to 1, y down, and depth in 0 to 1; splits: how far from the eye each ends. Without cascades it casts no
+    shadow.
+    """
+
+    direction: tuple
+    color: tuple = (1.0, 1.0, 1.0)
+    volumetric_intensity: float = 0.0
+    volumetric_color: tuple = (1.0, 1.0, 1.0)
+    cascades: tuple = ()
+    world_to_cascade: tuple = ()
+    splits: tuple = ()
+
+    def _described(self, name):
+        counts = {len(self.cascades), len(self.world_to_cascade), len(self.splits)}
+        if len(counts) > 1 or max(counts) > _MOST_CASCADES:
+            raise Error(
+                f"{name}: {len(self.cascades)} cascades, {len(self.world_to_cascade)} matrices, {len(self.splits)} "
+                f"splits: allowed are equal numbers, up to {_MOST_CASCADES}"
+            )
+        cascades = [as_array(cascade, f"{name}.cascades") for cascade in self.cascades]
+        shapes = [numpy.shape(cascade) for cascade in cascades]
+        if any(len(shape) != 2 or shape[0] != shape[1] or shape != shapes[0] for shape in shapes):
+            raise Error(f"{name}.cascades: shapes {shapes}: allowed are squares of one size")
+        return {
+            "direction": _three(self.direction, f"{name}.direction"),
+            "color": _three(self.color, f"{name}.color"),
+            "volumetric_intensity": float(self.volumetric_intensity),
+            "volumetric_color": _three(self.volumetric_color, f"{name}.volumetric_color"),
+            "cascades": cascades,
+            "world_to_cascade": [_matrix(matrix, "world_to_cascade") for matrix in self.world_to_cascade],
+            "splits": [float(split) for split in self.splits],
+        }
+
+
 LAYERS = ("depth", "normals", "velocity", "reactive", "transparency", "ui")
 
 
@@ -110,7 +160,7 @@ class Frame:
     uint8 are code values of sRGB. depth: distance along the view axis; 1e9 and more is sky. normals: x, y, z in world
     space. velocity: x, y, the previous position minus the present one, in pixels, y down. reactive: 0 to 1.
     transparency: the colour before anything transparent was drawn. exposure: a number, what light is multiplied by.
-    ui: the interface, uint8 with alpha, sRGB-encoded, premultiplied after that. time: seconds; None: that of the
+    ui: the interface, uint8 with alpha, sRGB-encoded, premultiplied after that. lights: darkroom.Light of each. time: seconds; None: that of the
     frame's place in its sequence.
     """
 
@@ -123,6 +173,7 @@ class Frame:
     ui: object = None
     exposure: float | None = None
     camera: Camera | None = None
+    lights: list | tuple = ()
     time: float | None = None
     delta_time: float | None = None
     frame_index: int | None = None
@@ -132,6 +183,7 @@ class Frame:
         out = {
             "color": as_array(self.color, "color"),
             "camera": camera,
+            "lights": [light._described(f"lights[{number}]") for number, light in enumerate(self.lights)],
             "time": float(time if self.time is None else self.time),
             "delta_time": float(delta_time if self.delta_time is None else self.delta_time),
             "frame_index": int(frame_index if self.frame_index is None else self.frame_index),

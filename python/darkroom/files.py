@@ -18,7 +18,7 @@ import numpy
 
 from . import _exr
 from ._error import Error
-from ._frame import Camera, as_array, as_frame
+from ._frame import Camera, Light, as_array, as_frame
 from ._stack import Stack
 from ._table import Table
 
@@ -79,12 +79,43 @@ def _camera(attributes):
     )
 
 
+def _floats(attributes, name, count=None):
+    """The floats of an attribute; None: there is none of this many."""
+    kind, data = attributes.get(name, (None, b""))
+    if kind not in ("float", "v3f", "floatvector") or count is not None and len(data) != 4 * count:
+        return None
+    return tuple(float(number) for number in numpy.frombuffer(data[: len(data) // 4 * 4], "<f4"))
+
+
+def _lights(attributes, parts):
+    """The lights of a frame, with the depths of their cascades, which are parts of their own."""
+    out = []
+    while direction := _floats(attributes, f"darkroom:light{len(out)}.direction", 3):
+        name = f"darkroom:light{len(out)}."
+        light = Light(
+            direction,
+            _floats(attributes, name + "color", 3) or (1.0, 1.0, 1.0),
+            (_floats(attributes, name + "volumetricIntensity", 1) or (0.0,))[0],
+            _floats(attributes, name + "volumetricColor", 3) or (1.0, 1.0, 1.0),
+        )
+        kind, data = attributes.get(name + "shadow", (None, b""))
+        part = parts.get(f"shadow{struct.unpack('<i', data)[0]}") if kind == "int" and len(data) == 4 else None
+        if part is not None:
+            light.splits = _floats(attributes, name + "splits") or ()
+            numbers = range(len(light.splits))
+            light.cascades = [part.planes[key] for key in (f"cascade{i}" for i in numbers) if key in part.planes]
+            matrices = [_matrix(attributes, f"{name}worldToCascade{i}") for i in numbers]
+            light.world_to_cascade = [matrix for matrix in matrices if matrix is not None]
+        out.append(light)
+    return out
+
+
 def read_frame(path) -> dict:
     """The layers of a frame in an OpenEXR file: what darkroom.Frame takes, by name.
 
-    Colour has alpha where the file has it. Shadows of lights stay in the file.
+    Colour has alpha where the file has it.
     """
-    part = _exr.read(path)
+    part, parts = _exr.read(path)
     planes = part.planes
     out = {"color": _stack(planes, "RGBA") if "A" in planes else _stack(planes, "RGB")}
     if out["color"] is None:
@@ -100,13 +131,17 @@ def read_frame(path) -> dict:
         out["camera"] = _camera(part.attributes)
     for name, attribute in (("time", "darkroom:time"), ("delta_time", "darkroom:deltaTime")):
         out[name] = _number(part.attributes, attribute)
+    out["lights"] = _lights(part.attributes, parts) or None
     index = _number(part.attributes, "darkroom:frameIndex")
     out["frame_index"] = None if index is None else int(index)
     return {name: layer for name, layer in out.items() if layer is not None}
 
 
 def write_frame(path, frame) -> None:
-    """Writes a frame (darkroom.Frame, or a dictionary of layers) as an OpenEXR file, for `darkroom develop`."""
+    """Writes a frame (darkroom.Frame, or a dictionary of layers) as an OpenEXR file, for `darkroom develop`.
+
+    Lights are not written, nor reactive, ui and exposure.
+    """
     frame = as_frame(frame)
     channels = {}
 

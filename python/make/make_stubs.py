@@ -65,6 +65,19 @@ class Camera:
                  is_cut: bool = False) -> None: ...
     def perspective(self, width: int, height: int) -> ndarray: ...
 
+class Light:
+    direction: tuple[float, float, float]
+    color: tuple[float, float, float]
+    volumetric_intensity: float
+    volumetric_color: tuple[float, float, float]
+    cascades: Sequence[Any]
+    world_to_cascade: Sequence[Any]
+    splits: Sequence[float]
+    def __init__(self, direction: tuple[float, float, float], color: tuple[float, float, float] = (1.0, 1.0, 1.0),
+                 volumetric_intensity: float = 0.0, volumetric_color: tuple[float, float, float] = (1.0, 1.0, 1.0),
+                 cascades: Sequence[Any] = (), world_to_cascade: Sequence[Any] = (),
+                 splits: Sequence[float] = ()) -> None: ...
+
 class Frame:
     color: Any
     depth: Any
@@ -75,12 +88,13 @@ class Frame:
     ui: Any
     exposure: float | None
     camera: Camera | None
+    lights: Sequence[Light]
     time: float | None
     delta_time: float | None
     frame_index: int | None
     def __init__(self, color: Any, depth: Any = None, normals: Any = None, velocity: Any = None, reactive: Any = None,
                  transparency: Any = None, ui: Any = None, exposure: float | None = None,
-                 camera: Camera | None = None, time: float | None = None, delta_time: float | None = None,
+                 camera: Camera | None = None, lights: Sequence[Light] = (), time: float | None = None, delta_time: float | None = None,
                  frame_index: int | None = None) -> None: ...
 
 class Comparison:

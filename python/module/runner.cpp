@@ -41,9 +41,33 @@ Camera camera_of(const py::dict& given) {
             .is_cut = given["is_cut"].cast<bool>()};
 }
 
+std::array<float, 3> three(const py::handle& given) { return given.cast<std::array<float, 3>>(); }
+
+/// As darkroom.Light describes it, which has looked at counts and shapes.
+ReferenceLight light_of(const py::dict& given) {
+    ReferenceLight out{.light = {.direction = three(given["direction"]),
+                                 .color = three(given["color"]),
+                                 .volumetric_intensity = given["volumetric_intensity"].cast<float>(),
+                                 .volumetric_color = three(given["volumetric_color"])}};
+    const auto matrices = given["world_to_cascade"].cast<py::list>();
+    const auto splits = given["splits"].cast<std::vector<float>>();
+    for (const py::handle cascade : given["cascades"]) {
+        const Layer depths = read_layer(py::reinterpret_borrow<py::object>(cascade), {"cascade", 1, 1, false, false});
+        const std::span<const float> values = depths.samples<float>();
+        const std::size_t number = out.cascades.size();
+        out.cascades.emplace_back(values.begin(), values.end());
+        out.resolution = depths.extent.width;
+        out.light.world_to_cascade.at(number) = matrix_of(matrices[number]);
+        out.light.splits.at(number) = splits.at(number);
+        ++out.light.cascade_count;
+    }
+    return out;
+}
+
 /// The arrays of a frame, which live as long as the input that refers to them.
 struct FrameArrays {
     std::vector<Layer> kept;
+    std::vector<ReferenceLight> lights;
     DevelopInput input;
     float exposure = 1;
 
@@ -84,6 +108,8 @@ FrameArrays arrays_of(const py::dict& frame, VkExtent2D target_extent) {
                        .samples<std::uint8_t>();
     if (frame.contains("ui") && input.ui.empty()) raise_user("ui: dtype float32: allowed is uint8");
     if (frame.contains("exposure")) out.exposure = frame["exposure"].cast<float>();
+    for (const py::handle light : frame["lights"]) out.lights.push_back(light_of(light.cast<py::dict>()));
+    input.lights = out.lights;
     input.camera = camera_of(frame["camera"]);
     input.time = frame["time"].cast<double>();
     input.delta_time = frame["delta_time"].cast<double>();

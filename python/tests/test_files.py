@@ -81,6 +81,24 @@ class Files(Case):
         self.assertGreater((numpy.abs(lengths - 1) < 0.01).mean(), 0.9)
         self.assertSame(darkroom.develop(layers), darkroom.develop({**layers}))
 
+    def test_light_in_the_air_of_a_stored_frame(self):
+        stored, look = self.folder / "frame.exr", self.folder / "air.toml"
+        darkroom.Stack().volumetric(density=0.2).tonemap().save(look)
+        scene = source / "scenes" / "courtyard.scene.toml"
+        files.run("render", scene, "--size", "48x27", "--save-frame", stored, "-o", self.folder / "x.png", "--quiet")
+        layers = files.read_frame(stored)
+        self.assertTrue(any(len(light.cascades) == 3 for light in layers["lights"]))
+        made = files.run("develop", stored, "--look", look, "-o", "-", "--format", "rgb24", "--quiet")
+        picture = darkroom.develop(layers, look)
+        self.assertSame(numpy.frombuffer(made, numpy.uint8).reshape(27, 48, 3), picture[..., :3])
+        layers["lights"] = []
+        self.assertGreater(darkroom.compare(picture, darkroom.develop(layers, look)).flip_mean, 0.01)
+        self.assertRaisesText("lights[0]: 1 cascades, 0 matrices, 0 splits: allowed are equal numbers, up to 4",
+                              darkroom.develop, light(), lights=[darkroom.Light((0, 1, 0), cascades=[light()[..., 0]])])  # fmt: skip
+        wide = darkroom.Light((0, 1, 0), cascades=[light()[..., 0]], world_to_cascade=[numpy.eye(4)], splits=[9])
+        self.assertRaisesText("lights[0].cascades: shapes [(27, 48)]: allowed are squares of one size",
+                              darkroom.develop, light(), lights=[wide])  # fmt: skip
+
     def test_tables_of_other_formats(self):
         path = self.folder / "half.spi1d"
         path.write_text("Version 1\nFrom 0.0 1.0\nLength 2\nComponents 1\n{\n0.0\n0.6\n}\n", encoding="utf-8")

@@ -226,7 +226,7 @@ class Descriptions(Case):
             expected = [p.name for p in inspect.signature(method).parameters.values() if p.kind is not p.VAR_KEYWORD]
             found = names(methods[name])
             self.assertEqual(found[1:] if found[0] == "cls" else found, expected, name)
-        for name in ("Camera", "Frame", "Comparison", "Table"):
+        for name in ("Camera", "Frame", "Light", "Comparison", "Table"):
             has = {node.name for node in defined[name].body if isinstance(node, ast.FunctionDef)}
             has |= {node.target.id for node in defined[name].body if isinstance(node, ast.AnnAssign)}
             public = {member for member in dir(getattr(darkroom, name)) if not member.startswith("_")}
