@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <array>
-#include <cstring>
 #include <memory>
 #include <string>
 
@@ -52,14 +51,14 @@ py::array owned(std::vector<T> values, const std::vector<py::ssize_t>& shape) {
 
 template <class T>
 py::array picture_array(std::vector<T> values, VkExtent2D extent, std::uint32_t channels) {
-    constexpr std::size_t given = 4;
+    constexpr std::size_t given = 4, opaque = 3;
     const std::size_t pixels = values.size() / given;
-    if (channels != given) {
+    if (channels == opaque) {
         const py::gil_scoped_release others_run;
         T* to = values.data();
-        for (std::size_t i = 0; i < pixels; ++i, to += channels)
-            std::memmove(to, values.data() + i * given, channels * sizeof(T));
-        values.resize(pixels * channels);
+        for (const T* from = to; from != values.data() + pixels * given; from += given, to += opaque)
+            for (std::size_t c = 0; c < opaque; ++c) to[c] = from[c];
+        values.resize(pixels * opaque);
     }
     return owned(std::move(values), {extent.height, extent.width, channels});
 }

@@ -36,12 +36,13 @@ void fill_with_codes(const UploadLayer& layer, std::byte* out) {
     }
 }
 
-void fill_with_halves(const UploadLayer& layer, std::byte* out) {
-    constexpr std::uint16_t one = 0x3c00;
-    std::array<std::uint16_t, 4> texel{0, 0, 0, one};
-    for (std::size_t at = 0; at < layer.halves.size(); at += layer.given_halves, out += layer.texel()) {
-        std::copy_n(layer.halves.begin() + static_cast<std::ptrdiff_t>(at), layer.given_halves, texel.begin());
-        std::memcpy(out, texel.data(), layer.texel());
+/// Three numbers a pixel become four: the last is 1.
+template <class T>
+void fill_with_one(std::span<const T> values, T one, std::byte* out) {
+    std::array<T, 4> texel{0, 0, 0, one};
+    for (std::size_t at = 0; at < values.size(); at += 3, out += sizeof texel) {
+        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(at), 3, texel.begin());
+        std::memcpy(out, texel.data(), sizeof texel);
     }
 }
 
@@ -55,7 +56,11 @@ std::span<const std::byte> as_kept(const UploadLayer& layer) {
 
 void fill(const UploadLayer& layer, std::byte* out) {
     if (!layer.codes.empty()) return fill_with_codes(layer, out);
-    if (layer.given_halves != layer.kept && !layer.halves.empty()) return fill_with_halves(layer, out);
+    constexpr std::uint16_t half_one = 0x3c00;
+    if (layer.kept == 4 && layer.given_halves == 3 && !layer.halves.empty())
+        return fill_with_one(layer.halves, half_one, out);
+    if (layer.kept == 4 && layer.given == 3 && !layer.values.empty() && !layer.is_half)
+        return fill_with_one(layer.values, 1.0F, out);
     const std::span<const std::byte> as_it_is = as_kept(layer);
     if (!as_it_is.empty()) {
         std::memcpy(out, as_it_is.data(), as_it_is.size());
