@@ -14,6 +14,8 @@ from typing import Any, Iterable, Iterator, Literal, Sequence
 
 from numpy import ndarray
 
+from . import files as files
+
 '''
 
 
