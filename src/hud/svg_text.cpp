@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/text/lower.hpp"
+#include "core/text/markup.hpp"
 #include "core/text/param_text.hpp"
 
 namespace darkroom {
@@ -309,32 +310,6 @@ class Checker {
     std::string error_;
 };
 
-/// As text of a tag's content or of an attribute in either kind of quotes. In a style or an attribute a value may still
-/// be a word of CSS that refers, which check_svg() refuses there.
-void append_escaped(std::string& out, std::string_view text) {
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            case '\'':
-                out += "&apos;";
-                break;
-            default:
-                out += c;
-        }
-    }
-}
-
 /// Of "00.0".
 bool read_form(std::string_view text, int& digits, int& decimals) {
     const std::size_t point = std::min(text.find('.'), text.size());
@@ -434,6 +409,7 @@ Result<std::string> SvgTemplate::fill(const HudValues& values) const {
             return user_error(fmt::format("{}: {{{{{}}}}}: nothing has this name{}", line_of(document_, binding.begin),
                                           binding.name, suggestion(binding.name, names)));
         }
+        // In a style or an attribute it may still be a word of CSS that refers, which check_svg() refuses there.
         append_escaped(out, text_of(binding, found->second));
     }
     return out.append(document_, at);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/text/markup.hpp"
 #include "core/text/param_text.hpp"
 
 namespace app {
@@ -26,26 +27,7 @@ double share(const ErrorSum& part, const ErrorSum& whole) {
 }
 
 /// Text of a page, whatever folders are called.
-std::string escaped(std::string_view text) {
-    std::string out;
-    for (const char c : printable(text)) switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += c;
-        }
-    return out;
-}
+std::string on_page(std::string_view text) { return darkroom::escaped(printable(text)); }
 
 struct Row {
     std::string name, psnr, flicker, share;
@@ -143,8 +125,8 @@ Json json_of(const Judgement& judgement) {
 std::string page_of(const Judgement& judgement) {
     const darkroom::Verdict& verdict = judgement.verdict;
     std::string out(page_start);
-    out += fmt::format("<h1>{}</h1><p>against {}; mean FLIP {:.4f}</p>\n", escaped(judgement.test),
-                       escaped(judgement.truth), verdict.flip_mean);
+    out += fmt::format("<h1>{}</h1><p>against {}; mean FLIP {:.4f}</p>\n", on_page(judgement.test),
+                       on_page(judgement.truth), verdict.flip_mean);
     out += "<table><tr><th></th><th>PSNR, dB</th><th>flicker, dB</th><th>pixels</th></tr>\n";
     for (const Row& row : rows_of(verdict))
         out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n", row.name, row.psnr, row.flicker,
