@@ -2,50 +2,16 @@
 #include "image/compare/contact_sheet.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "core/primaries.hpp"
-#include "core/srgb.hpp"
-#include "image/picture/resize.hpp"
+#include "image/compare/shown_picture.hpp"
 
 namespace darkroom {
 
 namespace {
 
 constexpr std::uint32_t gap = 8;
-constexpr std::array<float, 4> background{0.12f, 0.12f, 0.12f, 1.0f}, not_finite{1.0f, 0.0f, 1.0f, 1.0f};
-
-Picture shown(Picture picture, PictureEncoding encoding) {
-    for (std::size_t i = 0; i < picture.pixels.size(); i += 4) {
-        float* const pixel = &picture.pixels[i];
-        if (!std::all_of(pixel, pixel + 3, [](float value) { return std::isfinite(value); })) {
-            std::copy(not_finite.begin(), not_finite.end(), pixel);
-            continue;
-        }
-        for (int c = 0; c < 3; ++c) {
-            pixel[c] = std::clamp(pixel[c], 0.0f, 1.0f);
-            if (encoding == PictureEncoding::SceneLinear) pixel[c] = srgb_encode(pixel[c]);
-        }
-        pixel[3] = 1.0f;
-    }
-    return picture;
-}
-
-Result<Picture> cell(Picture picture) {
-    const std::uint32_t longer = std::max(picture.width, picture.height);
-    if (longer <= ContactSheet::max_cell) return picture;
-    const auto scaled = [&](std::uint32_t side) {
-        return std::max<std::uint32_t>(
-            1, static_cast<std::uint32_t>(std::uint64_t{side} * ContactSheet::max_cell / longer));
-    };
-    const std::uint32_t width = scaled(picture.width), height = scaled(picture.height);
-    FrameFile frame;
-    frame.color = std::move(picture);
-    Result<FrameFile> small = resize(std::move(frame), {width, height});
-    if (!small) return failure(std::move(small));
-    return std::move(small->color);
-}
+constexpr std::array<float, 4> background{0.12f, 0.12f, 0.12f, 1.0f};
 
 }  // namespace
 
@@ -59,7 +25,7 @@ Result<> ContactSheet::add(std::string name, const Picture& reference, const Pic
     const std::array<std::pair<const Picture*, PictureEncoding>, 3> pictures{
         {{&reference, encoding}, {&test, encoding}, {&comparison.flip_map, PictureEncoding::Display}}};
     for (std::size_t i = 0; i < pictures.size(); ++i) {
-        Result<Picture> made = cell(shown(*pictures[i].first, pictures[i].second));
+        Result<Picture> made = no_larger_than(shown_picture(*pictures[i].first, pictures[i].second), max_cell);
         if (!made) return failure(std::move(made));
         row.cells[i] = std::move(*made);
     }
