@@ -107,10 +107,10 @@ TEST_F(CliRecipes, PicturesThatAreWatchedByCi) {
     Picture other = picture("expected/room.0001.png");
     for (float& value : other.pixels) value = 1 - value;
     ASSERT_TRUE(write_picture(path("expected/room.0001.png"), other));
-    fs::remove(path("differing.png"));
+    fs::remove(path("differing.html"));
     const Outcome differs = run_lines(steps);
     EXPECT_EQ(differs.code, 3) << differs.err;
-    EXPECT_TRUE(fs::exists(path("differing.png"))) << "it is what the workflow keeps";
+    EXPECT_TRUE(fs::exists(path("differing.html"))) << "it is what the workflow keeps";
 }
 
 TEST_F(CliRecipes, WhyIsMyEffectLeftOut) { try_all("Why is my effect left out?"); }

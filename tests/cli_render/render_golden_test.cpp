@@ -35,6 +35,12 @@ class CliRenderGolden : public test::CliFixture {
     [[nodiscard]] static std::filesystem::path golden(const std::string& name) {
         return source + "/tests/goldens/" + name + ".png";
     }
+    /// Of pictures that are no more as they were, for whoever looks at what a build server kept of the build folder.
+    [[nodiscard]] std::string page_of_differences(const std::string& expected, const std::string& made,
+                                                  const std::string& page) const {
+        const test::Outcome outcome = run({"compare", expected, made, "--html", page});
+        return outcome.code == 0 || outcome.code == 3 ? "before and after: " + page : outcome.err;
+    }
 };
 
 TEST_F(CliRenderGolden, ScenesAndLooksAreAsTheyWere) {
@@ -48,8 +54,26 @@ TEST_F(CliRenderGolden, ScenesAndLooksAreAsTheyWere) {
         kept.insert(file.path().filename().string());
     const std::vector<std::string> made = files();
     EXPECT_EQ(kept, std::set<std::string>(made.begin(), made.end()));
+    const std::string page = std::string(test::binary_folder) + "/goldens.html";
+    std::filesystem::remove(page);
     for (const std::string& name : made)
         EXPECT_LE(share_of_other_pixels(source + "/tests/goldens/" + name, path(name)), allowed_share) << name;
+    if (HasFailure()) ADD_FAILURE() << page_of_differences(source + "/tests/goldens", path(""), page);
+}
+
+TEST_F(CliRenderGolden, WhatDiffersIsOnAPage) {
+    for (const char* const folder : {"expected", "made"}) {
+        std::filesystem::create_directory(path(folder));
+        for (const char* const name : {"film.look", "noir.look"})
+            std::filesystem::copy_file(golden(name), path(folder) + '/' + name + ".png");
+    }
+    std::filesystem::copy_file(golden("night.look"), path("made/noir.look.png"),
+                               std::filesystem::copy_options::overwrite_existing);
+    const std::string told = page_of_differences(path("expected"), path("made"), path("page.html"));
+    EXPECT_EQ(told, "before and after: " + path("page.html"));
+    const std::string page = test::content(path("page.html"));
+    EXPECT_NE(page.find("<h2>noir.look.png"), std::string::npos);
+    EXPECT_EQ(page.find("<h2>film.look.png"), std::string::npos);
 }
 
 // What the bound is worth: occlusion, of all that is seen the least, is missed in every picture, as is a small change

@@ -12,8 +12,10 @@
 #include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "compare_files.hpp"
+#include "compare_page.hpp"
 #include "compare_pairs.hpp"
 #include "compare_report.hpp"
+#include "core/files.hpp"
 #include "core/text/param_text.hpp"
 #include "image/compare/contact_sheet.hpp"
 #include "image/picture/write.hpp"
@@ -30,7 +32,7 @@ using darkroom::user_error;
 constexpr int exit_differ = 3;
 
 struct Options {
-    std::string a, b, diff, sheet, layers = "color";
+    std::string a, b, diff, sheet, html, layers = "color";
     bool is_json = false, makes_folders = false;
     NumberFlag fail_max{"--fail-max", {.least = 0, .most = 1e30}};
     NumberFlag fail_psnr{"--fail-psnr", {.least = -1000, .most = 1000, .unit = "dB"}};
@@ -63,7 +65,7 @@ Result<CompareRequest> request_of(const Options& options) {
         request->has_all_layers || std::ranges::find(request->layers, "color") != request->layers.end();
     for (const auto& [is_given, name] :
          {std::pair(most.flip.has_value(), "--fail-flip"), std::pair(!options.diff.empty(), "--diff"),
-          std::pair(!options.sheet.empty(), "--sheet")})
+          std::pair(!options.sheet.empty(), "--sheet"), std::pair(!options.html.empty(), "--html")})
         if (is_given && !has_color)
             return user_error(
                 fmt::format("{}: is about color, which is not among --layers {}", name, printable(options.layers)));
@@ -71,12 +73,17 @@ Result<CompareRequest> request_of(const Options& options) {
 }
 
 // Before any work is done.
-Result<> check_picture(const std::string& path, const FilePairs& pairs, bool makes_folders) {
+Result<> check_written(const std::string& path, const FilePairs& pairs, bool makes_folders) {
     if (path.empty()) return {};
     std::vector<std::filesystem::path> inputs;
     for (const FilePairs::Pair& pair : pairs.pairs) inputs.insert(inputs.end(), {pair.reference, pair.test});
     const MissingFolders folders = makes_folders ? MissingFolders::Made : MissingFolders::Told;
     if (Result<> done = check_output(path, FileSet(inputs), folders); !done) return done;
+    return {};
+}
+
+Result<> check_picture(const std::string& path) {
+    if (path.empty()) return {};
     if (const auto kind = darkroom::sample_kind(path, {}); !kind) return failure(kind.error());
     return {};
 }
@@ -95,6 +102,12 @@ void print(const Options& options, const Json& document, const std::string& text
         tell_lines(text);
 }
 
+Result<> write_page(const ComparePage& page, const ComparedSet& set, const Options& options) {
+    if (options.html.empty()) return {};
+    const std::string text = page.html(set, options.a, options.b);
+    return darkroom::write_file(options.html, std::as_bytes(std::span(text)));
+}
+
 int compare_one(const FilePairs::Pair& pair, const CompareRequest& request, const Options& options) {
     std::optional<ComparedColor> color;
     const Result<ComparedFiles> files = compare_files(pair.reference, pair.test, request, &color);
@@ -106,6 +119,12 @@ int compare_one(const FilePairs::Pair& pair, const CompareRequest& request, cons
         darkroom::ContactSheet sheet;
         if (Result<> done = add_to(sheet, files->test, color); !done) return fail(done.error());
         if (Result<> done = darkroom::write_picture(options.sheet, sheet.picture()); !done) return fail(done.error());
+    }
+    if (!options.html.empty()) {
+        ComparePage page;
+        if (color)
+            if (Result<> done = page.add(0, *files, *color); !done) return fail(done.error());
+        if (Result<> done = write_page(page, {.pairs = {*files}}, options); !done) return fail(done.error());
     }
     print(options, json_of(*files), text_of(*files));
     if (files->failures.empty()) return exit_ok;
@@ -123,24 +142,30 @@ int compare_many(const FilePairs& pairs, const CompareRequest& request, const Op
         width = std::max(width, printable(pair.test.filename().string()).size());
     if (!options.is_json) tell_lines(table_head(width));
     darkroom::ContactSheet sheet;
+    ComparePage page;
+    const bool has_pictures = !options.sheet.empty() || !options.html.empty();
     int worst = exit_ok;
     for (const FilePairs::Pair& pair : pairs.pairs) {
         std::optional<ComparedColor> color;
         Result<ComparedFiles> files =
-            compare_files(pair.reference, pair.test, request, options.sheet.empty() ? nullptr : &color);
+            compare_files(pair.reference, pair.test, request, has_pictures ? &color : nullptr);
         if (!files) {
             worst = std::max(worst, fail(files.error()));
             set.errors.push_back(files.error().text);
             continue;
         }
         if (!options.is_json) tell_lines(table_lines(*files, width));
-        if (Result<> done = add_to(sheet, pair.test.filename().string(), color); !done) return fail(done.error());
+        if (!options.sheet.empty())
+            if (Result<> done = add_to(sheet, pair.test.filename().string(), color); !done) return fail(done.error());
+        if (!options.html.empty() && color)
+            if (Result<> done = page.add(set.pairs.size(), *files, *color); !done) return fail(done.error());
         set.pairs.push_back(std::move(*files));
     }
     if (!options.sheet.empty()) {
         set.sheet_rows = sheet.names();
         if (Result<> done = darkroom::write_picture(options.sheet, sheet.picture()); !done) return fail(done.error());
     }
+    if (Result<> done = write_page(page, set, options); !done) return fail(done.error());
     print(options, json_of(set), summary(set));
     if (worst != exit_ok) return worst;
     if (set.failed() + set.missing() == 0) return exit_ok;
@@ -155,10 +180,14 @@ int run(const Options& options) {
     const Result<FilePairs> pairs = find_pairs(options.a, options.b);
     if (!pairs) return fail(pairs.error());
     if (!pairs->is_single && !options.diff.empty())
-        return fail_user(
-            fmt::format("--diff {}: is of two pictures; --sheet shows the worst of many", printable(options.diff)));
+        return fail_user(fmt::format("--diff {}: is of two pictures; --sheet and --html show the worst of many",
+                                     printable(options.diff)));
+    if (!options.html.empty())
+        if (const Result<> done = check_page_name(options.html); !done) return fail(done.error());
     for (const std::string& path : {options.diff, options.sheet})
-        if (const Result<> done = check_picture(path, *pairs, options.makes_folders); !done) return fail(done.error());
+        if (const Result<> done = check_picture(path); !done) return fail(done.error());
+    for (const std::string& path : {options.diff, options.sheet, options.html})
+        if (const Result<> done = check_written(path, *pairs, options.makes_folders); !done) return fail(done.error());
     return pairs->is_single ? compare_one(pairs->pairs.front(), *request, options)
                             : compare_many(*pairs, *request, options);
 }
@@ -172,7 +201,7 @@ Command add_compare(CommandFlags program) {
     command.examples(
         "darkroom compare frame.exr frame.exr --fail-max 0\n"
         "darkroom compare reference.png changed.png --fail-flip 0.9 --diff difference.png\n"
-        "darkroom compare expected/ pictures/ --fail-max 0 --sheet worst.png");
+        "darkroom compare expected/ pictures/ --fail-max 0 --html review.html");
     command.add_option("A", options->a, "The reference: a file, a folder or a sequence").required();
     command.add_option("B", options->b, "What is under test, of the same kind").required();
     options->fail_max.add_to(command, "Fails if a channel is further apart anywhere").type_name("X");
@@ -187,7 +216,9 @@ Command add_compare(CommandFlags program) {
         .type_name("OUT.png");
     command.add_option("--sheet", options->sheet, "Writes the worst: reference, test and FLIP errors side by side")
         .type_name("OUT.png");
-    command.add_flag("--mkdir", options->makes_folders, "Makes the folders of these pictures where they are not there");
+    command.add_option("--html", options->html, "Writes a page of the worst: before, after, difference and FLIP errors")
+        .type_name("OUT.html");
+    command.add_flag("--mkdir", options->makes_folders, "Makes the folders of these files where they are not there");
     command.add_flag("--json", options->is_json, "For programs");
     return {command, [options] { return run(*options); }};
 }
