@@ -107,6 +107,20 @@ TEST_F(Document, DraggingIsOneStep) {
     EXPECT_FALSE(document.can_undo());
 }
 
+TEST_F(Document, AnEditBehindAnUndoIsAStepOfItsOwn) {
+    LookDocument document;
+    must(expose(document, 2));
+    must(expose(document, 3, "exposure"));
+    document.undo();
+    must(expose(document, 4, "exposure"));
+    document.undo();
+    EXPECT_EQ(exposure(document.look()), 2) << "not merged with what was undone";
+    document.redo();
+    must(expose(document, 5, "exposure"));
+    document.undo();
+    EXPECT_EQ(exposure(document.look()), 4) << "nor with what was done again";
+}
+
 TEST_F(Document, WhatFailsOrCannotBeHasNotHappened) {
     LookDocument document;
     const std::uint64_t version = document.version();

@@ -52,6 +52,24 @@ TEST_F(EditStack, WhatTheTableHasIsSwitchedOnInBothOrders) {
     EXPECT_EQ(addition_of(look, *find_effect("tonemap")).kind, Addition::Kind::IsThere);
 }
 
+TEST_F(EditStack, ACopyHasNotTheOutputsName) {
+    Result<Look> read = parse_look(
+        "[[stack]]\neffect = \"exposure\"\nname = \"dim\"\noutput = \"dimmed\"\nexposure = 0.5\n\n"
+        "[[stack]]\neffect = \"blend\"\nsecond = \"dimmed\"\n",
+        "a.toml");
+    ASSERT_TRUE(read) << read.error().text;
+    Look look = std::move(*read);
+    const Result<std::string> copy = duplicate_entry(look, "dim");
+    ASSERT_TRUE(copy) << copy.error().text;
+    ASSERT_EQ(look.entries.size(), 3U);
+    EXPECT_EQ(find_entry(look, "dim")->output, "dimmed");
+    const LookEntry* const made = find_entry(look, *copy);
+    ASSERT_EQ(made, &look.entries[1]);
+    EXPECT_EQ(made->output, "") << "two outputs of one name";
+    EXPECT_NE(made->name, "dim");
+    EXPECT_EQ(made->words, look.entries[0].words);
+}
+
 TEST_F(EditStack, UsesAreWhatBuildDeclares) {
     EXPECT_TRUE(uses_of(*find_effect("bloom")).has_passes);
     EXPECT_TRUE(uses_of(*find_effect("bloom")).reads_source);
