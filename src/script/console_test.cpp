@@ -353,6 +353,16 @@ TEST(ConsoleConfig, HoldsWhatIsArchivedAndReadsBack) {
     EXPECT_EQ(folder.read("user.cfg"), before) << "what was asked for once stays archived";
 }
 
+TEST(ConsoleConfig, LeavesOutWhatIsLocked) {
+    const Folder folder;
+    ConsoleBed bed;
+    bed.run("seta r_ui_echo 0.25");
+    for (const char* const name : {"gamma", "r_ui_echo"}) ASSERT_TRUE(bed.console->lock(name));
+    ASSERT_TRUE(bed.console->write_config(folder.path / "user.cfg"));
+    EXPECT_EQ(folder.read("user.cfg"),
+              "// Written by the program; variables that are archived.\n\"contrast\" \"1.4\"\n");
+}
+
 TEST(ConsoleConfig, KeepsWhatAnotherStackHad) {
     const Folder folder;
     folder.write("user.cfg", "\"scr_sbaralpha\" \"0.5\"\nseta \"bloom#2.intensity\" \"0.25\"\ngamma 2\n");

@@ -233,6 +233,25 @@ TEST(ControllersBudget, IsOfInstructions) {
     EXPECT_NEAR(turns(50000), 5 * few, 200);
 }
 
+// What the first has used up is not there for those behind it: together they keep within the frame's budget.
+TEST(ControllersBudget, IsSharedByAllThatUseItUp) {
+    constexpr std::uint32_t instructions = 90000;
+    ControllersBed bed({.instructions_per_frame = instructions, .milliseconds_per_frame = 1e4});
+    ASSERT_EQ(bed.load("a, b, c = 0, 0, 0\n"
+                       "engine.on_frame('a', function() a = 0 while true do a = a + 1 end end)\n"
+                       "engine.on_frame('b', function() b = 0 while true do b = b + 1 end end)\n"
+                       "engine.on_frame('c', function() c = 0 while true do c = c + 1 end end)\n"
+                       "engine.on_frame('tell', function() print(a) print(b) print(c) end)"),
+              "");
+    bed.frame(0);
+    ASSERT_EQ(bed.said.size(), 6U);
+    // Each turn is of four instructions, and a quarter of the budget is for the last slot.
+    for (std::size_t slot = 0; slot < 3; ++slot) {
+        EXPECT_NE(bed.said[slot].find("budget of instructions"), std::string::npos) << bed.said[slot];
+        EXPECT_NEAR(std::stoi(bed.said[3 + slot]), instructions / 16, 600) << slot;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ControllersHostile, ::testing::ValuesIn(attacks()),
                          [](const auto& attack) { return std::string(attack.param.name); });
 
