@@ -16,7 +16,7 @@ namespace {
 using test::ControllersBed;
 
 constexpr double budget_ms = 2;
-constexpr int most_runs = 10;
+constexpr int most_runs = 40;
 
 /// A millisecond; under sanitizers, which are told of by this variable, anything that ends.
 double most_over() { return std::getenv("DARKROOM_TEST_SMALL") == nullptr ? 1 : 1000; }
