@@ -117,8 +117,10 @@ std::string add_entry(EditedLook& edits, const std::string& effect, const std::s
         if (const Result<> shared = share_effect(look, entry); !shared) raise(shared.error());
         look.entries.push_back(std::move(entry));
     }
-    const auto place = std::ranges::find(look.entries, id, &LookEntry::id) - look.entries.begin();
-    std::string made = entry_names(look)[static_cast<std::size_t>(place)];
+    const auto place = std::ranges::find(look.entries, id, &LookEntry::id);
+    // From here on its name tells it from others: a stack that is made anew for each picture is not compiled anew.
+    place->id = 0;
+    std::string made = entry_names(look)[static_cast<std::size_t>(place - look.entries.begin())];
     set_values(look, made, made, values);
     edits = edited(std::move(look));
     return made;

@@ -104,6 +104,15 @@ class Sequences(Case):
         self.assertSame(stack.develop(self.frames(2)[1], output="linear"), self.frames(2)[1])
         self.assertSame(numpy.stack(list(stack.sequence(self.frames(4), output="linear"))), numpy.stack(pictures))
 
+    def test_a_stack_that_is_made_anew_keeps_the_plan_and_its_histories(self):
+        runner = _device.new_runner("linear", 1)
+        for number, expected in enumerate((0.0, 0.5)):
+            stack = darkroom.Stack().recursive_blend(weight=0.5)
+            frame = darkroom.Frame(self.frames(2)[number])._described(
+                darkroom.Camera()._described(8, 6, None), number / 60, 1 / 60, number
+            )
+            numpy.testing.assert_allclose(runner.develop(stack._look, frame), expected, rtol=1e-3)
+
     def test_sequences_beside_each_other_do_not_meet(self):
         stack = darkroom.Stack().recursive_blend(weight=0.5)
         alone = list(stack.sequence(self.frames(5), output="linear"))
