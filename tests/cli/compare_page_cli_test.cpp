@@ -32,8 +32,8 @@ class CliComparePage : public test::CliFixture {
         for (const std::string folder : {"a", "b"}) std::filesystem::create_directory(path(folder));
     }
     /// Codes of 8 bits, no two neighbours alike.
-    [[nodiscard]] static Picture codes(int added = 0, std::uint32_t width = page_width) {
-        Picture out(width, page_height);
+    [[nodiscard]] static Picture codes(int added = 0, std::uint32_t across = page_width) {
+        Picture out(across, page_height);
         for (std::size_t i = 0; i < out.pixels.size(); ++i)
             out.pixels[i] = static_cast<float>(static_cast<int>(i * 37 % 191) + added) / 255;
         return out;
