@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What every function of the C interface does: it catches what is thrown, makes a code and a text of an error, and reads
-// and writes structs of other versions.
+// What every function of the C interface does: it catches what is thrown, makes a code and a text of an error, and
+// reads and writes structs of other versions.
 
 #include <darkroom/darkroom.h>
 #include <fmt/format.h>
@@ -48,9 +48,7 @@ Value call_for(const char* function, Value otherwise, const Work& work) noexcept
     return out;
 }
 
-[[nodiscard]] inline Failure is_null(std::string_view what) {
-    return user_error(fmt::format("{}: it is null", what));
-}
+[[nodiscard]] inline Failure is_null(std::string_view what) { return user_error(fmt::format("{}: it is null", what)); }
 /// Pointers that have to be there: needs("composer", composer, "desc", desc).
 [[nodiscard]] inline Result<> needs() { return {}; }
 template <class Pointer, class... Rest>
@@ -70,8 +68,8 @@ template <class T>
     const std::size_t size = given->struct_size;
     // The first version of each struct is the present one.
     if (size < sizeof(T) || size > 16 * sizeof(T))
-        return user_error(fmt::format("{}.struct_size = {}: allowed is sizeof({}), {} in this version", name, size, name,
-                                      sizeof(T)));
+        return user_error(
+            fmt::format("{}.struct_size = {}: allowed is sizeof({}), {} in this version", name, size, name, sizeof(T)));
     const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
     if (std::any_of(bytes + sizeof(T), bytes + size, [](unsigned char byte) { return byte != 0; }))
         return user_error(fmt::format("{}: a member behind its first {} bytes is set, which this version does not know",

@@ -41,7 +41,8 @@ Result<std::span<const std::byte>> bytes_of(const void* data, std::size_t size) 
 
 Result<std::span<const char* const>> names_of(const char* const* names, std::uint32_t count, std::string_view what) {
     if (count > 0 && names == nullptr) return is_null(what);
-    if (count > most_elements) return user_error(fmt::format("{} {}: allowed are at most {}", count, what, most_elements));
+    if (count > most_elements)
+        return user_error(fmt::format("{} {}: allowed are at most {}", count, what, most_elements));
     for (std::uint32_t i = 0; i < count; ++i)
         if (names[i] == nullptr) return is_null(fmt::format("{}[{}]", what, i));
     return std::span(names, count);
@@ -152,8 +153,8 @@ DarkroomResult darkroom_device_adopt(const DarkroomAdoptDesc* given, DarkroomDev
         if (!desc) return failure(desc.error());
         const auto kernels = bytes_of(desc->kernels, desc->kernels_size);
         if (!kernels) return failure(kernels.error());
-        const auto instance_extensions = names_of(desc->enabled_instance_extensions, desc->enabled_instance_extension_count,
-                                                  "enabled_instance_extensions");
+        const auto instance_extensions = names_of(
+            desc->enabled_instance_extensions, desc->enabled_instance_extension_count, "enabled_instance_extensions");
         if (!instance_extensions) return failure(instance_extensions.error());
         const auto device_extensions = names_of(desc->enabled_device_extensions, desc->enabled_device_extension_count,
                                                 "enabled_device_extensions");

@@ -87,7 +87,8 @@ Result<ColorState> color_state_of(const DarkroomColorState* given) {
 }
 
 Result<Watch> watch_of(const DarkroomWatch& given) {
-    Watch out{.id = given.id, .entry = handle_of(given.entry), .image = string(given.image), .mip_level = given.mip_level};
+    Watch out{
+        .id = given.id, .entry = handle_of(given.entry), .image = string(given.image), .mip_level = given.mip_level};
     if (auto ok = use_of(given.target, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, out.target); !ok)
         return failure(std::move(ok));
     return out;
@@ -133,9 +134,11 @@ Result<Frame> frame_of(const DarkroomFrame* given, DarkroomComposerObject& compo
     if (!frame) return failure(frame.error());
     Frame out;
     const std::pair<const DarkroomImage*, ImageRef*> images[] = {
-        {frame->color, &out.color},           {frame->target, &out.target},         {frame->depth, &out.depth},
-        {frame->normals, &out.normals},       {frame->velocity, &out.velocity},     {frame->ui, &out.ui},
-        {frame->reactive, &out.reactive},     {frame->transparency, &out.transparency}, {frame->exposure, &out.exposure}};
+        {frame->color, &out.color},       {frame->target, &out.target},
+        {frame->depth, &out.depth},       {frame->normals, &out.normals},
+        {frame->velocity, &out.velocity}, {frame->ui, &out.ui},
+        {frame->reactive, &out.reactive}, {frame->transparency, &out.transparency},
+        {frame->exposure, &out.exposure}};
     for (const auto& [from, to] : images)
         if (auto ok = image_of(from, *to); !ok) return failure(std::move(ok));
     const auto camera = camera_of(frame->camera);
@@ -173,10 +176,14 @@ Result<CompileDesc> compile_desc_of(const DarkroomCompileDesc* given) {
     CompileDesc out;
     out.max_extent = desc->max_extent;
     out.target_extent = desc->target_extent;
-    const std::pair<const DarkroomImageUse*, ImageUse*> uses[] = {
-        {desc->color, &out.color},       {desc->depth, &out.depth},       {desc->normals, &out.normals},
-        {desc->velocity, &out.velocity}, {desc->ui, &out.ui},             {desc->reactive, &out.reactive},
-        {desc->transparency, &out.transparency}, {desc->exposure, &out.exposure}};
+    const std::pair<const DarkroomImageUse*, ImageUse*> uses[] = {{desc->color, &out.color},
+                                                                  {desc->depth, &out.depth},
+                                                                  {desc->normals, &out.normals},
+                                                                  {desc->velocity, &out.velocity},
+                                                                  {desc->ui, &out.ui},
+                                                                  {desc->reactive, &out.reactive},
+                                                                  {desc->transparency, &out.transparency},
+                                                                  {desc->exposure, &out.exposure}};
     for (const auto& [from, to] : uses)
         if (auto ok = use_of(from, VK_IMAGE_USAGE_SAMPLED_BIT, *to); !ok) return failure(std::move(ok));
     if (auto ok = use_of(desc->target, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, out.target); !ok)

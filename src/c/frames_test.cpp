@@ -86,7 +86,8 @@ TEST_F(GpuCInterface, RecordsThePictureOfCppAndAllocatesNothing) {
 /// A host's allocator, by the driver's own functions.
 struct Allocator {
     int live = 0, most = 1000;
-    static VkResult allocate(void* user, VkDevice device, const DarkroomMemoryRequest* request, DarkroomMemory* memory) {
+    static VkResult allocate(void* user, VkDevice device, const DarkroomMemoryRequest* request,
+                             DarkroomMemory* memory) {
         auto& self = *static_cast<Allocator*>(user);
         EXPECT_EQ(request->struct_size, sizeof *request);
         EXPECT_EQ(memory->struct_size, sizeof *memory);

@@ -230,10 +230,8 @@ DarkroomResult darkroom_check_temporal(const DarkroomCamera* given, VkExtent2D e
         const std::size_t pixels = std::size_t{extent.width} * extent.height;
         thread_local std::string lines;
         lines.clear();
-        for (const std::string& line : check_temporal({.camera = *camera,
-                                                       .extent = extent,
-                                                       .depth = {depth, pixels},
-                                                       .velocity = {velocity, 2 * pixels}}))
+        for (const std::string& line : check_temporal(
+                 {.camera = *camera, .extent = extent, .depth = {depth, pixels}, .velocity = {velocity, 2 * pixels}}))
             lines += line + "\n";
         *text = lines.c_str();
         return {};

@@ -10,8 +10,8 @@ namespace {
 /// What `desc` of an entry says of its effect's values: null: nothing.
 Result<const std::uint32_t*> words_of(const DarkroomEntryDesc& desc, const EffectInfo& effect) {
     if (desc.words != nullptr && desc.word_count != effect.parameters.words())
-        return user_error(fmt::format("word_count = {}: {} has {} words", desc.word_count, effect.name,
-                                      effect.parameters.words()));
+        return user_error(
+            fmt::format("word_count = {}: {} has {} words", desc.word_count, effect.name, effect.parameters.words()));
     return desc.words;
 }
 

@@ -185,7 +185,8 @@ TEST(CInterface, WhatAFrameSaysArrives) {
     zero.delta_time = -1;
     const auto frame = c::frame_of(&zero, *stack.composer);
     ASSERT_TRUE(frame) << frame.error().text;
-    for (const ImageRef* is : {&frame->normals, &frame->exposure, &frame->lights[1].cascades, &frame->watched[0].target}) {
+    for (const ImageRef* is :
+         {&frame->normals, &frame->exposure, &frame->lights[1].cascades, &frame->watched[0].target}) {
         EXPECT_EQ(is->mip_level, 1u);
         EXPECT_EQ(is->array_layer, 2u);
         EXPECT_EQ(is->layer_count, 3u);
@@ -203,8 +204,8 @@ TEST(CInterface, WhatAFrameSaysArrives) {
     EXPECT_EQ(frame->camera.depth, DepthKind::Reversed);
     EXPECT_FALSE(frame->camera.is_y_down);
     EXPECT_TRUE(frame->camera.is_cut);
-    EXPECT_EQ(frame->camera.velocity, (VelocityKind{VelocityKind::Sign::CurrentMinusPrevious, VelocityKind::Unit::Ndc,
-                                                    false, true}));
+    EXPECT_EQ(frame->camera.velocity,
+              (VelocityKind{VelocityKind::Sign::CurrentMinusPrevious, VelocityKind::Unit::Ndc, false, true}));
     EXPECT_EQ(frame->camera.previous_view[5], 5);
     EXPECT_EQ(frame->camera.jitter[1], 0.25f);
     EXPECT_EQ(frame->camera.previous_jitter[0], 0.125f);
@@ -331,11 +332,12 @@ TEST(CInterface, StructsOfOtherVersions) {
     desc.known.struct_size = sizeof desc;
     EXPECT_EQ(darkroom_composer_add(stack.composer, "bloom", &desc.known, nullptr), DARKROOM_OK) << darkroom_error();
     desc.newer = 1;
-    expect_error(darkroom_composer_add(stack.composer, "bloom", &desc.known, nullptr),
-                 fmt::format("darkroom_composer_add: DarkroomEntryDesc: a member behind its first {} bytes is set, which "
-                             "this version does not know",
-                             sizeof(DarkroomEntryDesc))
-                     .c_str());
+    expect_error(
+        darkroom_composer_add(stack.composer, "bloom", &desc.known, nullptr),
+        fmt::format("darkroom_composer_add: DarkroomEntryDesc: a member behind its first {} bytes is set, which "
+                    "this version does not know",
+                    sizeof(DarkroomEntryDesc))
+            .c_str());
     // A size that was forgotten.
     const DarkroomEntryDesc forgotten{};
     EXPECT_EQ(darkroom_composer_add(stack.composer, "bloom", &forgotten, nullptr), DARKROOM_ERROR_USER);
@@ -426,8 +428,9 @@ TEST(CInterface, Looks) {
     auto options = sized<DarkroomLookOptions>();
     options.warn = [](void* user, const char* text) { *static_cast<std::string*>(user) += text; };
     options.user = &warned;
-    ASSERT_EQ(darkroom_look_parse("[post_process]\nbloom_intensity = 0.3\nbloom_intensty = 1\n", "a.toml", &options, &look),
-              DARKROOM_OK)
+    ASSERT_EQ(
+        darkroom_look_parse("[post_process]\nbloom_intensity = 0.3\nbloom_intensty = 1\n", "a.toml", &options, &look),
+        DARKROOM_OK)
         << darkroom_error();
     EXPECT_NE(warned.find("a.toml:3"), std::string::npos) << warned;
     ASSERT_EQ(darkroom_look_override(look, "exposure", "2"), DARKROOM_OK) << darkroom_error();
@@ -455,9 +458,7 @@ TEST(CInterface, Looks) {
 }
 
 TEST(CInterface, WhatIsThrownIntoItStaysInside) {
-    const auto thrown = [](const auto& error) {
-        return c::call("f", [&]() -> Result<> { throw error; });
-    };
+    const auto thrown = [](const auto& error) { return c::call("f", [&]() -> Result<> { throw error; }); };
     expect_error(thrown(std::runtime_error("it broke")), "f: it broke", DARKROOM_ERROR_MACHINE);
     expect_error(thrown(std::bad_alloc()), "f: out of memory", DARKROOM_ERROR_OUT_OF_MEMORY);
     EXPECT_EQ(thrown(7), DARKROOM_ERROR_MACHINE);

@@ -216,7 +216,8 @@ DarkroomResult darkroom_composer_add_pulse(DarkroomComposer composer, const Dark
         if (auto ok = needs("event", desc->event, "parameter", desc->parameter); !ok) return ok;
         const auto kind = enumerator<Envelope>(desc->envelope, DARKROOM_ENVELOPE_SPRING, "envelope");
         if (!kind) return failure(kind.error());
-        PulseDesc out{.event = desc->event, .entry = handle_of(desc->entry), .parameter = desc->parameter, .envelope = *kind};
+        PulseDesc out{
+            .event = desc->event, .entry = handle_of(desc->entry), .parameter = desc->parameter, .envelope = *kind};
         std::ranges::copy(desc->amount, out.amount.begin());
         if (desc->duration != 0) out.duration = desc->duration;
         return composer->composer.add_pulse(out);

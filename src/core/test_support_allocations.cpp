@@ -13,8 +13,8 @@ thread_local std::uint64_t failing = never;  ///< the value of `count` with whic
 
 }  // namespace
 
-// AddressSanitizer brings its own operator new, and forms of it that do not call this one. On Windows so does the DLL of
-// the C++ library.
+// AddressSanitizer brings its own operator new, and forms of it that do not call this one. On Windows so does the DLL
+// of the C++ library.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(_WIN32)
 namespace {
 

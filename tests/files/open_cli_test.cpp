@@ -223,8 +223,9 @@ TEST_F(CliOpen, FilesThatModelsName) {
 // alone; Lua's and the font's are given names of their own.
 // What makes a file that must not be there yet reads none.
 TEST(FilesOpened, ByOneFunctionAlone) {
-    const std::regex opener(R"(ifstream|\bfopen\(|[^\w.>]::open(at)?\((?![^;]*O_EXCL)|\bOpenFile\b|_wsopen|CreateFileW|)"
-                            R"(AddFontFromFileTTF|luaL_(load|do)file)");
+    const std::regex opener(
+        R"(ifstream|\bfopen\(|[^\w.>]::open(at)?\((?![^;]*O_EXCL)|\bOpenFile\b|_wsopen|CreateFileW|)"
+        R"(AddFontFromFileTTF|luaL_(load|do)file)");
     const std::filesystem::path source = test::source_folder;
     std::set<std::string> found;
     for (const char* const folder : {"src", "apps", "include"})
@@ -234,8 +235,9 @@ TEST(FilesOpened, ByOneFunctionAlone) {
             if (!is_source || name.find("test") != std::string::npos) continue;
             if (std::regex_search(test::content(entry.path()), opener)) found.insert(name);
         }
-    EXPECT_EQ(found, (std::set<std::string>{"src/core/files.cpp", "src/core/system/file.hpp", "src/core/system/file_posix.cpp",
-                                           "src/core/system/file_windows.cpp", "src/panels/widgets/theme.cpp"}));
+    EXPECT_EQ(found,
+              (std::set<std::string>{"src/core/files.cpp", "src/core/system/file.hpp", "src/core/system/file_posix.cpp",
+                                     "src/core/system/file_windows.cpp", "src/panels/widgets/theme.cpp"}));
 }
 
 }  // namespace

@@ -182,7 +182,9 @@ Command add_bake(CommandFlags program, std::span<const darkroom::LookEntry> name
         "darkroom bake my.toml -o kernels.dkb --profile gpu --size 1920x1080 --size 2560x1440\n"
         "darkroom bake my.toml -o kernels.dkb --profile software --target-format B8G8R8A8_SRGB");
     const auto options = std::make_shared<Options>();
-    command.add_option("LOOK", options->looks, "Look files or scenes (TOML), and folders of them").type_name("LOOK").required();
+    command.add_option("LOOK", options->looks, "Look files or scenes (TOML), and folders of them")
+        .type_name("LOOK")
+        .required();
     command.add_option("-o,--output,--out", options->out, "The file: .dkb").type_name("OUT").required();
     command.add_flag("--mkdir", options->makes_folder, "Makes the folder of the file where it is not there");
     command.add_option("--profile", options->profile, "The kind of device that will run them")

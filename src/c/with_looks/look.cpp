@@ -103,7 +103,8 @@ DarkroomResult darkroom_look_parse(const char* text, const char* shown_name, con
                                    DarkroomLook* look) {
     return call("darkroom_look_parse", [&]() -> Result<> {
         if (auto ok = needs("text", text, "shown_name", shown_name, "look", look); !ok) return ok;
-        return with_options(options, [&](const LookOptions& use) { return give(parse_look(text, shown_name, use), look); });
+        return with_options(options,
+                            [&](const LookOptions& use) { return give(parse_look(text, shown_name, use), look); });
     });
 }
 

@@ -8,8 +8,8 @@ using namespace darkroom::c;
 namespace {
 
 DarkroomResult unsupported(const char* function) {
-    return tell(function, {Fault::User, "this library was built without looks (DARKROOM_LOOKS=OFF)",
-                           ErrorCode::Unsupported});
+    return tell(function,
+                {Fault::User, "this library was built without looks (DARKROOM_LOOKS=OFF)", ErrorCode::Unsupported});
 }
 
 }  // namespace
@@ -46,6 +46,7 @@ const char* darkroom_look_entry_name(DarkroomLook, uint32_t) { return nullptr; }
 DarkroomResult darkroom_look_apply(DarkroomLook, DarkroomComposer, const DarkroomApplyOptions*) {
     return unsupported("darkroom_look_apply");
 }
-DarkroomResult darkroom_look_follow(DarkroomLook, DarkroomLook, DarkroomComposer, const DarkroomApplyOptions*, VkBool32*) {
+DarkroomResult darkroom_look_follow(DarkroomLook, DarkroomLook, DarkroomComposer, const DarkroomApplyOptions*,
+                                    VkBool32*) {
     return unsupported("darkroom_look_follow");
 }
