@@ -27,6 +27,7 @@
 #include <darkroom/blend_mode.hpp>
 #include <darkroom/device.hpp>
 #include <darkroom/frame.hpp>
+#include <darkroom/handle.hpp>
 #include <darkroom/kernel_statistics.hpp>
 #include <darkroom/modulation.hpp>
 #include <darkroom/plan.hpp>
@@ -46,13 +47,6 @@ namespace darkroom {
 struct EffectInfo;
 
 inline constexpr std::uint32_t previous_pre_roll = 60;
-
-/// A parameter of one entry: see Composer::parameter(). Another effect in the entry's place has others.
-struct ParameterId {
-    std::uint32_t owner = 0;  ///< 0: none
-    std::uint16_t row = 0;    ///< of the effect's rows
-    std::uint16_t place = 0;  ///< where the entry was when it was found, which is looked at first
-};
 
 /// What belongs to the stack entry, not to the effect.
 struct EntryDesc {

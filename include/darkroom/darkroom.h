@@ -766,7 +766,8 @@ DARKROOM_API uint64_t darkroom_plan_bytes_written(DarkroomPlan plan);
 /// Composers do not need it.
 DARKROOM_API void darkroom_plan_destroy(DarkroomPlan plan);
 
-/// Records the whole stack. Allocates nothing, waits for nothing, submits nothing. Errors record nothing.
+/// Records the whole stack. Waits for nothing, submits nothing, and allocates nothing but, once, room for more lights or
+/// watches than any frame before had. Errors record nothing.
 DARKROOM_API DarkroomResult darkroom_composer_record(DarkroomComposer composer, VkCommandBuffer commands,
                                                      const DarkroomFrame* frame);
 /// The last recording will not be submitted: what it did to histories and the ring of frames is taken back.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// What names an entry of a Composer's stack.
+// What names an entry of a Composer's stack, and a parameter of one.
 
 #include <cstdint>
 
@@ -24,5 +24,12 @@ inline constexpr Handle scene_alpha{~0u - 1};
 
 /// The interface's image, Frame::ui: encoded, premultiplied.
 inline constexpr Handle ui_layer{~0u - 2};
+
+/// A parameter of one entry: see Composer::parameter(). Another effect in the entry's place has others.
+struct ParameterId {
+    std::uint32_t owner = 0;  ///< 0: none
+    std::uint16_t row = 0;    ///< of the effect's rows
+    std::uint16_t place = 0;  ///< where the entry was when it was found, which is looked at first
+};
 
 }  // namespace darkroom
