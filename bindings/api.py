@@ -98,6 +98,20 @@ class Api:
         return "".join(f"{comment} {line}\n" for line in lines)
 
 
+def type_in_bits(api, name, c_types, pointer):
+    """A type without its pointers, for languages that name integers by their bits: u32, i32."""
+    kind = api.kinds[name]
+    if kind == "c":
+        return c_types[name]
+    if kind == "integer":
+        return f"u{api.integer_bits(name)}"
+    if kind == "object":
+        return "u64"
+    if kind == "function" or (kind == "handle" and name.startswith("Vk")):
+        return pointer
+    return "i32" if kind == "enum" and name.startswith("Vk") else name
+
+
 def safe_name(name, keywords, form):
     """A name that is a word of the language itself, in the form that the language has for it."""
     return form.format(name) if name in keywords else name

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Darkroom for Odin. Its text is tested; it was never compiled, because Debian has no Odin."""
 
-from api import safe_name
+from api import safe_name, type_in_bits
 
 C_TYPES = {"char": "u8", "float": "f32", "double": "f64", "int32_t": "i32", "uint32_t": "u32", "uint64_t": "u64",
            "size_t": "uint"}
@@ -15,16 +15,7 @@ def name_of(name):
 
 
 def base_type(api, name):
-    kind = api.kinds[name]
-    if kind == "c":
-        return C_TYPES[name]
-    if kind == "integer":
-        return f"u{api.integer_bits(name)}"
-    if kind == "object":
-        return "u64"
-    if kind == "function" or (kind == "handle" and name.startswith("Vk")):
-        return "rawptr"
-    return "i32" if kind == "enum" and name.startswith("Vk") else name
+    return type_in_bits(api, name, C_TYPES, "rawptr")
 
 
 def type_of(api, type):

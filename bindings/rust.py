@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Darkroom for Rust."""
 
-from api import safe_name
+from api import safe_name, type_in_bits
 
 C_TYPES = {"void": "c_void", "char": "c_char", "float": "f32", "double": "f64", "int32_t": "i32", "uint32_t": "u32",
            "uint64_t": "u64", "size_t": "usize"}
@@ -52,16 +52,7 @@ def name_of(name):
 
 
 def base_type(api, name):
-    kind = api.kinds[name]
-    if kind == "c":
-        return C_TYPES[name]
-    if kind == "integer":
-        return f"u{api.integer_bits(name)}"
-    if kind == "object":
-        return "u64"
-    if kind == "function" or kind == "opaque" or (kind == "handle" and name.startswith("Vk")):
-        return "*mut c_void" if kind != "opaque" else "c_void"
-    return "i32" if kind == "enum" and name.startswith("Vk") else name
+    return "c_void" if api.kinds[name] == "opaque" else type_in_bits(api, name, C_TYPES, "*mut c_void")
 
 
 def type_of(api, type):
