@@ -91,6 +91,48 @@ TEST(EffectMotionBlur, GpuMatchesReferenceWhereTheCameraMoves) {
     }
 }
 
+/// Moved by less than a texel, this frame and the one before in other ways.
+Shot jittered(Shot shot) {
+    shot.camera.jitter = {0.375f, -0.25f};
+    shot.camera.previous_jitter = {-0.4375f, 0.3125f};
+    return shot;
+}
+
+TEST(EffectMotionBlur, AStillCamerasJitterIsNoMotion) {
+    Shot still = walk();
+    still.camera.previous_view = still.camera.view;
+    for (const MotionBlur& blur : {full, half})
+        EXPECT_LE(share_beyond(on_gpu(blur, jittered(still)), on_gpu(blur, still), 0x1p-8), 0);
+}
+
+TEST(EffectMotionBlur, AWalkingCamerasJitterIsTakenOff) {
+    const Shot shot = jittered(walk());
+    for (const MotionBlur& blur : {full, half}) {
+        const ReferenceImage out = on_gpu(blur, shot), expected = on_cpu(blur, shot);
+        EXPECT_LE(share_beyond(out, expected, 0x1p-8), 0.2);
+        EXPECT_LE(share_beyond(out, expected, 0x1p-4), 0.002);
+    }
+}
+
+// Every line and column of its own: a row too few at an odd edge is seen.
+TEST(EffectMotionBlur, OddEdgesOfAPictureThatIsNowhereTheSame) {
+    for (const VkExtent2D extent : {VkExtent2D{33, 217}, VkExtent2D{46, 203}, VkExtent2D{31, 218}})
+        for (const MotionBlur& blur : {full, half}) {
+            const ReferenceImage random = test::random_display(extent.width, extent.height, 9);
+            Shot shot{.color = test::round_to_half(random),
+                      .depth = ReferenceImage(extent.width, extent.height),
+                      .velocity = ReferenceImage(extent.width, extent.height)};
+            for (std::uint32_t y = 0; y < extent.height; ++y)
+                for (std::uint32_t x = 0; x < extent.width; ++x) {
+                    shot.depth.at(x, y) = {4.0 + x / 8 + y / 16, 0, 0, 1};
+                    shot.velocity.at(x, y) = {x + 1 < extent.width ? 4.0 : -8.0, y + 1 < extent.height ? 0.0 : 8.0, 0,
+                                              1};
+                }
+            EXPECT_LE(test::worst_difference(on_gpu(blur, shot), on_cpu(blur, shot)), 0x1p-8)
+                << extent.width << "x" << extent.height;
+        }
+}
+
 // Occlusion of no strength, before it in the stack, asks for the distances of half the size. Some pixels are sprites,
 // whose normals have no length: such distances have a sign.
 TEST(EffectMotionBlur, TheDistancesOfAnotherEffectGiveTheSamePicture) {
