@@ -140,6 +140,17 @@ TEST(EffectFrameBlend, OddSizesAndASinglePixel) {
     }
 }
 
+// A trail lasts as long in seconds at every frame rate.
+TEST(EffectFrameBlend, PreRollCoversTheTrailAtEveryFrameRate) {
+    const FrameBlend blend;
+    const double trail = static_cast<double>(blend.frames + 1) / 60;
+    for (const double frames_per_second : {24.0, 60.0, 144.0, 240.0, 1000.0}) {
+        const double covered = effect_info(blend).pre_roll(&blend, 1 / frames_per_second) / frames_per_second;
+        EXPECT_GE(covered, trail) << frames_per_second;
+        EXPECT_LE(covered, trail + 2.001 / frames_per_second) << frames_per_second;
+    }
+}
+
 TEST(EffectFrameBlend, AmountZeroChangesNothing) {
     const FrameBlend off{.amount = 0}, on;
     EXPECT_TRUE(effect_info(off).is_identity(&off));

@@ -112,6 +112,21 @@ TEST(EffectPerturb, TheSinesMoveByTheirStrengthInPixels) {
     EXPECT_NEAR(reference(shift, ramp, 0).at(20, 4).r, 25 / 64.0, 1e-6);
 }
 
+// Half way between the last entry and the first: sin is -0.012, the last entry -0.025, a quarter of a pixel less.
+TEST(EffectPerturb, TheSineTableHasNoSeam) {
+    ReferenceImage ramp(64, 8);
+    for (std::uint32_t y = 0; y < 8; ++y)
+        for (std::uint32_t x = 0; x < 64; ++x) ramp.at(x, y) = {x / 64.0, y / 8.0, 0, 1};
+    const Perturb shift{.strength = {20, 20, 0, 0},
+                        .time_distortion = {0.998f, 0.998f},
+                        .evaluation = Evaluation::SineTable,
+                        .reach = Reach::Pixels};
+    const ReferenceImage expected = reference(shift, ramp, 0);
+    EXPECT_NEAR(expected.at(20, 4).r, (20 - 20 * 0.01257) / 64, 1e-4);
+    EXPECT_NEAR(developed(shift, ramp).at(20, 4).r, expected.at(20, 4).r, 1e-3);
+    EXPECT_NEAR(developed(shift, ramp).at(20, 4).g, expected.at(20, 4).g, 2e-3);
+}
+
 TEST(EffectPerturb, TheRingRunsOutwardAndDies) {
     const ReferenceImage picture = waves(120, 80);
     const Perturb ring{
