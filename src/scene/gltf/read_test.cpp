@@ -129,6 +129,26 @@ TEST_F(SceneGltfRead, SparseAccessorsReplaceElements) {
     EXPECT_EQ(only_primitive(model).vertices.at(2).position, vec3(0, 1, 0));
 }
 
+// The elements of the base are 24 bytes apart, those of the replacements 12.
+TEST_F(SceneGltfRead, SparseElementsLieCloseOverAnInterleavedBase) {
+    TestModel test;
+    auto& primitive = test.add_triangle();
+    const std::size_t base = test.view<float>({0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1});
+    test.json["bufferViews"][base]["byteStride"] = 24;
+    const std::size_t sparse_indices = test.view<std::uint16_t>({0, 2});
+    const std::size_t sparse_values = test.view<float>({5, 6, 7, 8, 9, 10});
+    test.json["accessors"][0]["bufferView"] = base;
+    test.json["accessors"][0]["sparse"] = {{"count", 2},
+                                           {"indices", {{"bufferView", sparse_indices}, {"componentType", 5123}}},
+                                           {"values", {{"bufferView", sparse_values}}}};
+    primitive["attributes"]["NORMAL"] = test.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    const Model model = read_good(test);
+    const auto& vertices = only_primitive(model).vertices;
+    EXPECT_EQ(vertices.at(0).position, vec3(5, 6, 7));
+    EXPECT_EQ(vertices.at(1).position, vec3(1, 0, 0));
+    EXPECT_EQ(vertices.at(2).position, vec3(8, 9, 10));
+}
+
 TEST_F(SceneGltfRead, SparseWithoutDataIsRefusedIfEnormous) {
     TestModel test;
     test.add_triangle();
