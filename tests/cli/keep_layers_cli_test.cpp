@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Layers of a frame that go into the picture's file as they are: every bit, finite or not, and what cannot go.
+#include <OpenEXR/ImfMultiPartOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -59,6 +63,55 @@ TEST_F(CliKeepLayers, AreTheSameBitForBit) {
     ASSERT_EQ(run({"develop", path("frame.exr"), "--no-ssao", "-o", path("plain.exr")}).code, 0);
     EXPECT_EQ(read("out.exr", "R"), read("plain.exr", "R"));
     EXPECT_EQ(read_frame(path("plain.exr"))->channels.size(), 3U) << "without the flag none go along";
+}
+
+/// Two parts of one size, of which only the first is the colour's.
+void store_two_parts(const fs::path& path, std::span<const float> values, std::span<const float> mattes,
+                     const std::vector<std::string>& names) {
+    std::vector<Imf::Header> headers;
+    for (const char* const name : {"beauty", "mattes"}) {
+        Imf::Header& header = headers.emplace_back(12, 8);
+        header.setName(name);
+        header.setType(Imf::SCANLINEIMAGE);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        const std::vector<std::string> own{"B", "G", "R"};
+        for (const std::string& channel : headers.size() == 1 ? own : names)
+            header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+    }
+    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
+    for (int number = 0; number < 2; ++number) {
+        Imf::FrameBuffer buffer;
+        const std::span<const float> from = number == 0 ? values : mattes;
+        std::size_t place = 0;
+        for (auto channel = headers[static_cast<std::size_t>(number)].channels().begin();
+             channel != headers[static_cast<std::size_t>(number)].channels().end(); ++channel, ++place)
+            buffer.insert(channel.name(),
+                          Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(&from[place])),
+                                     3 * sizeof(float), 12 * 3 * sizeof(float)));
+        Imf::OutputPart part(file, number);
+        part.setFrameBuffer(buffer);
+        part.writePixels(8);
+    }
+}
+
+// They stand where red, green and blue do in the colour's own part.
+TEST_F(CliKeepLayers, ChannelsOfAnotherPartAreNotTakenForTheColours) {
+    std::vector<float> colors(width * height * 3), mattes(width * height * 3);
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+        colors[i] = static_cast<float>(i % 7) / 7;
+        mattes[i] = static_cast<float>(i);
+    }
+    const std::vector<std::string> names{"head", "legs", "tail"};
+    store_two_parts(path("parts.exr"), colors, mattes, names);
+    const Outcome outcome =
+        run({"develop", path("parts.exr"), "--keep-layers", "--bits", "float", "-o", path("out.exr")});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        const std::vector<float> kept = read("out.exr", "mattes." + names[c]);
+        ASSERT_EQ(kept.size(), width * height) << names[c];
+        for (std::size_t i = 0; i < kept.size(); ++i) ASSERT_EQ(kept[i], mattes[i * 3 + c]) << names[c] << " " << i;
+    }
 }
 
 TEST_F(CliKeepLayers, HalvesStayHalvesAndShadowsStayBehind) {
