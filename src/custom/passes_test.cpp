@@ -238,6 +238,42 @@ TEST(ComposeCustomPasses, VelocityAndUiAreThoseOfTheFrame) {
     EXPECT_EQ(out.a, 0.5);
 }
 
+// The interface has the size of what is shown, which may be more than the scene's: a place of the picture is the same
+// place of it.
+TEST(ComposeCustomPasses, AnInterfaceOfAnotherSizeLiesOverThePicture) {
+    const CustomEffect effect = parsed(
+        "// @effect mine: Mine.\n// @needs ui\nvec4 mine(vec4 color, Pixel pixel, Mine parameters) {\n"
+        "    return vec4(load(frame_ui, pixel.texel).r, sample_linear(frame_ui, pixel.uv).r, 0, 1);\n}\n");
+    const test::Host host(test::uniform(8, 6, {0, 0, 0, 1}));
+    const auto upload = [&](const ReferenceImage& image) {
+        return gpu::test::upload(host.device.context(), test::pixels_of(image), VK_FORMAT_R32G32B32A32_SFLOAT,
+                                 VK_IMAGE_LAYOUT_GENERAL);
+    };
+    const auto place = [](double u, double v) { return u / 2 + v / 4; };
+    ReferenceImage ramp(32, 24);
+    for (std::uint32_t y = 0; y < 24; ++y)
+        for (std::uint32_t x = 0; x < 32; ++x) ramp.at(x, y) = {place((x + 0.5) / 32, (y + 0.5) / 24), 0, 0, 1};
+    const gpu::test::Picture ui = upload(ramp), target = upload(test::uniform(32, 24, {0, 0, 0, 0}));
+    CompileDesc desc = host.compile_desc();
+    desc.ui = {ui.image.info.format, ui.image.info.usage};
+    desc.target_extent = {32, 24};
+    Composer composer(host.device);
+    composer.add(effect.info(), nullptr);
+    must(composer.compile(desc));
+    Frame frame = host.frame();
+    frame.ui = test::image_ref(ui);
+    frame.target = test::image_ref(target);
+    must(host.record(composer, frame));
+    const ReferenceImage out = test::image_of(gpu::test::download(host.device.context(), target));
+    // Where the picture is sampled between its own texels.
+    for (std::uint32_t y = 2; y < 22; ++y)
+        for (std::uint32_t x = 2; x < 30; ++x) {
+            const double expected = place((x + 0.5) / 32, (y + 0.5) / 24);
+            EXPECT_NEAR(out.at(x, y).r, expected, 4e-3) << x << ", " << y;
+            EXPECT_NEAR(out.at(x, y).g, expected, 4e-3) << x << ", " << y;
+        }
+}
+
 /// Two cascades of 4 x 4 texels: in the first something stands at depth 0.3 before the left half; the second is empty.
 ReferenceLight shadow_light_of_halves() {
     ReferenceLight light{.light = {.direction = {0, 0.5f, 0}, .color = {3, 2, 1}, .splits = {10, 20}},
