@@ -119,6 +119,29 @@ TEST_F(ComposeFrameInput, AMaskIsFilteredToTheSizeOfThePicture) {
         }
 }
 
+// After a day a float's steps are of 8 ms; kernels get the time since the last full hour.
+TEST_F(ComposeFrameInput, ShadersSeeTheTimeToTheMillisecondAfterADay) {
+    const CustomEffect clock =
+        test::must(CustomEffect::parse("// @effect clock: Shows the time.\n"
+                                       "vec4 clock(vec4 color, Pixel pixel, Clock parameters) {\n"
+                                       "    return vec4(frame_time / 4096.0, fract(frame_time), 0.0, 1.0);\n}\n",
+                                       "clock.glsl"));
+    Composer composer(host.device);
+    composer.add(clock.info(), nullptr);
+    test::must(composer.compile(host.compile_desc()));
+    const auto shown_at = [&](double time) {
+        Frame frame = host.frame();
+        frame.time = time;
+        test::must(host.record(composer, frame));
+        return host.read_target().at(3, 2);
+    };
+    for (const double time : {10.125, 3599.125, 3600.125, 3.0 * 3600 + 7.125, 86400.0 + 10.125}) {
+        EXPECT_NEAR(shown_at(time).r * 4096, std::fmod(time, 3600.0), 0.01) << time;
+        EXPECT_NEAR(shown_at(time).g, 0.125, 1e-3) << time;
+    }
+    EXPECT_NEAR(shown_at(24 * 3600.0 + 0.001).g, 0.001, 1e-4);
+}
+
 TEST(FrameInputs, EveryOneIsReadByNameOrLeavesItsReadersOut) {
     for (const plan::FrameInput& input : plan::frame_inputs) {
         EXPECT_EQ(&plan::frame_input(input.image), &input);

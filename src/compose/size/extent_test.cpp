@@ -153,6 +153,28 @@ TEST_F(ComposeExtent, FractionsThatUndoEachOtherLeaveNothing) {
         EXPECT_EQ(size, (graph::Size{.numerator = 3, .denominator = 2}));
 }
 
+TEST_F(ComposeExtent, AScaledEntryOnAPictureOfTheHostIsAPartOfThatPicture) {
+    if (find_effect("blend") == nullptr) GTEST_SKIP() << "this build has no effect blend";
+    const test::Host host(test::random_display(32, 24, 7));
+    for (const bool is_previous : {false, true}) {
+        Composer composer(host.device);
+        const Handle picture = Composer::picture_of(test::must(composer.define(
+            ResourceImage{.width = 40, .height = 20, .rgba = std::vector<float>(std::size_t{4} * 40 * 20, 0.5F)})));
+        const Handle half = composer.add(test::cross_effect, nullptr, {.input = picture, .scale = {1, 2}});
+        test::add(composer, "blend", {}, {.input = scene_color, .second = is_previous ? half.previous() : half});
+        const Plan plan = test::must(composer.compile(host.compile_desc()));
+        const auto of = [&](std::uint32_t width, std::uint32_t height) {
+            return std::ranges::count_if(plan.passes, [&](const auto& pass) {
+                return pass.extent.width == width && pass.extent.height == height;
+            });
+        };
+        EXPECT_GT(of(20, 10), 0) << is_previous;
+        EXPECT_EQ(of(16, 12), 0) << "half of the scene";
+        EXPECT_EQ(of(40, 20), 0) << "nothing works at its whole size";
+        test::must(host.record(composer, host.frame()));
+    }
+}
+
 TEST_F(ComposeExtent, AScaleThatNoDeviceHoldsIsRefusedBeforeItIsTried) {
     Composer composer(Device::assumed());
     composer.add(test::cross_effect, nullptr, {.name = "wide", .scale = {4096, 1}});

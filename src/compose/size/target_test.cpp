@@ -137,6 +137,35 @@ TEST_F(ComposeTarget, ATargetWithoutStorageGetsARasterLastKernel) {
     EXPECT_EQ(last_stage(plan), "compute");
 }
 
+// Kernels of both forms: one that is made for whole images may take a texel's place in the picture for that in the
+// target.
+TEST_F(ComposeTarget, AWholePictureLandsInItsPartOfTheTarget) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(21, 13, 5));
+    const test::Host host(picture);
+    for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
+        Composer composer(host.device, {.max_threads = 0});
+        test::add(composer, "negative");
+        CompileDesc desc = host.compile_desc();
+        desc.kernels = stage;
+        test::must(composer.compile(desc));
+        const gpu::test::Picture target =
+            gpu::test::blank(host.device.context(), {40, 30}, VK_FORMAT_R32G32B32A32_SFLOAT);
+        Frame frame = host.frame();
+        frame.target = test::image_ref(target, {{7, 4}, {21, 13}});
+        for (const bool is_lean : {false, true}) {
+            if (is_lean) composer.wait_for_kernels();
+            test::must(host.record(composer, frame));
+            const ReferenceImage out = test::image_of(gpu::test::download(host.device.context(), target));
+            for (std::uint32_t y = 0; y < 30; ++y)
+                for (std::uint32_t x = 0; x < 40; ++x) {
+                    const bool is_inside = x >= 7 && x < 28 && y >= 4 && y < 17;
+                    const double expected = is_inside ? 1 - picture.at(x - 7, y - 4).r : 0;
+                    ASSERT_NEAR(out.at(x, y).r, expected, 1e-6) << is_lean << " at " << x << ", " << y;
+                }
+        }
+    }
+}
+
 TEST_F(ComposeTarget, FloatTargetsTakeLinearLight) {
     const auto fill = [](Composer& composer) {
         add(composer, "exposure", {{"exposure", 2}});

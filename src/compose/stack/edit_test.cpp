@@ -258,6 +258,22 @@ TEST_F(ComposeEdit, SwitchingOneEffectOnResetsNoOtherTrail) {
     EXPECT_NEAR(host.run(composer).pixels[9].g, trail_of(small_picture().pixels[9].g, 4), 1e-5);
 }
 
+TEST_F(ComposeEdit, SwitchingAnEffectOffEndsItsTrail) {
+    const Host host(small_picture());
+    const double green = small_picture().pixels[9].g;
+    Composer composer(host.device);
+    const Handle moving = composer.add(trail(), nullptr);
+    must(composer.compile(host.compile_desc()));
+    for (const int frames_off : {1, 2}) {
+        for (int i = 0; i < 3; ++i) must(host.record(composer, host.frame()));
+        must(composer.set_enabled(moving, false));
+        for (int i = 0; i < frames_off; ++i) EXPECT_EQ(host.run(composer).pixels[9].g, green);
+        must(composer.set_enabled(moving, true));
+        EXPECT_NEAR(host.run(composer).pixels[9].g, trail_of(green, 1), 1e-5) << "what was before does not come back";
+        EXPECT_NEAR(host.run(composer).pixels[9].g, trail_of(green, 2), 1e-5);
+    }
+}
+
 // A new extent within the compiled one resamples what the last frame left.
 TEST_F(ComposeEdit, TrailsLiveThroughDynamicResolution) {
     const Host host(test::uniform(40, 33, {0.5, 0.25, 0.75, 1}));

@@ -54,6 +54,33 @@ TEST_F(ComposeLean, TheyComeAfterAResizeThoughManyShapesWereSeen) {
     }
 }
 
+// All in one command buffer: a kernel that made room for another shape would be gone before it runs.
+TEST_F(ComposeLean, ThoseOfFramesInFlightStayHoweverManyShapesThereAre) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(4, 4, 2));
+    const Host host(picture);
+    constexpr std::uint32_t shapes = 70;  // of which a pass remembers 64
+    const std::uint64_t messages = host.device.validation_messages();
+    Composer composer(host.device, {.frames_in_flight = 2 * shapes + 1, .max_threads = 0});
+    for (int i = 0; i < 7; ++i) add(composer, "negative");
+    test::must(composer.compile(host.compile_desc()));
+    test::must(gpu::submit_and_wait(host.device.context(), "test frames", [&](VkCommandBuffer commands) {
+        for (std::uint32_t shape = 1; shape <= shapes; ++shape) {
+            switch_by(composer, shape);
+            test::must(composer.record(commands, host.frame()));
+            composer.wait_for_kernels();
+            test::must(composer.record(commands, host.frame()));
+        }
+        // The first one's is among those that are in flight.
+        switch_by(composer, 1);
+        test::must(composer.record(commands, host.frame()));
+        const std::uint64_t before = lean_requests();
+        composer.wait_for_kernels();
+        EXPECT_EQ(lean_requests(), before) << "its place was given to another shape";
+    }));
+    EXPECT_EQ(host.device.validation_messages(), messages);
+    EXPECT_NEAR(host.read_target().at(1, 2).g, 1 - picture.at(1, 2).g, 1e-6);
+}
+
 TEST_F(ComposeLean, LongKernelsHaveThemToo) {
     const ReferenceImage picture = test::round_to_float(test::random_display(8, 8, 2));
     const Host host(picture);

@@ -108,6 +108,21 @@ TEST_F(ComposeModulation, PulsesAddToTheBaseAndLeaveIt) {
     EXPECT_EQ(at(2).plain, 2);
 }
 
+TEST_F(ComposeModulation, PulsesStayWithAnEntryThatIsReplacedByItsOwnEffect) {
+    test::must(add_pulse("plain", 4));
+    composer.fire("hit", 1.0);
+    const Kinds other{.plain = 2};
+    test::must(composer.replace(entry, kinds_effect, &other));
+    EXPECT_FLOAT_EQ(at(1.25).plain, 4) << "it goes on";
+    EXPECT_EQ(composer.fire("hit", 3.0), 1U);
+    EXPECT_FLOAT_EQ(at(3).plain, 6);
+    const EffectInfo alike = kinds_effect;
+    test::must(composer.replace(entry, alike, &other));
+    EXPECT_EQ(composer.fire("hit", 4.0), 0U) << "another effect has rows of its own";
+    EXPECT_EQ(at(4).plain, 2);
+    test::must(composer.replace(entry, kinds_effect, nullptr));
+}
+
 TEST_F(ComposeModulation, PulsesAreOfEveryKindOfNumbers) {
     for (const char* const parameter : {"count", "place", "tint", "stops"}) test::must(add_pulse(parameter, -0.5f));
     test::must(add_pulse("count", 7.6f));

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // An opacity that is accepted is seen, by whichever plan the next recordings use.
 
+#include <random>
+
 #include "compose/test_stacks/host.hpp"
+#include "compose/test_stacks/random_stack.hpp"
+#include "develop/reference_chain.hpp"
 
 namespace darkroom {
 namespace {
@@ -41,6 +45,37 @@ TEST_F(ComposeOpacity, IsRefusedWhereThePlanThatIsOnItsWayCannotMix) {
         test::must(composer.set_opacity(blur, 1));
         test::must(composer.compile(host.compile_desc()));
         EXPECT_FALSE(composer.set_opacity(blur, 0.25f)) << "the new plan cannot mix either";
+    }
+}
+
+// A warp moves where the kernel reads its picture; laid over, it reads it at both places.
+TEST_F(ComposeOpacity, OfAWarpThatWasCompiledWithoutIsSeen) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(24, 16, 4));
+    const Host host(picture);
+    for (const char* const warp : {"lens_distortion", "chromatic_aberration", "radial_blur"}) {
+        if (find_effect(warp) == nullptr) continue;
+        for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
+            Composer composer(host.device, {.max_threads = 0});
+            add(composer, "exposure", {{"exposure", 0.5}});
+            const Handle handle = add(composer, warp);
+            std::mt19937 random(5);
+            test::set_random(random, composer, handle, test::Values::Sane);
+            add(composer, "negative");
+            CompileDesc desc = host.compile_desc();
+            desc.kernels = stage;
+            test::must(composer.compile(desc));
+            const ReferenceImage whole = host.run(composer);
+            test::must(composer.set_opacity(handle, 0.25f));
+            const auto expected = run_reference(composer, {.color = &picture, .encodes_target = false});
+            ASSERT_TRUE(expected) << expected.error().text;
+            for (const bool is_lean : {false, true}) {
+                if (is_lean) composer.wait_for_kernels();
+                const ReferenceImage mixed = host.run(composer);
+                EXPECT_LE(test::worst_difference(mixed, expected->picture), 2 * (0x1p-11 + gpu::test::filter_step()))
+                    << warp << is_lean;
+                EXPECT_GT(test::worst_difference(mixed, whole), 0.02) << warp << is_lean;
+            }
+        }
     }
 }
 

@@ -115,6 +115,28 @@ TEST_F(ComposeWires, TheFrameBeforeIsBlackFirstThenWhatWasMade) {
     EXPECT_EQ(host.read_target().at(3, 2).g, 0.25) << "a cut starts anew";
 }
 
+// 79.4 codes are kept as 79, so that each frame loses what a wider format would add up.
+TEST_F(ComposeWires, TheFrameBeforeIsInTheFormatOfItsEntry) {
+    const ReferenceImage picture = uniform(9, 5, {0.25, 79.4 / 255, 0.0625, 1});
+    const Host host(picture);
+    Composer composer(gpu::test::device());
+    const Handle sum = add(composer, "blend", {{"amount", 1}}, {.second = scene_color});
+    set_word(composer, sum, "mode", static_cast<std::uint32_t>(BlendMode::Add));
+    must(composer.rewire(sum, {.second = sum.previous(), .format = VK_FORMAT_R8G8B8A8_UNORM}));
+    CompileDesc desc = host.compile_desc();
+    desc.target_domain = Domain::SceneLinear;
+    must(composer.compile(desc));
+    for (std::uint32_t number = 0; number < 3; ++number) {
+        Frame frame = host.frame();
+        frame.delta_time = 1.0 / 60;
+        frame.frame_index = number;
+        must(host.record(composer, frame));
+    }
+    const double codes = host.read_target().at(3, 2).g * 255;
+    EXPECT_GT(codes, 236.9);
+    EXPECT_LT(codes, 237.5) << "238.2 in floats";
+}
+
 // What is copied a thousand times is what it was: texels and pixels lie on each other.
 TEST_F(ComposeWires, AFeedbackLoopNeitherDriftsNorBleeds) {
     for (const KernelStage stage : {KernelStage::Compute, KernelStage::Raster}) {
