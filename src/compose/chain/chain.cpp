@@ -219,7 +219,6 @@ gpu::Binding Chain::bind_slot(std::uint32_t slot, std::uint32_t mip_level, const
                 .region = {region.offset, region.extent, host.extent},
                 .is_nearest = is_nearest_[slot] != 0,
                 .is_lent = true,
-                .sampler = which.kind == HostImage::Kind::Shadow ? context_.shadow_sampler : VK_NULL_HANDLE,
                 .layout = schedule_->read_layout(slot)};
     }
     if (image.kind == graph::Slot::Kind::Constant) {

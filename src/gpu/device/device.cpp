@@ -103,6 +103,9 @@ Result<> create_instance(Context& context, bool validate, std::span<const char* 
     std::vector<const char*> extensions(wanted.begin(), wanted.end());
     if (context.traits.has_debug_labels) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (validate) extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+    // Else a loader leaves out what lacks a part of Vulkan, as MoltenVK on macOS does.
+    const bool has_portability = has(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    if (has_portability) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
 
     constexpr VkValidationFeatureEnableEXT synchronization =
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
@@ -122,6 +125,7 @@ Result<> create_instance(Context& context, bool validate, std::span<const char* 
     const VkInstanceCreateInfo create_info{
         .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
         .pNext = validate ? &validation : nullptr,
+        .flags = has_portability ? VkInstanceCreateFlags{VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR} : 0,
         .pApplicationInfo = &application,
         .enabledLayerCount = validate ? 1U : 0U,
         .ppEnabledLayerNames = &validation_layer,
@@ -253,7 +257,7 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
                      .shaderStorageImageWriteWithoutFormat = available.shaderStorageImageWriteWithoutFormat},
     };
     std::vector<const char*> extensions(wanted.begin(), wanted.end());
-    if (names == gpu::PromotedNames::Khr) std::ranges::copy(gpu::promoted_extensions, std::back_inserter(extensions));
+    std::ranges::copy(gpu::needed_extensions(there, names), std::back_inserter(extensions));
     if (context.compiles_only) extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     constexpr float priority = 1.0F;
     const VkDeviceQueueCreateInfo queue_info{

@@ -96,6 +96,15 @@ std::vector<std::string> missing_for_creation(const Dispatch& vk, VkPhysicalDevi
     return missing;
 }
 
+std::vector<const char*> needed_extensions(std::span<const VkExtensionProperties> there, PromotedNames names) {
+    std::vector<const char*> needed;
+    if (names == PromotedNames::Khr) needed.assign(promoted_extensions.begin(), promoted_extensions.end());
+    // Its name is in a header of Vulkan's that few have.
+    constexpr const char* portability_subset = "VK_KHR_portability_subset";
+    if (has_extension(there, portability_subset)) needed.push_back(portability_subset);
+    return needed;
+}
+
 std::string why_unusable(const Dispatch& vk, VkPhysicalDevice device, const DeviceInfo& info, bool compiles_only) {
     std::vector<std::string> missing = missing_for_creation(vk, device, info);
     constexpr const char* statistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;

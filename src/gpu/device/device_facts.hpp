@@ -36,6 +36,12 @@ namespace darkroom::gpu {
 [[nodiscard]] std::string why_unusable(const Dispatch& vk, VkPhysicalDevice device, const DeviceInfo& info,
                                        bool compiles_only);
 
+/// The extensions that a device of these is created with by all means: promoted ones by their own names where it is of
+/// an older version, and VK_KHR_portability_subset where it is there, as its specification demands. None of the
+/// features that it makes optional is used.
+[[nodiscard]] std::vector<const char*> needed_extensions(std::span<const VkExtensionProperties> there,
+                                                         PromotedNames names);
+
 /// The folder of the caches: the user's own where none is wanted, none where they are switched off.
 [[nodiscard]] std::filesystem::path cache_folder_of(const std::filesystem::path& wanted, bool caches_on_disk);
 /// Makes it and what it lies in, as far as they are not there: others may write to none of those.

@@ -78,6 +78,21 @@ TEST(DeviceFacts, Vulkan12NeedsBothExtensions) {
     EXPECT_EQ(missing({.api_version = VK_API_VERSION_1_2}).size(), 2U);
 }
 
+TEST(DeviceFacts, APortabilitySubsetIsAskedForWhereItIs) {
+    const auto needed = [](Fake device) {
+        const PromotedNames names = promoted_names(device.api_version);
+        const std::vector<const char*> extensions =
+            needed_extensions(device_extensions(table_of(std::move(device)), VK_NULL_HANDLE), names);
+        return std::vector<std::string>(extensions.begin(), extensions.end());
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(needed({.extensions = {"VK_KHR_swapchain"}}), Names());
+    EXPECT_EQ(needed({.extensions = {"VK_KHR_swapchain", "VK_KHR_portability_subset"}}),
+              Names{"VK_KHR_portability_subset"});
+    EXPECT_EQ(needed({.api_version = VK_API_VERSION_1_2, .extensions = {"VK_KHR_portability_subset"}}),
+              (Names{"VK_KHR_synchronization2", "VK_KHR_dynamic_rendering", "VK_KHR_portability_subset"}));
+}
+
 TEST(DeviceFacts, OlderDevicesAreToldWhatWouldDo) {
     const Texts texts = missing({.api_version = VK_API_VERSION_1_1});
     ASSERT_EQ(texts.size(), 1U);

@@ -24,22 +24,27 @@ VkShaderStageFlags block_stages(const KernelSpec& spec, Stage stage) {
     return stage == Stage::Raster && spec.is_software ? own | VK_SHADER_STAGE_VERTEX_BIT : own;
 }
 
-std::vector<VkDescriptorSetLayoutBinding> layout_bindings(const KernelSpec& spec, Stage stage) {
+/// Its sampler belongs to the layout: what Vulkan is over another interface may know no other one that compares
+/// (VkPhysicalDevicePortabilitySubsetFeaturesKHR::mutableComparisonSamplers).
+bool is_compared(const KernelImage& image) { return image.sampler_type.ends_with("Shadow"); }
+
+std::vector<VkDescriptorSetLayoutBinding> layout_bindings(const Context& context, const KernelSpec& spec, Stage stage) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
-    const auto add = [&](std::uint32_t binding, VkDescriptorType type) {
+    const auto add = [&](std::uint32_t binding, VkDescriptorType type, const VkSampler* sampler = nullptr) {
         const bool is_block = type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-        bindings.push_back(
-            {.binding = binding,
-             .descriptorType = type,
-             .descriptorCount = 1,
-             .stageFlags = is_block ? block_stages(spec, stage) : VkShaderStageFlags{stage_flag(stage)}});
+        bindings.push_back({.binding = binding,
+                            .descriptorType = type,
+                            .descriptorCount = 1,
+                            .stageFlags = is_block ? block_stages(spec, stage) : VkShaderStageFlags{stage_flag(stage)},
+                            .pImmutableSamplers = sampler});
     };
     if (!spec.frame.empty()) add(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
     add(1, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
     std::uint32_t binding = first_image_binding;
     for (const KernelImage& image : spec.images) {
         const bool is_sampled = image.storage_format == VK_FORMAT_UNDEFINED;
-        add(binding++, is_sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+        add(binding++, is_sampled ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+            is_compared(image) ? &context.shadow_sampler : nullptr);
     }
     for (std::size_t index = 0; stage == Stage::Compute && index < spec.outputs.size(); ++index) {
         add(binding++, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
@@ -77,7 +82,7 @@ struct Kernel::State {
 };
 
 Result<> Kernel::State::create_layouts() {
-    const std::vector<VkDescriptorSetLayoutBinding> bindings = layout_bindings(spec, stage);
+    const std::vector<VkDescriptorSetLayoutBinding> bindings = layout_bindings(context, spec, stage);
     const VkDescriptorSetLayoutCreateInfo set_info{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = static_cast<std::uint32_t>(bindings.size()),
@@ -130,7 +135,7 @@ void Kernel::State::update_set(const Invocation& invocation) const {
         }
         const VkSampler own_sampler = binding.is_nearest ? context.nearest_sampler : context.linear_sampler;
         images[image_count] = {
-            .sampler = binding.sampler != VK_NULL_HANDLE ? binding.sampler : own_sampler,
+            .sampler = is_compared(spec.images[index]) ? VK_NULL_HANDLE : own_sampler,
             .imageView = binding.view,
             .imageLayout = binding.layout,
         };

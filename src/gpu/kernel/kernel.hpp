@@ -79,7 +79,8 @@ struct KernelImage {
     /// A sampled image may name a storage one before it that shows the same view: its load() then goes through that
     /// one.
     std::string loads_by{};
-    std::string sampler_type = "sampler2D";  ///< or "sampler3D", "usampler2D", ...
+    /// Or "sampler3D", "usampler2D", ... What ends with "Shadow" is compared: Context::shadow_sampler.
+    std::string sampler_type = "sampler2D";
     /// The device cannot filter its format: sample_linear() mixes four loads. Of "sampler2D" only.
     bool is_filtered_by_loads = false;
     /// Its format is one of depth, so the sampler it is bound with takes the nearest texel.
@@ -145,9 +146,8 @@ struct Region {
 struct Binding {
     VkImageView view = VK_NULL_HANDLE;  ///< of one mip level where sample_linear() is called
     Region region{};
-    bool is_nearest = false;             ///< formats that cannot be filtered
-    bool is_lent = false;                ///< the host's: its handle may stand for another view than last time
-    VkSampler sampler = VK_NULL_HANDLE;  ///< instead of the linear or nearest one, which clamp to the edge
+    bool is_nearest = false;  ///< formats that cannot be filtered
+    bool is_lent = false;     ///< the host's: its handle may stand for another view than last time
     VkImageLayout layout =
         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;  ///< of a sampled image; storage images are GENERAL
 };

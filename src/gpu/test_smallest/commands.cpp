@@ -45,6 +45,7 @@ std::string beyond(const VkDescriptorImageInfo& image, VkDescriptorType type) {
     if (type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE && (features & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) == 0)
         return fmt::format("a storage image of format {}", format_name(view->second));
     if (type != VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) return {};
+    if (state.comparing.contains(image.sampler)) return "a comparing sampler that is not one of the layout";
     const auto sampler = state.samplers.find(image.sampler);
     const bool is_linear = sampler != state.samplers.end() && sampler->second;
     if (is_linear && (features & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) == 0)

@@ -2,7 +2,8 @@
 #pragma once
 // For tests only: the smallest device that Vulkan 1.3 allows, over the real driver. It reports the least of everything,
 // and refuses each call that asks for more: the call fails, or is left out of a command buffer that then cannot be
-// ended. A device that only reports would prove nothing, since the driver below takes all.
+// ended. A device that only reports would prove nothing, since the driver below takes all. Of what the extension
+// VK_KHR_portability_subset makes optional, it lacks what the library could use, a comparing sampler in a descriptor.
 
 #include <darkroom/device.hpp>
 #include <memory>

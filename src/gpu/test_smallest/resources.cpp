@@ -189,6 +189,8 @@ VkResult create_sampler(VkDevice device, const VkSamplerCreateInfo* info, const 
     const bool is_linear = info->magFilter == VK_FILTER_LINEAR || info->minFilter == VK_FILTER_LINEAR ||
                            info->mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR;
     if (result == VK_SUCCESS) state.samplers[*sampler] = is_linear;
+    if (result == VK_SUCCESS) state.comparing.erase(*sampler);
+    if (result == VK_SUCCESS && info->compareEnable == VK_TRUE) state.comparing.insert(*sampler);
     return result;
 }
 

@@ -418,6 +418,9 @@ TEST_F(GpuSmallestDevice, RefusesDescriptors) {
     };
     update(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, {context.linear_sampler, filtered.image.view}, {});
     expect_refused("a linear filter on format R32_SFLOAT");
+    // Beyond the least of Vulkan: it may be missing in what has the portability subset.
+    update(VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, {context.shadow_sampler, stored.image.view}, {});
+    expect_refused("a comparing sampler that is not one of the layout");
     update(VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, {.imageView = stored.image.view}, {});
     expect_refused("a storage image of format R8_UNORM");
     update(VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, {}, {buffer.handle, 64, 64});

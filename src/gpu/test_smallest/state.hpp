@@ -28,6 +28,7 @@ struct SmallestState {
     std::map<VkImage, VkFormat> images;
     std::map<VkImageView, VkFormat> views;
     std::map<VkSampler, bool> samplers;  ///< whether it filters
+    std::set<VkSampler> comparing;
     struct MemoryFacts {
         bool has_buffers = false, has_images = false;
         std::uint32_t type = 0;
