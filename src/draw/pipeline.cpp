@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/resource/resources.hpp"
 #include "gpu/shader/shader.hpp"
@@ -29,8 +30,10 @@ class Module {
         const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                             .codeSize = words->size() * 4,
                                             .pCode = words->data()};
-        return context_.check(context_.vk.CreateShaderModule(context_.device, &info, context_.allocator, &handle),
-                              fmt::format("creating the shader \"{}\"", name));
+        return context_.check(
+            cleared_on_failure(context_.vk.CreateShaderModule(context_.device, &info, context_.allocator, &handle),
+                               handle),
+            fmt::format("creating the shader \"{}\"", name));
     }
     VkShaderModule handle = VK_NULL_HANDLE;
 
@@ -161,9 +164,10 @@ Result<SetLayout> SetLayout::create(Context& context, std::span<const Binding> b
                                                .pBindings = list.data()};
     SetLayout layout;
     layout.context = &context;
-    Result<> made =
-        context.check(context.vk.CreateDescriptorSetLayout(context.device, &info, context.allocator, &layout.handle),
-                      "creating a descriptor set layout");
+    Result<> made = context.check(cleared_on_failure(context.vk.CreateDescriptorSetLayout(
+                                                         context.device, &info, context.allocator, &layout.handle),
+                                                     layout.handle),
+                                  "creating a descriptor set layout");
     if (!made) return failure(std::move(made));
     return layout;
 }

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <vector>
 
+#include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
 
 namespace darkroom::window {
@@ -134,7 +135,7 @@ struct Presenter::State {
     Result<> check(VkResult result, const char* what) const { return context->check(result, what); }
     VkResult make_semaphore(VkSemaphore& out, const void* chain = nullptr) const {
         const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = chain};
-        return vk.CreateSemaphore(context->device, &info, context->allocator, &out);
+        return gpu::cleared_on_failure(vk.CreateSemaphore(context->device, &info, context->allocator, &out), out);
     }
 
     std::shared_ptr<gpu::Context> context;
@@ -183,7 +184,8 @@ Result<> Presenter::State::create() {
         const VkCommandPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                            .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
                                            .queueFamilyIndex = context->queue_family};
-        result = context->vk.CreateCommandPool(context->device, &pool, context->allocator, &slot.pool);
+        result = gpu::cleared_on_failure(
+            context->vk.CreateCommandPool(context->device, &pool, context->allocator, &slot.pool), slot.pool);
         if (result != VK_SUCCESS) break;
         const VkCommandBufferAllocateInfo buffer{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                                  .commandPool = slot.pool,
@@ -288,7 +290,8 @@ VkResult Presenter::State::add_images(Swapchain& made) {
                                          .viewType = VK_IMAGE_VIEW_TYPE_2D,
                                          .format = format.format,
                                          .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-        result = context->vk.CreateImageView(context->device, &view, context->allocator, &added.view);
+        result = gpu::cleared_on_failure(
+            context->vk.CreateImageView(context->device, &view, context->allocator, &added.view), added.view);
         if (result == VK_SUCCESS) result = make_semaphore(added.is_drawn);
     }
     return result;

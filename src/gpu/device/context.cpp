@@ -12,6 +12,7 @@
 #include "core/hash.hpp"
 #include "core/system/folders.hpp"
 #include "gpu/device/assumed_device.hpp"
+#include "gpu/device/cleared.hpp"
 #include "gpu/device/device_facts.hpp"
 #include "gpu/kernel/kernel_store.hpp"
 #include "gpu/shader/shader.hpp"
@@ -229,18 +230,22 @@ Result<> Context::create_samplers() {
         .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
         .maxLod = VK_LOD_CLAMP_NONE,
     };
-    const VkResult linear = vk.CreateSampler(device, &create_info, allocator, &linear_sampler);
+    const VkResult linear =
+        cleared_on_failure(vk.CreateSampler(device, &create_info, allocator, &linear_sampler), linear_sampler);
     if (Result<> checked = check(linear, "creating the linear sampler"); !checked) return checked;
     create_info.magFilter = VK_FILTER_NEAREST;
     create_info.minFilter = VK_FILTER_NEAREST;
-    const VkResult nearest = vk.CreateSampler(device, &create_info, allocator, &nearest_sampler);
+    const VkResult nearest =
+        cleared_on_failure(vk.CreateSampler(device, &create_info, allocator, &nearest_sampler), nearest_sampler);
     if (Result<> checked = check(nearest, "creating the nearest sampler"); !checked) return checked;
     create_info.addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
     create_info.addressModeV = create_info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
     create_info.borderColor = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
     create_info.compareEnable = VK_TRUE;
     create_info.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
-    return check(vk.CreateSampler(device, &create_info, allocator, &shadow_sampler), "creating the shadow sampler");
+    const VkResult shadow =
+        cleared_on_failure(vk.CreateSampler(device, &create_info, allocator, &shadow_sampler), shadow_sampler);
+    return check(shadow, "creating the shadow sampler");
 }
 
 std::filesystem::path Context::pipeline_cache_path() const {

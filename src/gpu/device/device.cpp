@@ -11,6 +11,7 @@
 
 #include "core/caught.hpp"
 #include "gpu/device/assumed_device.hpp"
+#include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/device/device_facts.hpp"
 #include "gpu/device/loader.hpp"
@@ -137,9 +138,10 @@ Result<> create_instance(Context& context, bool validate, std::span<const char* 
     context.is_owner = true;
     if (Result<> loaded = vk.load_instance(context.instance, context.traits.has_debug_labels); !loaded) return loaded;
     if (!validate) return {};
-    return context.check(
-        vk.CreateDebugUtilsMessengerEXT(context.instance, &messenger, context.allocator, &context.messenger),
-        "listening to the validation layer");
+    return context.check(gpu::cleared_on_failure(vk.CreateDebugUtilsMessengerEXT(context.instance, &messenger,
+                                                                                 context.allocator, &context.messenger),
+                                                 context.messenger),
+                         "listening to the validation layer");
 }
 
 struct Candidate {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/assert.hpp"
+#include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/kernel/kernel_pipeline.hpp"
 #include "gpu/kernel/pipeline_statistics.hpp"
@@ -88,15 +89,16 @@ Result<> Kernel::State::create_layouts() {
         .bindingCount = static_cast<std::uint32_t>(bindings.size()),
         .pBindings = bindings.data(),
     };
-    const VkResult set_result =
-        context.vk.CreateDescriptorSetLayout(context.device, &set_info, context.allocator, &set_layout);
+    const VkResult set_result = cleared_on_failure(
+        context.vk.CreateDescriptorSetLayout(context.device, &set_info, context.allocator, &set_layout), set_layout);
     Result<> checked = context.check(set_result, fmt::format("creating the set layout of \"{}\"", spec.name));
     if (!checked) return checked;
     const VkPipelineLayoutCreateInfo layout_info{
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, .setLayoutCount = 1, .pSetLayouts = &set_layout};
-    return context.check(
-        context.vk.CreatePipelineLayout(context.device, &layout_info, context.allocator, &pipeline_layout),
-        fmt::format("creating the pipeline layout of \"{}\"", spec.name));
+    return context.check(cleared_on_failure(context.vk.CreatePipelineLayout(context.device, &layout_info,
+                                                                            context.allocator, &pipeline_layout),
+                                            pipeline_layout),
+                         fmt::format("creating the pipeline layout of \"{}\"", spec.name));
 }
 
 void Kernel::State::update_set(const Invocation& invocation) const {

@@ -5,6 +5,7 @@
 
 #include <mutex>
 
+#include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/resource/resources.hpp"
 #include "gpu/shader/flat_values.hpp"
@@ -30,8 +31,9 @@ class ShaderModule {
             .pCode = words.data(),
         };
         ShaderModule module(context);
-        const VkResult result =
-            context.vk.CreateShaderModule(context.device, &create_info, context.allocator, &module.handle_);
+        const VkResult result = cleared_on_failure(
+            context.vk.CreateShaderModule(context.device, &create_info, context.allocator, &module.handle_),
+            module.handle_);
         Result<> checked = context.check(result, fmt::format("creating the shader module of \"{}\"", name));
         if (!checked) return failure(std::move(checked));
         return module;

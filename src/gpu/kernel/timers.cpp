@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "gpu/device/cleared.hpp"
 #include "gpu/resource/resources.hpp"
 
 namespace darkroom::gpu {
@@ -24,9 +25,10 @@ Result<Timers> Timers::create(Context& context, std::uint32_t slots, std::uint32
         .queryType = VK_QUERY_TYPE_TIMESTAMP,
         .queryCount = slots * marks,
     };
-    Result<> checked =
-        context.check(context.vk.CreateQueryPool(context.device, &create_info, context.allocator, &timers.pool),
-                      "creating the timestamp queries");
+    Result<> checked = context.check(
+        cleared_on_failure(context.vk.CreateQueryPool(context.device, &create_info, context.allocator, &timers.pool),
+                           timers.pool),
+        "creating the timestamp queries");
     if (!checked) return failure(std::move(checked));
     return timers;
 }

@@ -8,6 +8,7 @@
 
 #include "core/assert.hpp"
 #include "gpu/device/assumed_device.hpp"
+#include "gpu/device/cleared.hpp"
 #include "gpu/resource/formats.hpp"
 
 namespace darkroom::gpu {
@@ -268,9 +269,10 @@ Result<Buffer> Buffer::create(Context& context, VkDeviceSize size, VkBufferUsage
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     Buffer buffer;
-    Result<> checked =
-        context.check(context.vk.CreateBuffer(context.device, &create_info, context.allocator, &buffer.handle),
-                      fmt::format("creating the buffer \"{}\", {} bytes", name, size));
+    Result<> checked = context.check(
+        cleared_on_failure(context.vk.CreateBuffer(context.device, &create_info, context.allocator, &buffer.handle),
+                           buffer.handle),
+        fmt::format("creating the buffer \"{}\", {} bytes", name, size));
     if (!checked) return failure(std::move(checked));
     buffer.context = &context;
     name_object(context, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.handle), std::string(name));
@@ -315,9 +317,10 @@ Result<DescriptorSets> DescriptorSets::create(Context& context, std::span<const 
         .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
         .pPoolSizes = sizes.data(),
     };
-    Result<> checked =
-        context.check(context.vk.CreateDescriptorPool(context.device, &pool_info, context.allocator, &result.pool),
-                      fmt::format("creating a pool of {} descriptor sets", count));
+    Result<> checked = context.check(
+        cleared_on_failure(context.vk.CreateDescriptorPool(context.device, &pool_info, context.allocator, &result.pool),
+                           result.pool),
+        fmt::format("creating a pool of {} descriptor sets", count));
     if (!checked) return failure(std::move(checked));
     const VkDescriptorSetAllocateInfo allocate_info{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,

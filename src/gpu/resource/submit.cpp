@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 
+#include "gpu/device/cleared.hpp"
 #include "gpu/resource/formats.hpp"
 #include "gpu/resource/resources.hpp"
 
@@ -42,10 +43,11 @@ VkResult Submission::State::run(const std::function<void(VkCommandBuffer)>& body
         .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
         .queueFamilyIndex = context.queue_family,
     };
-    VkResult result = vk.CreateCommandPool(context.device, &pool_info, context.allocator, &pool);
+    VkResult result =
+        cleared_on_failure(vk.CreateCommandPool(context.device, &pool_info, context.allocator, &pool), pool);
     if (result != VK_SUCCESS) return result;
     const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    result = vk.CreateFence(context.device, &fence_info, context.allocator, &fence);
+    result = cleared_on_failure(vk.CreateFence(context.device, &fence_info, context.allocator, &fence), fence);
     if (result != VK_SUCCESS) return result;
     const VkCommandBufferAllocateInfo allocate_info{
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
