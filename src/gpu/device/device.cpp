@@ -14,6 +14,7 @@
 #include "gpu/device/cleared.hpp"
 #include "gpu/device/context.hpp"
 #include "gpu/device/device_facts.hpp"
+#include "gpu/device/enumerate.hpp"
 #include "gpu/device/loader.hpp"
 #include "gpu/device/select_device.hpp"
 
@@ -52,20 +53,26 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(Context& context) {
     };
 }
 
-bool has_layer(const Dispatch& vk, std::string_view name) {
-    std::uint32_t count = 0;
-    vk.EnumerateInstanceLayerProperties(&count, nullptr);
-    std::vector<VkLayerProperties> layers(count);
-    vk.EnumerateInstanceLayerProperties(&count, layers.data());
-    return std::ranges::any_of(layers, [&](const VkLayerProperties& layer) { return name == layer.layerName; });
+/// Errors: the layer is not there, VkResult.
+Result<> check_layer(const Context& context, std::string_view name) {
+    std::vector<VkLayerProperties> layers;
+    const VkResult listed = gpu::enumerate(layers, context.vk.EnumerateInstanceLayerProperties);
+    if (Result<> checked = context.check(listed, "listing Vulkan's layers"); !checked) return checked;
+    if (std::ranges::any_of(layers, [&](const VkLayerProperties& layer) { return name == layer.layerName; })) return {};
+    return machine_error(
+        fmt::format("validation was asked for, but the layer {} is not installed (package vulkan-validationlayers)",
+                    name),
+        ErrorCode::Unsupported);
 }
 
-bool has_instance_extension(const Dispatch& vk, const char* layer, std::string_view name) {
-    std::uint32_t count = 0;
-    vk.EnumerateInstanceExtensionProperties(layer, &count, nullptr);
-    std::vector<VkExtensionProperties> extensions(count);
-    vk.EnumerateInstanceExtensionProperties(layer, &count, extensions.data());
-    return std::ranges::any_of(extensions, [&](const VkExtensionProperties& e) { return name == e.extensionName; });
+Result<std::vector<VkExtensionProperties>> instance_extensions(const Context& context, const char* layer) {
+    std::vector<VkExtensionProperties> out;
+    const VkResult listed = gpu::enumerate(out, [&](std::uint32_t* count, VkExtensionProperties* to) {
+        return context.vk.EnumerateInstanceExtensionProperties(layer, count, to);
+    });
+    if (Result<> checked = context.check(listed, "listing the extensions of Vulkan's instances"); !checked)
+        return failure(std::move(checked));
+    return out;
 }
 
 /// Refuses what is not there.
@@ -83,23 +90,27 @@ Result<> create_instance(Context& context, bool validate, std::span<const char* 
     if (!loader) return failure(loader.error());
     if (Result<> loaded = vk.load_loader(*loader); !loaded) return loaded;
     std::uint32_t loader_version = 0;
-    vk.EnumerateInstanceVersion(&loader_version);
+    if (Result<> asked =
+            context.check(vk.EnumerateInstanceVersion(&loader_version), "asking the Vulkan loader's version");
+        !asked)
+        return asked;
     if (loader_version < VK_API_VERSION_1_2) {
         return machine_error(fmt::format("the Vulkan loader is of version {}; 1.2 or later is needed",
                                          gpu::version_text(loader_version)),
                              ErrorCode::Unsupported);
     }
-    if (validate && !has_layer(vk, validation_layer)) {
-        return machine_error(
-            fmt::format("validation was asked for, but the layer {} is not installed (package vulkan-validationlayers)",
-                        validation_layer),
-            ErrorCode::Unsupported);
-    }
+    if (validate)
+        if (Result<> checked = check_layer(context, validation_layer); !checked) return checked;
+    const auto own = instance_extensions(context, nullptr);
+    if (!own) return failure(own.error());
+    const auto has = [&](std::string_view name) { return gpu::has_extension(*own, name); };
+    context.traits.has_debug_labels = has(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     // The layer brings the extension with it where the loader has none of its own.
-    context.traits.has_debug_labels =
-        has_instance_extension(vk, nullptr, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
-        (validate && has_instance_extension(vk, validation_layer, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
-    const auto has = [&](std::string_view name) { return has_instance_extension(vk, nullptr, name); };
+    if (validate && !context.traits.has_debug_labels) {
+        const auto brought = instance_extensions(context, validation_layer);
+        if (!brought) return failure(brought.error());
+        context.traits.has_debug_labels = gpu::has_extension(*brought, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    }
     if (Result<> checked = check_extensions(wanted, has, "the Vulkan loader"); !checked) return checked;
     std::vector<const char*> extensions(wanted.begin(), wanted.end());
     if (context.traits.has_debug_labels) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -162,14 +173,14 @@ std::ptrdiff_t rank_of(const Context& context, VkPhysicalDevice device, const De
 
 /// Best first.
 Result<std::vector<Candidate>> find_devices(const Context& context, bool compiles_only = false) {
-    std::uint32_t count = 0;
-    VkResult result = context.vk.EnumeratePhysicalDevices(context.instance, &count, nullptr);
-    std::vector<VkPhysicalDevice> handles(count);
-    if (result == VK_SUCCESS) result = context.vk.EnumeratePhysicalDevices(context.instance, &count, handles.data());
+    std::vector<VkPhysicalDevice> handles;
+    const VkResult result = gpu::enumerate(handles, [&](std::uint32_t* count, VkPhysicalDevice* to) {
+        return context.vk.EnumeratePhysicalDevices(context.instance, count, to);
+    });
     if (Result<> checked = context.check(result, "listing the Vulkan devices"); !checked)
         return failure(std::move(checked));
     std::vector<Candidate> candidates;
-    for (std::uint32_t index = 0; index < count; ++index) {
+    for (std::uint32_t index = 0; index < handles.size(); ++index) {
         Candidate candidate{.device = handles[index], .info = gpu::identify(context.vk, handles[index], index)};
         candidate.info.reason = gpu::why_unusable(context.vk, candidate.device, candidate.info, compiles_only);
         candidate.info.is_usable = candidate.info.reason.empty();
@@ -200,7 +211,11 @@ Result<Candidate> choose(std::span<const Candidate> candidates, const std::strin
 
 Result<> create_device(Context& context, std::span<const char* const> wanted) {
     const Dispatch& vk = context.vk;
-    const auto there = gpu::device_extensions(vk, context.physical_device);
+    std::vector<VkExtensionProperties> there;
+    if (Result<> listed = context.check(gpu::device_extensions(vk, context.physical_device, there),
+                                        fmt::format("listing the extensions of \"{}\"", context.info.name));
+        !listed)
+        return listed;
     const auto has = [&](std::string_view name) { return gpu::has_extension(there, name); };
     if (Result<> checked = check_extensions(wanted, has, fmt::format("device \"{}\"", context.info.name)); !checked)
         return checked;

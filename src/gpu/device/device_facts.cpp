@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/system/folders.hpp"
+#include "gpu/device/enumerate.hpp"
 
 namespace darkroom::gpu {
 
@@ -16,12 +17,10 @@ bool has_extension(std::span<const VkExtensionProperties> extensions, std::strin
     return std::ranges::any_of(extensions, [&](const VkExtensionProperties& e) { return name == e.extensionName; });
 }
 
-std::vector<VkExtensionProperties> device_extensions(const Dispatch& vk, VkPhysicalDevice device) {
-    std::uint32_t count = 0;
-    vk.EnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
-    std::vector<VkExtensionProperties> extensions(count);
-    vk.EnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-    return extensions;
+VkResult device_extensions(const Dispatch& vk, VkPhysicalDevice device, std::vector<VkExtensionProperties>& out) {
+    return enumerate(out, [&](std::uint32_t* count, VkExtensionProperties* to) {
+        return vk.EnumerateDeviceExtensionProperties(device, nullptr, count, to);
+    });
 }
 
 std::string version_text(std::uint32_t version) {
@@ -69,6 +68,9 @@ std::optional<std::uint32_t> find_queue_family(const Dispatch& vk, VkPhysicalDev
     return {};
 }
 
+/// As a phrase behind "lacks".
+std::string unlisted(VkResult result) { return fmt::format("a list of its extensions: {}", result_name(result)); }
+
 std::vector<std::string> missing_for_creation(const Dispatch& vk, VkPhysicalDevice device, const DeviceInfo& info) {
     if (info.api_version < VK_API_VERSION_1_2) {
         return {fmt::format("Vulkan 1.3, or 1.2 with {} and {} (it has {})", VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
@@ -76,7 +78,9 @@ std::vector<std::string> missing_for_creation(const Dispatch& vk, VkPhysicalDevi
     }
     std::vector<std::string> missing;
     if (promoted_names(info.api_version) == PromotedNames::Khr) {
-        const std::vector<VkExtensionProperties> extensions = device_extensions(vk, device);
+        std::vector<VkExtensionProperties> extensions;
+        if (const VkResult result = device_extensions(vk, device, extensions); result != VK_SUCCESS)
+            return {unlisted(result)};
         for (const char* const name : promoted_extensions) {
             if (has_extension(extensions, name)) continue;
             missing.push_back(fmt::format("{} (needed on Vulkan {})", name, version_text(info.api_version)));
@@ -108,8 +112,13 @@ std::vector<const char*> needed_extensions(std::span<const VkExtensionProperties
 std::string why_unusable(const Dispatch& vk, VkPhysicalDevice device, const DeviceInfo& info, bool compiles_only) {
     std::vector<std::string> missing = missing_for_creation(vk, device, info);
     constexpr const char* statistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
-    if (compiles_only && !has_extension(device_extensions(vk, device), statistics))
-        missing.push_back(fmt::format("{}, by which drivers say what their compilers made", statistics));
+    if (compiles_only) {
+        std::vector<VkExtensionProperties> extensions;
+        if (const VkResult result = device_extensions(vk, device, extensions); result != VK_SUCCESS)
+            missing.push_back(unlisted(result));
+        else if (!has_extension(extensions, statistics))
+            missing.push_back(fmt::format("{}, by which drivers say what their compilers made", statistics));
+    }
     if (!missing.empty()) return fmt::format("lacks {}", fmt::join(missing, ", "));
     if (!info.is_null || compiles_only) return {};
     return "it is a null device, which compiles for hardware that is not there and runs nothing";

@@ -19,7 +19,8 @@ namespace darkroom::gpu {
 /// The names that a device of this version, made for an application of this version, has the promoted functions by.
 [[nodiscard]] PromotedNames promoted_names(std::uint32_t api_version);
 
-[[nodiscard]] std::vector<VkExtensionProperties> device_extensions(const Dispatch& vk, VkPhysicalDevice device);
+[[nodiscard]] VkResult device_extensions(const Dispatch& vk, VkPhysicalDevice device,
+                                         std::vector<VkExtensionProperties>& out);
 [[nodiscard]] bool has_extension(std::span<const VkExtensionProperties> extensions, std::string_view name);
 
 /// Name, driver and version. Needs an instance of Vulkan 1.1.
@@ -29,7 +30,7 @@ namespace darkroom::gpu {
 /// The first one with graphics and compute.
 [[nodiscard]] std::optional<std::uint32_t> find_queue_family(const Dispatch& vk, VkPhysicalDevice device);
 
-/// What a device that the library is to make would be without, each as a phrase.
+/// What a device that the library is to make would be without, each as a phrase; VkResult as one, too.
 [[nodiscard]] std::vector<std::string> missing_for_creation(const Dispatch& vk, VkPhysicalDevice device,
                                                             const DeviceInfo& info);
 /// Why the library can make no device of it (DeviceInfo::reason). Empty: it can.
