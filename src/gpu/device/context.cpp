@@ -57,6 +57,9 @@ ErrorCode code_of(VkResult result) {
         case VK_ERROR_OUT_OF_HOST_MEMORY:
         case VK_ERROR_OUT_OF_DEVICE_MEMORY:
         case VK_ERROR_OUT_OF_POOL_MEMORY:
+        case VK_ERROR_FRAGMENTED_POOL:
+        case VK_ERROR_FRAGMENTATION:
+        case VK_ERROR_MEMORY_MAP_FAILED:
             return ErrorCode::OutOfMemory;
         case VK_ERROR_LAYER_NOT_PRESENT:
         case VK_ERROR_EXTENSION_NOT_PRESENT:
