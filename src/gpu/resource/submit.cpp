@@ -26,7 +26,12 @@ struct Submission::State {
     VkResult run(const std::function<void(VkCommandBuffer)>& body);
     VkResult wait() {
         is_running = false;
-        return context.vk.WaitForFences(context.device, 1, &fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+        const VkResult waited =
+            context.vk.WaitForFences(context.device, 1, &fence, VK_TRUE, std::numeric_limits<std::uint64_t>::max());
+        if (waited == VK_SUCCESS || waited == VK_ERROR_DEVICE_LOST) return waited;
+        // The commands still run, and pool and fence go next.
+        const std::lock_guard lock(context.queue_mutex);
+        return context.vk.DeviceWaitIdle(context.device);
     }
 
     Context& context;
