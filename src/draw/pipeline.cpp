@@ -49,9 +49,11 @@ Result<VkPipelineLayout> create_layout(Context& context, const PipelineDesc& des
                                           .pSetLayouts = desc.sets.data(),
                                           .pushConstantRangeCount = desc.push_constant_size > 0 ? 1U : 0U,
                                           .pPushConstantRanges = &range};
+    // No exception comes between the layout and its owner, here and below.
+    const std::string what = fmt::format("creating the layout of the pipeline \"{}\"", desc.name);
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreatePipelineLayout(context.device, &info, context.allocator, &layout),
-                                  fmt::format("creating the layout of the pipeline \"{}\"", desc.name));
+    Result<> made =
+        context.check(context.vk.CreatePipelineLayout(context.device, &info, context.allocator, &layout), what);
     if (!made) return failure(std::move(made));
     return layout;
 }
@@ -142,10 +144,11 @@ Result<VkPipeline> create_pipeline(Context& context, const PipelineDesc& desc, V
                                             .pColorBlendState = &blend,
                                             .pDynamicState = &dynamic,
                                             .layout = layout};
+    const std::string what = fmt::format("creating the pipeline \"{}\"", desc.name);
     VkPipeline pipeline = VK_NULL_HANDLE;
     Result<> made = context.check(context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &info,
                                                                      context.allocator, &pipeline),
-                                  fmt::format("creating the pipeline \"{}\"", desc.name));
+                                  what);
     if (!made) return failure(std::move(made));
     return pipeline;
 }

@@ -84,10 +84,12 @@ Result<VkPipeline> create_compute_pipeline(Context& context, const KernelSpec& s
         .stage = module.stage(VK_SHADER_STAGE_COMPUTE_BIT),
         .layout = layout,
     };
+    // No exception comes between the pipeline and its owner, here and below.
+    const std::string what = fmt::format("creating the compute pipeline of \"{}\"", spec.name);
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateComputePipelines(context.device, context.pipeline_cache, 1, &create_info,
                                                               context.allocator, &pipeline);
-    Result<> checked = context.check(result, fmt::format("creating the compute pipeline of \"{}\"", spec.name));
+    Result<> checked = context.check(result, what);
     if (!checked) return failure(std::move(checked));
     return pipeline;
 }
@@ -163,10 +165,11 @@ Result<VkPipeline> create_raster_pipeline(Context& context, const KernelSpec& sp
         .pDynamicState = &dynamic,
         .layout = layout,
     };
+    const std::string what = fmt::format("creating the raster pipeline of \"{}\"", spec.name);
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateGraphicsPipelines(context.device, context.pipeline_cache, 1, &create_info,
                                                                context.allocator, &pipeline);
-    Result<> checked = context.check(result, fmt::format("creating the raster pipeline of \"{}\"", spec.name));
+    Result<> checked = context.check(result, what);
     if (!checked) return failure(std::move(checked));
     return pipeline;
 }

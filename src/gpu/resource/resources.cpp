@@ -38,10 +38,12 @@ Result<VkImage> create_image(Context& context, const ImageInfo& info) {
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
         .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
     };
+    // No exception comes between the image and its owner, here and below.
+    const std::string what =
+        fmt::format("creating the image \"{}\", {} x {}", info.name, info.extent.width, info.extent.height);
     VkImage image = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateImage(context.device, &create_info, context.allocator, &image);
-    Result<> checked = context.check(
-        result, fmt::format("creating the image \"{}\", {} x {}", info.name, info.extent.width, info.extent.height));
+    Result<> checked = context.check(result, what);
     if (!checked) return failure(std::move(checked));
     name_object(context, VK_OBJECT_TYPE_IMAGE, reinterpret_cast<std::uint64_t>(image), info.name);
     return image;
@@ -103,9 +105,10 @@ Result<VkImageView> create_view(Context& context, const Image& image, VkImageVie
                              .baseArrayLayer = part.first_layer,
                              .layerCount = part.layer_count},
     };
+    const std::string what = fmt::format("creating a view of the image \"{}\"", image.info.name);
     VkImageView view = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateImageView(context.device, &create_info, context.allocator, &view);
-    Result<> checked = context.check(result, fmt::format("creating a view of the image \"{}\"", image.info.name));
+    Result<> checked = context.check(result, what);
     if (!checked) return failure(std::move(checked));
     return view;
 }
@@ -115,6 +118,8 @@ Result<> create_views(Context& context, Image& image) {
     if ((image.info.usage & viewable_usage) == 0) return {};
     const VkImageViewType type = view_type(image.info);
     const std::uint32_t mips = image.info.mip_levels, layers = image.info.array_layers;
+    image.mip_views.reserve(mips);
+    image.layer_views.reserve(layers > 1 ? layers : 0);
     Result<VkImageView> whole = create_view(context, image, type, {.mip_count = mips, .layer_count = layers});
     if (!whole) return failure(std::move(whole));
     image.view = *whole;
@@ -204,6 +209,7 @@ Result<std::vector<Image>> Image::create_together(Context& context, std::span<co
     std::vector<VkDeviceSize> offsets;
     DeviceMemoryRequest all;
     std::uint32_t type_bits = ~0u;
+    out.reserve(infos.size());
     for (const ImageInfo& info : infos) {
         Result<VkImage> handle = create_image(context, info);
         if (!handle) return failure(std::move(handle));

@@ -19,9 +19,10 @@ Result<> view_as_array(gpu::Context& context, gpu::Image& image) {
                                      .viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY,
                                      .format = image.info.format,
                                      .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1}};
+    // No exception comes between the view and its owner.
+    const std::string what = fmt::format("creating a view of the image \"{}\"", image.info.name);
     VkImageView view = VK_NULL_HANDLE;
-    Result<> made = context.check(context.vk.CreateImageView(context.device, &info, context.allocator, &view),
-                                  fmt::format("creating a view of the image \"{}\"", image.info.name));
+    Result<> made = context.check(context.vk.CreateImageView(context.device, &info, context.allocator, &view), what);
     if (!made) return made;
     context.vk.DestroyImageView(context.device, image.view, context.allocator);
     image.view = view;

@@ -19,6 +19,8 @@ Result<> SetAllocator::add_pool() {
                                           .maxSets = sets_a_pool_,
                                           .poolSizeCount = static_cast<std::uint32_t>(sizes_.size()),
                                           .pPoolSizes = sizes_.data()};
+    // No exception comes between the pool and its place.
+    pools_.reserve(pools_.size() + 1);
     VkDescriptorPool pool = VK_NULL_HANDLE;
     Result<> made =
         context_->check(context_->vk.CreateDescriptorPool(context_->device, &info, context_->allocator, &pool),
