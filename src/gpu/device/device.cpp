@@ -84,11 +84,10 @@ Result<> check_extensions(std::span<const char* const> wanted, const auto& has, 
     return machine_error(fmt::format("{} lacks {}", who, fmt::join(missing, ", ")), ErrorCode::Unsupported);
 }
 
-Result<> create_instance(Context& context, bool validate, std::span<const char* const> wanted = {}) {
+Result<> create_instance(Context& context, PFN_vkGetInstanceProcAddr loader, bool validate,
+                         std::span<const char* const> wanted = {}) {
     Dispatch& vk = context.vk;
-    const Result<PFN_vkGetInstanceProcAddr> loader = gpu::open_vulkan_loader();
-    if (!loader) return failure(loader.error());
-    if (Result<> loaded = vk.load_loader(*loader); !loaded) return loaded;
+    if (Result<> loaded = vk.load_loader(loader); !loaded) return loaded;
     std::uint32_t loader_version = 0;
     if (Result<> asked =
             context.check(vk.EnumerateInstanceVersion(&loader_version), "asking the Vulkan loader's version");
@@ -319,8 +318,10 @@ const DeviceInfo& Device::info() const { return context_->info; }
 std::uint64_t Device::validation_messages() const { return context_->validation_messages; }
 
 Result<std::vector<DeviceInfo>> Device::list() try {
+    const Result<PFN_vkGetInstanceProcAddr> loader = gpu::open_vulkan_loader();
+    if (!loader) return failure(loader.error());
     Context context;
-    if (Result<> created = create_instance(context, false); !created) return failure(std::move(created));
+    if (Result<> created = create_instance(context, *loader, false); !created) return failure(std::move(created));
     const Result<std::vector<Candidate>> candidates = find_devices(context);
     if (!candidates) return failure(candidates.error());
     return infos_of(*candidates);
@@ -330,12 +331,13 @@ Result<std::vector<DeviceInfo>> Device::list() try {
 
 Device Device::assumed(DeviceProfile profile) { return Device(gpu::assumed_context(profile)); }
 
-Result<Device> Device::create(const DeviceDesc& desc) try {
+Result<std::shared_ptr<Context>> gpu::create_context(PFN_vkGetInstanceProcAddr loader, const DeviceDesc& desc) {
     auto context = std::make_shared<Context>();
     context->log = desc.log;
     context->compiles_only = desc.compiles_only;
-    context->cache_folder = gpu::cache_folder_of(desc.cache_folder, desc.caches_on_disk);
-    if (Result<> created = create_instance(*context, wants_validation(desc), desc.instance_extensions); !created)
+    context->cache_folder = cache_folder_of(desc.cache_folder, desc.caches_on_disk);
+    if (Result<> created = create_instance(*context, loader, wants_validation(desc), desc.instance_extensions);
+        !created)
         return failure(std::move(created));
     const Result<std::vector<Candidate>> candidates = find_devices(*context, desc.compiles_only);
     if (!candidates) return failure(candidates.error());
@@ -343,11 +345,19 @@ Result<Device> Device::create(const DeviceDesc& desc) try {
     if (!chosen) return failure(std::move(chosen));
     context->physical_device = chosen->device;
     context->info = std::move(chosen->info);
-    context->queue_family = gpu::find_queue_family(context->vk, context->physical_device).value_or(0);
+    context->queue_family = find_queue_family(context->vk, context->physical_device).value_or(0);
     if (Result<> created = create_device(*context, desc.device_extensions); !created)
         return failure(std::move(created));
     if (Result<> finished = context->finish(desc.kernels); !finished) return failure(std::move(finished));
-    return Device(std::move(context));
+    return context;
+}
+
+Result<Device> Device::create(const DeviceDesc& desc) try {
+    const Result<PFN_vkGetInstanceProcAddr> loader = gpu::open_vulkan_loader();
+    if (!loader) return failure(loader.error());
+    Result<std::shared_ptr<Context>> context = gpu::create_context(*loader, desc);
+    if (!context) return failure(std::move(context));
+    return Device(std::move(*context));
 } catch (...) {
     return caught("creating a device");
 }

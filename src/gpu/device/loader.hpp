@@ -5,7 +5,9 @@
 
 #include <vulkan/vulkan.h>
 
+#include <darkroom/device.hpp>
 #include <darkroom/result.hpp>
+#include <memory>
 
 #include "core/system/module.hpp"
 
@@ -13,5 +15,8 @@ namespace darkroom::gpu {
 
 /// vkGetInstanceProcAddr of the loader, which stays open to the end of the process.
 [[nodiscard]] Result<PFN_vkGetInstanceProcAddr> open_vulkan_loader(const char* library = vulkan_loader_name);
+
+/// What Device::create() makes, by the functions of a loader.
+[[nodiscard]] Result<std::shared_ptr<Context>> create_context(PFN_vkGetInstanceProcAddr loader, const DeviceDesc& desc);
 
 }  // namespace darkroom::gpu
