@@ -25,4 +25,13 @@ class FailingAllocation {
     [[nodiscard]] bool has_failed() const;
 };
 
+/// While it lives, allocations of the calling thread are neither counted nor fail: a driver's, which would not take it.
+class SparedAllocations {
+  public:
+    SparedAllocations();
+    SparedAllocations(const SparedAllocations&) = delete;
+    SparedAllocations& operator=(const SparedAllocations&) = delete;
+    ~SparedAllocations();
+};
+
 }  // namespace darkroom::test

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <new>
 #include <vector>
 
 namespace darkroom::test {
@@ -26,6 +27,18 @@ TEST(TestAllocations, CountAlignedOnes) {
     const auto wide = std::make_unique<Wide>();
     EXPECT_EQ(allocation_count(), before + 1);
     EXPECT_EQ(wide->value, 7);
+}
+
+TEST(TestAllocations, ThatAreSparedDoNotFail) {
+    if (!counts_allocations()) GTEST_SKIP() << "this build has its own operator new";
+    const FailingAllocation failing(0);
+    {
+        const SparedAllocations spared;
+        EXPECT_EQ(std::vector<int>(100).size(), 100u);
+    }
+    EXPECT_FALSE(failing.has_failed());
+    EXPECT_THROW(static_cast<void>(std::vector<int>(100)), std::bad_alloc);
+    EXPECT_TRUE(failing.has_failed());
 }
 
 }  // namespace darkroom::test
