@@ -53,15 +53,16 @@ class Attempt {
     }
     [[nodiscard]] bool is_told() const { return is_told_; }
 
-    /// `plain` with functions that may fail. Its log is this attempt's.
-    [[nodiscard]] Result<Device> adopted(Device& plain) {
+    /// Of `plain` with functions that may fail. Its log is this attempt's.
+    [[nodiscard]] AdoptDesc desc_over(Device& plain) {
+        static constexpr std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+        static VkPhysicalDeviceVulkan13Features features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                                         .synchronization2 = VK_TRUE,
+                                                         .dynamicRendering = VK_TRUE};
+        static const VkPhysicalDeviceFeatures2 all{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                                   .pNext = &features};
         const Context& host = plain.context();
-        const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
-        VkPhysicalDeviceVulkan13Features features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
-                                                  .synchronization2 = VK_TRUE,
-                                                  .dynamicRendering = VK_TRUE};
-        const VkPhysicalDeviceFeatures2 all{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features};
-        Result<Device> device = Device::adopt({
+        return {
             .instance = host.instance,
             .physical_device = host.physical_device,
             .device = host.device,
@@ -71,8 +72,11 @@ class Attempt {
             .get_proc = failing::vulkan_over(host.vk.GetInstanceProcAddr),
             .log = [this](Severity, std::string_view text) { log(text); },
             .cache_folder = host.cache_folder.string(),
-        });
-        if (device) device->context().queue = host.queue;
+        };
+    }
+    [[nodiscard]] Result<Device> adopted(Device& plain) {
+        Result<Device> device = Device::adopt(desc_over(plain));
+        if (device) device->context().queue = plain.context().queue;
         return device;
     }
 
