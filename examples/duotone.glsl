@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // @effect duotone: Maps shadows and highlights to two colours.
 // @accepts display_linear
-// @param float amount = 1 in [0, 1] amount: How much of the toned picture is seen.
+// @param float amount = 1 in [0, 1] amount: Share of the toned picture.
 // @param rgb shadow = 0.02, 0.05, 0.15 in [0, 4]: Colour of the shadows.
 // @param rgb highlight = 1, 0.85, 0.6 in [0, 4]: Colour of the highlights.
-// @param choice weight = luminance | maximum: What decides between the two.
+// @param choice weight = luminance | maximum: Quantity that decides between the two colours.
 
 // Rec. 709 luminance (ITU-R BT.709-6, item 3.2), or the largest channel.
 float duotone_weight(vec3 color, uint weight) {

@@ -133,6 +133,28 @@ TEST(Documents, HeadersOfEffectsSayWhatTheirMembersAre) {
     }
 }
 
+// A page, a slider and a help text show the sentence alone: it says what the value is, and asks nothing.
+TEST(Documents, SentencesAreStatements) {
+    std::vector<std::pair<std::string, std::string_view>> sentences;
+    for (const EffectInfo* const effect : all_effects()) {
+        sentences.emplace_back(effect->name, effect->doc);
+        for (const ParamInfo& row : effect->parameters.rows)
+            sentences.emplace_back(fmt::format("{}.{}", effect->name, row.name), row.doc);
+    }
+    for (const ParamTable& table : {entry_rows, pulse_rows, layer_rows, distance_rows})
+        for (const ParamInfo& row : table.rows) sentences.emplace_back(row.name, row.doc);
+    EXPECT_GT(sentences.size(), 200U);
+    const std::regex statement(R"(`?[A-Z0-9][^?!]*[^ .?!]\.)");
+    const std::regex question("(Are|Can|Do|Does|Has|How|If|Is|Of|What|When|Where|Whether|Which|Why) .*");
+    for (const auto& [name, sentence] : sentences) {
+        const std::string text(sentence);
+        EXPECT_TRUE(std::regex_match(text, statement)) << name << ": " << text;
+        EXPECT_FALSE(std::regex_match(text, question)) << name << ": " << text;
+        EXPECT_GE(text.size(), 16U) << name << ": " << text;
+        EXPECT_LE(text.size(), 150U) << name << ": " << text;
+    }
+}
+
 TEST(Documents, EveryFlagIsRunByATest) {
     // Those of parameters are run by Cli.EveryParameterIsAFlag; the lines of recipes by CliRecipes. The first are
     // CMake's and pkg-config's.

@@ -12,11 +12,11 @@ namespace darkroom {
 namespace {
 
 constexpr auto anamorphic_streaks_rows = describe(
-    field<&AnamorphicStreaks::intensity>("How much of the light is drawn out and added.", {0, 64}).as_amount(),
-    field<&AnamorphicStreaks::threshold>("Light above this streaks.", {0, 65504}),
-    field<&AnamorphicStreaks::length>("Distance at which a streak has fallen to 1/e, of a picture of 1080 lines.",
+    field<&AnamorphicStreaks::intensity>("Amount of the streaks added to the picture.", {0, 64}).as_amount(),
+    field<&AnamorphicStreaks::threshold>("Light above this value makes streaks.", {0, 65504}),
+    field<&AnamorphicStreaks::length>("Distance at which a streak has fallen to 1/e, in a picture of 1080 lines.",
                                       {8, 512, Scale::Log}, unit::pixels),
-    field<&AnamorphicStreaks::tint>("Colour that the streaks are multiplied by.", {0, 4}));
+    field<&AnamorphicStreaks::tint>("Colour that multiplies the streaks.", {0, 4}));
 
 const AnamorphicStreaks& streaks_of(const void* parameters) {
     return *static_cast<const AnamorphicStreaks*>(parameters);
@@ -75,7 +75,7 @@ void build(PassBuilder& builder) {
 const EffectInfo& effect_info(const AnamorphicStreaks&) {
     static const EffectInfo info{
         .name = "anamorphic_streaks",
-        .doc = "What is bright draws a line of light across the picture.",
+        .doc = "Draws lines of light across the picture from bright parts.",
         .parameters = anamorphic_streaks_rows.table(),
         .files = embedded_files("anamorphic_streaks"),
         .touch = Touch::Pointwise,

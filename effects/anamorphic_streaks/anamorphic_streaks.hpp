@@ -11,13 +11,13 @@ namespace darkroom {
 struct EffectInfo;
 
 struct AnamorphicStreaks {
-    /// How much of the light is drawn out and added. [0, 64]
+    /// Amount of the streaks added to the picture. [0, 64]
     float intensity = 0.5f;
-    /// Light above this streaks. [0, 65504]
+    /// Light above this value makes streaks. [0, 65504]
     float threshold = 1.0f;
-    /// Distance at which a streak has fallen to 1/e, of a picture of 1080 lines. [8, 512] px
+    /// Distance at which a streak has fallen to 1/e, in a picture of 1080 lines. [8, 512] px
     float length = 120.0f;
-    /// Colour that the streaks are multiplied by. [0, 4]
+    /// Colour that multiplies the streaks. [0, 4]
     Rgb tint{0.35f, 0.6f, 1.0f};
 };
 

@@ -11,10 +11,10 @@ namespace darkroom {
 namespace {
 
 constexpr auto arena_bloom_rows = describe(
-    field<&ArenaBloom::intensity>("How much of the glow is added.", {0, 4}).as_amount(),
-    field<&ArenaBloom::source_kind>("Whether colour is limited to a display's range and alpha masks the glow."),
-    field<&ArenaBloom::reach>(
-        "Whether the glow keeps its width in pixels, as in the game, or in parts of the height."));
+    field<&ArenaBloom::intensity>("Amount of the glow added to the picture.", {0, 4}).as_amount(),
+    field<&ArenaBloom::source_kind>(
+        "Light that glows: masked limits colour to a display's range and lets alpha mask it, plain takes it as it is."),
+    field<&ArenaBloom::reach>("Unit of the glow's width: pixels, as in the game, or parts of the picture's height."));
 
 /// Of each level, for a glow in parts of the height.
 void weight_constants(const void* /*parameters*/, const PassContext& context, std::span<PassVector> out) {
@@ -60,7 +60,7 @@ void build(PassBuilder& builder) {
 const EffectInfo& effect_info(const ArenaBloom&) {
     static const EffectInfo info{
         .name = "arena_bloom",
-        .doc = "What is bright glows, as in a fighting game.",
+        .doc = "Adds the glow of bright parts, as in a fighting game.",
         .parameters = arena_bloom_rows.table(),
         .files = embedded_files("arena_bloom"),
         .touch = Touch::Pointwise,

@@ -16,11 +16,11 @@ enum class ArenaBloomSource : std::uint32_t {
 };
 
 struct ArenaBloom {
-    /// How much of the glow is added. [0, 4]
+    /// Amount of the glow added to the picture. [0, 4]
     float intensity = 1.0f;
-    /// Whether colour is limited to a display's range and alpha masks the glow.
+    /// Light that glows: masked limits colour to a display's range and lets alpha mask it, plain takes it as it is.
     ArenaBloomSource source_kind = ArenaBloomSource::Masked;
-    /// Whether the glow keeps its width in pixels, as in the game, or in parts of the height.
+    /// Unit of the glow's width: pixels, as in the game, or parts of the picture's height.
     Reach reach = Reach::Pixels;
 };
 

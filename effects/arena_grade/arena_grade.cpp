@@ -12,9 +12,9 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto arena_grade_rows =
-    describe(field<&ArenaGrade::table>("A table, read at 16 steps of each channel; without one the preset."),
-             field<&ArenaGrade::preset>("Which of the built-in tables.").at_compile());
+constexpr auto arena_grade_rows = describe(
+    field<&ArenaGrade::table>("Table that grades, read at 16 steps of each channel; without one the preset grades."),
+    field<&ArenaGrade::preset>("Built-in table that is used where no table is given.").at_compile());
 
 constexpr std::size_t entry_count = std::size_t{arena_edge} * arena_edge * arena_edge;
 
@@ -67,7 +67,7 @@ std::vector<std::uint8_t> arena_codes(ArenaTable preset, const ColorTable* given
 const EffectInfo& effect_info(const ArenaGrade&) {
     static const EffectInfo info{
         .name = "arena_grade",
-        .doc = "Grades and brightens as a fighting game does, where alpha says.",
+        .doc = "Grades by a small table, masked by alpha, as in a fighting game.",
         .parameters = arena_grade_rows.table(),
         .files = embedded_files("arena_grade"),
         .touch = Touch::Pointwise,

@@ -13,9 +13,9 @@ struct EffectInfo;
 enum class ArenaTable : std::uint32_t { Arena, Identity, Sepia };
 
 struct ArenaGrade {
-    /// A table, read at 16 steps of each channel; without one the preset.
+    /// Table that grades, read at 16 steps of each channel; without one the preset grades.
     Resource table;
-    /// Which of the built-in tables.
+    /// Built-in table that is used where no table is given.
     ArenaTable preset = ArenaTable::Arena;
 };
 

@@ -16,20 +16,19 @@ namespace {
 constexpr Unit stops{"stops"}, stops_per_second{"stops/s"};
 
 constexpr auto auto_exposure_rows = describe(
-    field<&AutoExposure::compensation>("How much brighter than middle grey what is metered becomes.", {-16, 16}, stops),
+    field<&AutoExposure::compensation>("Stops that the metered brightness is brought above middle grey.", {-16, 16},
+                                       stops),
     field<&AutoExposure::compensation_curve>(
-        "Stops that are added, over those that are metered, both from middle grey; none: 0.", {-16, 16}),
-    field<&AutoExposure::low>("Part of the pixels, from the darkest on, that is not metered.", {0, 1}),
-    field<&AutoExposure::high>("Part of the pixels up to which is metered.", {0, 1}),
-    field<&AutoExposure::darkest>("Brightness from middle grey below which a picture counts as no darker.", {-16, 16},
-                                  stops),
-    field<&AutoExposure::brightest>("Brightness from middle grey above which a picture counts as no brighter.",
-                                    {-16, 16}, stops),
-    field<&AutoExposure::speed_up>("How fast it follows a picture that gets brighter; 0 holds still.", {0, 100},
+        "Stops added (y) for metered stops from middle grey (x); an empty curve adds none.", {-16, 16}),
+    field<&AutoExposure::low>("Share of the pixels, from the darkest on, that the meter leaves out.", {0, 1}),
+    field<&AutoExposure::high>("Share of the pixels, from the darkest on, at which the meter stops.", {0, 1}),
+    field<&AutoExposure::darkest>("Lowest brightness that the meter reports, from middle grey.", {-16, 16}, stops),
+    field<&AutoExposure::brightest>("Highest brightness that the meter reports, from middle grey.", {-16, 16}, stops),
+    field<&AutoExposure::speed_up>("Speed of adaption to a brighter picture; at 0 the exposure stays.", {0, 100},
                                    stops_per_second),
-    field<&AutoExposure::speed_down>("How fast it follows a picture that gets darker; 0 holds still.", {0, 100},
+    field<&AutoExposure::speed_down>("Speed of adaption to a darker picture; at 0 the exposure stays.", {0, 100},
                                      stops_per_second),
-    field<&AutoExposure::center_weight>("How much less the borders count than the centre.", {0, 1}));
+    field<&AutoExposure::center_weight>("Share of weight that the borders lose against the centre.", {0, 1}));
 
 const AutoExposure& values_of(const void* parameters) { return *static_cast<const AutoExposure*>(parameters); }
 
@@ -109,7 +108,7 @@ std::uint32_t pre_roll(const void* parameters, double delta_time) {
 const EffectInfo& effect_info(const AutoExposure&) {
     static const EffectInfo info{
         .name = "auto_exposure",
-        .doc = "Brings what it meters to middle grey, as an eye adapts.",
+        .doc = "Brings the metered brightness to middle grey, as an eye adapts.",
         .parameters = auto_exposure_rows.table(),
         .files = embedded_files("auto_exposure"),
         .touch = Touch::Pointwise,

@@ -12,24 +12,24 @@ namespace darkroom {
 struct EffectInfo;
 
 struct AutoExposure {
-    /// How much brighter than middle grey what is metered becomes. [-16, 16] stops
+    /// Stops that the metered brightness is brought above middle grey. [-16, 16] stops
     float compensation = 0.0f;
-    /// Stops that are added, over those that are metered, both from middle grey; none: 0.
-    /// up to 16 points [x, y], x ascending, y in [-16, 16]
+    /// Stops added (y) for metered stops from middle grey (x); an empty curve adds none. up to 16 points [x, y], x
+    /// ascending, y in [-16, 16]
     Curve compensation_curve;
-    /// Part of the pixels, from the darkest on, that is not metered. [0, 1]
+    /// Share of the pixels, from the darkest on, that the meter leaves out. [0, 1]
     float low = 0.4f;
-    /// Part of the pixels up to which is metered. [0, 1]
+    /// Share of the pixels, from the darkest on, at which the meter stops. [0, 1]
     float high = 0.9f;
-    /// Brightness from middle grey below which a picture counts as no darker. [-16, 16] stops
+    /// Lowest brightness that the meter reports, from middle grey. [-16, 16] stops
     float darkest = -4.0f;
-    /// Brightness from middle grey above which a picture counts as no brighter. [-16, 16] stops
+    /// Highest brightness that the meter reports, from middle grey. [-16, 16] stops
     float brightest = 8.0f;
-    /// How fast it follows a picture that gets brighter; 0 holds still. [0, 100] stops/s
+    /// Speed of adaption to a brighter picture; at 0 the exposure stays. [0, 100] stops/s
     float speed_up = 3.0f;
-    /// How fast it follows a picture that gets darker; 0 holds still. [0, 100] stops/s
+    /// Speed of adaption to a darker picture; at 0 the exposure stays. [0, 100] stops/s
     float speed_down = 1.0f;
-    /// How much less the borders count than the centre. [0, 1]
+    /// Share of weight that the borders lose against the centre. [0, 1]
     float center_weight = 0.0f;
 };
 

@@ -10,8 +10,8 @@ namespace darkroom {
 namespace {
 
 constexpr auto blend_rows =
-    describe(field<&Blend::mode>("How the second picture goes over the picture."),
-             field<&Blend::amount>("Share of the blended picture; at 0 the picture stays as it is.", {0, 1}));
+    describe(field<&Blend::mode>("Formula that lays the second picture over the picture."),
+             field<&Blend::amount>("Share of the blended picture; 0 leaves the picture as it is.", {0, 1}));
 
 }  // namespace
 

@@ -11,9 +11,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Blend {
-    /// How the second picture goes over the picture.
+    /// Formula that lays the second picture over the picture.
     BlendMode mode = BlendMode::Mix;
-    /// Share of the blended picture; at 0 the picture stays as it is. [0, 1]
+    /// Share of the blended picture; 0 leaves the picture as it is. [0, 1]
     float amount = 0.5f;
 };
 

@@ -18,22 +18,20 @@ namespace darkroom {
 namespace {
 
 constexpr auto bloom_rows = describe(
-    field<&Bloom::intensity>(
-        "How much of the glow is added; in the mode energy_conserving, how far the picture is mixed "
-        "with it, where 1 and more mean wholly.",
-        {0, 16})
+    field<&Bloom::intensity>("Amount of the glow added; with energy_conserving, share of the glow in the mix, where 1 "
+                             "and more leave the glow alone.",
+                             {0, 16})
         .as_amount(),
-    field<&Bloom::threshold>("Light above this glows; not used in the mode energy_conserving.", {0, 65504}),
-    field<&Bloom::soft_threshold>("Width of the soft knee as a part of the threshold: 0 is a hard edge.", {0, 1}),
-    field<&Bloom::firefly_filter>("Averages the first level by inverse luminance, so that lone bright pixels do not "
-                                  "flicker; not used in the mode energy_conserving, which keeps their light."),
-    field<&Bloom::mode>("Whether the glow is added to the picture or mixed with it."),
-    field<&Bloom::scatter>("Weight of each wider level relative to the one below it, in the mode energy_conserving.",
-                           {0, 1}),
-    field<&Bloom::levels>(
-        "Levels of the pyramid that are used at a height of 1080, each as wide again; by pixels, the most at any.",
-        {1, 5}),
-    field<&Bloom::reach>("Whether the glow keeps its width in parts of the picture's height, or in pixels."));
+    field<&Bloom::threshold>("Light above this value glows; energy_conserving ignores it.", {0, 65504}),
+    field<&Bloom::soft_threshold>("Width of the soft knee, as a share of the threshold; 0 is a hard edge.", {0, 1}),
+    field<&Bloom::firefly_filter>("Weights the first level by inverse luminance, so that single bright pixels do not "
+                                  "flicker; energy_conserving ignores it and keeps their light."),
+    field<&Bloom::mode>("Way to join the glow: additive adds it, energy_conserving mixes the picture with it."),
+    field<&Bloom::scatter>("Weight of each wider level relative to the narrower one, with energy_conserving.", {0, 1}),
+    field<&Bloom::levels>("Number of pyramid levels at a height of 1080, each twice as wide; with reach = pixels, the "
+                          "largest number at any height.",
+                          {1, 5}),
+    field<&Bloom::reach>("Unit of the glow's width: parts of the picture's height, or pixels."));
 
 constexpr std::uint32_t most_by_pixels = 5;
 /// Height at which a glow by height is that by pixels.
@@ -274,7 +272,7 @@ BloomWeights bloom_weights(const Bloom& bloom, VkExtent2D extent) {
 const EffectInfo& effect_info(const Bloom&) {
     static const EffectInfo info{
         .name = "bloom",
-        .doc = "Light above a threshold glows around its source.",
+        .doc = "Lets light above a threshold glow around its source.",
         .parameters = bloom_rows.table(),
         .files = embedded_files("bloom"),
         .touch = Touch::Pointwise,

@@ -18,23 +18,24 @@ enum class BloomMode : std::uint32_t {
 };
 
 struct Bloom {
-    /// How much of the glow is added; in the mode energy_conserving, how far the picture is mixed with it, where 1 and
-    /// more mean wholly. [0, 16]
+    /// Amount of the glow added; with energy_conserving, share of the glow in the mix, where 1 and more leave the glow
+    /// alone. [0, 16]
     float intensity = 0.04f;
-    /// Light above this glows; not used in the mode energy_conserving. [0, 65504]
+    /// Light above this value glows; energy_conserving ignores it. [0, 65504]
     float threshold = 1.0f;
-    /// Width of the soft knee as a part of the threshold: 0 is a hard edge. [0, 1]
+    /// Width of the soft knee, as a share of the threshold; 0 is a hard edge. [0, 1]
     float soft_threshold = 0.5f;
-    /// Averages the first level by inverse luminance, so that lone bright pixels do not flicker; not used in the mode
-    /// energy_conserving, which keeps their light.
+    /// Weights the first level by inverse luminance, so that single bright pixels do not flicker; energy_conserving
+    /// ignores it and keeps their light.
     Toggle firefly_filter = true;
-    /// Whether the glow is added to the picture or mixed with it.
+    /// Way to join the glow: additive adds it, energy_conserving mixes the picture with it.
     BloomMode mode = BloomMode::Additive;
-    /// Weight of each wider level relative to the one below it, in the mode energy_conserving. [0, 1]
+    /// Weight of each wider level relative to the narrower one, with energy_conserving. [0, 1]
     float scatter = 0.7f;
-    /// Levels of the pyramid that are used at a height of 1080, each as wide again; by pixels, the most at any. [1, 5]
+    /// Number of pyramid levels at a height of 1080, each twice as wide; with reach = pixels, the largest number at any
+    /// height. [1, 5]
     std::int32_t levels = 5;
-    /// Whether the glow keeps its width in parts of the picture's height, or in pixels.
+    /// Unit of the glow's width: parts of the picture's height, or pixels.
     Reach reach = Reach::Height;
 };
 

@@ -15,10 +15,10 @@ constexpr auto box_blur_rows =
     describe(field<&BoxBlur::radius>("Half-width of the square; 0 leaves the picture as it is.", {0, 64}, unit::pixels)
                  .as_size_of<&BoxBlur::reach>()
                  .as_loop_count(),
-             field<&BoxBlur::iterations>(
-                 "How many times the picture is blurred: 2 make a pyramid, 3 nearly a bell curve.", {1, 4})
+             field<&BoxBlur::iterations>("Number of passes: 2 give a pyramid filter, 3 nearly a bell curve.", {1, 4})
                  .at_compile(),
-             field<&BoxBlur::reach>("Which pixels the radius is measured in."));
+             field<&BoxBlur::reach>(
+                 "Pixels that the radius is measured in: those of the picture, or of a picture of 1080 lines."));
 
 const BoxBlur& blur_of(const void* parameters) { return *static_cast<const BoxBlur*>(parameters); }
 
@@ -51,7 +51,7 @@ void build(PassBuilder& builder) {
 const EffectInfo& effect_info(const BoxBlur&) {
     static const EffectInfo info{
         .name = "box_blur",
-        .doc = "Blurs the picture by plain means of squares.",
+        .doc = "Blurs the picture by the mean of a square.",
         .parameters = box_blur_rows.table(),
         .files = embedded_files("box_blur"),
         .touch = Touch::Neighbourhood,

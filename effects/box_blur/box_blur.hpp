@@ -12,9 +12,9 @@ struct EffectInfo;
 struct BoxBlur {
     /// Half-width of the square; 0 leaves the picture as it is. [0, 64] px
     std::int32_t radius = 4;
-    /// How many times the picture is blurred: 2 make a pyramid, 3 nearly a bell curve. [1, 4]
+    /// Number of passes: 2 give a pyramid filter, 3 nearly a bell curve. [1, 4]
     std::int32_t iterations = 1;
-    /// Which pixels the radius is measured in.
+    /// Pixels that the radius is measured in: those of the picture, or of a picture of 1080 lines.
     Reach reach = Reach::Pixels;
 };
 

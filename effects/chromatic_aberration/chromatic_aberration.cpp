@@ -10,8 +10,9 @@ namespace darkroom {
 namespace {
 
 constexpr auto chromatic_aberration_rows = describe(
-    field<&ChromaticAberration::chromatic_aberration>(
-        "How far red and blue part: 0.012 of the distance from the centre for each 1; 0.001 and less is none.", {0, 8})
+    field<&ChromaticAberration::chromatic_aberration>("Separation of red and blue: each 1 moves them by 0.012 of the "
+                                                      "distance from the centre; 0.001 and less do nothing.",
+                                                      {0, 8})
         .as_amount());
 
 }  // namespace
@@ -19,7 +20,7 @@ constexpr auto chromatic_aberration_rows = describe(
 const EffectInfo& effect_info(const ChromaticAberration&) {
     static const EffectInfo info{
         .name = "chromatic_aberration",
-        .doc = "Parts red and blue toward the edges, as a simple lens does.",
+        .doc = "Separates red and blue toward the edges.",
         .parameters = chromatic_aberration_rows.table(),
         .files = embedded_files("chromatic_aberration"),
         .touch = Touch::Warp,

@@ -10,7 +10,8 @@ namespace darkroom {
 struct EffectInfo;
 
 struct ChromaticAberration {
-    /// How far red and blue part: 0.012 of the distance from the centre for each 1; 0.001 and less is none. [0, 8]
+    /// Separation of red and blue: each 1 moves them by 0.012 of the distance from the centre; 0.001 and less do
+    /// nothing. [0, 8]
     float chromatic_aberration = 0.0f;
 };
 

@@ -11,15 +11,17 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto classic_bloom_rows = describe(
-    field<&ClassicBloom::intensity>("How much of the glow is added.", {0, 16}).as_amount(),
-    field<&ClassicBloom::source_kind>("What glows; the layer is named by the entry's source, for example alpha.")
-        .at_compile(),
-    field<&ClassicBloom::threshold>("Light above this glows; not used with a layer.", {0, 65504}),
-    field<&ClassicBloom::radius>("Half-width of the glow.", {7, 64}, unit::pixels)
-        .as_size_of<&ClassicBloom::reach>()
-        .as_loop_count(),
-    field<&ClassicBloom::reach>("Which pixels the radius is measured in."));
+constexpr auto classic_bloom_rows =
+    describe(field<&ClassicBloom::intensity>("Amount of the glow added to the picture.", {0, 16}).as_amount(),
+             field<&ClassicBloom::source_kind>("Source of the glow: light above the threshold, or the layer that the "
+                                               "entry's `source` names, for example alpha.")
+                 .at_compile(),
+             field<&ClassicBloom::threshold>("Light above this value glows; the source layer ignores it.", {0, 65504}),
+             field<&ClassicBloom::radius>("Half-width of the glow.", {7, 64}, unit::pixels)
+                 .as_size_of<&ClassicBloom::reach>()
+                 .as_loop_count(),
+             field<&ClassicBloom::reach>(
+                 "Pixels that the radius is measured in: those of the picture, or of a picture of 1080 lines."));
 
 /// The weights; the last number of all is that of taps to one side.
 constexpr std::uint32_t vectors = classic_bloom_capacity / 4 + 1;
@@ -56,7 +58,7 @@ void build(PassBuilder& builder) {
 const EffectInfo& effect_info(const ClassicBloom&) {
     static const EffectInfo info{
         .name = "classic_bloom",
-        .doc = "What is cut out of the picture glows, by one separable blur.",
+        .doc = "Adds the glow of light that is cut out of the picture, by one separable blur.",
         .parameters = classic_bloom_rows.table(),
         .files = embedded_files("classic_bloom"),
         .touch = Touch::Pointwise,

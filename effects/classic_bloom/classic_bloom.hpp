@@ -16,15 +16,15 @@ enum class ClassicBloomSource : std::uint32_t {
 };
 
 struct ClassicBloom {
-    /// How much of the glow is added. [0, 16]
+    /// Amount of the glow added to the picture. [0, 16]
     float intensity = 0.5f;
-    /// What glows; the layer is named by the entry's source, for example alpha.
+    /// Source of the glow: light above the threshold, or the layer that the entry's `source` names, for example alpha.
     ClassicBloomSource source_kind = ClassicBloomSource::Hdr;
-    /// Light above this glows; not used with a layer. [0, 65504]
+    /// Light above this value glows; the source layer ignores it. [0, 65504]
     float threshold = 1.0f;
     /// Half-width of the glow. [7, 64] px
     std::int32_t radius = 16;
-    /// Which pixels the radius is measured in.
+    /// Pixels that the radius is measured in: those of the picture, or of a picture of 1080 lines.
     Reach reach = Reach::Pixels;
 };
 

@@ -13,31 +13,35 @@ namespace darkroom {
 namespace {
 
 constexpr auto color_grade_rows = describe(
-    field<&ColorGrade::temperature>("Colour temperature of the light that becomes white: above 6504 the picture gets "
-                                    "warmer, below it colder.",
-                                    {2500, 25000, Scale::Log}, Unit{"K"}),
-    field<&ColorGrade::tint>("How green that light is, in 3000ths of CIE 1960 uv: above 0 the picture turns magenta.",
-                             {-100, 100}),
-    field<&ColorGrade::mixer_red>("How much of red, green and blue the new red holds.", {-2, 2}),
-    field<&ColorGrade::mixer_green>("How much of red, green and blue the new green holds.", {-2, 2}),
-    field<&ColorGrade::mixer_blue>("How much of red, green and blue the new blue holds.", {-2, 2}),
-    field<&ColorGrade::shadows>("Factor of what is dark.", {0, 4}),
-    field<&ColorGrade::midtones>("Factor of what lies between dark and bright.", {0, 4}),
-    field<&ColorGrade::highlights>("Factor of what is bright.", {0, 4}),
-    field<&ColorGrade::shadows_range>("Luminance at which the shadows begin to fade, and the width over which they do.",
+    field<&ColorGrade::temperature>(
+        "Colour temperature of the light that becomes white: above 6504 the picture gets warmer, below it colder.",
+        {2500, 25000, Scale::Log}, Unit{"K"}),
+    field<&ColorGrade::tint>(
+        "Green of the light that becomes white, in 3000ths of CIE 1960 uv: above 0 the picture turns magenta.",
+        {-100, 100}),
+    field<&ColorGrade::mixer_red>("Shares of red, green and blue in the new red.", {-2, 2}),
+    field<&ColorGrade::mixer_green>("Shares of red, green and blue in the new green.", {-2, 2}),
+    field<&ColorGrade::mixer_blue>("Shares of red, green and blue in the new blue.", {-2, 2}),
+    field<&ColorGrade::shadows>("Factor of the dark range.", {0, 4}),
+    field<&ColorGrade::midtones>("Factor of the range between dark and bright.", {0, 4}),
+    field<&ColorGrade::highlights>("Factor of the bright range.", {0, 4}),
+    field<&ColorGrade::shadows_range>("Luminance at which the shadows begin to fade, then the width of the fade.",
                                       {0, 64}),
-    field<&ColorGrade::highlights_range>("Luminance at which the highlights begin, and the width over which they do.",
+    field<&ColorGrade::highlights_range>("Luminance at which the highlights begin, then the width of the fade.",
                                          {0, 64}),
-    field<&ColorGrade::lift>("Light that is added: offset.", {-1, 1}),
+    field<&ColorGrade::lift>("Light that is added (offset).", {-1, 1}),
     field<&ColorGrade::gamma>("Exponent 1 / gamma: above 1 the middle gets brighter.", {0.1, 10, Scale::Log}),
-    field<&ColorGrade::gain>("Factor of the light: slope.", {0, 16}),
+    field<&ColorGrade::gain>("Factor of the light (slope).", {0, 16}),
     field<&ColorGrade::contrast>("Factor of the distance from the pivot, in stops.", {0, 4}),
     field<&ColorGrade::pivot>("Light that the contrast leaves as it is; 0.18 is middle grey.", {0.001, 16, Scale::Log}),
-    field<&ColorGrade::curve_red>("Red out for red in, both in stops from middle grey; none: as it is.", {-16, 16}),
-    field<&ColorGrade::curve_green>("Green out for green in, both in stops from middle grey.", {-16, 16}),
-    field<&ColorGrade::curve_blue>("Blue out for blue in, both in stops from middle grey.", {-16, 16}),
+    field<&ColorGrade::curve_red>(
+        "Red out (y) for red in (x), both in stops from middle grey; an empty curve changes nothing.", {-16, 16}),
+    field<&ColorGrade::curve_green>(
+        "Green out (y) for green in (x), both in stops from middle grey; an empty curve changes nothing.", {-16, 16}),
+    field<&ColorGrade::curve_blue>(
+        "Blue out (y) for blue in (x), both in stops from middle grey; an empty curve changes nothing.", {-16, 16}),
     field<&ColorGrade::hue>("Angle by which hues turn; luminance stays.", {-180, 180}, unit::degrees),
-    field<&ColorGrade::vibrance>("Saturation for pale colours, and less the more colour there is.", {-1, 1}),
+    field<&ColorGrade::vibrance>("Saturation added to pale colours; colourful ones get less of it.", {-1, 1}),
     field<&ColorGrade::saturation>("Factor of the distance from grey; luminance stays.", {0, 4}));
 
 using color_grade::Matrix3;
@@ -155,7 +159,7 @@ bool is_identity(const void* parameters) {
 const EffectInfo& effect_info(const ColorGrade&) {
     static const EffectInfo info{
         .name = "color_grade",
-        .doc = "Balances and grades the scene's colours.",
+        .doc = "Grades light: white balance, ranges, lift, gamma and gain, contrast, curves, mixer, hue, saturation.",
         .parameters = color_grade_rows.table(),
         .files = embedded_files("color_grade"),
         .touch = Touch::Pointwise,

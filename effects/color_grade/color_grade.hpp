@@ -13,44 +13,46 @@ struct ColorGrade {
     /// Colour temperature of the light that becomes white: above 6504 the picture gets warmer, below it colder. [2500,
     /// 25000] K
     float temperature = 6504.0f;
-    /// How green that light is, in 3000ths of CIE 1960 uv: above 0 the picture turns magenta. [-100, 100]
+    /// Green of the light that becomes white, in 3000ths of CIE 1960 uv: above 0 the picture turns magenta. [-100, 100]
     float tint = 0.0f;
-    /// How much of red, green and blue the new red holds. [-2, 2]
+    /// Shares of red, green and blue in the new red. [-2, 2]
     Vec3 mixer_red{1, 0, 0};
-    /// How much of red, green and blue the new green holds. [-2, 2]
+    /// Shares of red, green and blue in the new green. [-2, 2]
     Vec3 mixer_green{0, 1, 0};
-    /// How much of red, green and blue the new blue holds. [-2, 2]
+    /// Shares of red, green and blue in the new blue. [-2, 2]
     Vec3 mixer_blue{0, 0, 1};
-    /// Factor of what is dark. [0, 4]
+    /// Factor of the dark range. [0, 4]
     Rgb shadows{1, 1, 1};
-    /// Factor of what lies between dark and bright. [0, 4]
+    /// Factor of the range between dark and bright. [0, 4]
     Rgb midtones{1, 1, 1};
-    /// Factor of what is bright. [0, 4]
+    /// Factor of the bright range. [0, 4]
     Rgb highlights{1, 1, 1};
-    /// Luminance at which the shadows begin to fade, and the width over which they do. [0, 64]
+    /// Luminance at which the shadows begin to fade, then the width of the fade. [0, 64]
     Vec2 shadows_range{0.0f, 0.3f};
-    /// Luminance at which the highlights begin, and the width over which they do. [0, 64]
+    /// Luminance at which the highlights begin, then the width of the fade. [0, 64]
     Vec2 highlights_range{0.55f, 0.45f};
-    /// Light that is added: offset. [-1, 1]
+    /// Light that is added (offset). [-1, 1]
     Rgb lift{0, 0, 0};
     /// Exponent 1 / gamma: above 1 the middle gets brighter. [0.1, 10]
     Rgb gamma{1, 1, 1};
-    /// Factor of the light: slope. [0, 16]
+    /// Factor of the light (slope). [0, 16]
     Rgb gain{1, 1, 1};
     /// Factor of the distance from the pivot, in stops. [0, 4]
     float contrast = 1.0f;
     /// Light that the contrast leaves as it is; 0.18 is middle grey. [0.001, 16]
     float pivot = 0.18f;
-    /// Red out for red in, both in stops from middle grey; none: as it is. up to 16 points [x, y], x ascending, y in
-    /// [-16, 16]
+    /// Red out (y) for red in (x), both in stops from middle grey; an empty curve changes nothing. up to 16 points [x,
+    /// y], x ascending, y in [-16, 16]
     Curve curve_red;
-    /// Green out for green in, both in stops from middle grey. up to 16 points [x, y], x ascending, y in [-16, 16]
+    /// Green out (y) for green in (x), both in stops from middle grey; an empty curve changes nothing. up to 16 points
+    /// [x, y], x ascending, y in [-16, 16]
     Curve curve_green;
-    /// Blue out for blue in, both in stops from middle grey. up to 16 points [x, y], x ascending, y in [-16, 16]
+    /// Blue out (y) for blue in (x), both in stops from middle grey; an empty curve changes nothing. up to 16 points
+    /// [x, y], x ascending, y in [-16, 16]
     Curve curve_blue;
     /// Angle by which hues turn; luminance stays. [-180, 180] deg
     float hue = 0.0f;
-    /// Saturation for pale colours, and less the more colour there is. [-1, 1]
+    /// Saturation added to pale colours; colourful ones get less of it. [-1, 1]
     float vibrance = 0.0f;
     /// Factor of the distance from grey; luminance stays. [0, 4]
     float saturation = 1.0f;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr auto contrast_gamma_rows = describe(
     field<&ContrastGamma::contrast>("Factor of the encoded picture.", {1, 2}).as_amount().also_named("contrast", true),
-    field<&ContrastGamma::gamma>("Exponent behind it: below 1 brightens.", {0.1, 4, Scale::Log})
+    field<&ContrastGamma::gamma>("Exponent applied after the contrast: below 1 brightens.", {0.1, 4, Scale::Log})
         .as_amount()
         .also_named("gamma", true));
 
@@ -20,7 +20,7 @@ constexpr auto contrast_gamma_rows = describe(
 const EffectInfo& effect_info(const ContrastGamma&) {
     static const EffectInfo info{
         .name = "contrast_gamma",
-        .doc = "Contrast and gamma of the finished picture, interface included.",
+        .doc = "Sets contrast and gamma of the finished picture, interface included.",
         .parameters = contrast_gamma_rows.table(),
         .files = embedded_files("contrast_gamma"),
         .touch = Touch::Pointwise,

@@ -11,7 +11,7 @@ struct EffectInfo;
 struct ContrastGamma {
     /// Factor of the encoded picture. [1, 2]
     float contrast = 1.0f;
-    /// Exponent behind it: below 1 brightens. [0.1, 4]
+    /// Exponent applied after the contrast: below 1 brightens. [0.1, 4]
     float gamma = 1.0f;
 };
 

@@ -19,20 +19,21 @@ constexpr std::int32_t most_rings = 8;
 constexpr auto depth_of_field_rows = describe(
     field<&DepthOfField::focus_distance>("Distance along the view axis that is sharp.", {0.01, 1e5, Scale::Log},
                                          unit::metres),
-    field<&DepthOfField::f_stop>("Focal length over the aperture's diameter: smaller is a wider aperture.",
+    field<&DepthOfField::f_stop>("Focal length divided by the aperture's diameter: a smaller number blurs more.",
                                  {0.5, 64, Scale::Log}),
-    field<&DepthOfField::sensor_height>(
-        "Height of what the picture falls on: with the field of view it gives the focal length.", {1, 1000, Scale::Log},
-        millimetres),
-    field<&DepthOfField::max_radius>("Largest radius of a circle, in hundredths of the picture's height.", {0.1, 4}),
-    field<&DepthOfField::blades>("Straight sides of the aperture; fewer than 3 make a round one.", {0, 11}),
-    field<&DepthOfField::roundness>("How far the blades' sides are bent into a circle.", {0, 1}),
-    field<&DepthOfField::rotation>("Turns the aperture, counterclockwise.", {-180, 180}, unit::degrees),
-    field<&DepthOfField::anamorphic_ratio>("Height of a circle over its width.", {1, 2}),
-    field<&DepthOfField::cats_eye>("How much the barrel of the lens cuts circles in the corners.", {0, 1}),
-    field<&DepthOfField::rings>("Rings of samples about a pixel: n of them are 4 n (n + 1) samples.", {2, most_rings})
+    field<&DepthOfField::sensor_height>("Height of the sensor; with the field of view it gives the focal length.",
+                                        {1, 1000, Scale::Log}, millimetres),
+    field<&DepthOfField::max_radius>(
+        "Largest radius of the circle of confusion, in hundredths of the picture's height.", {0.1, 4}),
+    field<&DepthOfField::blades>("Number of the aperture's blades; fewer than 3 make a round aperture.", {0, 11}),
+    field<&DepthOfField::roundness>("Bend of the blades' straight sides: 0 is a polygon, 1 a circle.", {0, 1}),
+    field<&DepthOfField::rotation>("Angle by which the aperture is turned, counterclockwise.", {-180, 180},
+                                   unit::degrees),
+    field<&DepthOfField::anamorphic_ratio>("Height of the circle of confusion divided by its width.", {1, 2}),
+    field<&DepthOfField::cats_eye>("Share by which the barrel of the lens cuts circles in the corners.", {0, 1}),
+    field<&DepthOfField::rings>("Number of sample rings for a pixel: n rings are 4 n (n + 1) samples.", {2, most_rings})
         .as_loop_count(),
-    field<&DepthOfField::resolution>("Size of the picture that is blurred, in each direction.").at_compile());
+    field<&DepthOfField::resolution>("Size of the blurred picture, as a share of each side.").at_compile());
 
 const DepthOfField& field_of(const void* parameters) { return *static_cast<const DepthOfField*>(parameters); }
 
@@ -136,7 +137,7 @@ void build(PassBuilder& builder) {
 const EffectInfo& effect_info(const DepthOfField&) {
     static const EffectInfo info{
         .name = "depth_of_field",
-        .doc = "Blurs what lies before and behind the distance that the lens is focused at.",
+        .doc = "Blurs everything nearer or farther than the focus distance.",
         .parameters = depth_of_field_rows.table(),
         .files = embedded_files("depth_of_field"),
         .touch = Touch::Pointwise,

@@ -14,25 +14,25 @@ enum class DepthOfFieldResolution : std::uint32_t { Half, Full };
 struct DepthOfField {
     /// Distance along the view axis that is sharp. [0.01, 100000] m
     float focus_distance = 5.0f;
-    /// Focal length over the aperture's diameter: smaller is a wider aperture. [0.5, 64]
+    /// Focal length divided by the aperture's diameter: a smaller number blurs more. [0.5, 64]
     float f_stop = 2.8f;
-    /// Height of what the picture falls on: with the field of view it gives the focal length. [1, 1000] mm
+    /// Height of the sensor; with the field of view it gives the focal length. [1, 1000] mm
     float sensor_height = 24.0f;
-    /// Largest radius of a circle, in hundredths of the picture's height. [0.1, 4]
+    /// Largest radius of the circle of confusion, in hundredths of the picture's height. [0.1, 4]
     float max_radius = 2.0f;
-    /// Straight sides of the aperture; fewer than 3 make a round one. [0, 11]
+    /// Number of the aperture's blades; fewer than 3 make a round aperture. [0, 11]
     std::int32_t blades = 0;
-    /// How far the blades' sides are bent into a circle. [0, 1]
+    /// Bend of the blades' straight sides: 0 is a polygon, 1 a circle. [0, 1]
     float roundness = 0.0f;
-    /// Turns the aperture, counterclockwise. [-180, 180] deg
+    /// Angle by which the aperture is turned, counterclockwise. [-180, 180] deg
     float rotation = 0.0f;
-    /// Height of a circle over its width. [1, 2]
+    /// Height of the circle of confusion divided by its width. [1, 2]
     float anamorphic_ratio = 1.0f;
-    /// How much the barrel of the lens cuts circles in the corners. [0, 1]
+    /// Share by which the barrel of the lens cuts circles in the corners. [0, 1]
     float cats_eye = 0.0f;
-    /// Rings of samples about a pixel: n of them are 4 n (n + 1) samples. [2, 8]
+    /// Number of sample rings for a pixel: n rings are 4 n (n + 1) samples. [2, 8]
     std::int32_t rings = 4;
-    /// Size of the picture that is blurred, in each direction.
+    /// Size of the blurred picture, as a share of each side.
     DepthOfFieldResolution resolution = DepthOfFieldResolution::Half;
 };
 

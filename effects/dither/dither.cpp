@@ -18,8 +18,9 @@ constexpr auto dither_rows = describe(
     field<&Dither::intensity>("Width of the noise, in units of the encoded range; 2/255 hides the steps of 8 bits.",
                               {0, 1})
         .as_amount(),
-    field<&Dither::ends>("Which mean stays near black and white: that of the rounded picture, or that before."),
-    field<&Dither::moves>("The noise is another one in each frame while time runs, for what averages frames."));
+    field<&Dither::ends>(
+        "Mean that is kept near black and white: that of the rounded picture, or that before rounding."),
+    field<&Dither::moves>("Changes the noise in each frame while time runs, for filters that average frames."));
 
 static_assert(dither_tile_size == blue_noise_size);
 constexpr std::size_t texel_count = std::size_t{dither_tile_size} * dither_tile_size;

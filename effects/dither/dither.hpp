@@ -17,9 +17,9 @@ enum class DitherEnds : std::uint32_t {
 struct Dither {
     /// Width of the noise, in units of the encoded range; 2/255 hides the steps of 8 bits. [0, 1]
     float intensity = 2.0f / 255.0f;
-    /// Which mean stays near black and white: that of the rounded picture, or that before.
+    /// Mean that is kept near black and white: that of the rounded picture, or that before rounding.
     DitherEnds ends = DitherEnds::Rounded;
-    /// The noise is another one in each frame while time runs, for what averages frames.
+    /// Changes the noise in each frame while time runs, for filters that average frames.
     Toggle moves = false;
 };
 

@@ -9,11 +9,13 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto encode_rows = describe(
-    field<&Encode::transfer>("The curve of the display or file that the picture is for."),
-    field<&Encode::white_nits>("Luminance of linear 1.0; for pq, hlg and scrgb.", {1, 10000, Scale::Log}, unit::nits),
-    field<&Encode::peak_nits>("What is brighter is clipped, channel by channel; for pq, hlg and scrgb.",
-                              {1, 10000, Scale::Log}, unit::nits));
+constexpr auto encode_rows =
+    describe(field<&Encode::transfer>(
+                 "Encoding of the display or file that the picture is for: transfer function and primaries."),
+             field<&Encode::white_nits>("Luminance of linear 1.0; only pq, hlg and scrgb use it.",
+                                        {1, 10000, Scale::Log}, unit::nits),
+             field<&Encode::peak_nits>("Luminance at which each channel is clipped; only pq, hlg and scrgb use it.",
+                                       {1, 10000, Scale::Log}, unit::nits));
 
 bool is_none(const void* parameters) {
     return static_cast<const Encode*>(parameters)->transfer == TransferFunction::None;

@@ -20,11 +20,11 @@ enum class TransferFunction : std::uint32_t {
 };
 
 struct Encode {
-    /// The curve of the display or file that the picture is for.
+    /// Encoding of the display or file that the picture is for: transfer function and primaries.
     TransferFunction transfer = TransferFunction::Srgb;
-    /// Luminance of linear 1.0; for pq, hlg and scrgb. [1, 10000] cd/m2
+    /// Luminance of linear 1.0; only pq, hlg and scrgb use it. [1, 10000] cd/m2
     float white_nits = 203.0f;
-    /// What is brighter is clipped, channel by channel; for pq, hlg and scrgb. [1, 10000] cd/m2
+    /// Luminance at which each channel is clipped; only pq, hlg and scrgb use it. [1, 10000] cd/m2
     float peak_nits = 1000.0f;
 };
 

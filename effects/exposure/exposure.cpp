@@ -9,8 +9,8 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto exposure_rows = describe(field<&Exposure::exposure>(
-    "Multiplier of the scene's light; 2 is one stop brighter.", {0, 1024}, unit::multiplier));
+constexpr auto exposure_rows = describe(
+    field<&Exposure::exposure>("Factor of the scene's light; 2 is one stop brighter.", {0, 1024}, unit::multiplier));
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Exposure {
-    /// Multiplier of the scene's light; 2 is one stop brighter. [0, 1024] x
+    /// Factor of the scene's light; 2 is one stop brighter. [0, 1024] x
     float exposure = 1.0f;
 };
 

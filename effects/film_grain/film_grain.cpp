@@ -14,17 +14,18 @@ namespace {
 
 constexpr auto film_grain_rows = describe(
     field<&FilmGrain::amount>(
-        "Standard deviation of the grain on mid-grey, of a picture of 1080 lines, in units of the "
-        "encoded range.",
+        "Standard deviation of the grain on mid-grey, in a picture of 1080 lines, in units of the encoded range.",
         {0, 0.25})
         .as_amount(),
-    field<&FilmGrain::size>("Size of a grain, of a picture of 1080 lines.", {0.5, 16, Scale::Log}, unit::pixels),
-    field<&FilmGrain::color>("Colour of the grain: at 0 all channels have the same, at 1 each has its own.", {0, 1}),
-    field<&FilmGrain::shadows>("Multiplies the grain on a quarter of the encoded range.", {0, 4}),
-    field<&FilmGrain::midtones>("Multiplies the grain on half of it.", {0, 4}),
-    field<&FilmGrain::highlights>("Multiplies the grain on three quarters of it.", {0, 4}),
-    field<&FilmGrain::model>("What the grain is like.").at_compile(),
-    field<&FilmGrain::animated>("The grain is another one in each frame."));
+    field<&FilmGrain::size>("Size of a grain, in a picture of 1080 lines.", {0.5, 16, Scale::Log}, unit::pixels),
+    field<&FilmGrain::color>("Share of coloured grain: at 0 all channels have the same grain, at 1 each has its own.",
+                             {0, 1}),
+    field<&FilmGrain::shadows>("Factor of the grain at a quarter of the encoded range.", {0, 4}),
+    field<&FilmGrain::midtones>("Factor of the grain at half of the encoded range.", {0, 4}),
+    field<&FilmGrain::highlights>("Factor of the grain at three quarters of the encoded range.", {0, 4}),
+    field<&FilmGrain::model>("Model of the grain: film draws overlapping discs, av1 filters Gaussian noise.")
+        .at_compile(),
+    field<&FilmGrain::animated>("Changes the grain in each frame."));
 
 const FilmGrain& grain_of(const void* parameters) { return *static_cast<const FilmGrain*>(parameters); }
 

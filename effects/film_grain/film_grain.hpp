@@ -16,22 +16,22 @@ enum class FilmGrainModel : std::uint32_t {
 };
 
 struct FilmGrain {
-    /// Standard deviation of the grain on mid-grey, of a picture of 1080 lines, in units of the encoded range.
-    /// [0, 0.25]
+    /// Standard deviation of the grain on mid-grey, in a picture of 1080 lines, in units of the encoded range. [0,
+    /// 0.25]
     float amount = 0.03f;
-    /// Size of a grain, of a picture of 1080 lines. [0.5, 16] px
+    /// Size of a grain, in a picture of 1080 lines. [0.5, 16] px
     float size = 1.5f;
-    /// Colour of the grain: at 0 all channels have the same, at 1 each has its own. [0, 1]
+    /// Share of coloured grain: at 0 all channels have the same grain, at 1 each has its own. [0, 1]
     float color = 0.3f;
-    /// Multiplies the grain on a quarter of the encoded range. [0, 4]
+    /// Factor of the grain at a quarter of the encoded range. [0, 4]
     float shadows = 1.0f;
-    /// Multiplies the grain on half of it. [0, 4]
+    /// Factor of the grain at half of the encoded range. [0, 4]
     float midtones = 1.0f;
-    /// Multiplies the grain on three quarters of it. [0, 4]
+    /// Factor of the grain at three quarters of the encoded range. [0, 4]
     float highlights = 1.0f;
-    /// What the grain is like.
+    /// Model of the grain: film draws overlapping discs, av1 filters Gaussian noise.
     FilmGrainModel model = FilmGrainModel::Film;
-    /// The grain is another one in each frame.
+    /// Changes the grain in each frame.
     Toggle animated = false;
 };
 

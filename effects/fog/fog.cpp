@@ -17,19 +17,20 @@ namespace {
 
 constexpr auto fog_rows = describe(
     field<&Fog::color>("Colour of full fog, in the domain of the picture that the fog is laid over.", {0, 65504}),
-    field<&Fog::density>("How quickly it thickens behind `start`; 0 is none.", {0, 1000}, unit::per_metre).as_amount(),
-    field<&Fog::start>("Where it begins.", {0, 1e6}, unit::metres),
-    field<&Fog::end>("Where it is full; must lie beyond `start`.", {0.001, 1e9}, unit::metres),
-    field<&Fog::height_enabled>("Does it thin with height."),
+    field<&Fog::density>("Rate at which the fog thickens beyond `start`; 0 is no fog.", {0, 1000}, unit::per_metre)
+        .as_amount(),
+    field<&Fog::start>("Distance at which the fog begins.", {0, 1e6}, unit::metres),
+    field<&Fog::end>("Distance at which the fog is full; it must lie beyond `start`.", {0.001, 1e9}, unit::metres),
+    field<&Fog::height_enabled>("Thins the fog with height."),
     field<&Fog::height_form>(
-        "Whether its height counts along the whole way to the eye, or at the end of the way alone."),
-    field<&Fog::height_falloff>("How quickly it thins above `height_origin`.", {0, 1000}, unit::per_metre)
+        "Height that counts: integral takes the whole way to the eye, end_point the height of the surface alone."),
+    field<&Fog::height_falloff>("Rate at which the fog thins above `height_origin`.", {0, 1000}, unit::per_metre)
         .as_amount_of<&Fog::height_enabled>(),
-    field<&Fog::height_origin>("World height up to which it has its full density.", {-1e6, 1e6}, unit::metres),
-    field<&Fog::sky>("Does it cover the sky, too: full, at every height."),
-    field<&Fog::horizon>(
-        "How far above the horizon it fades out of the sky, so that land and sky meet; 0: it ends there.", {0, 90},
-        unit::degrees));
+    field<&Fog::height_origin>("World height up to which the fog has its full density.", {-1e6, 1e6}, unit::metres),
+    field<&Fog::sky>("Covers the sky with full fog, at every height."),
+    field<&Fog::horizon>("Angle above the horizon over which fog fades out of the sky, so that land and sky meet; at 0 "
+                         "it ends at the horizon.",
+                         {0, 90}, unit::degrees));
 
 const Fog& fog_of(const void* parameters) { return *static_cast<const Fog*>(parameters); }
 
@@ -58,7 +59,7 @@ void fog_constants(const void* parameters, const PassContext& context, std::span
 const EffectInfo& effect_info(const Fog&) {
     static const EffectInfo info{
         .name = "fog",
-        .doc = "Hides what is far, or low, behind a colour.",
+        .doc = "Hides distant or low parts of the scene behind a colour.",
         .parameters = fog_rows.table(),
         .files = embedded_files("fog"),
         .touch = Touch::Pointwise,

@@ -17,7 +17,7 @@ namespace {
 constexpr auto frame_blend_rows =
     describe(field<&FrameBlend::amount>("Weight of all earlier frames together.", {0, 1}),
              field<&FrameBlend::frames>("Length of the trail, in steps of 1/60 s.", {1, 7}),
-             field<&FrameBlend::area>("Of the picture's area, how much each earlier frame is kept at.").at_compile());
+             field<&FrameBlend::area>("Share of the picture's area that each earlier frame is kept at.").at_compile());
 
 constexpr std::array<const char*, frame_blend_slots> slot_names{"frame_blend_0", "frame_blend_1", "frame_blend_2",
                                                                 "frame_blend_3", "frame_blend_4", "frame_blend_5",

@@ -18,7 +18,7 @@ struct FrameBlend {
     float amount = 0.6f;
     /// Length of the trail, in steps of 1/60 s. [1, 7]
     std::int32_t frames = 7;
-    /// Of the picture's area, how much each earlier frame is kept at.
+    /// Share of the picture's area that each earlier frame is kept at.
     FrameBlendArea area = FrameBlendArea::Sixteenth;
 };
 

@@ -10,11 +10,12 @@ namespace darkroom {
 namespace {
 
 constexpr auto fxaa_rows = describe(
-    field<&Fxaa::quality>("How far and how densely the ends of an edge are searched."),
-    field<&Fxaa::subpixel>("How much of single pixels and thin lines is smoothed away; 0 leaves all but edges.",
+    field<&Fxaa::quality>("Length and density of the search for the ends of an edge."),
+    field<&Fxaa::subpixel>("Share of single pixels and thin lines that is smoothed away; 0 smooths edges alone.",
                            {0, 1}),
-    field<&Fxaa::edge_threshold>("Contrast that makes an edge, as a part of the brightest luma around.", {0.03, 0.5}),
-    field<&Fxaa::edge_threshold_min>("Contrast in luma below which nothing is an edge: spares the dark.", {0, 0.5}));
+    field<&Fxaa::edge_threshold>("Contrast that makes an edge, as a share of the brightest luma around it.",
+                                 {0.03, 0.5}),
+    field<&Fxaa::edge_threshold_min>("Contrast in luma below which there is no edge; it spares dark parts.", {0, 0.5}));
 
 }  // namespace
 

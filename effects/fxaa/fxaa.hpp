@@ -17,13 +17,13 @@ enum class FxaaQuality : std::uint32_t {
 };
 
 struct Fxaa {
-    /// How far and how densely the ends of an edge are searched.
+    /// Length and density of the search for the ends of an edge.
     FxaaQuality quality = FxaaQuality::Low;
-    /// How much of single pixels and thin lines is smoothed away; 0 leaves all but edges. [0, 1]
+    /// Share of single pixels and thin lines that is smoothed away; 0 smooths edges alone. [0, 1]
     float subpixel = 0.75f;
-    /// Contrast that makes an edge, as a part of the brightest luma around. [0.03, 0.5]
+    /// Contrast that makes an edge, as a share of the brightest luma around it. [0.03, 0.5]
     float edge_threshold = 0.166f;
-    /// Contrast in luma below which nothing is an edge: spares the dark. [0, 0.5]
+    /// Contrast in luma below which there is no edge; it spares dark parts. [0, 0.5]
     float edge_threshold_min = 0.0833f;
 };
 

@@ -10,18 +10,21 @@ namespace darkroom {
 namespace {
 
 constexpr auto gamut_compression_rows = describe(
-    field<&GamutCompression::into>("The primaries that are to make the colours."),
+    field<&GamutCompression::into>("Primaries of the display that the colours are made for."),
     field<&GamutCompression::limit>(
-        "Distances from grey, towards cyan, magenta and yellow, that come to lie on the edge.", {1.001, 8}),
-    field<&GamutCompression::threshold>("Distances up to which colours stay; the edge is at 1.", {0, 0.99}),
-    field<&GamutCompression::power>("How late the curve bends: more keeps more colour, and parts less of it.", {1, 8}));
+        "Distances from grey, towards cyan, magenta and yellow, that are moved to the edge of the gamut.", {1.001, 8}),
+    field<&GamutCompression::threshold>("Distances from grey up to which colours stay as they are; the edge is at 1.",
+                                        {0, 0.99}),
+    field<&GamutCompression::power>(
+        "Sharpness of the curve's bend: a larger value keeps more colours as they are and separates the others less.",
+        {1, 8}));
 
 }  // namespace
 
 const EffectInfo& effect_info(const GamutCompression&) {
     static const EffectInfo info{
         .name = "gamut_compression",
-        .doc = "Brings colours beyond a display's primaries within them.",
+        .doc = "Moves colours that a display cannot show into its gamut.",
         .parameters = gamut_compression_rows.table(),
         .files = embedded_files("gamut_compression"),
         .touch = Touch::Pointwise,

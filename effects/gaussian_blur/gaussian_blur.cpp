@@ -21,8 +21,12 @@ constexpr auto gaussian_blur_rows = describe(
                                 unit::pixels)
         .at_compile()
         .as_size_of<&GaussianBlur::reach>(),
-    field<&GaussianBlur::resolution>("Whether a wide blur works on a smaller picture.").at_compile(),
-    field<&GaussianBlur::reach>("Which pixels radius and sigma are measured in.").at_compile());
+    field<&GaussianBlur::resolution>(
+        "Size at which a wide blur works: automatic takes a smaller picture where no detail is lost, full never does.")
+        .at_compile(),
+    field<&GaussianBlur::reach>(
+        "Pixels that radius and sigma are measured in: those of the picture, or of a picture of 1080 lines.")
+        .at_compile());
 
 constexpr std::uint32_t vectors = 1 + GaussianBlurTaps::capacity / 2;
 

@@ -22,9 +22,9 @@ struct GaussianBlur {
     std::int32_t radius = 4;
     /// Standard deviation of the bell curve; 0 takes a third of the radius. [0, 64] px
     float sigma = 0.0f;
-    /// Whether a wide blur works on a smaller picture.
+    /// Size at which a wide blur works: automatic takes a smaller picture where no detail is lost, full never does.
     GaussianBlurResolution resolution = GaussianBlurResolution::Automatic;
-    /// Which pixels radius and sigma are measured in.
+    /// Pixels that radius and sigma are measured in: those of the picture, or of a picture of 1080 lines.
     Reach reach = Reach::Pixels;
 };
 

@@ -15,17 +15,20 @@ namespace darkroom {
 namespace {
 
 constexpr auto god_rays_rows = describe(
-    field<&GodRays::intensity>("How much of the streaks is added.", {0, 64}).as_amount(),
-    field<&GodRays::follows_light>("Takes the place of the frame's first light; without a light `position` counts."),
-    field<&GodRays::position>("Where the light is: (0, 0) is the top left of the picture, (1, 1) the bottom right.",
+    field<&GodRays::intensity>("Amount of the streaks added to the picture.", {0, 64}).as_amount(),
+    field<&GodRays::follows_light>("Takes the position of the frame's first light; without a light `position` counts."),
+    field<&GodRays::position>("Position of the light: (0, 0) is the top left of the picture, (1, 1) the bottom right.",
                               {-4, 5}),
-    field<&GodRays::radius>("How far around the light the sky streams, in heights of the picture.", {0.01, 16}),
-    field<&GodRays::threshold>("Sky above this luminance streams; without depth, all that is brighter.", {0, 65504}),
-    field<&GodRays::ceiling>("Luminance above the threshold counts no further than this.", {0, 65504}),
-    field<&GodRays::density>("How much of the way to the light a streak gathers from.", {0, 1}),
-    field<&GodRays::decay>("What counts of the light at the end of the way, beside 1 at its beginning.", {0.001, 1}),
-    field<&GodRays::samples>("Steps on the way. Brightness does not depend on it, smoothness does.", {1, 256}),
-    field<&GodRays::tint>("Colour that the streaks are multiplied by.", {0, 64}));
+    field<&GodRays::radius>("Distance around the light in which the sky sends streaks, in heights of the picture.",
+                            {0.01, 16}),
+    field<&GodRays::threshold>("Sky above this luminance sends streaks; without depth, everything brighter does.",
+                               {0, 65504}),
+    field<&GodRays::ceiling>("Largest luminance above the threshold that counts.", {0, 65504}),
+    field<&GodRays::density>("Share of the way to the light that a streak gathers from.", {0, 1}),
+    field<&GodRays::decay>("Weight of the light at the end of the way; at the beginning it is 1.", {0.001, 1}),
+    field<&GodRays::samples>("Number of steps on the way. Brightness does not depend on it, smoothness does.",
+                             {1, 256}),
+    field<&GodRays::tint>("Colour that multiplies the streaks.", {0, 64}));
 
 const GodRays& god_rays_of(const void* parameters) { return *static_cast<const GodRays*>(parameters); }
 
@@ -110,7 +113,7 @@ GodRaysLight god_rays_light(const GodRays& parameters, const Camera* camera, con
 const EffectInfo& effect_info(const GodRays&) {
     static const EffectInfo info{
         .name = "god_rays",
-        .doc = "Bright sky streams away from the light, cut by what stands before it.",
+        .doc = "Draws streaks that run away from a light in the picture.",
         .parameters = god_rays_rows.table(),
         .files = embedded_files("god_rays"),
         .touch = Touch::Pointwise,

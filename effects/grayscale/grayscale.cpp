@@ -10,14 +10,14 @@ namespace darkroom {
 namespace {
 
 constexpr auto grayscale_rows =
-    describe(field<&Grayscale::amount>("How much of the colour goes; at 0 the picture stays as it is.", {0, 1}));
+    describe(field<&Grayscale::amount>("Share of the colour that is removed; 0 leaves the picture as it is.", {0, 1}));
 
 }  // namespace
 
 const EffectInfo& effect_info(const Grayscale&) {
     static const EffectInfo info{
         .name = "grayscale",
-        .doc = "Takes the colour out and keeps the luminance.",
+        .doc = "Removes the colour and keeps the luminance.",
         .parameters = grayscale_rows.table(),
         .files = embedded_files("grayscale"),
         .touch = Touch::Pointwise,

@@ -9,7 +9,7 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Grayscale {
-    /// How much of the colour goes; at 0 the picture stays as it is. [0, 1]
+    /// Share of the colour that is removed; 0 leaves the picture as it is. [0, 1]
     float amount = 1.0f;
 };
 

@@ -9,16 +9,16 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto halation_rows = describe(
-    field<&Halation::intensity>("How much of the light comes back.", {0, 1}).as_amount(),
-    field<&Halation::threshold>("Light above this comes back.", {0, 65504}),
-    field<&Halation::radius>("Standard deviation of the near glow, of a picture of 1080 lines; the far one is three "
-                             "times as wide.",
-                             {4, 32}, unit::pixels),
-    field<&Halation::spread>("How much of the glow is the far one.", {0, 1}),
-    field<&Halation::tint>("Colour of what comes back: red goes deepest.", {0, 1}),
-    field<&Halation::conserves_energy>("What comes back is missing where it came from: the picture has as much light "
-                                       "as before."));
+constexpr auto halation_rows =
+    describe(field<&Halation::intensity>("Share of the light that the film base throws back.", {0, 1}).as_amount(),
+             field<&Halation::threshold>("Light above this value is thrown back.", {0, 65504}),
+             field<&Halation::radius>(
+                 "Standard deviation of the near glow, in a picture of 1080 lines; the far one is three times as wide.",
+                 {4, 32}, unit::pixels),
+             field<&Halation::spread>("Share of the far glow in the whole.", {0, 1}),
+             field<&Halation::tint>("Colour of the light that comes back; red goes deepest into film.", {0, 1}),
+             field<&Halation::conserves_energy>(
+                 "Takes the light that comes back from the place it came from, so that the picture keeps its light."));
 
 const Halation& halation_of(const void* parameters) { return *static_cast<const Halation*>(parameters); }
 
@@ -65,7 +65,7 @@ void build(PassBuilder& builder) {
 const EffectInfo& effect_info(const Halation&) {
     static const EffectInfo info{
         .name = "halation",
-        .doc = "The film's base throws bright light back, red first.",
+        .doc = "Throws bright light back as the base of a film does, red first.",
         .parameters = halation_rows.table(),
         .files = embedded_files("halation"),
         .touch = Touch::Pointwise,

@@ -10,17 +10,17 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Halation {
-    /// How much of the light comes back. [0, 1]
+    /// Share of the light that the film base throws back. [0, 1]
     float intensity = 0.3f;
-    /// Light above this comes back. [0, 65504]
+    /// Light above this value is thrown back. [0, 65504]
     float threshold = 1.0f;
-    /// Standard deviation of the near glow, of a picture of 1080 lines; the far one is three times as wide. [4, 32] px
+    /// Standard deviation of the near glow, in a picture of 1080 lines; the far one is three times as wide. [4, 32] px
     float radius = 10.0f;
-    /// How much of the glow is the far one. [0, 1]
+    /// Share of the far glow in the whole. [0, 1]
     float spread = 0.3f;
-    /// Colour of what comes back: red goes deepest. [0, 1]
+    /// Colour of the light that comes back; red goes deepest into film. [0, 1]
     Rgb tint{1.0f, 0.3f, 0.1f};
-    /// What comes back is missing where it came from: the picture has as much light as before.
+    /// Takes the light that comes back from the place it came from, so that the picture keeps its light.
     Toggle conserves_energy = true;
 };
 

@@ -11,14 +11,14 @@ namespace {
 
 constexpr auto high_pass_rows = describe(
     field<&HighPass::threshold>("Colours of at least this luminance stay; 0 keeps all light.", {0, 65504}),
-    field<&HighPass::knee>("How far below the threshold colours begin to fade in; 0 is a hard edge.", {0, 65504}));
+    field<&HighPass::knee>("Width below the threshold over which colours fade in; 0 is a hard edge.", {0, 65504}));
 
 }  // namespace
 
 const EffectInfo& effect_info(const HighPass&) {
     static const EffectInfo info{
         .name = "high_pass",
-        .doc = "Keeps what is bright and turns the rest black.",
+        .doc = "Keeps colours that are brighter than a threshold.",
         .parameters = high_pass_rows.table(),
         .files = embedded_files("high_pass"),
         .touch = Touch::Pointwise,

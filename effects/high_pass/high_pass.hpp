@@ -12,7 +12,7 @@ struct EffectInfo;
 struct HighPass {
     /// Colours of at least this luminance stay; 0 keeps all light. [0, 65504]
     float threshold = 1.0f;
-    /// How far below the threshold colours begin to fade in; 0 is a hard edge. [0, 65504]
+    /// Width below the threshold over which colours fade in; 0 is a hard edge. [0, 65504]
     float knee = 0.0f;
 };
 

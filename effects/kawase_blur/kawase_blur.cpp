@@ -13,10 +13,12 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto kawase_blur_rows = describe(
-    field<&KawaseBlur::mode>("Which of the two filters.").at_compile(),
-    field<&KawaseBlur::iterations>("Halvings of dual, passes of kawase.", {1, 8}).at_compile(),
-    field<&KawaseBlur::offset>("How far the taps lie apart, to what was published; 0 leaves kawase no width.", {0, 2}));
+constexpr auto kawase_blur_rows =
+    describe(field<&KawaseBlur::mode>("Filter: dual halves the picture and brings it back, kawase works at full size.")
+                 .at_compile(),
+             field<&KawaseBlur::iterations>("Number of halvings for dual, of passes for kawase.", {1, 8}).at_compile(),
+             field<&KawaseBlur::offset>(
+                 "Distance between taps, relative to the published one; at 0 kawase has no width.", {0, 2}));
 
 constexpr std::size_t most_iterations = 8;
 

@@ -15,11 +15,11 @@ enum class KawaseBlurMode : std::uint32_t {
 };
 
 struct KawaseBlur {
-    /// Which of the two filters.
+    /// Filter: dual halves the picture and brings it back, kawase works at full size.
     KawaseBlurMode mode = KawaseBlurMode::Dual;
-    /// Halvings of dual, passes of kawase. [1, 8]
+    /// Number of halvings for dual, of passes for kawase. [1, 8]
     std::int32_t iterations = 3;
-    /// How far the taps lie apart, to what was published; 0 leaves kawase no width. [0, 2]
+    /// Distance between taps, relative to the published one; at 0 kawase has no width. [0, 2]
     float offset = 1.0f;
 };
 

@@ -13,11 +13,12 @@ namespace darkroom {
 namespace {
 
 constexpr auto lens_dirt_rows = describe(
-    field<&LensDirt::intensity>("How much of the light around shines in dirt that is white.", {0, 64}).as_amount(),
-    field<&LensDirt::threshold>("Light above this shines.", {0, 65504}),
-    field<&LensDirt::radius>("Standard deviation of the light around, of a picture of 1080 lines.", {20, 128},
+    field<&LensDirt::intensity>("Share of the surrounding light that shines in white dirt.", {0, 64}).as_amount(),
+    field<&LensDirt::threshold>("Light above this value makes dirt shine.", {0, 65504}),
+    field<&LensDirt::radius>("Standard deviation of the surrounding light, in a picture of 1080 lines.", {20, 128},
                              unit::pixels),
-    field<&LensDirt::dirt>("The dirt, as a picture of 0 to 1 over the whole; without one there are discs of dust.")
+    field<&LensDirt::dirt>(
+        "Picture of the dirt from 0 to 1, stretched over the whole; without one there are discs of dust.")
         .as_picture());
 
 const LensDirt& dirt_of(const void* parameters) { return *static_cast<const LensDirt*>(parameters); }
@@ -114,7 +115,7 @@ LensDirtTable lens_dirt_table(const ResourceImage* picture) {
 const EffectInfo& effect_info(const LensDirt&) {
     static const EffectInfo info{
         .name = "lens_dirt",
-        .doc = "Dust on the lens shines where bright light is near.",
+        .doc = "Lights up dust on the lens where bright light is near.",
         .parameters = lens_dirt_rows.table(),
         .files = embedded_files("lens_dirt"),
         .touch = Touch::Pointwise,

@@ -10,13 +10,13 @@ namespace darkroom {
 struct EffectInfo;
 
 struct LensDirt {
-    /// How much of the light around shines in dirt that is white. [0, 64]
+    /// Share of the surrounding light that shines in white dirt. [0, 64]
     float intensity = 3.0f;
-    /// Light above this shines. [0, 65504]
+    /// Light above this value makes dirt shine. [0, 65504]
     float threshold = 1.0f;
-    /// Standard deviation of the light around, of a picture of 1080 lines. [20, 128] px
+    /// Standard deviation of the surrounding light, in a picture of 1080 lines. [20, 128] px
     float radius = 80.0f;
-    /// The dirt, as a picture of 0 to 1 over the whole; without one there are discs of dust.
+    /// Picture of the dirt from 0 to 1, stretched over the whole; without one there are discs of dust.
     Resource dirt;
 };
 

@@ -16,11 +16,14 @@ namespace {
 constexpr auto lens_distortion_rows = describe(
     field<&LensDistortion::lens_distortion>(
         "Coefficient of the squared distance from the centre: above 0 a barrel, below 0 a pincushion.", {-0.3, 1}),
-    field<&LensDistortion::quartic>("Coefficient of its fourth power: bends the corners alone.", {-0.2, 1}),
+    field<&LensDistortion::quartic>("Coefficient of the fourth power of that distance; it bends mainly the corners.",
+                                    {-0.2, 1}),
     field<&LensDistortion::dispersion>(
-        "Added to the first coefficient for red and taken from it for blue: coloured fringes.", {-0.1, 0.1}),
-    field<&LensDistortion::fill>("Whether the picture is scaled to fill its frame, no more and no less."),
-    field<&LensDistortion::evaluation>("Where the bend is worked out.").at_compile(),
+        "Amount added to the first coefficient for red and taken from it for blue: coloured fringes.", {-0.1, 0.1}),
+    field<&LensDistortion::fill>("Scales the picture so that it just fills its frame."),
+    field<&LensDistortion::evaluation>(
+        "Place where the bend is computed: every pixel, or the vertices of a grid with interpolation between them.")
+        .at_compile(),
     warp_grid_field<&LensDistortion::grid>());
 
 const LensDistortion& lens_of(const void* parameters) { return *static_cast<const LensDistortion*>(parameters); }

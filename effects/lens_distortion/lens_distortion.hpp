@@ -17,15 +17,15 @@ enum class LensDistortionEvaluation : std::uint32_t { Pixel, Vertex };
 struct LensDistortion {
     /// Coefficient of the squared distance from the centre: above 0 a barrel, below 0 a pincushion. [-0.3, 1]
     float lens_distortion = 0.0f;
-    /// Coefficient of its fourth power: bends the corners alone. [-0.2, 1]
+    /// Coefficient of the fourth power of that distance; it bends mainly the corners. [-0.2, 1]
     float quartic = 0.0f;
-    /// Added to the first coefficient for red and taken from it for blue: coloured fringes. [-0.1, 0.1]
+    /// Amount added to the first coefficient for red and taken from it for blue: coloured fringes. [-0.1, 0.1]
     float dispersion = 0.0f;
-    /// Whether the picture is scaled to fill its frame, no more and no less.
+    /// Scales the picture so that it just fills its frame.
     Toggle fill = true;
-    /// Where the bend is worked out.
+    /// Place where the bend is computed: every pixel, or the vertices of a grid with interpolation between them.
     LensDistortionEvaluation evaluation = LensDistortionEvaluation::Pixel;
-    /// Columns and rows of the grid, where its vertices are evaluated. [1, 256]
+    /// Columns and rows of the grid whose vertices are evaluated. [1, 256]
     Vec2 grid = default_warp_grid;
 };
 

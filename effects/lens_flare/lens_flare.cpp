@@ -10,18 +10,18 @@ namespace darkroom {
 namespace {
 
 constexpr auto lens_flare_rows = describe(
-    field<&LensFlare::intensity>("How much of the flare is added.", {0, 16}).as_amount(),
-    field<&LensFlare::threshold>("Light above this flares.", {0, 65504}),
-    field<&LensFlare::ghosts>("Ghosts of each light, on both sides of the middle by turns.", {0, 16}),
-    field<&LensFlare::spacing>("How much smaller, and nearer to the middle, each ghost is than the one before.",
+    field<&LensFlare::intensity>("Amount of the flare added to the picture.", {0, 16}).as_amount(),
+    field<&LensFlare::threshold>("Light above this value makes flares.", {0, 65504}),
+    field<&LensFlare::ghosts>("Number of ghosts of each light, on both sides of the centre by turns.", {0, 16}),
+    field<&LensFlare::spacing>("Step by which each ghost is smaller and nearer to the centre than the one before.",
                                {0, 2}),
-    field<&LensFlare::halo>("Strength of the halo, to that of a ghost.", {0, 4}),
-    field<&LensFlare::halo_radius>("Radius of the halo of a light in the middle, in heights of the picture.", {0, 1}),
-    field<&LensFlare::dispersion>("How much larger ghosts are in red, and smaller in blue.", {0, 0.2}),
-    field<&LensFlare::blades>("Blades of the aperture: an even number has as many rays, an odd one twice as many.",
-                              {3, 16}),
-    field<&LensFlare::starburst>("How much of the flare lies in the rays of the aperture.", {0, 1}),
-    field<&LensFlare::tint>("Colour that the flare is multiplied by.", {0, 4}));
+    field<&LensFlare::halo>("Strength of the halo relative to a ghost.", {0, 4}),
+    field<&LensFlare::halo_radius>("Radius of the halo of a light in the centre, in heights of the picture.", {0, 1}),
+    field<&LensFlare::dispersion>("Share by which ghosts are larger in red and smaller in blue.", {0, 0.2}),
+    field<&LensFlare::blades>(
+        "Number of the aperture's blades: an even number gives as many rays, an odd one twice as many.", {3, 16}),
+    field<&LensFlare::starburst>("Share of the flare in the rays of the aperture.", {0, 1}),
+    field<&LensFlare::tint>("Colour that multiplies the flare.", {0, 4}));
 
 constexpr std::uint32_t most_ghosts = 16;
 
@@ -64,7 +64,7 @@ void build(PassBuilder& builder) {
 const EffectInfo& effect_info(const LensFlare&) {
     static const EffectInfo info{
         .name = "lens_flare",
-        .doc = "Ghosts of what is bright, and a halo, as lenses reflect them.",
+        .doc = "Adds ghosts and a halo of bright light, as lenses reflect them.",
         .parameters = lens_flare_rows.table(),
         .files = embedded_files("lens_flare"),
         .touch = Touch::Pointwise,

@@ -11,25 +11,25 @@ namespace darkroom {
 struct EffectInfo;
 
 struct LensFlare {
-    /// How much of the flare is added. [0, 16]
+    /// Amount of the flare added to the picture. [0, 16]
     float intensity = 0.05f;
-    /// Light above this flares. [0, 65504]
+    /// Light above this value makes flares. [0, 65504]
     float threshold = 1.0f;
-    /// Ghosts of each light, on both sides of the middle by turns. [0, 16]
+    /// Number of ghosts of each light, on both sides of the centre by turns. [0, 16]
     std::int32_t ghosts = 6;
-    /// How much smaller, and nearer to the middle, each ghost is than the one before. [0, 2]
+    /// Step by which each ghost is smaller and nearer to the centre than the one before. [0, 2]
     float spacing = 0.35f;
-    /// Strength of the halo, to that of a ghost. [0, 4]
+    /// Strength of the halo relative to a ghost. [0, 4]
     float halo = 0.5f;
-    /// Radius of the halo of a light in the middle, in heights of the picture. [0, 1]
+    /// Radius of the halo of a light in the centre, in heights of the picture. [0, 1]
     float halo_radius = 0.4f;
-    /// How much larger ghosts are in red, and smaller in blue. [0, 0.2]
+    /// Share by which ghosts are larger in red and smaller in blue. [0, 0.2]
     float dispersion = 0.02f;
-    /// Blades of the aperture: an even number has as many rays, an odd one twice as many. [3, 16]
+    /// Number of the aperture's blades: an even number gives as many rays, an odd one twice as many. [3, 16]
     std::int32_t blades = 6;
-    /// How much of the flare lies in the rays of the aperture. [0, 1]
+    /// Share of the flare in the rays of the aperture. [0, 1]
     float starburst = 0.5f;
-    /// Colour that the flare is multiplied by. [0, 4]
+    /// Colour that multiplies the flare. [0, 4]
     Rgb tint{1, 1, 1};
 };
 

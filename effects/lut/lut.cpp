@@ -14,14 +14,16 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto lut_rows = describe(
-    field<&Lut::lut>("The table that colours are looked up in.").as_amount(),
-    field<&Lut::fade_to>("Another table, for the same space, to fade to."),
-    field<&Lut::fade>("How far the picture has faded to the other table.", {0, 1}),
-    field<&Lut::strength>("How much of the result goes over the picture.", {0, 1}),
-    field<&Lut::space>("What the tables are given: sRGB code values, or scene-linear light by a curve."),
-    field<&Lut::result>("What the tables give: the same as they are given, or sRGB code values for a display."),
-    field<&Lut::interpolation>("How a 3D table is read between its entries."));
+constexpr auto lut_rows =
+    describe(field<&Lut::lut>("Table that colours are looked up in.").as_amount(),
+             field<&Lut::fade_to>("Second table for the same space, which `fade` fades to."),
+             field<&Lut::fade>("Share of the second table in the result.", {0, 1}),
+             field<&Lut::strength>("Share of the result that goes over the picture.", {0, 1}),
+             field<&Lut::space>("Colours that the tables expect: sRGB code values, or scene-linear light, as it is or "
+                                "through a curve of a camera."),
+             field<&Lut::result>(
+                 "Colours that the tables give: the same kind that they expect, or sRGB code values for a display."),
+             field<&Lut::interpolation>("Interpolation between the entries of a 3D table."));
 
 using Texel = std::array<float, 4>;
 

@@ -17,19 +17,20 @@ enum class LutResult : std::uint32_t { Same, Display };
 enum class LutInterpolation : std::uint32_t { Tetrahedral, Trilinear };
 
 struct Lut {
-    /// The table that colours are looked up in.
+    /// Table that colours are looked up in.
     Resource lut;
-    /// Another table, for the same space, to fade to.
+    /// Second table for the same space, which `fade` fades to.
     Resource fade_to;
-    /// How far the picture has faded to the other table. [0, 1]
+    /// Share of the second table in the result. [0, 1]
     float fade = 0.0f;
-    /// How much of the result goes over the picture. [0, 1]
+    /// Share of the result that goes over the picture. [0, 1]
     float strength = 1.0f;
-    /// What the tables are given: sRGB code values, or scene-linear light by a curve.
+    /// Colours that the tables expect: sRGB code values, or scene-linear light, as it is or through a curve of a
+    /// camera.
     LutSpace space = LutSpace::Display;
-    /// What the tables give: the same as they are given, or sRGB code values for a display.
+    /// Colours that the tables give: the same kind that they expect, or sRGB code values for a display.
     LutResult result = LutResult::Same;
-    /// How a 3D table is read between its entries.
+    /// Interpolation between the entries of a 3D table.
     LutInterpolation interpolation = LutInterpolation::Tetrahedral;
 };
 

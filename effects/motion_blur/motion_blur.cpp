@@ -13,16 +13,16 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto motion_blur_rows =
-    describe(field<&MotionBlur::shutter_angle>(
-                 "How long the shutter is open: 360 is the whole time from frame to frame.", {0, 720}, unit::degrees)
-                 .as_amount(),
-             field<&MotionBlur::max_radius>(
-                 "Farthest that a point smears to either side, in hundredths of the picture's height.", {0.1, 3}),
-             field<&MotionBlur::samples>(
-                 "Points along the way that are read for a pixel; an odd number is taken as one less.", {2, 64})
-                 .as_loop_count(),
-             field<&MotionBlur::resolution>("Size of the picture that is smeared, in each direction.").at_compile());
+constexpr auto motion_blur_rows = describe(
+    field<&MotionBlur::shutter_angle>("Time that the shutter is open: 360 is the whole time from frame to frame.",
+                                      {0, 720}, unit::degrees)
+        .as_amount(),
+    field<&MotionBlur::max_radius>(
+        "Largest distance that a point smears to either side, in hundredths of the picture's height.", {0.1, 3}),
+    field<&MotionBlur::samples>("Number of points along the way that a pixel reads; an odd number counts as one less.",
+                                {2, 64})
+        .as_loop_count(),
+    field<&MotionBlur::resolution>("Size of the smeared picture, as a share of each side.").at_compile());
 
 const MotionBlur& blur_of(const void* parameters) { return *static_cast<const MotionBlur*>(parameters); }
 
@@ -162,7 +162,7 @@ std::uint32_t motion_blur_tile(VkExtent2D extent) { return std::max((extent.heig
 const EffectInfo& effect_info(const MotionBlur&) {
     static const EffectInfo info{
         .name = "motion_blur",
-        .doc = "Smears what moves while the shutter is open.",
+        .doc = "Smears moving things while the shutter is open.",
         .parameters = motion_blur_rows.table(),
         .files = embedded_files("motion_blur"),
         .touch = Touch::Pointwise,

@@ -14,13 +14,13 @@ struct EffectInfo;
 enum class MotionBlurResolution : std::uint32_t { Half, Full };
 
 struct MotionBlur {
-    /// How long the shutter is open: 360 is the whole time from frame to frame. [0, 720] deg
+    /// Time that the shutter is open: 360 is the whole time from frame to frame. [0, 720] deg
     float shutter_angle = 180.0f;
-    /// Farthest that a point smears to either side, in hundredths of the picture's height. [0.1, 3]
+    /// Largest distance that a point smears to either side, in hundredths of the picture's height. [0.1, 3]
     float max_radius = 3.0f;
-    /// Points along the way that are read for a pixel; an odd number is taken as one less. [2, 64]
+    /// Number of points along the way that a pixel reads; an odd number counts as one less. [2, 64]
     std::int32_t samples = 12;
-    /// Size of the picture that is smeared, in each direction.
+    /// Size of the smeared picture, as a share of each side.
     MotionBlurResolution resolution = MotionBlurResolution::Half;
 };
 

@@ -10,7 +10,7 @@ namespace darkroom {
 namespace {
 
 constexpr auto negative_rows =
-    describe(field<&Negative::amount>("Share of the negative; at 0 the picture stays as it is.", {0, 1}));
+    describe(field<&Negative::amount>("Share of the negative; 0 leaves the picture as it is.", {0, 1}));
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Negative {
-    /// Share of the negative; at 0 the picture stays as it is. [0, 1]
+    /// Share of the negative; 0 leaves the picture as it is. [0, 1]
     float amount = 1.0f;
 };
 

@@ -13,26 +13,30 @@ namespace darkroom {
 namespace {
 
 constexpr auto perturb_rows = describe(
-    field<&Perturb::amount>("Scales all displacements.", {0, 8}).as_amount(),
-    field<&Perturb::strength>("Amplitude of the sines in x and y, in pixels; then their waves across the picture.",
-                              {-256, 256})
+    field<&Perturb::amount>("Factor of all displacements.", {0, 8}).as_amount(),
+    field<&Perturb::strength>(
+        "Amplitude of the sines in x and y, in pixels, then their number of waves across the picture.", {-256, 256})
         .as_size_of<&Perturb::reach>(),
     field<&Perturb::time_distortion>("Phase of the sines in x and y, in turns: 0 and 1 are the same.", {0, 1}),
     field<&Perturb::speed>("Turns of the phases, and of the distortion image, in a second.", {-16, 16}),
     field<&Perturb::ring_strength>("Amplitude of the ring at its start; below 0 it pulls.", {-256, 256}, unit::pixels)
         .as_size_of<&Perturb::reach>(),
-    field<&Perturb::ring_center>("Where the ring starts, in uv.", {-1, 2}),
+    field<&Perturb::ring_center>("Place where the ring starts, in uv.", {-1, 2}),
     field<&Perturb::ring_width>("Half-width of the ring, in heights of the picture.", {0.001, 2}),
-    field<&Perturb::ring_speed>("Heights of the picture that the ring runs in a second.", {0, 16}),
-    field<&Perturb::ring_period>("Time in which the ring dies down, and after which it starts again.", {0.01, 3600},
+    field<&Perturb::ring_speed>("Speed of the ring, in heights of the picture a second.", {0, 16}),
+    field<&Perturb::ring_period>("Time in which the ring dies down and after which it starts again.", {0.01, 3600},
                                  unit::seconds),
-    field<&Perturb::distortion>("An image whose red and green displace the picture: 0.5 by nothing. It repeats.")
+    field<&Perturb::distortion>("Image whose red and green displace the picture; 0.5 displaces by nothing. It repeats.")
         .as_picture(),
-    field<&Perturb::distortion_strength>("Displacement where that image is 0 or 1.", {-256, 256}, unit::pixels)
+    field<&Perturb::distortion_strength>("Displacement where the distortion image is 0 or 1.", {-256, 256},
+                                         unit::pixels)
         .as_size_of<&Perturb::reach>(),
-    field<&Perturb::evaluation>("Where the displacement is worked out.").at_compile(),
+    field<&Perturb::evaluation>("Place where the displacement is computed: every pixel, with sin() or a table of it, "
+                                "or a grid's vertices, on the GPU or CPU.")
+        .at_compile(),
     warp_grid_field<&Perturb::grid>(),
-    field<&Perturb::reach>("Which pixels amplitudes and displacements are measured in."));
+    field<&Perturb::reach>("Pixels that amplitudes and displacements are measured in: those of the picture, or of a "
+                           "picture of 1080 lines."));
 
 constexpr std::uint32_t own_vectors = 2, most_cpu_vertices = 1000, sine_entries = 256;
 
@@ -159,7 +163,7 @@ PerturbFrame perturb_frame(const Perturb& p, double time) {
 const EffectInfo& effect_info(const Perturb&) {
     static const EffectInfo info{
         .name = "perturb",
-        .doc = "Lets the picture swim: sines, a ring that runs outward, an image of displacements.",
+        .doc = "Displaces the picture by sines, a ring that runs outward, or an image.",
         .parameters = perturb_rows.table(),
         .files = embedded_files("perturb"),
         .touch = Touch::Warp,

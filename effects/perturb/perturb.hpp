@@ -14,9 +14,9 @@ struct EffectInfo;
 enum class PerturbEvaluation : std::uint32_t { Pixel, SineTable, Vertex, Cpu };
 
 struct Perturb {
-    /// Scales all displacements. [0, 8]
+    /// Factor of all displacements. [0, 8]
     float amount = 1.0f;
-    /// Amplitude of the sines in x and y, in pixels; then their waves across the picture. [-256, 256]
+    /// Amplitude of the sines in x and y, in pixels, then their number of waves across the picture. [-256, 256]
     Vec4 strength{6.0f, 6.0f, 2.0f, 2.0f};
     /// Phase of the sines in x and y, in turns: 0 and 1 are the same. [0, 1]
     Vec2 time_distortion;
@@ -24,23 +24,24 @@ struct Perturb {
     Vec2 speed;
     /// Amplitude of the ring at its start; below 0 it pulls. [-256, 256] px
     float ring_strength = 0.0f;
-    /// Where the ring starts, in uv. [-1, 2]
+    /// Place where the ring starts, in uv. [-1, 2]
     Vec2 ring_center{0.5f, 0.5f};
     /// Half-width of the ring, in heights of the picture. [0.001, 2]
     float ring_width = 0.15f;
-    /// Heights of the picture that the ring runs in a second. [0, 16]
+    /// Speed of the ring, in heights of the picture a second. [0, 16]
     float ring_speed = 0.6f;
-    /// Time in which the ring dies down, and after which it starts again. [0.01, 3600] s
+    /// Time in which the ring dies down and after which it starts again. [0.01, 3600] s
     float ring_period = 2.0f;
-    /// An image whose red and green displace the picture: 0.5 by nothing. It repeats.
+    /// Image whose red and green displace the picture; 0.5 displaces by nothing. It repeats.
     Resource distortion;
-    /// Displacement where that image is 0 or 1. [-256, 256] px
+    /// Displacement where the distortion image is 0 or 1. [-256, 256] px
     float distortion_strength = 16.0f;
-    /// Where the displacement is worked out.
+    /// Place where the displacement is computed: every pixel, with sin() or a table of it, or a grid's vertices, on the
+    /// GPU or CPU.
     PerturbEvaluation evaluation = PerturbEvaluation::Pixel;
-    /// Columns and rows of the grid, where its vertices are evaluated. [1, 256]
+    /// Columns and rows of the grid whose vertices are evaluated. [1, 256]
     Vec2 grid = default_warp_grid;
-    /// Which pixels amplitudes and displacements are measured in.
+    /// Pixels that amplitudes and displacements are measured in: those of the picture, or of a picture of 1080 lines.
     Reach reach = Reach::Height;
 };
 

@@ -10,15 +10,15 @@ namespace darkroom {
 namespace {
 
 constexpr auto posterize_rows =
-    describe(field<&Posterize::levels>("How many levels there are from 0 to 1, both among them.", {2, 256}),
-             field<&Posterize::mode>("What is rounded to a level."));
+    describe(field<&Posterize::levels>("Number of levels from 0 to 1, both included.", {2, 256}),
+             field<&Posterize::mode>("Quantity that is rounded to a level."));
 
 }  // namespace
 
 const EffectInfo& effect_info(const Posterize&) {
     static const EffectInfo info{
         .name = "posterize",
-        .doc = "Leaves few levels of many.",
+        .doc = "Reduces the colours to a few levels.",
         .parameters = posterize_rows.table(),
         .files = embedded_files("posterize"),
         .touch = Touch::Pointwise,

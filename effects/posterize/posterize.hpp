@@ -15,9 +15,9 @@ enum class PosterizeMode : std::uint32_t {
 };
 
 struct Posterize {
-    /// How many levels there are from 0 to 1, both among them. [2, 256]
+    /// Number of levels from 0 to 1, both included. [2, 256]
     std::int32_t levels = 6;
-    /// What is rounded to a level.
+    /// Quantity that is rounded to a level.
     PosterizeMode mode = PosterizeMode::Channel;
 };
 

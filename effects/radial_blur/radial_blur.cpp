@@ -10,9 +10,10 @@ namespace darkroom {
 namespace {
 
 constexpr auto radial_blur_rows = describe(
-    field<&RadialBlur::radial_blur>("Length and strength of the streaks; 0.001 and less is none.", {0, 4}).as_amount(),
+    field<&RadialBlur::radial_blur>("Length and strength of the streaks; 0.001 and less do nothing.", {0, 4})
+        .as_amount(),
     field<&RadialBlur::center>(
-        "Where the streaks run from: (0, 0) is the top left of the picture, (1, 1) the bottom right.", {-1, 2}));
+        "Point that the streaks run from: (0, 0) is the top left of the picture, (1, 1) the bottom right.", {-1, 2}));
 
 }  // namespace
 

@@ -9,9 +9,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct RadialBlur {
-    /// Length and strength of the streaks; 0.001 and less is none. [0, 4]
+    /// Length and strength of the streaks; 0.001 and less do nothing. [0, 4]
     float radial_blur = 0.0f;
-    /// Where the streaks run from: (0, 0) is the top left of the picture, (1, 1) the bottom right. [-1, 2]
+    /// Point that the streaks run from: (0, 0) is the top left of the picture, (1, 1) the bottom right. [-1, 2]
     Vec2 center{0.5f, 0.5f};
 };
 

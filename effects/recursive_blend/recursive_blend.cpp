@@ -11,10 +11,10 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto recursive_blend_rows =
-    describe(field<&RecursiveBlend::weight>("What is left of the past after 1/60 s.", {0, 0.99}),
-             field<&RecursiveBlend::precision>("How the past is kept: 32-bit floats, or 8 bits that leave a ghost.")
-                 .at_compile());
+constexpr auto recursive_blend_rows = describe(
+    field<&RecursiveBlend::weight>("Share of the past that remains after 1/60 s.", {0, 0.99}),
+    field<&RecursiveBlend::precision>("Format that keeps the past: 32-bit floats, or 8 bits that leave a ghost.")
+        .at_compile());
 
 const RecursiveBlend& blend_of(const void* parameters) { return *static_cast<const RecursiveBlend*>(parameters); }
 

@@ -16,9 +16,9 @@ enum class RecursiveBlendPrecision : std::uint32_t {
 };
 
 struct RecursiveBlend {
-    /// What is left of the past after 1/60 s. [0, 0.99]
+    /// Share of the past that remains after 1/60 s. [0, 0.99]
     float weight = 0.8f;
-    /// How the past is kept: 32-bit floats, or 8 bits that leave a ghost.
+    /// Format that keeps the past: 32-bit floats, or 8 bits that leave a ghost.
     RecursiveBlendPrecision precision = RecursiveBlendPrecision::Float;
 };
 

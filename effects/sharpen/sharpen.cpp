@@ -10,8 +10,9 @@ namespace darkroom {
 namespace {
 
 constexpr auto sharpen_rows = describe(
-    field<&Sharpen::mode>("Which of the two published methods."),
-    field<&Sharpen::stops>("Strength in stops: 0 is all that the method allows, each stop less halves it.", {-8, 0}));
+    field<&Sharpen::mode>("Published method that sharpens."),
+    field<&Sharpen::stops>(
+        "Reduction of the strength, in stops: 0 is the most that the method allows, each stop halves it.", {-8, 0}));
 
 }  // namespace
 

@@ -16,9 +16,9 @@ enum class SharpenMode : std::uint32_t {
 };
 
 struct Sharpen {
-    /// Which of the two published methods.
+    /// Published method that sharpens.
     SharpenMode mode = SharpenMode::Rcas;
-    /// Strength in stops: 0 is all that the method allows, each stop less halves it. [-8, 0]
+    /// Reduction of the strength, in stops: 0 is the most that the method allows, each stop halves it. [-8, 0]
     float stops = -0.5f;
 };
 

@@ -11,16 +11,15 @@ namespace darkroom {
 namespace {
 
 constexpr auto smaa_rows = describe(
-    field<&Smaa::quality>("How far the ends of an edge are searched."),
-    field<&Smaa::detection>("What is compared to find edges."),
+    field<&Smaa::quality>("Length of the search for the ends of an edge."),
+    field<&Smaa::detection>("Quantity that is compared to find edges."),
     field<&Smaa::threshold>("Difference of code values, or of their luma, that makes an edge.", {0.02, 0.5}),
-    field<&Smaa::contrast>("An edge beside one so many times stronger is none: what is seen is the stronger one.",
-                           {1, 8}),
+    field<&Smaa::contrast>("Ratio to a stronger neighbouring edge at which an edge is dropped.", {1, 8}),
     field<&Smaa::corner_rounding>(
-        "How much of what an edge takes off a corner it takes: 0 keeps corners as they are, 1 rounds them.", {0, 1}),
-    field<&Smaa::predication>("How much lower the threshold is where the frame's depth jumps, and how much higher "
-                              "elsewhere; 0 reads no depth.",
-                              {0, 1})
+        "Share of the smoothing that corners get: 0 keeps corners as they are, 1 rounds them.", {0, 1}),
+    field<&Smaa::predication>(
+        "Amount by which jumps of the frame's depth lower the threshold, and its absence raises it; 0 reads no depth.",
+        {0, 1})
         .at_compile());
 
 void build(PassBuilder& builder) {

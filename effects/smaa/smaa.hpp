@@ -24,18 +24,18 @@ enum class SmaaDetection : std::uint32_t {
 };
 
 struct Smaa {
-    /// How far the ends of an edge are searched.
+    /// Length of the search for the ends of an edge.
     SmaaQuality quality = SmaaQuality::High;
-    /// What is compared to find edges.
+    /// Quantity that is compared to find edges.
     SmaaDetection detection = SmaaDetection::Luma;
     /// Difference of code values, or of their luma, that makes an edge. [0.02, 0.5]
     float threshold = 0.1f;
-    /// An edge beside one so many times stronger is none: what is seen is the stronger one. [1, 8]
+    /// Ratio to a stronger neighbouring edge at which an edge is dropped. [1, 8]
     float contrast = 2.0f;
-    /// How much of what an edge takes off a corner it takes: 0 keeps corners as they are, 1 rounds them. [0, 1]
+    /// Share of the smoothing that corners get: 0 keeps corners as they are, 1 rounds them. [0, 1]
     float corner_rounding = 0.25f;
-    /// How much lower the threshold is where the frame's depth jumps, and how much higher elsewhere; 0 reads no
-    /// depth. [0, 1]
+    /// Amount by which jumps of the frame's depth lower the threshold, and its absence raises it; 0 reads no depth. [0,
+    /// 1]
     float predication = 0.0f;
 };
 

@@ -18,20 +18,21 @@ namespace darkroom {
 namespace {
 
 constexpr auto ssao_rows = describe(
-    field<&Ssao::intensity>("How much of the occlusion counts; 1 is all of it.", {0, 8}).as_amount(),
-    field<&Ssao::radius>("How far away surfaces occlude.", {0.001, 1000}, unit::metres),
-    field<&Ssao::bias>("What lies closer above a surface does not occlude it: hides the steps of the depth buffer.",
+    field<&Ssao::intensity>("Share of the occlusion that darkens the picture.", {0, 8}).as_amount(),
+    field<&Ssao::radius>("Distance up to which surfaces occlude.", {0.001, 1000}, unit::metres),
+    field<&Ssao::bias>("Distance below which a surface does not occlude; it hides the steps of the depth buffer.",
                        {0, 100}, unit::metres),
-    field<&Ssao::thickness>(
-        "How far surfaces reach behind what is seen of them; 0 is as deep as it goes. Of ground_truth.", {0, 1000},
-        unit::metres),
-    field<&Ssao::samples>("Reads of the depth buffer for a pixel.", {1, 64}).as_loop_count(),
-    field<&Ssao::method>("How occlusion is estimated."),
-    field<&Ssao::resolution>("Of the occlusion; half is brought back to full along depth edges."),
-    field<&Ssao::merge>("How the picture takes the occlusion."),
+    field<&Ssao::thickness>("Depth that surfaces reach behind what is seen of them, for ground_truth; 0 has no end.",
+                            {0, 1000}, unit::metres),
+    field<&Ssao::samples>("Number of depth reads for a pixel.", {1, 64}).as_loop_count(),
+    field<&Ssao::method>("Estimator of the occlusion."),
+    field<&Ssao::resolution>(
+        "Size of the occlusion, as a share of each side; half is brought back to full along depth edges."),
+    field<&Ssao::merge>("Formula that darkens the picture by the occlusion."),
     field<&Ssao::fade_start>("Distance at which occlusion begins to fade.", {0, 1e9}, unit::metres),
-    field<&Ssao::fade_end>("Distance at which it is gone; must lie beyond `fade_start`.", {0.001, 1e9}, unit::metres),
-    field<&Ssao::moves>("The noise is another one in each frame while time runs, for what averages frames."));
+    field<&Ssao::fade_end>("Distance at which occlusion is gone; it must lie beyond `fade_start`.", {0.001, 1e9},
+                           unit::metres),
+    field<&Ssao::moves>("Changes the noise in each frame while time runs, for filters that average frames."));
 
 const Ssao& ssao_of(const void* parameters) { return *static_cast<const Ssao*>(parameters); }
 

@@ -22,27 +22,27 @@ enum class SsaoMerge : std::uint32_t {
 };
 
 struct Ssao {
-    /// How much of the occlusion counts; 1 is all of it. [0, 8]
+    /// Share of the occlusion that darkens the picture. [0, 8]
     float intensity = 1.0f;
-    /// How far away surfaces occlude. [0.001, 1000] m
+    /// Distance up to which surfaces occlude. [0.001, 1000] m
     float radius = 0.5f;
-    /// What lies closer above a surface does not occlude it: hides the steps of the depth buffer. [0, 100] m
+    /// Distance below which a surface does not occlude; it hides the steps of the depth buffer. [0, 100] m
     float bias = 0.025f;
-    /// How far surfaces reach behind what is seen of them; 0 is as deep as it goes. Of ground_truth. [0, 1000] m
+    /// Depth that surfaces reach behind what is seen of them, for ground_truth; 0 has no end. [0, 1000] m
     float thickness = 0.8f;
-    /// Reads of the depth buffer for a pixel. [1, 64]
+    /// Number of depth reads for a pixel. [1, 64]
     std::int32_t samples = 16;
-    /// How occlusion is estimated.
+    /// Estimator of the occlusion.
     SsaoMethod method = SsaoMethod::GroundTruth;
-    /// Of the occlusion; half is brought back to full along depth edges.
+    /// Size of the occlusion, as a share of each side; half is brought back to full along depth edges.
     SsaoResolution resolution = SsaoResolution::Half;
-    /// How the picture takes the occlusion.
+    /// Formula that darkens the picture by the occlusion.
     SsaoMerge merge = SsaoMerge::Multiply;
     /// Distance at which occlusion begins to fade. [0, 1000000000] m
     float fade_start = 200.0f;
-    /// Distance at which it is gone; must lie beyond `fade_start`. [0.001, 1000000000] m
+    /// Distance at which occlusion is gone; it must lie beyond `fade_start`. [0.001, 1000000000] m
     float fade_end = 400.0f;
-    /// The noise is another one in each frame while time runs, for what averages frames.
+    /// Changes the noise in each frame while time runs, for filters that average frames.
     Toggle moves = false;
 };
 

@@ -13,11 +13,11 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto taa_rows =
-    describe(field<&Taa::sharpness>(
-                 "How much the gathered picture is sharpened: 0 is not at all, 1 all that its contrast allows.", {0, 1})
-                 .at_compile(),
-             field<&Taa::stability>("How long what stands still is gathered: 0 for 8 frames, 1 for 128.", {0, 1}));
+constexpr auto taa_rows = describe(
+    field<&Taa::sharpness>("Sharpening of the gathered picture: 0 is none, 1 the most that its contrast allows.",
+                           {0, 1})
+        .at_compile(),
+    field<&Taa::stability>("Number of frames that a still surface is gathered over: 0 is 8 frames, 1 is 128.", {0, 1}));
 
 const Taa& taa_of(const void* parameters) { return *static_cast<const Taa*>(parameters); }
 

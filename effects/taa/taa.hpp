@@ -11,9 +11,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Taa {
-    /// How much the gathered picture is sharpened: 0 is not at all, 1 all that its contrast allows. [0, 1]
+    /// Sharpening of the gathered picture: 0 is none, 1 the most that its contrast allows. [0, 1]
     float sharpness = 0.0f;
-    /// How long what stands still is gathered: 0 for 8 frames, 1 for 128. [0, 1]
+    /// Number of frames that a still surface is gathered over: 0 is 8 frames, 1 is 128. [0, 1]
     float stability = 0.75f;
 };
 

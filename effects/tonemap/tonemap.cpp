@@ -10,13 +10,13 @@ namespace darkroom {
 namespace {
 
 // The member cannot be called `operator`, which is a keyword of C++; files may still say it.
-constexpr auto tonemap_rows =
-    describe(field<&Tonemap::curve>("The tone mapping operator.").formerly("operator"),
-             field<&Tonemap::white>("Luminance that reinhard_extended maps to white, and bt2390 to the peak; the other "
-                                    "operators ignore it.",
-                                    {0.1, 1024, Scale::Log}),
-             field<&Tonemap::peak_nits>("Of the display, for bt2390 and bt2390_ictcp, where 1.0 is 203 cd/m2.",
-                                        {100, 10000, Scale::Log}, unit::nits));
+constexpr auto tonemap_rows = describe(
+    field<&Tonemap::curve>("Tone mapping operator.").formerly("operator"),
+    field<&Tonemap::white>(
+        "Luminance that reinhard_extended maps to white, and bt2390 to the peak; the other operators ignore it.",
+        {0.1, 1024, Scale::Log}),
+    field<&Tonemap::peak_nits>("Peak luminance of the display, for bt2390 and bt2390_ictcp; there 1.0 is 203 cd/m2.",
+                               {100, 10000, Scale::Log}, unit::nits));
 
 ColorState makes(ColorState before, const void* parameters) {
     const Tonemap& values = *static_cast<const Tonemap*>(parameters);

@@ -23,12 +23,12 @@ enum class TonemapOperator : std::uint32_t {
 };
 
 struct Tonemap {
-    /// The tone mapping operator.
+    /// Tone mapping operator.
     TonemapOperator curve = TonemapOperator::AcesNarkowicz;
     /// Luminance that reinhard_extended maps to white, and bt2390 to the peak; the other operators ignore it. [0.1,
     /// 1024]
     float white = 4.0f;
-    /// Of the display, for bt2390 and bt2390_ictcp, where 1.0 is 203 cd/m2. [100, 10000] cd/m2
+    /// Peak luminance of the display, for bt2390 and bt2390_ictcp; there 1.0 is 203 cd/m2. [100, 10000] cd/m2
     float peak_nits = 203.0f;
 };
 

@@ -10,9 +10,8 @@ namespace darkroom {
 namespace {
 
 constexpr auto ui_chroma_rows = describe(
-    field<&UiChroma::strength>("How much the barrels of red and blue differ from green's, for 1080 lines: less on "
-                               "taller pictures.",
-                               {0, 1})
+    field<&UiChroma::strength>(
+        "Difference of the red and blue barrels from the green one, at 1080 lines; taller pictures get less.", {0, 1})
         .as_amount()
         .also_named("r_ui_chromatic"));
 
@@ -21,7 +20,7 @@ constexpr auto ui_chroma_rows = describe(
 const EffectInfo& effect_info(const UiChroma&) {
     static const EffectInfo info{
         .name = "ui_chroma",
-        .doc = "Parts the colours of the interface toward its edges.",
+        .doc = "Separates the colours of the interface toward its edges.",
         .parameters = ui_chroma_rows.table(),
         .files = embedded_files("ui_chroma"),
         .touch = Touch::Map,

@@ -10,7 +10,7 @@ namespace darkroom {
 struct EffectInfo;
 
 struct UiChroma {
-    /// How much the barrels of red and blue differ from green's, for 1080 lines: less on taller pictures. [0, 1]
+    /// Difference of the red and blue barrels from the green one, at 1080 lines; taller pictures get less. [0, 1]
     float strength = 0.0f;
 };
 

@@ -9,21 +9,23 @@ namespace darkroom {
 
 namespace {
 
-constexpr auto ui_composite_rows =
-    describe(field<&UiComposite::ui_opacity>("Of the interface; it never fades below 0.1.", {0, 1})
-                 .also_named("scr_sbaralpha", true),
-             field<&UiComposite::additive>("From laid over (0) to added as light (1), which is dimmed to 0.7.", {0, 1})
-                 .also_named("r_ui_additive"),
-             field<&UiComposite::ui_white_nits>(
-                 "Luminance of the interface's white, where the picture is light or for a display of high range.",
-                 {1, 10000, Scale::Log}, unit::nits));
+constexpr auto ui_composite_rows = describe(
+    field<&UiComposite::ui_opacity>("Opacity of the interface; it never fades below 0.1.", {0, 1})
+        .also_named("scr_sbaralpha", true),
+    field<&UiComposite::additive>(
+        "Mix between laying the interface over the picture (0) and adding it as light (1), which is dimmed to 0.7.",
+        {0, 1})
+        .also_named("r_ui_additive"),
+    field<&UiComposite::ui_white_nits>(
+        "Luminance of the interface's white, where the picture is light or for an HDR display.", {1, 10000, Scale::Log},
+        unit::nits));
 
 }  // namespace
 
 const EffectInfo& effect_info(const UiComposite&) {
     static const EffectInfo info{
         .name = "ui_composite",
-        .doc = "The interface over the finished picture.",
+        .doc = "Lays the interface over the finished picture.",
         .parameters = ui_composite_rows.table(),
         .files = embedded_files("ui_composite"),
         .touch = Touch::Pointwise,

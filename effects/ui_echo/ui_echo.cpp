@@ -10,8 +10,8 @@ namespace darkroom {
 namespace {
 
 constexpr auto ui_echo_rows =
-    describe(field<&UiEcho::strength>("How bright the ghost is.", {0, 4}).as_amount().also_named("r_ui_echo"),
-             field<&UiEcho::size>("Sides of the ghost, relative to the interface's.", {0.05, 20, Scale::Log})
+    describe(field<&UiEcho::strength>("Brightness of the ghost.", {0, 4}).as_amount().also_named("r_ui_echo"),
+             field<&UiEcho::size>("Side lengths of the ghost, relative to the interface's.", {0.05, 20, Scale::Log})
                  .also_named("r_ui_echo_scale"));
 
 }  // namespace
@@ -19,7 +19,7 @@ constexpr auto ui_echo_rows =
 const EffectInfo& effect_info(const UiEcho&) {
     static const EffectInfo info{
         .name = "ui_echo",
-        .doc = "A ghost of the interface, larger or smaller than it.",
+        .doc = "Adds a ghost of the interface, larger or smaller than it.",
         .parameters = ui_echo_rows.table(),
         .files = embedded_files("ui_echo"),
         .touch = Touch::Tap,

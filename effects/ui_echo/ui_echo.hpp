@@ -9,9 +9,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct UiEcho {
-    /// How bright the ghost is. [0, 4]
+    /// Brightness of the ghost. [0, 4]
     float strength = 0.0f;
-    /// Sides of the ghost, relative to the interface's. [0.05, 20]
+    /// Side lengths of the ghost, relative to the interface's. [0.05, 20]
     float size = 1.0f;
 };
 

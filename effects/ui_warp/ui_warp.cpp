@@ -13,7 +13,8 @@ constexpr auto ui_warp_rows =
     describe(field<&UiWarp::strength>("Barrel distortion: below 0 the corners bend outward, above 0 inward.", {-4, 4})
                  .as_amount()
                  .also_named("r_ui_warp"),
-             field<&UiWarp::offset>("Where the layer is read, moved in uv: the interface goes the other way.", {-1, 1})
+             field<&UiWarp::offset>(
+                 "Shift in uv of the place where the layer is read; the interface moves the other way.", {-1, 1})
                  .also_named("r_ui_offset"));
 
 }  // namespace

@@ -12,7 +12,7 @@ struct EffectInfo;
 struct UiWarp {
     /// Barrel distortion: below 0 the corners bend outward, above 0 inward. [-4, 4]
     float strength = 0.0f;
-    /// Where the layer is read, moved in uv: the interface goes the other way. [-1, 1]
+    /// Shift in uv of the place where the layer is read; the interface moves the other way. [-1, 1]
     Vec2 offset;
 };
 

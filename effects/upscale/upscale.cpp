@@ -10,7 +10,7 @@ namespace darkroom {
 namespace {
 
 constexpr auto upscale_rows = describe(field<&Upscale::adaption>(
-    "How far the filter follows edges: 1 as published, 0 the same filter everywhere.", {0, 1}));
+    "Strength with which the filter follows edges: 1 as published, 0 the same filter everywhere.", {0, 1}));
 
 void build(PassBuilder& builder) {
     builder.result(builder.add(

@@ -11,7 +11,7 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Upscale {
-    /// How far the filter follows edges: 1 as published, 0 the same filter everywhere. [0, 1]
+    /// Strength with which the filter follows edges: 1 as published, 0 the same filter everywhere. [0, 1]
     float adaption = 1.0f;
 };
 

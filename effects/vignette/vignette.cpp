@@ -10,9 +10,9 @@ namespace darkroom {
 namespace {
 
 constexpr auto vignette_rows = describe(
-    field<&Vignette::intensity>("How much the corners darken: the corner's factor is 1 - intensity.", {0, 1})
-        .as_amount(),
-    field<&Vignette::smoothness>("Exponent of the falloff: larger keeps more of the middle untouched.", {0.1, 16}));
+    field<&Vignette::intensity>("Darkening of the corners: their factor is 1 - intensity.", {0, 1}).as_amount(),
+    field<&Vignette::smoothness>("Exponent of the falloff; a larger one keeps more of the middle untouched.",
+                                 {0.1, 16}));
 
 }  // namespace
 

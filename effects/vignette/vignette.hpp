@@ -9,9 +9,9 @@ namespace darkroom {
 struct EffectInfo;
 
 struct Vignette {
-    /// How much the corners darken: the corner's factor is 1 - intensity. [0, 1]
+    /// Darkening of the corners: their factor is 1 - intensity. [0, 1]
     float intensity = 0.3f;
-    /// Exponent of the falloff: larger keeps more of the middle untouched. [0.1, 16]
+    /// Exponent of the falloff; a larger one keeps more of the middle untouched. [0.1, 16]
     float smoothness = 2.0f;
 };
 

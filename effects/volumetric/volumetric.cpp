@@ -17,13 +17,14 @@ namespace darkroom {
 namespace {
 
 constexpr auto volumetric_rows = describe(
-    field<&Volumetric::density>("How much light the haze scatters toward the camera, in hundredths a metre.", {0, 1000})
+    field<&Volumetric::density>("Light that the haze scatters toward the camera, in hundredths a metre.", {0, 1000})
         .as_amount(),
-    field<&Volumetric::samples>("Steps of the march. Brightness does not depend on it, smoothness does.", {1, 256}),
-    field<&Volumetric::max_distance>("How far the march goes; the sky is marched as far.", {0.01, 1e6}, unit::metres),
-    field<&Volumetric::decay>("What is left of the light after each metre, or after each thirty-second of the march.",
-                              {0.01, 1}),
-    field<&Volumetric::decay_form>("What `decay` is a share of."));
+    field<&Volumetric::samples>("Number of steps of the march. Brightness does not depend on it, smoothness does.",
+                                {1, 256}),
+    field<&Volumetric::max_distance>("Length of the march; the sky is marched as far.", {0.01, 1e6}, unit::metres),
+    field<&Volumetric::decay>(
+        "Share of the light that is left after each metre, or after each thirty-second of the march.", {0.01, 1}),
+    field<&Volumetric::decay_form>("Length that `decay` counts for: a metre, or a thirty-second of the march."));
 
 const Volumetric& volumetric_of(const void* parameters) { return *static_cast<const Volumetric*>(parameters); }
 
@@ -169,7 +170,7 @@ void build(PassBuilder& builder) {
 const EffectInfo& effect_info(const Volumetric&) {
     static const EffectInfo info{
         .name = "volumetric",
-        .doc = "Shafts of light in haze, through the shadows of each light.",
+        .doc = "Draws shafts of light in haze, by the shadows of each light.",
         .parameters = volumetric_rows.table(),
         .files = embedded_files("volumetric"),
         .touch = Touch::Pointwise,

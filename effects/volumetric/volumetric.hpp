@@ -15,15 +15,15 @@ enum class VolumetricDecay : std::uint32_t {
 };
 
 struct Volumetric {
-    /// How much light the haze scatters toward the camera, in hundredths a metre. [0, 1000]
+    /// Light that the haze scatters toward the camera, in hundredths a metre. [0, 1000]
     float density = 1.0f;
-    /// Steps of the march. Brightness does not depend on it, smoothness does. [1, 256]
+    /// Number of steps of the march. Brightness does not depend on it, smoothness does. [1, 256]
     std::int32_t samples = 32;
-    /// How far the march goes; the sky is marched as far. [0.01, 1000000] m
+    /// Length of the march; the sky is marched as far. [0.01, 1000000] m
     float max_distance = 100.0f;
-    /// What is left of the light after each metre, or after each thirty-second of the march. [0.01, 1]
+    /// Share of the light that is left after each metre, or after each thirty-second of the march. [0.01, 1]
     float decay = 0.994f;
-    /// What `decay` is a share of.
+    /// Length that `decay` counts for: a metre, or a thirty-second of the march.
     VolumetricDecay decay_form = VolumetricDecay::PerMetre;
 };
 

@@ -9,7 +9,7 @@
 //     };
 //
 //     constexpr auto vignette_rows = describe(  // vignette.cpp
-//         field<&Vignette::intensity>("How much the corners darken.", {0, 1}),
+//         field<&Vignette::intensity>("Darkening of the corners.", {0, 1}),
 //         field<&Vignette::smoothness>("Exponent of the falloff.", {0.1, 16}));
 //
 // A forgotten, doubled or misordered member, a default outside its range and a row without a sentence do not compile.

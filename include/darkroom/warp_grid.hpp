@@ -12,7 +12,7 @@ namespace darkroom {
 inline constexpr Vec2 default_warp_grid{32.0f, 18.0f};
 template <auto M>
 constexpr auto warp_grid_field() {
-    return field<M>("Columns and rows of the grid, where its vertices are evaluated.", {1, 256}).at_compile();
+    return field<M>("Columns and rows of the grid whose vertices are evaluated.", {1, 256}).at_compile();
 }
 /// A value of that row in whole cells.
 [[nodiscard]] VkExtent2D warp_grid_cells(Vec2 grid);

@@ -31,7 +31,7 @@ constexpr std::string_view effect_text =
 // The pictures that it is meant for: scene_linear, display_linear or encoded.
 // @accepts display_linear
 // A parameter is a key of looks, a flag, a slider and a member of STRUCT. `amount`: at 0 the effect is off.
-// @param float amount = 1 in [0, 1] amount: How much of the tint is seen.
+// @param float amount = 1 in [0, 1] amount: Share of the tint.
 // @param float reach = 0.25 in [0.01, 1]: Luminance up to which shadows reach.
 // @param rgb tint = 0.1, 0.3, 0.8 in [0, 4]: Colour of the shadows, linear.
 
