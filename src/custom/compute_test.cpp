@@ -137,7 +137,7 @@ TEST(CustomCompute, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
     EXPECT_EQ(compute_error_of_lines(value + value), "my.glsl:3: one: declared twice");
     EXPECT_EQ(compute_error_of_lines(value), "my.glsl:1: value one: no pass writes it");
     EXPECT_EQ(compute_error_of_lines("// @value mine_one: 1\n// @compute one 1x1 1x1: -> mine_one"),
-              "my.glsl:1: value mine_one: names that begin with the effect's are those of functions");
+              "my.glsl:1: value mine_one: names that begin with the effect's name are for functions");
     EXPECT_EQ(compute_error_of_lines("// @buffer one: 4"),
               "my.glsl:2: one: type nothing: allowed is uint, int, float, vec2, vec4, ivec2, ivec4, uvec4");
     EXPECT_EQ(compute_error_of_lines("// @buffer one: 4 uint\n" + write + "// @end one"),

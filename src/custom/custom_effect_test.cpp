@@ -106,6 +106,15 @@ TEST(CustomEffect, ErrorsNameThePlaceTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of(""), "my.glsl:1: no line `// @effect NAME: SENTENCE.` before the code");
     EXPECT_EQ(error_of("// @effect mine: Mine.\n// vec4 mine(\nfloat other() { return mine; }\n"),
               "my.glsl:1: no function mine: expected `vec4 mine(vec4 color, Pixel pixel, Mine parameters)`");
+    EXPECT_EQ(error_of("// @effect two_words: Mine.\n\nvec4 two_words(vec4 color,\n  Pixel pixel, two_words p) {}\n"),
+              "my.glsl:3: two_words: the struct of its parameters is TwoWords: expected `vec4 two_words(vec4 color, "
+              "Pixel pixel, "
+              "TwoWords parameters)`");
+    EXPECT_EQ(
+        error_of("// @effect two_words: Mine.\n// @image a: 1 rgba16f\n// @result a\n// @pass one: picture -> a\n"
+                 "vec4 two_words_one(Pixel pixel, Two_words parameters) {}\n"),
+        "my.glsl:5: two_words_one: the struct of its parameters is TwoWords: expected `vec4 two_words_one(Pixel pixel, "
+        "TwoWords parameters)`");
     EXPECT_EQ(
         error_of_line("@parm float a = 1"),
         "my.glsl:3: @parm: allowed is @effect, @param, @touch, @accepts, @makes, @needs, @image, @history, @table, "
@@ -114,7 +123,8 @@ TEST(CustomEffect, ErrorsNameThePlaceTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of_line("@accepts linear"),
               "my.glsl:3: @accepts linear: allowed is scene_linear, display_linear, encoded");
     EXPECT_EQ(error_of_line("@needs money"),
-              "my.glsl:3: @needs money: allowed is depth, normals, velocity, shadows, ui, reactive, transparency, exposure, second");
+              "my.glsl:3: @needs money: allowed is depth, normals, velocity, shadows, ui, reactive, transparency, "
+              "exposure, second");
     EXPECT_EQ(error_of_line("@param double a = 1 in [0, 2]: A."),
               "my.glsl:3: @param double: allowed is float, int, toggle, choice, vec2, vec3, vec4, rgb");
     EXPECT_EQ(error_of_line("@effect other: Other."), "my.glsl:3: a second @effect; a file holds one");

@@ -118,6 +118,10 @@ struct Halves {
 
 /// Adds the images of the frame that `code`, the function's own, names, and says which images are loaded alone.
 [[nodiscard]] Result<> read_uses(const Description& from, FileFunction& function, std::string_view code);
+/// The function takes the effect's parameters by their struct. `form` is how it is declared; `line` is where an error
+/// is.
+[[nodiscard]] Result<> check_struct(std::string_view code, std::string_view function, std::string_view struct_name,
+                                    std::string_view form, std::size_t& line);
 /// Takes note of the `shared` variables of a compute pass; others have none. `line` is where an error is.
 [[nodiscard]] Result<> read_shared(FileFunction& function, std::string_view code, std::size_t& line);
 /// Files define functions, structs and constants; the kernels around them declare what they read and write. Returns the

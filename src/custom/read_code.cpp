@@ -175,6 +175,30 @@ Result<std::string> expand_code(std::string_view text, std::size_t& line) {
     return out;
 }
 
+// A struct of another name is an error of the GLSL compiler, which does not know the name that was meant.
+Result<> check_struct(std::string_view code, std::string_view function, std::string_view struct_name,
+                      std::string_view form, std::size_t& line) {
+    std::size_t at = 1, first = 0, open = 0;
+    bool is_named = false, is_closed = false;
+    gpu::GlslScanner scanner(code);
+    for (Token token = scanner.next(); token.kind != Token::Kind::End; token = scanner.next()) {
+        if (open > 0 && token.text == "(") ++open;
+        if (open > 0 && token.text == ")") is_closed |= --open == 0;
+        if (open > 0) is_named |= token.kind == Token::Kind::Word && token.text == struct_name;
+        if (open == 0 && token.kind == Token::Kind::Word && token.text == function && scanner.peek().text == "(") {
+            if (first == 0) first = at;
+            for (token = scanner.next(); token.text != "("; token = scanner.next())
+                at += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
+            open = 1;
+        }
+        at += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
+    }
+    if (is_named || !is_closed) return {};
+    line = first;
+    return user_error(
+        fmt::format("{}: the struct of its parameters is {}: expected `{}`", function, struct_name, form));
+}
+
 Result<> read_uses(const Description& from, FileFunction& function, std::string_view code) {
     for (const plan::FrameInput& input : plan::frame_inputs) {
         if (!names_word(code, input.shader_name)) continue;

@@ -150,7 +150,7 @@ class FileReader {
         if (out_.result.empty() && !out_.end) {
             if (!out_.passes.empty())
                 return user_error(
-                    fmt::format("passes that nobody sees: expected `// @end IMAGE` above the function {}, "
+                    fmt::format("passes without an end or a result: expected `// @end IMAGE` above the function {}, "
                                 "or `// @result IMAGE`",
                                 out_.info.name));
             out_.end = FileFunction{.line = 1};
@@ -246,6 +246,7 @@ class FileReader {
         if (auto ok = read_shared(function, code, line_); !ok) return ok;
         line_ = function.line;
         if (!plan::calls_name(code, name)) return user_error(fmt::format("no function {}: expected `{}`", name, form));
+        if (auto ok = check_struct(code, name, struct_name_, form, line_); !ok) return ok;
         function.reads_light = out_.info.needs.contains(FrameImage::Shadows) && reads_light(code, out_.info.name);
         if (function.reads_light)
             code = fmt::format("{}#line 1 \"{}\"\n{}", light_code(out_.info.name, !function.name.empty()), shown_name_,

@@ -163,7 +163,8 @@ Result<> check_own_name(Description& out, std::string_view name) {
     if (auto ok = check_name(name); !ok) return ok;
     const bool is_reserved = name == "source" || name == "second" || name.ends_with(previous_end) ||
                              name.starts_with("frame_") || name.starts_with("shared_") || name.starts_with("darkroom_");
-    if (is_reserved || plan::is_function_name(name)) return user_error(fmt::format("{}: has a meaning already", name));
+    if (is_reserved || plan::is_function_name(name))
+        return user_error(fmt::format("{}: is taken by the notation or by GLSL; choose another name", name));
     if (out.find_image(name) != nullptr || out.find_buffer(name) != nullptr)
         return user_error(fmt::format("{}: declared twice", name));
     return {};
@@ -222,7 +223,8 @@ Result<> read_pre_roll(Description& out, std::string_view text) {
 Result<FileFunction> read_arrow(Description& out, FileFunction pass, std::string_view text, std::string_view usage) {
     const std::string_view name = pass.name;
     if (auto ok = check_name(name); !ok) return failure(std::move(ok));
-    if (name == "parameters" || name == "custom") return user_error(fmt::format("{}: has a meaning already", name));
+    if (name == "parameters" || name == "custom")
+        return user_error(fmt::format("{}: is taken by the notation or by GLSL; choose another name", name));
     if (std::ranges::find(out.passes, name, &FileFunction::name) != out.passes.end())
         return user_error(fmt::format("pass {}: declared twice", name));
     if (out.passes.size() == most_passes)
@@ -290,7 +292,7 @@ Result<> check_passes(Description& out) {
     for (const FileImage& image : out.images) {
         if (image.name == out.info.name || image.name.starts_with(prefix))
             return user_error(
-                fmt::format("image {}: names that begin with the effect's are those of functions", image.name));
+                fmt::format("image {}: names that begin with the effect's name are for functions", image.name));
         if (image.kind != FileImage::Kind::Table && !image.is_written)
             return user_error(fmt::format("image {}: no pass writes it", image.name));
     }
@@ -298,7 +300,7 @@ Result<> check_passes(Description& out) {
         const std::string_view kind = buffer.is_value ? "value" : "buffer";
         if (buffer.name == out.info.name || buffer.name.starts_with(prefix))
             return user_error(
-                fmt::format("{} {}: names that begin with the effect's are those of functions", kind, buffer.name));
+                fmt::format("{} {}: names that begin with the effect's name are for functions", kind, buffer.name));
         if (!buffer.is_written) return user_error(fmt::format("{} {}: no pass writes it", kind, buffer.name));
     }
     if (has_history && !out.pre_roll)

@@ -66,7 +66,8 @@ TEST(CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of_lines(image + "// @pass one: picture"),
               "my.glsl:3: pass one: expected `@pass one: IMAGE IMAGE -> IMAGE`");
     EXPECT_EQ(error_of_lines(image + pass),
-              "my.glsl:1: passes that nobody sees: expected `// @end IMAGE` above the function mine, or `// @result "
+              "my.glsl:1: passes without an end or a result: expected `// @end IMAGE` above the function mine, or `// "
+              "@result "
               "IMAGE`");
     EXPECT_EQ(error_of_lines(image + pass + "// @end two"),
               "my.glsl:4: @end reads 'two': there is no such image, there are picture, source, one");
@@ -85,10 +86,10 @@ TEST(CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
     EXPECT_EQ(error_of_lines(image + image), "my.glsl:3: one: declared twice");
     for (const char* const name : {"picture", "source", "frame_depth", "load", "one_previous", "color"})
         EXPECT_EQ(error_of_lines(std::string("// @image ") + name + ": 1 r8"),
-                  std::string("my.glsl:2: ") + name + ": has a meaning already");
+                  std::string("my.glsl:2: ") + name + ": is taken by the notation or by GLSL; choose another name");
     EXPECT_EQ(error_of_lines("// @image half: 1 r8"), "my.glsl:2: half: a keyword of GLSL");
     EXPECT_EQ(error_of_lines("// @image mine_one: 1 r8\n// @pass one: -> mine_one\n// @end mine_one"),
-              "my.glsl:1: image mine_one: names that begin with the effect's are those of functions");
+              "my.glsl:1: image mine_one: names that begin with the effect's name are for functions");
     EXPECT_EQ(error_of_lines("// @history one: 1 r8\n" + pass + "// @end one"),
               "my.glsl:1: a history without `@pre_roll FRAMES`: how many frames before must have been developed for a "
               "right picture");
@@ -97,7 +98,8 @@ TEST(CustomPasses, ErrorsNameTheLineTheThingAndWhatIsAllowed) {
               "my.glsl:2: @pre_roll 9999: expected a number of frames in [0, 1000]");
     EXPECT_EQ(error_of_lines("// @result one"),
               "my.glsl:2: @result one: expected an image or a history that a line before it declares");
-    EXPECT_EQ(error_of_file("// @effect mine: Mine.\nvec4 mine(vec4 color) { return load(frame_depth, x); }"),
+    EXPECT_EQ(error_of_file("// @effect mine: Mine.\nvec4 mine(vec4 color, Pixel pixel, Mine parameters) { return "
+                            "load(frame_depth, x); }"),
               "my.glsl:1: frame_depth: read without `@needs depth`");
     EXPECT_EQ(error_of_lines(image + pass + "// @param toggle a = on: A."),
               "my.glsl:4: @param: stands above the code, the passes and the end");
