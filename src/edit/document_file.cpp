@@ -132,7 +132,7 @@ Result<> LookDocument::save_as(const std::filesystem::path& file) {
         !file_.empty() && file.parent_path().lexically_normal() == file_.parent_path().lexically_normal();
     if (is_near) return write(file, true);
     if (names_files(look_) && file.parent_path().lexically_normal() != options_.folder.lexically_normal())
-        return user_error(fmt::format("{}: the look names files in relation to {}, so it is to lie there",
+        return user_error(fmt::format("{}: the look names files relative to {}: save it in that folder",
                                       printable(file.string()), printable(options_.folder.string())));
     return write(file, false);
 }

@@ -72,7 +72,7 @@ Result<> set_state(Look& look, std::string_view entry, std::string_view row, Wor
     const Result<LookTarget> target = target_of(look, entry, row);
     if (!target) return failure(target.error());
     const std::string shown = fmt::format("{}.{}", printable(entry), printable(row));
-    if (!target->is_state) return user_error(fmt::format("{}: it is none of the entry's own", shown));
+    if (!target->is_state) return user_error(fmt::format("{}: an entry has no such key", shown));
     if (Result<> done = check_words(*target->row, words, shown); !done) return done;
     StateWords state = state_words(target->entry->state);
     std::ranges::copy(words, state.begin() + target->row->word);

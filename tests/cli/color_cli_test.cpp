@@ -135,8 +135,9 @@ TEST_F(CliColor, PicturesAreWrittenForAnotherSpaceAndComeBack) {
         {"--output-space", "pq2"},
         "--output-space: 'pq2' is no color space of pictures, did you mean 'pq'? allowed is srgb, p3, rec2020, "
         "pq or hlg");
-    expect_error({"--output-peak", "500"}, "--output-peak: is of --output-space pq or hlg");
-    expect_error({"--output-space", "p3", "--output-peak", "500"}, "--output-peak: is of pq and hlg, and not of p3");
+    expect_error({"--output-peak", "500"}, "--output-peak: needs --output-space pq or hlg");
+    expect_error({"--output-space", "p3", "--output-peak", "500"},
+                 "--output-peak: works for pq and hlg, and not for p3");
 }
 
 // PNG files without cICP say that they are sRGB.
@@ -210,9 +211,9 @@ TEST_F(CliColor, PicturesAreMadeForAViewOfADisplay) {
                  config + ": has no display 'scren', did you mean 'screen'? there are screen");
     expect_error({"--ocio", config, "--display", "screen", "--view", "x"},
                  config + ": has no view 'x': there are root and half");
-    expect_error({"--display", "screen"}, "--display: is one of a configuration, --ocio FILE is needed");
+    expect_error({"--display", "screen"}, "--display: needs --ocio FILE, whose display it is");
     expect_error({"--ocio", config}, "--ocio: is for --input-space and --display, none of which is given");
-    expect_error({"--view", "root"}, "--view: is one of a display, --display NAME is needed");
+    expect_error({"--view", "root"}, "--view: needs --display NAME, whose view it is");
     expect_error({"--ocio", config, "--display", "screen", "--bits", "half"},
                  path("none.png") + ": half samples hold light, and no view of a display; .png .jpg .tif hold one");
 }

@@ -173,14 +173,14 @@ TEST_F(CliEvents, SlipsAreOneLineWithTheirPlace) {
     refused("", "wrong.toml: expected [[event]] entries");
     refused("[[events]]\ntime = 1\n", "wrong.toml:1:3: unknown key 'events'");
     refused("[[event]]\nfire = \"hit\"\n", "wrong.toml:1:1: an event has no key 'time'");
-    refused(event, "wrong.toml:1:1: at this time nothing happens");
+    refused(event, "wrong.toml:1:1: the event does nothing");
     refused("[[event]]\ntime = -1\nfire = \"hit\"\n", "wrong.toml:2:8: time = -1");
     refused(event + "leap = 3\n", "wrong.toml:3:1: unknown key 'leap': allowed are time, set, fire, layer, over");
     refused(event + "fire = \"hti\"\n", "did you mean 'hit'? known are hit");
     refused(event + "set = { exposur = 1 }\n", "wrong.toml:3:19: exposur: no effect has this parameter");
     refused(event + "set = { exposure = 5000 }\n", "wrong.toml:3:20: exposure = 5000: ");
     refused(event + "set = { exposure = \"2eV!\" }\n", "exposure = \"2eV!\": '2eV!' is not a number, allowed is");
-    refused(event + "set = { \"exposure.scale\" = 2 }\n", "it belongs to the plan");
+    refused(event + "set = { \"exposure.scale\" = 2 }\n", "it is fixed when the stack is compiled");
     refused(event + "layer = { nigth = 1 }\n", "did you mean 'night'? known are night");
     refused(event + "layer = { night = 2 }\n", "night = 2");
     refused(event + "set = 3\n", "set = 3: expected a table of values");

@@ -68,7 +68,7 @@ TEST_F(CliNew, ASceneIsRenderedStrictly) {
 TEST_F(CliNew, NothingIsOverwrittenUnasked) {
     expect_clean("darkroom new look evening");
     write("evening.toml", "mine");
-    expect_refused({"new", "look", path("evening")}, 1, "evening.toml: is there already; --force replaces it");
+    expect_refused({"new", "look", path("evening")}, 1, "evening.toml: exists already; --force replaces it");
     EXPECT_EQ(content(path("evening.toml")), "mine");
     expect_clean("darkroom new look evening.toml --force");
     EXPECT_NE(content(path("evening.toml")), "mine");

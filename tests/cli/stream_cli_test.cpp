@@ -167,8 +167,8 @@ TEST_F(CliStream, WhatCannotBeStreamedIsRefused) {
     };
     refused({"-o", "-"}, "-o -: --format y4m|rgb24|rgba64le is needed");
     refused({"-o", "-", "--format", "avi"}, "--format avi: allowed is y4m, rgb24, rgba64le");
-    refused({"-o", path("a.png"), "--format", "y4m"}, "--format y4m: is of -o -, not of files");
-    refused({"-o", "-", "--format", "y4m", "--bits", "16"}, "--bits: is of files");
+    refused({"-o", path("a.png"), "--format", "y4m"}, "--format y4m: works for -o -, not for files");
+    refused({"-o", "-", "--format", "y4m", "--bits", "16"}, "--bits: works for files");
     refused({"-o", "-", "--format", "y4m", "--alpha"}, "--alpha: --format y4m has none");
     refused({"-o", "-", "--format", "y4m", "--skip-existing"}, "--skip-existing: a stream has no gaps");
     refused({"-o", "-", "--format", "y4m", "--keep-going"}, "--keep-going: a stream has no gaps");

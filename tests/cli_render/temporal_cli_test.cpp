@@ -202,7 +202,8 @@ TEST_F(CliTemporal, AJudgementThatCannotBeIsRefused) {
     expect_refused(judge("captured", "none"), 1, "none: cannot list the folder");
     expect_refused(judge("captured", "captured/1x", {"--frames", "9"}), 1, "--frames 9: the truth has none of them");
     expect_refused(judge("captured", "captured/1x", {"--edge", "9"}), 1, "--edge 9: expected X,Y,WIDTHxHEIGHT");
-    expect_refused(judge("captured", "captured/1x", {"--edge", "40,0,16x16"}), 1, "reaches out of 48x32");
+    expect_refused(judge("captured", "captured/1x", {"--edge", "40,0,16x16"}), 1,
+                   "reaches beyond the picture of 48x32");
     write("captured/capture.json", "{\"format\": 1, \"truth\": {\"files\": \"../x.####.exr\", \"frames\": \"5\"}}");
     expect_refused(judge("captured", "captured/1x"), 1, "allowed is a name within the folder");
     write("captured/capture.json", "[]");

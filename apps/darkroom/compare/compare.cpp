@@ -180,7 +180,7 @@ int run(const Options& options) {
     const Result<FilePairs> pairs = find_pairs(options.a, options.b);
     if (!pairs) return fail(pairs.error());
     if (!pairs->is_single && !options.diff.empty())
-        return fail_user(fmt::format("--diff {}: is of two pictures; --sheet and --html show the worst of many",
+        return fail_user(fmt::format("--diff {}: works for two pictures; --sheet and --html show the worst of many",
                                      printable(options.diff)));
     if (!options.html.empty())
         if (const Result<> done = check_page_name(options.html); !done) return fail(done.error());

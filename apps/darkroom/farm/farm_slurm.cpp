@@ -117,7 +117,7 @@ Result<std::string> script_of(const SlurmOptions& options, const FarmWork& work,
     const std::string here = fs::current_path(error).string();
     const std::string program =
         options.program.empty() ? shell_quoted(fs::read_symlink("/proc/self/exe", error).string()) : options.program;
-    if (error) return darkroom::machine_error(fmt::format("the working folder cannot be told: {}", error.message()));
+    if (error) return darkroom::machine_error(fmt::format("the working folder is unknown: {}", error.message()));
     const std::string folder = shell_quoted(work.folder.string());
     return fmt::format(
         "#!/bin/bash\n{}set -e\ncd -- {}\nmkdir -p -- {}\nchunks=({})\nchunk=${{chunks[SLURM_ARRAY_TASK_ID]}}\n"
@@ -156,8 +156,7 @@ Result<std::string> submit(const fs::path& script) {
         return darkroom::machine_error(outcome->errors.empty() ? fmt::format("sbatch: ended with {}", outcome->code)
                                                                : outcome->errors.back());
     std::string id = outcome->out.substr(0, outcome->out.find_first_of(";\n"));  // behind a semicolon: the cluster
-    if (!is_number(id))
-        return darkroom::machine_error(fmt::format("sbatch: '{}' is no number of a job", printable(id)));
+    if (!is_number(id)) return darkroom::machine_error(fmt::format("sbatch: '{}' is no job number", printable(id)));
     return id;
 }
 

@@ -31,10 +31,10 @@ darkroom::Result<> OcioFlags::check(bool has_input_space) const {
 
 darkroom::Result<Chain> OcioFlags::view() const {
     if (display_.empty()) {
-        if (!view_.empty()) return user_error("--view: is one of a display, --display NAME is needed");
+        if (!view_.empty()) return user_error("--view: needs --display NAME, whose view it is");
         return Chain();
     }
-    if (configuration.empty()) return user_error("--display: is one of a configuration, --ocio FILE is needed");
+    if (configuration.empty()) return user_error("--display: needs --ocio FILE, whose display it is");
     return darkroom::view_of_configuration(configuration, display_, view_);
 }
 

@@ -36,14 +36,14 @@ void SpaceFlags::add_to(CommandFlags command, const std::string& group) {
 
 Result<std::optional<darkroom::OutputSpace>> SpaceFlags::space() const {
     if (!name_) {
-        if (peak_.is_given()) return user_error("--output-peak: is of --output-space pq or hlg");
+        if (peak_.is_given()) return user_error("--output-peak: needs --output-space pq or hlg");
         return std::optional<darkroom::OutputSpace>();
     }
     Result<darkroom::OutputSpace> space = darkroom::find_output_space(*name_);
     if (!space) return user_error("--output-space: " + space.error().text);
     const bool has_peak = space->integers && space->integers->peak_nits > space->integers->white_nits;
     if (peak_.is_given() && !has_peak)
-        return user_error(fmt::format("--output-peak: is of pq and hlg, and not of {}", space->name));
+        return user_error(fmt::format("--output-peak: works for pq and hlg, and not for {}", space->name));
     if (has_peak)
         if (Result<> done = peak_.read_to(space->integers->peak_nits); !done) return failure(std::move(done));
     return std::optional(std::move(*space));
@@ -93,7 +93,7 @@ Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, dou
     if (name == format_names.end())
         return user_error(
             fmt::format("--format {}: allowed is {}", printable(*format_), fmt::join(format_names, ", ")));
-    if (out != stream_name) return user_error(fmt::format("--format {}: is of -o -, not of files", *format_));
+    if (out != stream_name) return user_error(fmt::format("--format {}: works for -o -, not for files", *format_));
     const StreamDesc desc{.format = static_cast<darkroom::VideoFormat>(name - format_names.begin()),
                           .rate = darkroom::frame_rate(frames_per_second),
                           .has_alpha = has_alpha_};
@@ -101,7 +101,7 @@ Result<std::optional<StreamDesc>> WriteFlags::stream(const std::string& out, dou
          {std::pair(bits_.has_value(), "--bits"), std::pair(space_.is_given(), "--output-space"),
           std::pair(!compression_.empty(), "--compression"), std::pair(quality_.is_given(), "--quality"),
           std::pair(ocio.has_display(), "--display")})
-        if (is_given) return user_error(fmt::format("{}: is of files, and not of --format {}", flag, *format_));
+        if (is_given) return user_error(fmt::format("{}: works for files, and not for --format {}", flag, *format_));
     if (has_alpha_ && desc.format != darkroom::VideoFormat::Rgba64le)
         return user_error(fmt::format("--alpha: --format {} has none; rgba64le has", *format_));
     if (isatty(STDOUT_FILENO) != 0) return user_error("-o -: standard output is a terminal, which shows no pictures");

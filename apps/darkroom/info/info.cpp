@@ -112,7 +112,7 @@ Result<Json> document_of(const fs::path& path, const Options& options) {
     std::vector<std::string_view> names;
     for (const Kind& known : kinds) names.push_back(known.name);
     return user_error(
-        fmt::format("{}: is of no known kind, which are {}", printable(path.string()), fmt::join(names, ", ")));
+        fmt::format("{}: is of no known kind; known are {}", printable(path.string()), fmt::join(names, ", ")));
 }
 
 int run(const Options& options) {

@@ -184,8 +184,8 @@ class Judging {
         if (!edge_ || number != numbers_.back()) return {};
         if (std::uint64_t{edge_->x} + edge_->width > truth.width ||
             std::uint64_t{edge_->y} + edge_->height > truth.height)
-            return user_error(
-                fmt::format("--edge {}: reaches out of {}x{}", printable(*options_.edge), truth.width, truth.height));
+            return user_error(fmt::format("--edge {}: reaches beyond the picture of {}x{}", printable(*options_.edge),
+                                          truth.width, truth.height));
         const auto sharpness = [&](const ShownCodes& codes, const char* whose) -> Result<darkroom::EdgeSharpness> {
             auto found = darkroom::edge_sharpness(luminance_of(codes, *edge_));
             if (found) return found;

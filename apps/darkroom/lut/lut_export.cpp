@@ -163,7 +163,8 @@ Result<ExportedLook> export_look(const Look& look) {
     }
     if (kept.entries.empty())
         return darkroom::user_error(
-            fmt::format("{}: nothing of it is a function of the colour alone, as a table is", look.shown_name));
+            fmt::format("{}: no effect in it is a function of the colour alone, which is all that a table can hold",
+                        look.shown_name));
     const Baker baker(kept);
     std::vector<TableColor> light;
     const auto node = [](std::uint32_t i) { return LogShaper::decode(i / (edge - 1.0)); };

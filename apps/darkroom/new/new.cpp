@@ -168,7 +168,7 @@ Result<> make(const Options& options) {
         if (Result<> done = check_effect(name, text); !done) return done;
     std::error_code error;
     if (std::filesystem::exists(file, error) && !options.is_forced)
-        return user_error(fmt::format("{}: is there already; --force replaces it", printable(file)));
+        return user_error(fmt::format("{}: exists already; --force replaces it", printable(file)));
     if (Result<> done = darkroom::write_file(file, std::as_bytes(std::span(text))); !done) return done;
     tell(fmt::format("{}: {}", printable(file), fmt::format(fmt::runtime(kind->next), printable(file))));
     return {};

@@ -34,7 +34,9 @@ Result<> run_sequence(const SequenceDesc& desc, const SequenceStages& stages) {
     std::atomic<bool> is_undeliverable = false;
     const auto encode = [&](std::size_t step) -> Result<> {
         // The failure that counts has been noted.
-        return is_undeliverable ? darkroom::machine_error("nobody takes the pictures") : stages.encode(step);
+        return is_undeliverable
+                   ? darkroom::machine_error("standard output: the program that read the pictures has ended")
+                   : stages.encode(step);
     };
     {
         Progress progress(desc.pictures);

@@ -74,7 +74,8 @@ class TimelineReader {
         const toml::node* const time = table.get("time");
         if (time == nullptr) return failure(at(table, "an event has no key 'time'"));
         if (table.size() == 1)
-            return failure(at(table, "at this time nothing happens: an event sets, fires or blends"));
+            return failure(at(
+                table, "the event does nothing: expected set, fire, layer, game, jump, yaw or teleport beside time"));
         for (const auto& [key, node] : table) {
             const Result<> done = read_key(key, node, event);
             if (!done) return done;
@@ -180,9 +181,10 @@ class TimelineReader {
         const bool is_state = target->is_state;
         const bool is_own = is_state && row->name != "enabled" && row->name != "opacity";
         if (row == nullptr || is_own || row->kind == darkroom::Kind::Resource)
-            return failure(at(node, fmt::format("{}: it belongs to the plan; allowed are parameters, `enabled` and "
-                                                "`opacity`",
-                                                printable(key))));
+            return failure(at(
+                node, fmt::format("{}: it is fixed when the stack is compiled; allowed are parameters, `enabled` and "
+                                  "`opacity`",
+                                  printable(key))));
         std::vector<std::uint32_t> words = entry->words;
         const darkroom::StateWords state = darkroom::state_words(entry->state);
         if (is_state) words.assign(state.begin(), state.end());

@@ -102,8 +102,8 @@ Result<> check_picture(const Given& given, const plan::Program& program, const C
     const VkExtent2D most = is_target ? desc.target_extent : desc.max_extent;
     if (given.which.kind == Kind::Color || (is_target && !is_empty(most))) {
         if (is_empty(extent) || extent.width > most.width || extent.height > most.height)
-            return refused(given, " is {}x{}: allowed is 1x1 to {}x{}, as compiled", extent.width, extent.height,
-                           most.width, most.height);
+            return refused(given, " is {}x{}: allowed is 1x1 to {}x{}, as compiled; a part of an image is its region",
+                           extent.width, extent.height, most.width, most.height);
         return {};
     }
     const InputExtent of = is_target ? InputExtent::Scene : given.input().extent;
@@ -119,8 +119,8 @@ Result<> check_picture(const Given& given, const plan::Program& program, const C
     }
     const VkExtent2D wanted = is_target ? program.target_size.of(graph::Extents(color)) : color;
     if (!is_same(extent, wanted))
-        return refused(given, " is {}x{}: with a color of {}x{} it must be {}x{}", extent.width, extent.height,
-                       color.width, color.height, wanted.width, wanted.height);
+        return refused(given, " is {}x{}: with a color of {}x{} it must be {}x{}; a part of an image is its region",
+                       extent.width, extent.height, color.width, color.height, wanted.width, wanted.height);
     return {};
 }
 

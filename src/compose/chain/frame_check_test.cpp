@@ -122,7 +122,7 @@ TEST_F(ComposeFrameCheck, EveryFaultNamesImageAndField) {
         {[](Frame& f, Light&) {
              f.color.extent = {25, 18};
          },
-         "frame.color is 25x18: allowed is 1x1 to 24x18"},
+         "frame.color is 25x18: allowed is 1x1 to 24x18, as compiled; a part of an image is its region"},
         {[](Frame& f, Light&) {
              f.color.region = {{0, 0}, {12, 0}};
          },
@@ -130,7 +130,7 @@ TEST_F(ComposeFrameCheck, EveryFaultNamesImageAndField) {
         {[](Frame& f, Light&) {
              f.normals.extent = {23, 18};
          },
-         "frame.normals is 23x18: with a color of 24x18"},
+         "frame.normals is 23x18: with a color of 24x18 it must be 24x18; a part of an image is its region"},
         {[](Frame& f, Light&) {
              f.reactive.extent = {24, 17};
          },

@@ -33,7 +33,7 @@ Result<Target> movable_at(Look& look, std::string_view entry, std::string_view p
     const Result<LookTarget> found = find_target(look, key, shown);
     if (!found) return failure(found.error());
     if (found->row == nullptr || !is_movable(*found->row, found->is_state, is_layer))
-        return user_error(is_layer ? fmt::format("{}: it belongs to the plan, and cannot move", shown)
+        return user_error(is_layer ? fmt::format("{}: it is fixed when the stack is compiled, and cannot move", shown)
                                    : fmt::format("{}: a pulse adds to parameters made of numbers", shown));
     return Target{found->entry, entry_names(look)[static_cast<std::size_t>(found->entry - look.entries.data())],
                   found->row, found->is_state};
@@ -104,10 +104,10 @@ Result<std::size_t> add_layer(Look& look, std::string_view name, std::string_vie
 }
 
 Result<> add_layer_value(Look& look, std::size_t layer, std::string_view entry, std::string_view parameter) {
-    if (layer >= look.layers.size()) return user_error("a layer that is no more there");
+    if (layer >= look.layers.size()) return user_error("the layer was removed");
     if (!look.layers[layer].file.empty())
-        return user_error(
-            fmt::format("{}: its values are those of {}", look.layers[layer].name, printable(look.layers[layer].file)));
+        return user_error(fmt::format("{}: its values come from {}: edit that look", look.layers[layer].name,
+                                      printable(look.layers[layer].file)));
     const Result<Target> target = movable_at(look, entry, parameter, true);
     if (!target) return failure(target.error());
     std::vector<LookLayer::Value>& values = look.layers[layer].values;
@@ -124,10 +124,11 @@ Result<> add_layer_value(Look& look, std::size_t layer, std::string_view entry, 
 
 Result<> remove_layer_value(Look& look, std::size_t layer, std::size_t value) {
     const std::vector<MovedValue> all = values_of(look, {true, layer});
-    if (value >= all.size() || all[value].table != "values") return user_error("a value that is none of the layer's");
+    if (value >= all.size() || all[value].table != "values") return user_error("the layer has no such value");
     std::vector<LookLayer::Value>& values = look.layers[layer].values;
     if (values.size() == 1)
-        return user_error(fmt::format("{}: its only value; a layer without any is none", look.layers[layer].name));
+        return user_error(
+            fmt::format("{}: it is the layer's only value, and a layer needs one", look.layers[layer].name));
     std::erase_if(values, [&](const LookLayer::Value& own) {
         return own.entry == all[value].entry && own.parameter == all[value].row.name;
     });
@@ -136,7 +137,7 @@ Result<> remove_layer_value(Look& look, std::size_t layer, std::size_t value) {
 
 Result<> remove_mover(Look& look, Mover mover) {
     const std::size_t count = mover.is_layer ? look.layers.size() : look.pulses.size();
-    if (mover.number >= count) return user_error("a pulse or a layer that is no more there");
+    if (mover.number >= count) return user_error("the pulse or layer was removed");
     const auto number = static_cast<std::ptrdiff_t>(mover.number);
     if (mover.is_layer)
         look.layers.erase(look.layers.begin() + number);

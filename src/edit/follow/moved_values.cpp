@@ -115,7 +115,7 @@ std::string name_of(const Look& look, Mover mover) {
 
 Result<> set_moved(Look& look, Mover mover, std::size_t value, Words words) {
     const std::vector<MovedValue> values = values_of(look, mover);
-    if (value >= values.size()) return user_error("a pulse or a layer that is no more there");
+    if (value >= values.size()) return user_error("the pulse or layer was removed");
     const MovedValue& wanted = values[value];
     const std::string shown = fmt::format("{}, {}", name_of(look, mover), wanted.row.name);
     if (Result<> done = check_words(wanted.row, words, shown); !done) return done;

@@ -54,7 +54,7 @@ Result<LookEntry*> restructured(Look& look, std::string_view name) {
     become_stack(look);
     const auto found = std::ranges::find(look.entries, effect, &LookEntry::effect);
     if (found == look.entries.end())
-        return user_error(fmt::format("{}: the look is off, so that it has no place", printable(name)));
+        return user_error(fmt::format("{}: the look is off, so that no entry can be switched in it", printable(name)));
     found->state.enabled = was_enabled;
     return &*found;
 }

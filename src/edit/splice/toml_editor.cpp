@@ -128,7 +128,7 @@ Result<> TomlEditor::replace_value(const TomlPath& path, std::string_view value)
     if (!std::ranges::equal(old_numbered, now, {}, path_of, path_of)) {
         const TomlItem* const whole = find(path);
         if (whole == nullptr)
-            return user_error(fmt::format("{}: it is no value that can be written anew", shown(path)));
+            return user_error(fmt::format("{}: this value cannot be rewritten in its place", shown(path)));
         return replace(whole->value_begin, whole->end, value);
     }
     // From the last to the first, so that places stay true.

@@ -204,7 +204,8 @@ Result<> check_window(const Window& window, const char* name) {
             fmt::format("the {} is {}, at most {} a side is allowed", name, window.text(), max_picture_side));
     constexpr Wide farthest = 1 << 30;
     if (std::min(window.left, window.top) < -farthest || std::max(window.right, window.bottom) > farthest)
-        return user_error(fmt::format("the {} lies too far from the origin", name));
+        return user_error(
+            fmt::format("the {} is {}, coordinates in [-{}, {}] are allowed", name, window.text(), farthest, farthest));
     return {};
 }
 

@@ -113,9 +113,11 @@ class ModulationReader {
         }
         const bool is_own = target->is_state && target->row->name != "enabled" && target->row->name != "opacity";
         if (target->row != nullptr && !is_own && target->row->kind != Kind::Resource) return *target;
-        wrong(node, fmt::format("{}: it belongs to the plan, and cannot move; allowed are parameters, `enabled` and "
-                                "`opacity`",
-                                printable(key)));
+        wrong(node,
+              fmt::format(
+                  "{}: it is fixed when the stack is compiled, and cannot move; allowed are parameters, `enabled` and "
+                  "`opacity`",
+                  printable(key)));
         return std::nullopt;
     }
 
