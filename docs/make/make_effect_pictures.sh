@@ -110,6 +110,16 @@ threshold = 0.8'
 stack gaussian_blur showcase '[[stack]]
 effect = "gaussian_blur"
 radius = 6'
+stack blend showcase '[[stack]]
+effect = "gaussian_blur"
+radius = 10
+output = "soft"
+[[stack]]
+effect = "blend"
+input = "scene"
+second = "soft"
+mode = "screen"
+amount = 0.6'
 stack negative showcase '[[stack]]
 effect = "negative"'
 stack grayscale showcase '[[stack]]
@@ -149,6 +159,13 @@ effect = "frame_blend"'
 trail recursive_blend showcase 60 '[[stack]]
 effect = "recursive_blend"
 weight = 0.9'
+is_wanted taa && for state in off on; do
+    [[ $state == on ]] && gather='[[stack]]
+effect = "taa"' || gather=
+    printf '%s\n' "$gather" "$tail_of_stack" >"$work/$state.toml"
+    samples=1 picture courtyard taa.%04d.jpg --fps 60 --frames 16-16 --look "$work/$state.toml"
+    mv "$out/taa.0016.jpg" "$out/taa_$state.jpg"
+done
 stack depth_of_field street '[[stack]]
 effect = "depth_of_field"
 focus_distance = 4.0
