@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// What pages tell one to type is typed, in the order of the page. What opens a window, asks other programs or works for
+// minutes is run by tests of its own. Pictures are small: they tell as much.
+#include <algorithm>
+#include <darkroom/effects.hpp>
+#include <string>
+#include <vector>
+
+#include "image/frame/frame_file.hpp"
+#include "image/picture/write.hpp"
+#include "tests/cli/cli_support.hpp"
+#include "tests/places.hpp"
+
+namespace darkroom {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PageBlock {
+    std::string kind, text;
+};
+
+std::vector<PageBlock> blocks_of_page(const std::string& page) {
+    std::istringstream lines(test::content(fs::path(test::source_folder) / page));
+    std::vector<PageBlock> out;
+    bool is_inside = false;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("```")) {
+            if (!is_inside) out.push_back({line.substr(3), ""});
+            is_inside = !is_inside;
+        } else if (is_inside) {
+            out.back().text += line + "\n";
+        }
+    }
+    return out;
+}
+
+// Of a few frames and pixels, in place of those that the line asks for.
+constexpr std::string_view small_program = R"(#!/usr/bin/env bash
+words=()
+while (($#)); do
+    case $1 in
+        --size) [[ ${words[0]} == render ]] && words+=(--size 64x36) || words+=("$1" "$2"); shift ;;
+        --frames) words+=(--frames 0-1) && shift ;;
+        *) words+=("$1") ;;
+    esac
+    shift
+done
+[[ ${words[0]} != render || " ${words[*]} " == *" --size "* ]] || words+=(--size 64x36)
+exec )";
+
+class CliPages : public test::CliFixture {
+  protected:
+    void make_files() override {
+        for (const EffectInfo* const effect : all_effects()) count_ += effect != nullptr ? 1 : 0;
+        if (count_ < 49) GTEST_SKIP() << "effects are left out of this build";
+        for (const char* const name : {"looks", "scenes", "hud", "controllers", "examples"})
+            fs::create_symlink(fs::path(test::source_folder) / name, path(name));
+        write("darkroom", std::string(small_program) + test::quoted(program) + " \"${words[@]}\"\n");
+        fs::permissions(path("darkroom"), fs::perms::owner_all);
+        for (const char* const name : {"samples", "expected", "pictures", "folder"}) fs::create_directory(path(name));
+        for (const char* const name :
+             {"samples/window.exr", "a.exr", "b.exr", "a.0001.exr", "b.0001.exr", "shot.0001.exr", "shot.0002.exr"})
+            write_frame_of(name, 96, 54);
+        for (const char* const name : {"picture.png", "expected/room.png", "pictures/room.png"})
+            ASSERT_TRUE(write_picture(path(name), grey(96, 54)));
+        write("film.cube", "LUT_1D_SIZE 2\n0 0 0\n1 0.9 0.8\n");
+        write("my.toml", "format = 1\n[post_process]\nexposure = 1.2\n");
+    }
+
+    /// Runs the page's lines of sh that begin with the program; `lines` of them, at least.
+    void try_page(const std::string& page, std::size_t lines) const {
+        std::size_t run = 0;
+        for (const auto& [kind, text] : blocks_of_page(page)) {
+            if (kind == "toml" && text.starts_with("format = 1")) write("my.toml", text);
+            if (kind != "sh") continue;
+            std::istringstream all(text);
+            std::string chosen;
+            for (std::string line; std::getline(all, line);) {
+                if (line.starts_with("darkroom ")) line = "./" + line;
+                if (!line.starts_with("./darkroom ") || is_left_out(line)) continue;
+                chosen += line + "\n";
+                ++run;
+            }
+            if (chosen.empty()) continue;
+            write_frame_of("frame.exr", 642, 362);
+            // What it is compared with was made by the same line before.
+            for (const char* const name : {"expected.png", "reference.png"})
+                fs::copy_file(path("picture.png"), path(name), fs::copy_options::overwrite_existing);
+            const test::Outcome outcome = run_lines(chosen);
+            EXPECT_EQ(outcome.code, 0) << page << ":\n" << chosen << outcome.err;
+        }
+        EXPECT_GE(run, lines) << page;
+    }
+
+  private:
+    static bool is_left_out(const std::string& line) {
+        for (const char* const part : {"|", "~", ".3dl", ".glb"})
+            if (line.find(part) != std::string::npos) return true;
+        for (const char* const command : {"play", "edit", "bake", "capture", "judge", "farm"})
+            if (line.starts_with(std::string("./darkroom ") + command + " ")) return true;
+        return false;
+    }
+    static Picture grey(std::uint32_t width, std::uint32_t height) {
+        Picture out(width, height);
+        for (std::size_t i = 0; i < out.pixels.size(); ++i)
+            out.pixels[i] = i % 4 == 3 ? 1.0f : static_cast<float>((i * 37) % 101) / 101.0f;
+        return out;
+    }
+    void write_frame_of(const std::string& name, std::uint32_t width, std::uint32_t height) const {
+        FrameFile frame;
+        frame.color = grey(width, height);
+        frame.depth = Plane<1>(width, height);
+        std::ranges::fill(frame.depth->values, 4.0f);
+        ASSERT_TRUE(write_frame(path(name), frame));
+    }
+    std::size_t count_ = 0;
+};
+
+TEST_F(CliPages, Readme) { try_page("README.md", 2); }
+TEST_F(CliPages, Tutorial) { try_page("docs/tutorial.md", 10); }
+TEST_F(CliPages, Jobs) { try_page("docs/jobs.md", 2); }
+TEST_F(CliPages, Interface) { try_page("docs/interface.md", 1); }
+TEST_F(CliPages, CustomEffects) { try_page("docs/custom_effects.md", 2); }
+TEST_F(CliPages, LooksScenesAndProbing) {
+    try_page("docs/looks.md", 1);
+    try_page("docs/scenes.md", 2);
+    try_page("docs/probe.md", 2);
+}
+TEST_F(CliPages, CommandLine) { try_page("docs/command_line.md", 24); }
+
+}  // namespace
+}  // namespace darkroom
