@@ -107,6 +107,15 @@ function(darkroom_module name)
   target_link_libraries(darkroom_${name} PUBLIC ${ARGN} PRIVATE darkroom_options)
 endfunction()
 
+# Compiles modules that are there with less than the -O3 of a release.
+function(darkroom_optimize level)
+  foreach(name ${ARGN})
+    if(TARGET darkroom_${name})
+      target_compile_options(darkroom_${name} PRIVATE $<$<CONFIG:Release>:${level}>)
+    endif()
+  endforeach()
+endfunction()
+
 # Has `output` made, a C++ initialiser for each file that matches one of PATTERNS below `folder`: its name there, behind
 # `prefix`, and its text. It is made again when one of them changes, without configuring.
 function(darkroom_embed target output folder prefix)
