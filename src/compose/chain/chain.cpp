@@ -389,6 +389,8 @@ RecordingTimes Chain::times() {
     for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(desc_.slots, recordings_); ++back) {
         const auto slot = static_cast<std::uint32_t>((recordings_ - back) % desc_.slots);
         const Timed& timed = timed_[slot];
+        // Of its first recording is not known that it has finished before another one takes its place.
+        if (!timers_.is_reset && recordings_ <= slot + desc_.slots) continue;
         if (timers_.read(slot, static_cast<std::uint32_t>(timed.passes.size() + 1), milliseconds_) <
             timed.passes.size())
             continue;

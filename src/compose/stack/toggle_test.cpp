@@ -2,6 +2,7 @@
 // Toggles, opacity, parameters and overrides: seen by the next record, and never more than was said.
 
 #include <bit>
+#include <utility>
 
 #include "compose/test_stacks/host.hpp"
 
@@ -86,6 +87,26 @@ TEST_F(ComposeToggles, NothingToDoIsOff) {
     test::must(composer.set_opacity(negative, 0));
     EXPECT_EQ(test::worst_difference(host.run(composer), picture), 0);
     EXPECT_EQ(composer.times().passes.size(), 1u) << "the pyramid of a bloom of 0 is computed";
+}
+
+// A host's device may lack what resets queries before they are read: then a recording resets them, and it must be known
+// that it has finished.
+TEST_F(ComposeToggles, TimesComeLaterWhereTheHostCannotResetQueries) {
+    gpu::Context& context = gpu::test::context();
+    if (context.traits.timestamp_valid_bits == 0) GTEST_SKIP() << "this device measures no times";
+    const test::Host host(bright_picture());
+    for (const bool can_reset : {true, false}) {
+        const bool could = std::exchange(context.traits.has_host_query_reset, can_reset);
+        Composer composer(host.device, {.frames_in_flight = 2, .has_timers = true});
+        add(composer, "negative");
+        test::must(composer.compile(host.compile_desc()));
+        context.traits.has_host_query_reset = could;
+        EXPECT_EQ(composer.times().passes.size(), 0U);
+        for (int recording = 1; recording <= 5; ++recording) {
+            static_cast<void>(host.run(composer));
+            EXPECT_EQ(composer.times().passes.size(), can_reset || recording > 2 ? 1U : 0U) << can_reset << recording;
+        }
+    }
 }
 
 TEST_F(ComposeToggles, OpacityMixesInputAndResult) {

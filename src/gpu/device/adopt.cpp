@@ -22,6 +22,7 @@ struct EnabledFeatures {
     bool has_synchronization2 = false;
     bool has_dynamic_rendering = false;
     bool has_robust_images = false;
+    bool has_host_query_reset = false;
 };
 
 EnabledFeatures read_chain(const VkPhysicalDeviceFeatures2* features) {
@@ -36,6 +37,12 @@ EnabledFeatures read_chain(const VkPhysicalDeviceFeatures2* features) {
             enabled.has_synchronization2 |= features13.synchronization2 == VK_TRUE;
             enabled.has_dynamic_rendering |= features13.dynamicRendering == VK_TRUE;
             enabled.has_robust_images |= features13.robustImageAccess == VK_TRUE;
+        } else if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES) {
+            const auto& features12 = *static_cast<const VkPhysicalDeviceVulkan12Features*>(structure);
+            enabled.has_host_query_reset |= features12.hostQueryReset == VK_TRUE;
+        } else if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_HOST_QUERY_RESET_FEATURES) {
+            const auto& single = *static_cast<const VkPhysicalDeviceHostQueryResetFeatures*>(structure);
+            enabled.has_host_query_reset |= single.hostQueryReset == VK_TRUE;
         } else if (link->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES) {
             const auto& single = *static_cast<const VkPhysicalDeviceSynchronization2Features*>(structure);
             enabled.has_synchronization2 |= single.synchronization2 == VK_TRUE;
@@ -147,6 +154,7 @@ Result<Device> Device::adopt(const AdoptDesc& desc) try {
     context->traits.has_extended_storage_formats = enabled.core.shaderStorageImageExtendedFormats == VK_TRUE;
     context->traits.has_storage_write_without_format = enabled.core.shaderStorageImageWriteWithoutFormat == VK_TRUE;
     context->traits.has_robust_images = enabled.has_robust_images;
+    context->traits.has_host_query_reset = enabled.has_host_query_reset;
     context->traits.has_wireframe = enabled.core.fillModeNonSolid == VK_TRUE;
     context->traits.has_depth_clamp = enabled.core.depthClamp == VK_TRUE;
     context->traits.has_debug_labels = has_debug_utils;

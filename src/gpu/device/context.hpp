@@ -34,6 +34,7 @@ struct Traits {
     bool has_extended_storage_formats = false;  ///< shaderStorageImageExtendedFormats: r8, rg16f, r11f_g11f_b10f ...
     bool has_storage_write_without_format = false;
     bool has_debug_labels = false;
+    bool has_host_query_reset = false;                         ///< hostQueryReset
     bool has_robust_images = false;                            ///< robustImageAccess
     bool has_wireframe = false;                                ///< fillModeNonSolid
     bool has_depth_clamp = false;                              ///< depthClamp

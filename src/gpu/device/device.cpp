@@ -225,9 +225,11 @@ Result<> create_device(Context& context, std::span<const char* const> wanted) {
     context.traits.has_storage_write_without_format = available.shaderStorageImageWriteWithoutFormat == VK_TRUE;
     context.traits.has_wireframe = available.fillModeNonSolid == VK_TRUE;
     context.traits.has_depth_clamp = available.depthClamp == VK_TRUE;
-    // For who submits on a device of ours; the library itself needs none. Every device has it.
+    // Every device has both. Semaphores are for who submits on a device of ours; the library itself needs none.
+    context.traits.has_host_query_reset = true;
     VkPhysicalDeviceVulkan12Features features12{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+        .hostQueryReset = VK_TRUE,
         .timelineSemaphore = VK_TRUE,
     };
     VkPhysicalDeviceSynchronization2Features synchronization{

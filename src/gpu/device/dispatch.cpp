@@ -94,6 +94,7 @@ void load_device_functions(Dispatch& table, Load& load) {
     load(table.CreateQueryPool, "vkCreateQueryPool");
     load(table.DestroyQueryPool, "vkDestroyQueryPool");
     load(table.GetQueryPoolResults, "vkGetQueryPoolResults");
+    load(table.ResetQueryPool, "vkResetQueryPool");
     load(table.CreateFence, "vkCreateFence");
     load(table.DestroyFence, "vkDestroyFence");
     load(table.ResetFences, "vkResetFences");

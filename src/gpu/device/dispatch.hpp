@@ -84,6 +84,7 @@ struct Dispatch {
     PFN_vkCreateQueryPool CreateQueryPool = nullptr;
     PFN_vkDestroyQueryPool DestroyQueryPool = nullptr;
     PFN_vkGetQueryPoolResults GetQueryPoolResults = nullptr;
+    PFN_vkResetQueryPool ResetQueryPool = nullptr;
     PFN_vkCreateFence CreateFence = nullptr;
     PFN_vkDestroyFence DestroyFence = nullptr;
     PFN_vkResetFences ResetFences = nullptr;

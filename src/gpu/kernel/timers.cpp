@@ -30,12 +30,15 @@ Result<Timers> Timers::create(Context& context, std::uint32_t slots, std::uint32
                            timers.pool),
         "creating the timestamp queries");
     if (!checked) return failure(std::move(checked));
+    timers.is_reset = context.traits.has_host_query_reset;
+    if (timers.is_reset) context.vk.ResetQueryPool(context.device, timers.pool, 0, slots * marks);
     return timers;
 }
 
 Timers::Timers(Timers&& other) noexcept { *this = std::move(other); }
 Timers& Timers::operator=(Timers&& other) noexcept {
     std::swap(pool, other.pool);
+    std::swap(is_reset, other.is_reset);
     std::swap(marks, other.marks);
     std::swap(ticks, other.ticks);
     std::swap(context, other.context);

@@ -54,6 +54,26 @@ TEST(Timers, AThousandPassesAreTimed) {
     EXPECT_EQ(moved.ticks.size(), marks);
 }
 
+// A query that nothing has reset yet may not be read.
+TEST(Timers, AreResetBeforeTheyAreReadWhereTheHostCan) {
+    static std::pair<std::uint32_t, std::uint32_t> reset;
+    reset = {};
+    Context context;
+    fill_null(context, 64);
+    context.vk.ResetQueryPool = [](VkDevice, VkQueryPool, std::uint32_t first, std::uint32_t count) {
+        reset = {first, count};
+    };
+    Result<Timers> later = Timers::create(context, 3, 5);
+    ASSERT_TRUE(later) << later.error().text;
+    EXPECT_FALSE(later->is_reset);
+    EXPECT_EQ(reset.second, 0U) << "the device may lack it";
+    context.traits.has_host_query_reset = true;
+    Result<Timers> timers = Timers::create(context, 3, 5);
+    ASSERT_TRUE(timers) << timers.error().text;
+    EXPECT_TRUE(timers->is_reset);
+    EXPECT_EQ(reset, (std::pair{0U, 15U}));
+}
+
 TEST(Timers, ACounterThatGoesRoundDoesNotMakeAPassLong) {
     Context context;
     fill_null(context, 36);
