@@ -11,6 +11,8 @@ namespace darkroom::test {
 [[nodiscard]] std::uint64_t allocation_count();
 /// And how much they asked for, together.
 [[nodiscard]] std::uint64_t allocated_bytes();
+/// Bytes that the calling thread holds: what it got less what it gave back, both without what was spared.
+[[nodiscard]] std::int64_t live_bytes();
 /// False under AddressSanitizer: the counts then stay 0.
 [[nodiscard]] bool counts_allocations();
 

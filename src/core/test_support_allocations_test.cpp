@@ -29,6 +29,16 @@ TEST(TestAllocations, CountAlignedOnes) {
     EXPECT_EQ(wide->value, 7);
 }
 
+TEST(TestAllocations, LiveBytesComeAndGo) {
+    if (!counts_allocations()) GTEST_SKIP() << "this build has its own operator new";
+    const std::int64_t before = live_bytes();
+    auto numbers = std::make_unique<std::vector<int>>(1000);
+    EXPECT_GE(live_bytes() - before, std::int64_t{1000} * 4);
+    EXPECT_EQ(numbers->size(), 1000u);
+    numbers.reset();
+    EXPECT_EQ(live_bytes(), before);
+}
+
 TEST(TestAllocations, ThatAreSparedDoNotFail) {
     if (!counts_allocations()) GTEST_SKIP() << "this build has its own operator new";
     const FailingAllocation failing(0);

@@ -33,7 +33,11 @@ struct State {
     std::size_t error = 0;
     std::vector<Call> calls;
     Failed failed;
-    std::map<std::uint64_t, std::string_view> alive;
+    struct Made {
+        std::string_view by;
+        std::uint64_t bytes = 0;
+    };
+    std::map<std::uint64_t, Made> alive;
     std::vector<std::string> wrongs;
 };
 
@@ -52,10 +56,10 @@ VkResult take_failure(const Row& row) {
     return all.failed.result;
 }
 
-void add(std::uint64_t handle, std::string_view by) {
+void add(std::uint64_t handle, std::string_view by, std::uint64_t bytes) {
     State& all = state();
     const std::lock_guard lock(all.mutex);
-    all.alive[handle] = by;
+    all.alive[handle] = {by, bytes};
 }
 
 /// False: nobody made it.
@@ -102,12 +106,20 @@ void spoil_count(const std::tuple<Args...>& args) {
 }
 
 template <class Out>
-void note_made(Out* out, std::string_view name, std::size_t count) {
+void note_made(Out* out, std::string_view name, std::size_t count, std::uint64_t bytes) {
     if constexpr (std::is_pointer_v<Out> && !std::is_const_v<Out> && !std::is_void_v<std::remove_pointer_t<Out>>)
-        for (const Out one : std::span(out, count)) add(number_of(one), name);
+        for (const Out one : std::span(out, count)) add(number_of(one), name, bytes);
 }
 template <class Other>
-void note_made(Other, std::string_view, std::size_t) {}
+void note_made(Other, std::string_view, std::size_t, std::uint64_t) {}
+
+template <class... Args>
+std::uint64_t bytes_of(const std::tuple<Args...>& args) {
+    if constexpr (sizeof...(Args) == 4)
+        if constexpr (std::is_same_v<std::tuple_element_t<1, std::tuple<Args...>>, const VkMemoryAllocateInfo*>)
+            return std::get<1>(args)->allocationSize;
+    return 0;
+}
 
 /// How many objects a call makes.
 template <class... Args>
@@ -150,7 +162,7 @@ struct Replaced<member> {
                 return error;
             }
             const VkResult result = function(args...);
-            if (result == VK_SUCCESS && makes && !is_pool(row.name)) note_made(out, row.name, count);
+            if (result == VK_SUCCESS && makes && !is_pool(row.name)) note_made(out, row.name, count, bytes_of(all));
             return result;
         } else {
             if constexpr (sizeof...(Args) >= 2) {
@@ -357,8 +369,15 @@ Failed failed() {
 std::vector<std::string> alive() {
     const std::lock_guard lock(state().mutex);
     std::vector<std::string> out;
-    for (const auto& [handle, by] : state().alive) out.emplace_back(by);
+    for (const auto& [handle, made] : state().alive) out.emplace_back(made.by);
     return out;
+}
+
+std::uint64_t memory_bytes() {
+    const std::lock_guard lock(state().mutex);
+    std::uint64_t bytes = 0;
+    for (const auto& [handle, made] : state().alive) bytes += made.bytes;
+    return bytes;
 }
 
 std::vector<std::string> take_wrongs() {

@@ -39,6 +39,8 @@ struct Failed {
 
 /// What was made and not destroyed, as names of the functions that make it.
 [[nodiscard]] std::vector<std::string> alive();
+/// Of the device's memory that is allocated and not freed.
+[[nodiscard]] std::uint64_t memory_bytes();
 /// What was destroyed that nobody had made, since the last call.
 [[nodiscard]] std::vector<std::string> take_wrongs();
 
