@@ -117,6 +117,40 @@ class CliPages : public test::CliFixture {
     std::size_t count_ = 0;
 };
 
+TEST_F(CliPages, TomlAndGlslAreRead) {
+    fs::create_directories(path("own/tables"));
+    fs::copy_file(path("film.cube"), path("own/tables/film.cube"));
+    fs::copy_file(path("my.toml"), path("own/cave.toml"));
+    fs::copy_file(fs::path(test::source_folder) / "examples/duotone.glsl", path("own/duotone.glsl"));
+    std::size_t looks = 0, events = 0, effects = 0;
+    for (const char* const page : {"README.md", "docs/tutorial.md", "docs/looks.md", "docs/interface.md",
+                                   "docs/custom_effects.md", "docs/embedding.md"})
+        for (const auto& [kind, text] : blocks_of_page(page)) {
+            test::Outcome outcome{.code = 0};
+            if (kind == "toml" && text.starts_with("[[event]]")) {
+                // They move the look before them.
+                ++events;
+                write("own/events.toml", text);
+                outcome = run({"develop", path("a.exr"), "--look", path("own/look.toml"), "--events",
+                               path("own/events.toml"), "-o", path("moved.png")});
+            } else if (kind == "toml") {
+                ++looks;
+                write("own/look.toml", (text.starts_with("format") ? "" : "format = 1\n") + text);
+                outcome = run({"plan", path("own/look.toml"), "--strict"});
+            } else if (kind == "glsl" && text.starts_with("// @effect") && text.find("...") == std::string::npos) {
+                ++effects;
+                outcome = run({"effects", write("page.glsl", text)});
+            }
+            EXPECT_EQ(outcome.code, 0) << page << ":\n" << text << outcome.err;
+        }
+    EXPECT_GE(looks, 8U);
+    EXPECT_GE(events, 2U);
+    EXPECT_GE(effects, 2U);
+    std::string scene;
+    for (const auto& [kind, text] : blocks_of_page("docs/scenes.md"))
+        if (kind == "toml") scene += text;
+    EXPECT_EQ(run({"render", write("page.scene.toml", scene), "--size", "64x36", "-o", path("scene.png")}).err, "");
+}
 TEST_F(CliPages, Readme) { try_page("README.md", 2); }
 TEST_F(CliPages, Tutorial) { try_page("docs/tutorial.md", 10); }
 TEST_F(CliPages, Jobs) { try_page("docs/jobs.md", 2); }

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""page_code.py TREE GENERATED COMPILER: the C++ of pages compiles between what a host has, and what pages quote stands in
+the file that they quote."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+COMPILED = ("README.md", "docs/embedding.md", "docs/interface.md", "docs/looks.md", "docs/console.md",
+            "docs/controllers.md", "docs/temporal.md")
+# Page, what its blocks begin with, and where they stand.
+QUOTED = (("docs/embedding.md", "darkroom::Device device = check(", "examples/embed.cpp"),
+          ("docs/embedding.md", "// Darkroom is told how the images are", "examples/embed.cpp"),
+          ("docs/embedding.md", "// @effect duotone", "examples/duotone.glsl"),
+          ("docs/tutorial.md", "struct Negative", "effects/negative/negative.hpp"),
+          ("docs/tutorial.md", "constexpr auto negative_rows", "effects/negative/negative.cpp"),
+          ("docs/tutorial.md", "vec4 negative", "effects/negative/negative.glsl"),
+          ("docs/tutorial.md", "const EffectInfo& effect_info", "effects/negative/negative.cpp"))
+HOST = """
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <darkroom/console.hpp>
+#include <darkroom/controllers.hpp>
+#include <darkroom/darkroom.hpp>
+#include <darkroom/hud_inertia.hpp>
+#include <darkroom/kernel_file.hpp>
+#include <darkroom/look.hpp>
+#include <darkroom/temporal_check.hpp>
+namespace page {
+struct Host : darkroom::AdoptDesc { VkPhysicalDevice gpu; std::uint32_t family; VkPhysicalDeviceFeatures2 features; };
+struct Graph { template <class... Any> void barrier(const Any&...) {} };
+template <class... Any> void report(const Any&...);
+template <class... Any> void show(const Any&...);
+template <class... Any> void save(const Any&...);
+template <class T> T check(darkroom::Result<T>);
+void log(const std::string&);
+void draw_scene(const darkroom::Matrix&);
+void draw_motion(const darkroom::Matrix&, const darkroom::Matrix&);
+std::span<const std::uint32_t> words_of(const darkroom::Vec2&);
+extern Host host;
+extern Graph graph;
+extern darkroom::Device device;
+extern darkroom::Composer composer;
+extern darkroom::Console console;
+extern darkroom::HudInertia inertia;
+extern darkroom::LogSink print;
+extern const darkroom::Plan* plan;
+extern darkroom::Handle bloom, encoded, warp;
+extern darkroom::ImageRef target, hdr, interface, pixel, view, scene_color, mask, exposure_texel,
+    color_before_glass_and_particles;
+extern darkroom::Camera camera;
+extern darkroom::CompileDesc desc, compile_desc;
+extern darkroom::Frame frame;
+extern darkroom::Look look;
+extern darkroom::Matrix projection, previous_projection, previous_drawn_with;
+extern std::span<const std::byte> kernels, bytes_of_the_file;
+extern std::span<const float> depth_numbers, velocity_numbers;
+extern std::array<float, 2> previous_jitter;
+extern VkPhysicalDeviceFeatures available;
+extern VkCommandBuffer commands;
+extern VkExtent2D extent, output, scene, swapchain_extent;
+extern VkImage swapchain_images[3];
+extern VkImageView swapchain_views[3];
+extern VkFormat swapchain_format;
+extern VkImageUsageFlags usage;
+extern VkSamplerCreateInfo sampler_info;
+extern std::uint64_t frame_index;
+extern std::int32_t x, y;
+extern std::size_t index;
+extern double seconds;
+extern float dt, yaw_degrees, velocity_z;
+extern bool is_on_ground, is_menu_open, is_cut;
+"""
+
+
+def blocks_of(page):
+    return re.findall(r"^```(\w+)\n(.*?)^```", page.read_text(), re.M | re.S)
+
+
+def bare(text):
+    return re.sub(r"\s+", "", re.sub(r"//.*", "", text))
+
+
+def main():
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    tree, generated, compiler = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
+    wrong, code, count = [], HOST, 0
+    for page, begin, source in QUOTED:
+        quoted = [text for _, text in blocks_of(tree / page) if text.startswith(begin)]
+        if not quoted or bare(quoted[0]) not in bare((tree / source).read_text()):
+            wrong.append(f"{page}: what begins with '{begin}' does not stand in {source}")
+    for page in COMPILED:
+        for kind, text in blocks_of(tree / page):
+            # Vma is not here; a fragment of an initializer is no statement.
+            if kind != "cpp" or "Vma" in text or text.startswith("."):
+                continue
+            text = re.sub(r"^#include.*$", "", text, flags=re.M).replace(", ...}", "}")
+            count += 1
+            code += f'void block_{count}() {{\n#line 1 "{page}, block {count}"\n{text}}}\n'
+    run = subprocess.run([compiler, "-std=c++20", "-fsyntax-only", "-w", "-I", f"{tree}/include", "-I",
+                          f"{generated}/include", "-x", "c++", "-"], input=code + "}\n", capture_output=True, text=True)
+    if run.returncode:
+        wrong.append(run.stderr)
+    if count < 25:
+        wrong.append(f"{count} blocks of C++ were found, 25 and more are there")
+    print("\n".join(wrong), end="")
+    sys.exit(1 if wrong else 0)
+
+
+main()
