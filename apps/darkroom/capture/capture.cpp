@@ -254,7 +254,7 @@ int run(const Options& options) {
 
 Command add_capture(CommandFlags program) {
     const CommandFlags command = program.add_command(
-        "capture", "Draws what temporal filters are given of a scene, at several sizes, and its truth");
+        "capture", "Draws the frames of a scene that temporal filters get, at several sizes, and their truth");
     command.examples(
         "darkroom capture scene.toml --frames 0-1 --scales 1,2 --samples 4 --size 64x36 -o captured\n"
         "darkroom capture scene.toml --frames 0-1 --truth-frames 1 --samples 4 --size 64x36 -o truth\n"
@@ -264,19 +264,19 @@ Command add_capture(CommandFlags program) {
     command.add_option("-o,--output,--out", options->folder, "The folder; it is made where it is not there")
         .type_name("DIR")
         .required();
-    command.add_option("--frames", options->frames, "Those that filters are given: 1-100, 1,5,9-12")
+    command.add_option("--frames", options->frames, "Frames that filters get: 1-100, 1,5,9-12")
         .type_name("A-B")
         .required();
-    command.add_option("--truth-frames", options->truth_frames, "Those among them that have a truth; default: all")
+    command.add_option("--truth-frames", options->truth_frames, "Frames among them that have a truth; default: all")
         .type_name("A-B");
     options->frames_per_second.add_to(command, "Frames a second").type_name("N").default_str("24");
-    command.add_option("--scales", options->scales, "Lines of the picture for each of a frame that filters are given")
+    command.add_option("--scales", options->scales, "Lines of the picture for each line of the frames that filters get")
         .type_name("S,S")
         .capture_default();
-    options->samples.add_to(command, "Places within a pixel that the truth is the mean of")
+    options->samples.add_to(command, "Number of places within a pixel that the truth averages")
         .type_name("N")
         .default_str(fmt::format("{}", usual_samples));
-    command.add_option("--mean", options->mean, "Of c / (1 + max c), as a display shows it, or of light itself")
+    command.add_option("--mean", options->mean, "Mean of c / (1 + max c), as a display shows it, or of light itself")
         .type_name("tone-mapped|linear")
         .capture_default();
     options->drawn.add_to(command, default_extent, 1, "The moment");

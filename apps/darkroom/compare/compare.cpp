@@ -203,8 +203,8 @@ Command add_compare(CommandFlags program) {
         "darkroom compare reference.png changed.png --fail-flip 0.9 --diff difference.png\n"
         "darkroom compare expected/ pictures/ --fail-max 0 --html review.html");
     command.add_option("A", options->a, "The reference: a file, a folder or a sequence").required();
-    command.add_option("B", options->b, "What is under test, of the same kind").required();
-    options->fail_max.add_to(command, "Fails if a channel is further apart anywhere").type_name("X");
+    command.add_option("B", options->b, "The pictures under test, of the same kind").required();
+    options->fail_max.add_to(command, "Fails if a channel differs by more anywhere").type_name("X");
     options->fail_psnr.add_to(command, "Fails if the PSNR is below this").type_name("DB");
     options->fail_flip.add_to(command, "Fails if the mean FLIP is above this").type_name("X");
     options->fail_above.add_to(command, "Another name of --fail-flip").type_name("X");

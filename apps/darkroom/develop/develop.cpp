@@ -468,16 +468,15 @@ Command add_develop(CommandFlags program, std::span<const darkroom::LookEntry> n
         .type_name("WxH[:fit|fill|stretch]");
     command
         .add_option("--output-size", options->output_size,
-                    "Of the picture, where frames are smaller: what upscalers make, else bilinear")
+                    "Size of the picture of smaller frames, by upscalers or bilinear")
         .type_name("WxH");
     command.add_flag("--keep-layers", options->keeps_layers,
                      "Puts the frame's other layers beside the picture in an .exr file");
-    command.add_flag("--reference", options->is_reference, "By the CPU references alone, in double precision");
-    command
-        .add_option("--frames", options->frames, "Of the inputs those with these numbers: 8, 1-100, 1-100x2, 1,5,9-12")
+    command.add_flag("--reference", options->is_reference, "Develops by the CPU references alone, in double precision");
+    command.add_option("--frames", options->frames, "Numbers of the inputs to develop: 8, 1-100, 1-100x2, 1,5,9-12")
         .type_name("A-B");
-    options->time.add_to(command, "For effects that move; default: what the frame says, or 0").type_name("S");
-    options->frames_per_second.add_to(command, "A frame is at its number / N, motion that of 1 / N s").type_name("N");
+    options->time.add_to(command, "Time for effects that move; default: the frame's, or 0").type_name("S");
+    options->frames_per_second.add_to(command, "Frames a second, for times and motion").type_name("N");
     options->frame.add_to(command);
     options->write.add_to(command);
     options->run.add_to(command);

@@ -236,23 +236,25 @@ Command add_farm_slurm(CommandFlags farm, std::span<const darkroom::LookEntry> n
         "darkroom farm slurm 'shot.####.exr' -o . --partition gpu --gpus 1 --time 30 --dry-run -- --exposure 2\n"
         "darkroom farm slurm scene.toml -o 'scene.####.png' --frames 0-99 --dry-run -- --size 64x36");
     const auto options = std::make_shared<SlurmOptions>();
-    options->work.add_to(command, "Of the sequence those with these numbers; of a scene all that there are");
+    options->work.add_to(command, "Numbers of the frames: of a sequence those to make, of a scene all");
     const std::string group = "The job";
     options->chunk.add_to(command, "Frames of a task").type_name("N").default_str("10").group(group);
-    command.add_option("--partition", options->partition, "Where tasks run, as for sbatch")
+    command.add_option("--partition", options->partition, "Partition in which tasks run, as for sbatch")
         .type_name("NAME")
         .group(group);
-    command.add_option("--time", options->time, "How long a task may take, as for sbatch: minutes, or HH:MM:SS")
+    command.add_option("--time", options->time, "Longest time of a task, as for sbatch: minutes, or HH:MM:SS")
         .type_name("TIME")
         .group(group);
-    command.add_option("--gpus", options->gpus, "Of each task, as for sbatch: a number, or TYPE:N")
+    command.add_option("--gpus", options->gpus, "GPUs of each task, as for sbatch: a number, or TYPE:N")
         .type_name("N")
         .group(group);
-    command.add_option("--account", options->account, "Who is charged, as for sbatch").type_name("NAME").group(group);
+    command.add_option("--account", options->account, "Account that is charged, as for sbatch")
+        .type_name("NAME")
+        .group(group);
     options->cpus.add_to(command, "Processors of each task; default: Slurm's, which is 1").type_name("N").group(group);
     command
         .add_option("--program", options->program,
-                    "What runs darkroom on a node, as a shell has it; default: this program, where it lies here")
+                    "Command that runs darkroom on a node, as a shell takes it; default: this program at its path here")
         .type_name("COMMAND")
         .group(group);
     command.add_flag("--dry-run", options->is_dry_run, "Prints the script, and submits nothing").group(group);

@@ -133,7 +133,7 @@ Command add_farm_status(CommandFlags farm) {
         "darkroom farm status shot.farm\n"
         "darkroom farm status shot.farm --json");
     const auto options = std::make_shared<StatusOptions>();
-    command.add_option("FOLDER", options->folder, "Where the pictures are, or NAME.farm in it").required();
+    command.add_option("FOLDER", options->folder, "Folder of the pictures, or NAME.farm in it").required();
     command.add_flag("--json", options->is_json, "One document for programs");
     return {command, [options] {
                 const Result<> done = run(*options);

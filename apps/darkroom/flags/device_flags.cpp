@@ -21,10 +21,10 @@ void DeviceFlags::add_to(CommandFlags command) {
     command.add_option("--device", device_, "Name (or a part of it) or index; see `darkroom devices`")
         .type_name("NAME|INDEX")
         .group(group);
-    command.add_option("--kernels", kernels_, "Which stage runs the kernels")
+    command.add_option("--kernels", kernels_, "Stage that runs the kernels")
         .type_name("auto|compute|raster")
         .group(group);
-    command.add_flag("--no-fuse", is_unfused_, "Every effect in a pass of its own").group(group);
+    command.add_flag("--no-fuse", is_unfused_, "Gives every effect a pass of its own").group(group);
 }
 
 Result<darkroom::KernelStage> DeviceFlags::stage() const {

@@ -11,11 +11,11 @@ using darkroom::Result;
 
 void FrameFlags::add_to(CommandFlags command) {
     const std::string group = "The frame";
-    command.add_option("--map", maps_, "What a layer is called in the file: depth=NAME, normals=, velocity=, color=")
+    command.add_option("--map", maps_, "Name of a layer in the file: depth=NAME, normals=, velocity=, color=")
         .type_name("LAYER=NAME")
         .repeated()
         .group(group);
-    command.add_option("--eye", eye_, "Of a stereo picture left, right, or another view; both with %V in OUT")
+    command.add_option("--eye", eye_, "View of a stereo picture: left, right, or another; both needs %V in OUT")
         .type_name("NAME")
         .group(group);
     command.add_flag("--overscan", keeps_overscan, "Develops all pixels, those outside of the display window, too")
@@ -26,7 +26,7 @@ void FrameFlags::add_to(CommandFlags command) {
     command.add_option("--camera", camera_, "A camera file (TOML)").type_name("FILE").group(group);
     command
         .add_option("--input-space", input_space_,
-                    fmt::format("What the numbers of the colour mean, whatever the file says: {}, or a space of --ocio",
+                    fmt::format("Colour space of the file's numbers, whatever the file says: {}, or a space of --ocio",
                                 darkroom::input_space_names()))
         .type_name("SPACE")
         .group(group);

@@ -124,12 +124,12 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
                     "--contrast-gamma-... are for it")
         .type_name("FILE")
         .group(group);
-    command.add_option("--game", game_, "What a document's binding {{NAME}} shows: health=80")
+    command.add_option("--game", game_, "Value that a document's binding {{NAME}} shows: health=80")
         .type_name("NAME=VALUE")
         .repeated()
         .group(group);
     if (has_look_flag)
-        command.add_option("--events", events, "What happens to the look: a file of [[event]]s (TOML)")
+        command.add_option("--events", events, "Events that change the look: a file of [[event]]s (TOML)")
             .type_name("FILE")
             .group(group);
     command.add_option("--order", order_, "Order of the flat table").type_name("documented|scene_linear").group(group);
@@ -138,7 +138,7 @@ void LookFlags::add_to(CommandFlags command, bool has_look_flag, std::span<const
         .repeated()
         .group(group);
     command.add_flag("--strict", is_strict_, "Unknown keys and values out of range in a look are errors").group(group);
-    command.add_flag("--no-postprocess", is_off_, "Only the look's exposure, default tone mapping and default encoding")
+    command.add_flag("--no-postprocess", is_off_, "Leaves the look's exposure, default tone mapping and encoding")
         .group(group);
     command
         .add_option(

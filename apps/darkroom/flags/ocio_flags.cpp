@@ -14,8 +14,7 @@ void OcioFlags::add_to(CommandFlags command, bool has_view) {
         .type_name("FILE")
         .group(group);
     if (!has_view) return;
-    command
-        .add_option("--display", display_, "For this display of it, in place of the look's tone mapping and encoding")
+    command.add_option("--display", display_, "Display of it, in place of the look's tone mapping and encoding")
         .type_name("NAME")
         .group(group);
     command.add_option("--view", view_, "A view of that display; default: its usual one")

@@ -26,10 +26,12 @@ constexpr std::array<std::string_view, 3> format_names{"y4m", "rgb24", "rgba64le
 }  // namespace
 
 void SpaceFlags::add_to(CommandFlags command, const std::string& group) {
-    const Flag name =
-        command.add_option("--output-space", name_, "What the picture is for: " + darkroom::output_space_names(", "))
-            .type_name("SPACE");
-    const Flag peak = peak_.add_to(command, "Of pq and hlg, the display's").type_name("CD/M2").default_str("1000");
+    const Flag name = command
+                          .add_option("--output-space", name_,
+                                      "Colour space that the picture is for: " + darkroom::output_space_names(", "))
+                          .type_name("SPACE");
+    const Flag peak =
+        peak_.add_to(command, "The display's peak, for pq and hlg").type_name("CD/M2").default_str("1000");
     if (group.empty()) return;
     for (Flag flag : {name, peak}) flag.group(group);
 }
@@ -60,10 +62,10 @@ void WriteFlags::add_to(CommandFlags command) {
                     "PNG: [0, 12]")
         .type_name("NAME")
         .group(group);
-    command.add_option("--format", format_, "Of -o -, to another program: 8 bits, BT.709 limited; 8 bits; 16 bits")
+    command.add_option("--format", format_, "Form of -o -: 8 bits of BT.709 limited, 8 bits, 16 bits")
         .type_name(fmt::format("{}", fmt::join(format_names, "|")))
         .group(group);
-    quality_.add_to(command, "Of JPEG files").type_name("N").default_str("95").group(group);
+    quality_.add_to(command, "Quality of JPEG files").type_name("N").default_str("95").group(group);
     ocio.add_to(command, true);
 }
 
@@ -127,12 +129,11 @@ void RunFlags::add_to(CommandFlags command) {
         .add_flag("--keep-going", keeps_going, "A frame that fails does not stop the others; all are listed at the end")
         .group(group);
     command.add_flag("--mkdir", makes_folders_, "Makes the folders of output files that are not there").group(group);
-    command.add_option("--progress", progress_, "What standard error has: text, or a JSON object a line")
+    command.add_option("--progress", progress_, "Form of standard error: text, or a JSON object a line")
         .type_name("text|json")
         .group(group);
     command
-        .add_flag("--timings", has_timings,
-                  "Prints GPU milliseconds of every pass; of several frames each stage's, too")
+        .add_flag("--timings", has_timings, "Prints GPU milliseconds of every pass, and of stages for several frames")
         .group(group);
 }
 

@@ -294,7 +294,7 @@ int run(const CLI::App& program, const Options& options) {
 
 Command add_completion(CommandFlags program) {
     const CommandFlags command =
-        program.add_command("completion", "Prints what makes a shell complete commands and flags");
+        program.add_command("completion", "Prints a script that lets a shell complete commands and flags");
     command.examples(
         "darkroom completion bash --output darkroom.bash\n"
         "darkroom completion zsh --output _darkroom\n"

@@ -261,8 +261,8 @@ Command add_judge(CommandFlags program) {
         .required();
     command.add_option("-o,--output,--out", options->folder, "A folder for judge.json and a page with the pictures")
         .type_name("DIR");
-    command.add_option("--frames", options->frames, "Those of the truth that count; default: all").type_name("A-B");
-    command.add_option("--edge", options->edge, "Where a slanted edge crosses the picture, whose sharpness is measured")
+    command.add_option("--frames", options->frames, "Frames of the truth that count; default: all").type_name("A-B");
+    command.add_option("--edge", options->edge, "Place of a slanted edge whose sharpness is measured")
         .type_name("X,Y,WxH");
     command.add_flag("--json", options->is_json, "For programs");
     return {command, [options] { return run(*options); }};

@@ -185,7 +185,7 @@ Command add_new(CommandFlags program) {
         "darkroom new scene room --force");
     const auto options = std::make_shared<Options>();
     command.add_option("KIND", options->kind, "effect, look or scene").required().option_text("effect|look|scene");
-    command.add_option("NAME", options->name, "Of what is made, and of its file: NAME.glsl, .toml or .scene.toml")
+    command.add_option("NAME", options->name, "Name of the thing and of its file: NAME.glsl, .toml or .scene.toml")
         .required();
     command.add_flag("--force", options->is_forced, "Replaces a file that is there already");
     return {command, [options] {

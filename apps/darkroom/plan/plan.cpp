@@ -148,20 +148,20 @@ Command add_plan(CommandFlags program, std::span<const darkroom::LookEntry> name
         "A look file or a scene (TOML), whose renderer gives all layers. Default: the flat table at its defaults");
     command.add_flag("--json", options->is_json, "For programs");
     command.add_flag("--as-stack", options->wants_stack,
-                     "Instead of a plan the look itself: a flat table as the [[stack]] that it stands for");
+                     "Prints the look itself: a flat table as the [[stack]] that it stands for");
     command.add_option("--size", options->size, "Size of the picture, default 1920x1080 or that of --input")
         .type_name("WxH");
     command.add_option("--input", options->frame, "A frame: its layers (depth, normals, motion, shadows) are there")
         .type_name("FRAME");
     command.add_option("--bits", options->bits, "Samples of the target").type_name("8|16|half|float");
     options->space.add_to(command, "");
-    const Flag statistics =
-        command.add_flag("--statistics", options->wants_statistics,
-                         "What the device's compiler makes of each kernel: registers, waves, instructions, cycles");
-    command.add_option("--chip", options->chip, "With --statistics: the graphics card that milliseconds are of")
+    const Flag statistics = command.add_flag(
+        "--statistics", options->wants_statistics,
+        "Prints what the device's compiler makes of each kernel: registers, waves, instructions, cycles");
+    command.add_option("--chip", options->chip, "Graphics card whose milliseconds --statistics gives")
         .type_name("NAME")
         .needs(statistics);
-    command.add_option("--loops", options->loops, "With --statistics: how often the loops of a kernel run")
+    command.add_option("--loops", options->loops, "Number of rounds that a kernel's loops run, for --statistics")
         .type_name("KERNEL=N,...")
         .one_value()
         .needs(statistics);

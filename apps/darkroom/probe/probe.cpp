@@ -368,7 +368,7 @@ Command add_probe(CommandFlags program, std::span<const darkroom::LookEntry> nam
         .required();
     command.add_flag("--json", options->is_json, "For programs");
     command.add_option("--size", options->size, "As of develop").type_name("WxH[:fit|fill|stretch]");
-    options->time.add_to(command, "For effects that move; default: what the frame says, or 0").type_name("S");
+    options->time.add_to(command, "Time for effects that move; default: the frame's, or 0").type_name("S");
     options->frame.add_to(command);
     options->ocio.add_to(command, false);
     options->device.add_to(command);

@@ -42,11 +42,13 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
         .type_name("OUT.exr");
     add_moments(command);
     drawn.add_to(command, default_extent, 1, moment_group);
-    samples_.add_to(command, "Places within a pixel that its light is the mean of; on top of --msaa")
+    samples_.add_to(command, "Number of places within a pixel whose light is averaged, on top of --msaa")
         .type_name("N")
         .default_str(fmt::format("what the scene says, or {}", usual_samples))
         .group(SceneFlags::drawing_group);
-    render_scale_.add_to(command, "Lines that are drawn for each of the picture: what upscalers make, else bilinear")
+    render_scale_
+        .add_to(command,
+                "Lines that are drawn for each line of the picture; upscalers make the others, else a bilinear filter")
         .type_name("N")
         .default_str("1")
         .group(SceneFlags::drawing_group);
@@ -58,7 +60,7 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
 
 void RenderFlags::add_moments(CommandFlags command) {
     const std::string group = moment_group;
-    time_.add_to(command, "Since the scene's beginning, default: what the scene says, or 0")
+    time_.add_to(command, "Time since the scene's beginning; default: what the scene says, or 0")
         .type_name("S")
         .group(group);
     command

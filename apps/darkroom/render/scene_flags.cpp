@@ -72,16 +72,20 @@ void SceneFlags::add_to(CommandFlags command, VkExtent2D usual_extent, std::uint
                         const std::string& seed_group) {
     default_extent_ = usual_extent;
     usual_msaa_ = msaa;
-    width_.add_to(command, "Of the picture").type_name("PIXELS").default_str(fmt::format("{}", usual_extent.width));
-    height_.add_to(command, "Of the picture").type_name("PIXELS").default_str(fmt::format("{}", usual_extent.height));
+    width_.add_to(command, "Width of the picture")
+        .type_name("PIXELS")
+        .default_str(fmt::format("{}", usual_extent.width));
+    height_.add_to(command, "Height of the picture")
+        .type_name("PIXELS")
+        .default_str(fmt::format("{}", usual_extent.height));
     command.add_option("--size", size_, "Both at once").type_name("WxH");
     command.add_flag("--own-files", has_own_files_,
                      "Refuses files that the scene, its prefabs or models name outside of their folders");
-    command.add_option("--schemas", schemas_, "Taken for the sake of old command lines; there is nothing to check")
+    command.add_option("--schemas", schemas_, "Does nothing; old command lines have it")
         .repeated()
         .type_name("DIR")
         .repeated();
-    seed_.add_to(command, "Of the particles").type_name("N").default_str("0").group(seed_group);
+    seed_.add_to(command, "Seed of the particles").type_name("N").default_str("0").group(seed_group);
     add_camera(command);
     add_drawing(command);
 }
@@ -140,10 +144,10 @@ Result<darkroom::render::RenderDesc> SceneFlags::desc() const {
 
 void SceneFlags::add_camera(CommandFlags command) {
     const std::string group = "The camera, each on top of the scene's own";
-    distance_.add_to(command, "From the target").type_name("METRES").group(group);
-    yaw_.add_to(command, "Around the target").type_name("DEGREES").group(group);
-    pitch_.add_to(command, "Above the target").type_name("DEGREES").group(group);
-    command.add_option("--target", target_, "What is looked at; the camera moves with it")
+    distance_.add_to(command, "Distance from the target").type_name("METRES").group(group);
+    yaw_.add_to(command, "Angle around the target").type_name("DEGREES").group(group);
+    pitch_.add_to(command, "Angle above the target").type_name("DEGREES").group(group);
+    command.add_option("--target", target_, "Point that the camera looks at; the camera moves with it")
         .type_name("X,Y,Z")
         .group(group);
     field_of_view_.add_to(command, "Vertical field of view").type_name("DEGREES").group(group);
@@ -151,15 +155,17 @@ void SceneFlags::add_camera(CommandFlags command) {
 
 void SceneFlags::add_drawing(CommandFlags command) {
     const std::string group = drawing_group;
-    command.add_flag("--no-grid", has_no_grid_, "No grid on the ground").group(group);
+    command.add_flag("--no-grid", has_no_grid_, "Draws no grid on the ground").group(group);
     command.add_option("--debug-mode", debug_mode_, "Instead of the picture; neither tone-mapped nor post-processed")
         .type_name("wireframe|normals|depth|uv|unlit|metalrough")
         .group(group);
-    command.add_flag("--wireframe-overlay", has_wireframe_overlay_, "Edges of all triangles on top").group(group);
-    command.add_flag("--show-normals", has_normal_arrows_, "An arrow for the normal of every vertex").group(group);
-    command.add_flag("--no-tonemapping", has_no_tone_mapping_, "Light above 1 is cut off").group(group);
-    command.add_flag("--no-shadows", has_no_shadows_, "No light casts shadows").group(group);
-    shadow_resolution_.add_to(command, "Of each cascade of a shadow map")
+    command.add_flag("--wireframe-overlay", has_wireframe_overlay_, "Draws the edges of all triangles on top")
+        .group(group);
+    command.add_flag("--show-normals", has_normal_arrows_, "Draws an arrow for the normal of every vertex")
+        .group(group);
+    command.add_flag("--no-tonemapping", has_no_tone_mapping_, "Cuts off light above 1").group(group);
+    command.add_flag("--no-shadows", has_no_shadows_, "Lets no light cast shadows").group(group);
+    shadow_resolution_.add_to(command, "Resolution of each cascade of a shadow map")
         .type_name("TEXELS")
         .default_str(fmt::format("{}", darkroom::render::RenderDesc().cascades.resolution))
         .group(group);

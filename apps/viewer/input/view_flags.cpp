@@ -57,23 +57,25 @@ void ViewFlags::add_to(CommandFlags command, bool is_edit, std::span<const darkr
         "A scene (.toml), a model (.glb, .gltf), a frame or picture, or a sequence: shot.####.exr; a look "
         "(.toml) is shown on a frame that ships, or on what stands beside it");
     const std::string group = "The window";
-    command.add_flag("--fullscreen", is_fullscreen_, "The whole screen").group(group);
-    command.add_option("--present", presentation_, "With the display; with it, the newest frame; at once")
+    command.add_flag("--fullscreen", is_fullscreen_, "Fills the screen").group(group);
+    command
+        .add_option(
+            "--present", presentation_,
+            "vsync waits for the display, mailbox shows the newest frame at a refresh, immediate waits for nothing")
         .type_name("vsync|mailbox|immediate")
         .capture_default()
         .group(group);
     command
-        .add_option("--range", range_,
-                    "High: light beyond white, where the display has it; with --frames the range is the standard one")
+        .add_option("--range", range_, "high shows light beyond white where the display can; --frames takes standard")
         .type_name("standard|high")
         .capture_default()
         .group(group);
-    peak_.add_to(command, "Of a display of high range: the brightest that it shows")
+    peak_.add_to(command, "Peak luminance of a display of high range")
         .type_name("CD/M2")
         .default_str("1000")
         .group(group);
     frames_.add_to(command, "Shows so many frames, 1 / fps seconds apart, and ends").type_name("N").group(group);
-    frames_per_second_.add_to(command, "Of --frames, and of a sequence")
+    frames_per_second_.add_to(command, "Frames a second, for --frames and for a sequence")
         .type_name("N")
         .default_str(fmt::format("{}", usual_frames_per_second))
         .group(group);
@@ -89,17 +91,21 @@ void ViewFlags::add_to(CommandFlags command, bool is_edit, std::span<const darkr
     command.add_option("--screenshot", screenshot_, "Stores the last frame's picture, and ends (--frames 1)")
         .type_name("OUT")
         .group(group);
-    command.add_option("--window-screenshot", window_screenshot_, "The same of the window, with all that lies over it")
+    command
+        .add_option("--window-screenshot", window_screenshot_,
+                    "Stores the window's last picture, with all that lies over it")
         .type_name("OUT")
         .group(group);
     command
         .add_flag("--commands", obeys_input_,
                   "Obeys the console's commands from standard input, a line each, and prints what they answer")
         .group(group);
-    command.add_flag("--help-keys", asks_for_keys_, "What keys and mouse do").group(group);
+    command.add_flag("--help-keys", asks_for_keys_, "Prints what keys and mouse do").group(group);
     if (is_edit) command.add_flag("--auto-orbit", turns_, "The camera goes round by itself").group(group);
     const std::string frame_group = "A stored frame";
-    command.add_option("--map", maps_, "Where a layer is: depth=NAME, normals=PREFIX, velocity=PREFIX, color=PREFIX")
+    command
+        .add_option("--map", maps_,
+                    "Name of a layer in the file: depth=NAME, normals=PREFIX, velocity=PREFIX, color=PREFIX")
         .repeated()
         .type_name("LAYER=NAME")
         .group(frame_group);

@@ -219,7 +219,7 @@ void EditPanels::draw_status(const Input& input, const PictureView& picture) {
     if (errors + warnings > 0) ImGui::PopStyleColor();
     look_.note_place("status/said");
     if (ImGui::IsItemClicked()) is_messages_wanted_ = true;
-    tip("What was said last. A click lists all of it.");
+    tip("The newest message. A click lists them all.");
 }
 
 void EditPanels::draw_below(const Input& input, PictureView& picture) {

@@ -103,8 +103,8 @@ void draw_popup(PanelState& state) {
         is_taken = text_field("##name", wanted.is_layer ? "Name, such as night" : "Event, such as hit", wanted.name,
                               ImGuiInputTextFlags_EnterReturnsTrue);
         state.note("mover/name");
-        tooltip(wanted.is_layer ? "What a game calls the layer by: letters, digits, '_' and '-'."
-                                : "What a game fires the pulse by: letters, digits, '_' and '-'.");
+        tooltip(wanted.is_layer ? "Name by which a game calls the layer: letters, digits, '_' and '-'."
+                                : "Event by which a game fires the pulse: letters, digits, '_' and '-'.");
     }
     draw_choices(state, all, wanted);
     const bool can_add = !wanted.entry.empty() && (wanted.layer || is_look_name(wanted.name));

@@ -21,7 +21,7 @@ struct WireText {
 
 WireText text_of(std::string_view wire) {
     if (wire == "input") return {"The picture that it changes.", "what comes before it"};
-    if (wire == "source") return {"What its passes read in place of the picture.", "the picture"};
+    if (wire == "source") return {"The picture that its passes read instead.", "the picture"};
     if (wire == "second") return {"The second picture that it reads.", "none"};
     return {"Luminance of this picture scales its opacity, pixel by pixel.", "none"};
 }

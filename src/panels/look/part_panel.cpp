@@ -60,11 +60,11 @@ void draw_mover(PanelState& state, edit::Mover mover) {
     if (values.empty()) return state.part.reset();
     const std::string name = edit::name_of(state.look(), mover);
     const bool has_own_values = mover.is_layer && state.look().layers[mover.number].file.empty();
-    const char* sentence = "Added to a value when its event is fired, and dies down.";
-    if (mover.is_layer) sentence = "Blended over the values of the stack, by its weight.";
+    const char* sentence = "Adds to a value when its event fires, and dies down.";
+    if (mover.is_layer) sentence = "Goes over the values of the stack, by its weight.";
     if (has_own_values)
         sentence =
-            "Blended over the values of the stack, by its weight. The menu of a value, on the right button, takes it "
+            "Goes over the values of the stack, by its weight. The menu of a value, on the right button, takes it "
             "out.";
     draw_head(name, sentence);
     if (!mover.is_layer) {
@@ -100,7 +100,7 @@ void draw_mover(PanelState& state, edit::Mover mover) {
     }
     if (!mover.is_layer) return;
     const std::string& file = state.look().layers[mover.number].file;
-    if (!file.empty()) draw_heading(fmt::format("Its values are those of {}.", printable(file)));
+    if (!file.empty()) draw_heading(fmt::format("Its values come from {}.", printable(file)));
 }
 
 void edit_interface(PanelState& state, const std::string& what, const std::function<void(LookUi&)>& change,
@@ -125,7 +125,7 @@ bool draw_game_value(GameValue& value) {
 
 void draw_interface(PanelState& state) {
     const LookUi ui = state.look().ui.value_or(LookUi{});
-    draw_head("interface", "What lies over the finished picture, and the values of a game that it shows.");
+    draw_head("interface", "The interface over the finished picture, and the values of a game that it shows.");
     std::vector<std::string> names{"document", "controller 1"};
     for (const auto& [name, value] : ui.game) names.push_back(name);
     const Columns columns = Columns::of(names);
@@ -159,7 +159,7 @@ void draw_interface(PanelState& state) {
     for (const auto& [name, present] : ui.game) {
         GameValue value = present;
         bool is_changed = false;
-        draw_line(name, "What the game says at first.", columns, [&] { is_changed = draw_game_value(value); });
+        draw_line(name, "Values of the game at the start.", columns, [&] { is_changed = draw_game_value(value); });
         state.note(fmt::format("game/{}", name));
         if (ImGui::IsItemActivated()) state.document->end_merge();
         if (is_changed)

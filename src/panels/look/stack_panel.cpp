@@ -72,7 +72,7 @@ class StackList {
         ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
         draw_add_mover(state_, {.is_layer = is_layer}, "+",
                        is_layer ? "Adds a layer: values that go over those of the stack, by its weight."
-                                : "Adds a pulse: what is added to a value when its event is fired.",
+                                : "Adds a pulse, which adds to a value when its event fires.",
                        is_layer ? "stack/add_layer" : "stack/add_pulse");
     }
 
@@ -111,7 +111,7 @@ class StackList {
             ImGui::OpenPopup("add");
         }
         state_.note("stack/add");
-        tooltip("Adds an effect, where the picture is one that it takes.");
+        tooltip("Adds an effect at a place where it accepts the picture.");
         draw_add_menu(state_);
         ImGui::Spacing();
     }
@@ -318,7 +318,7 @@ class StackList {
         ImGui::PopStyleVar();
         if (ImGui::IsItemActivated()) state_.document->end_merge();
         state_.note(fmt::format("stack/{}.opacity", name));
-        tooltip("How much of its result goes over its input: drag, or double-click and type.");
+        tooltip("Share of its result that goes over its input: drag, or double-click and type.");
         ImGui::SameLine(0, 0);
         if (icon_button("##duplicate", Icon::Duplicate, "Puts a copy behind it.", true))
             state_.edit(fmt::format("duplicate {}", name), [&state = state_, name](Look& look) -> Result<> {

@@ -184,7 +184,7 @@ void Messages::draw(const Note& note) {
 }
 
 void Messages::draw_history(const Note& note) {
-    if (entries_.empty()) return ImGui::TextDisabled("Nothing has been said.");
+    if (entries_.empty()) return ImGui::TextDisabled("There are no messages.");
     int number = 0;
     for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry, ++number) {
         const bool is_over = entry->sources.empty();
