@@ -6,7 +6,7 @@
 
 vec4 shade(Pixel pixel) {
     vec4 own = load(gaussian_blur_input, pixel.texel);
-    // The radius is a literal of lean kernels: without a loop the software driver takes two thirds of the time.
+    // In lean kernels the radius is a literal, and the loop is unrolled.
     int vectors = gaussian_blur_vectors();
     vec3 sum = gaussian_blur_sum(pixel, own, vectors, true);
     [[dont_flatten]] if (!is_finite(sum)) sum = gaussian_blur_sum(pixel, own, vectors, false);

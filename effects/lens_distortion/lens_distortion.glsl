@@ -20,7 +20,7 @@ vec4 lens_distortion(Pixel pixel, LensDistortion parameters) {
     } else {
         way = lens_distortion_way(pixel.uv, frame, k);
     }
-    // Green and alpha, then red, then blue: in a loop, which every driver ends early; some do not skip a branch.
+    // Green and alpha, then red, then blue: one round where the channels do not part, three where they do.
     vec4 color = vec4(0.0);
     int taps = int(frame.w), i = 0;
     do {

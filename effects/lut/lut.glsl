@@ -2,8 +2,7 @@
 // Light to the table's space, one or two lookups, and back. A cube's entries are a list in rows of 4096 texels, red
 // fastest, and then zeros. The shaper's image has four texels of scales and offsets, and then the shaper's entries; it is a
 // sampler3D, and a sampler2D where there is nothing to shape, or no second table: the overload then says at compile time
-// what a branch would say in every pixel, and some drivers pay for both sides of a branch around loads. That sampler2D is
-// as wide as the cube's edge.
+// what a branch would say in every pixel. That sampler2D is as wide as the cube's edge.
 #include "lut_log_curves.glsl"
 #include "shared/sanitize.glsl"
 #include "shared/srgb.glsl"

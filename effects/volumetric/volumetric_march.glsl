@@ -16,8 +16,7 @@ float volumetric_phase(float cosine) {
 }
 
 // The samples of one cascade, `first` to `end` - 1, before the light of those behind them: from the last one on, since each
-// takes its share of what comes from behind. A round is run before it is asked whether it was the last, because the
-// software driver runs one more otherwise.
+// takes its share of what comes from behind. A round runs before the loop asks whether it was the last.
 float volumetric_lit(float sum, float left, float first, float end, vec3 place, vec3 slope, float cascade) {
     float i = end - 1.0;
     if (i >= first) {
