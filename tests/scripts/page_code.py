@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""page_code.py TREE GENERATED COMPILER: the C++ of pages compiles between what a host has, and what pages quote stands in
-the file that they quote."""
+"""page_code.py TREE GENERATED C++COMPILER CCOMPILER: the C++ and the C of pages compile between what a host has, and what
+pages quote stands in the file that they quote."""
 
 import re
 import subprocess
@@ -73,6 +73,19 @@ extern double seconds;
 extern float dt, yaw_degrees, velocity_z;
 extern bool is_on_ground, is_menu_open, is_cut;
 """
+C_HOST = """
+#include <darkroom/darkroom.h>
+#include <stdio.h>
+void report(const char*);
+extern VkInstance instance;
+extern VkPhysicalDevice gpu;
+extern VkDevice vk_device;
+extern uint32_t family;
+extern VkPhysicalDeviceFeatures2 features;
+extern DarkroomComposer composer;
+extern DarkroomHandle bloom;
+extern float pulse;
+"""
 
 
 def blocks_of(page):
@@ -83,31 +96,44 @@ def bare(text):
     return re.sub(r"\s+", "", re.sub(r"//.*", "", text))
 
 
+def wrong_of(compiler, flags, folders, code):
+    """What a compiler says of the code, if anything."""
+    includes = [word for folder in folders for word in ("-I", folder)]
+    run = subprocess.run([*compiler, *flags, "-fsyntax-only", *includes, "-"], input=code, capture_output=True,
+                         text=True)
+    return [run.stderr] if run.returncode else []
+
+
+def functions_of(tree, page, kind):
+    """The blocks of a page, each as a function."""
+    out = []
+    for number, (own, text) in enumerate(blocks_of(tree / page), 1):
+        # Vma is not here; a fragment of an initializer is no statement.
+        if own != kind or "Vma" in text or text.startswith("."):
+            continue
+        text = re.sub(r"^#include.*$", "", text, flags=re.M).replace(", ...}", "}")
+        name = re.sub(r"\W", "_", page)
+        out.append(f'void {name}_{number}(void) {{\n#line 1 "{page}, block {number}"\n{text}}}\n')
+    return out
+
+
 def main():
-    if len(sys.argv) != 4:
+    if len(sys.argv) != 5:
         sys.exit(__doc__)
-    tree, generated, compiler = Path(sys.argv[1]), sys.argv[2], sys.argv[3]
-    wrong, code, count = [], HOST, 0
+    tree, generated, cpp, c = Path(sys.argv[1]), sys.argv[2], sys.argv[3], sys.argv[4]
+    wrong = []
     for page, begin, source in QUOTED:
         quoted = [text for _, text in blocks_of(tree / page) if text.startswith(begin)]
         if not quoted or bare(quoted[0]) not in bare((tree / source).read_text()):
-            wrong.append(f"{page}: what begins with '{begin}' does not stand in {source}")
-    for page in COMPILED:
-        for kind, text in blocks_of(tree / page):
-            # Vma is not here; a fragment of an initializer is no statement.
-            if kind != "cpp" or "Vma" in text or text.startswith("."):
-                continue
-            text = re.sub(r"^#include.*$", "", text, flags=re.M).replace(", ...}", "}")
-            count += 1
-            code += f'void block_{count}() {{\n#line 1 "{page}, block {count}"\n{text}}}\n'
-    run = subprocess.run([compiler, "-std=c++20", "-fsyntax-only", "-w", "-I", f"{tree}/include", "-I",
-                          f"{generated}/include", "-x", "c++", "-"], input=code + "}\n", capture_output=True, text=True)
-    if run.returncode:
-        wrong.append(run.stderr)
-    if count < 25:
-        wrong.append(f"{count} blocks of C++ were found, 25 and more are there")
-    print("\n".join(wrong), end="")
+            wrong.append(f"{page}: what begins with '{begin}' does not stand in {source}\n")
+    folders = [f"{tree}/include", f"{generated}/include"]
+    in_cpp = [block for page in COMPILED for block in functions_of(tree, page, "cpp")]
+    in_c = functions_of(tree, "docs/c.md", "c")
+    wrong += wrong_of([cpp, "-x", "c++"], ["-std=c++20", "-w"], folders, HOST + "".join(in_cpp) + "}\n")
+    wrong += wrong_of([c, "-x", "c"], ["-std=c99", "-Werror=implicit-function-declaration"], folders, C_HOST + "".join(in_c))
+    if len(in_cpp) < 25 or len(in_c) < 3:
+        wrong.append(f"{len(in_cpp)} blocks of C++ and {len(in_c)} of C were found, 25 and 3 and more are there\n")
+    print("".join(wrong), end="")
     sys.exit(1 if wrong else 0)
-
 
 main()
