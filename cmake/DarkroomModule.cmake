@@ -43,6 +43,10 @@ elseif(DARKROOM_SANITIZE)
     -fno-sanitize=vptr,null,alignment,object-size -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(darkroom_options INTERFACE -fsanitize=address,undefined)
 endif()
+if(DARKROOM_FUZZERS)
+  # Counts what inputs reach.
+  target_compile_options(darkroom_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 if(DARKROOM_SANITIZE)
   # What is reported is traced back to the driver, which must still be loaded then.
   target_sources(darkroom_options INTERFACE

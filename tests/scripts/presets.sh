@@ -27,12 +27,13 @@ has release CMAKE_BUILD_TYPE=Release
 has debug CMAKE_BUILD_TYPE=Debug
 has sanitize CMAKE_BUILD_TYPE=Debug DARKROOM_SANITIZE=ON
 has thread CMAKE_BUILD_TYPE=Debug DARKROOM_SANITIZE=thread DARKROOM_APPS=OFF
+has fuzz CMAKE_CXX_COMPILER=clang++ DARKROOM_SANITIZE=ON DARKROOM_FUZZERS=ON DARKROOM_TESTS=OFF
 has engine-only CMAKE_BUILD_TYPE=Release DARKROOM_APPS=OFF DARKROOM_LOOKS=OFF DARKROOM_SCRIPT=OFF DARKROOM_TESTS=OFF
 has without-compiler DARKROOM_COMPILER=OFF DARKROOM_APPS=OFF DARKROOM_TESTS=ON
 has windows CMAKE_BUILD_TYPE=Release DARKROOM_COMPILER=OFF DARKROOM_APPS=OFF DARKROOM_TESTS=ON DARKROOM_STATIC=OFF
 has clang CMAKE_CXX_COMPILER=clang++
 has plain CMAKE_UNITY_BUILD=OFF
-for preset in $(grep -ohE -- '--preset [a-z][a-z-]*' test darkroom .ci/run .ci/more docs/*.md README.md | cut -d' ' -f2 | sort -u); do
+for preset in $(grep -ohE -- '--preset [a-z][a-z-]*' test darkroom scripts/fuzz .ci/run .ci/more docs/*.md README.md | cut -d' ' -f2 | sort -u); do
     has "$preset"
 done
 echo "presets: all as they should be"
