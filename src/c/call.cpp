@@ -9,6 +9,19 @@ namespace darkroom::c {
 
 namespace {
 
+/// What a name brings that a host gave, or a file: errors are one line.
+std::string without_controls(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code < ' ' || code == 0x7f)
+            out += fmt::format("\\x{:02X}", code);
+        else
+            out += c;
+    }
+    return out;
+}
+
 /// Where there is no memory for a text, the one that needs none.
 thread_local std::string last_text;
 thread_local const char* last = "";
@@ -35,7 +48,7 @@ DarkroomResult tell(const char* function, const Error& error) noexcept {
         std::string_view text = error.text;
         const std::string_view first = text.substr(0, text.find(": "));
         if (std::string_view(function).ends_with("_" + std::string(first))) text.remove_prefix(first.size() + 2);
-        last_text = fmt::format("{}{}{}", function, *function == 0 ? "" : ": ", text);
+        last_text = fmt::format("{}{}{}", function, *function == 0 ? "" : ": ", without_controls(text));
         last = last_text.c_str();
     } catch (...) {
         last = "out of memory";
