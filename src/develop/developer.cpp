@@ -214,15 +214,21 @@ struct Developer::State {
         if (Result<> done = make_target(slot); !done) return done;
         frame.target = reference_to(slot.target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
         Result<> recorded{};
+        bool is_recorded = false;
         auto submission = gpu::Submission::begin(context(), "developing a picture", [&](VkCommandBuffer commands) {
             if (before) recorded = before(commands);
             if (!recorded) return;
             if (layers != nullptr) layers->record(commands);
             recorded = composer.record(commands, frame);
+            is_recorded = recorded.has_value();
             if (recorded) slot.readback->record(commands);
         });
         if (!recorded) return recorded;
-        if (!submission) return failure(std::move(submission));
+        if (!submission) {
+            // Else the next recording would take the slot of one that still runs.
+            if (is_recorded) static_cast<void>(composer.abandon());
+            return failure(std::move(submission));
+        }
         slot.submission = std::move(*submission);
         slot.picture.reset();
         ++in_flight;
