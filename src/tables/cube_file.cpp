@@ -23,6 +23,13 @@ std::string_view trimmed(std::string_view text) {
                                            : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+std::string one_line(std::string_view text) {
+    std::string out(text);
+    std::ranges::replace_if(
+        out, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    return out;
+}
+
 std::vector<std::string_view> words_of(std::string_view line) {
     std::vector<std::string_view> out;
     for (std::size_t at = line.find_first_not_of(blanks); at != std::string_view::npos;) {
@@ -74,7 +81,8 @@ class CubeParser {
     Result<> read_line(std::string_view line) {
         if (line.empty()) return {};
         if (line.starts_with('#')) {
-            if (rows_ == 0 && out_.comments.size() < most_comments) out_.comments.emplace_back(trimmed(line.substr(1)));
+            if (rows_ == 0 && out_.comments.size() < most_comments)
+                out_.comments.emplace_back(trimmed(one_line(line.substr(1))));
             return {};
         }
         if (line == "TITLE" || (line.starts_with("TITLE") && blanks.find(line[5]) != std::string_view::npos))
@@ -101,7 +109,7 @@ class CubeParser {
         if (title_line_ != 0) return refuse(fmt::format("TITLE: is in line {} already, once is allowed", title_line_));
         title_line_ = line_;
         if (text.size() >= 2 && text.starts_with('"') && text.ends_with('"')) text = text.substr(1, text.size() - 2);
-        out_.title = text;
+        out_.title = one_line(text);
         return {};
     }
 
@@ -245,13 +253,6 @@ class CubeParser {
                                       {"DOMAIN_MAX", &CubeParser::read_domain_max}}};
     TableFile out_;
 };
-
-std::string one_line(std::string_view text) {
-    std::string out(text);
-    std::ranges::replace_if(
-        out, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-    return out;
-}
 
 void write_entries(fmt::memory_buffer& out, std::span<const float> entries) {
     for (std::size_t i = 0; i + 3 <= entries.size(); i += 3)
