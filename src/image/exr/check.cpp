@@ -347,7 +347,7 @@ Result<> check_exr(std::span<const std::byte> file) {
         if (is_multi_part && part.type != "tiledimage" && part.type != "scanlineimage")
             return malformed("a part of a kind that is neither scanlineimage nor tiledimage");
         if (!part.type.empty() && part.type.starts_with("tiledimage") != is_tiled.back())
-            return malformed(fmt::format("the type is {}, the version field says {}", part.type,
+            return malformed(fmt::format("the type is {}, the version field says {}", one_printable_line(part.type),
                                          is_tiled.back() ? "tiled" : "scan lines"));
         if (auto checked = check_part(part, is_tiled.back(), file.size()); !checked) return checked;
         total += part.chunk_count;
