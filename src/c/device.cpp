@@ -178,7 +178,7 @@ DarkroomResult darkroom_device_adopt(const DarkroomAdoptDesc* given, DarkroomDev
         if (desc->api_version != 0) adopt.api_version = desc->api_version;
         std::shared_ptr<Memory> memory;
         if (desc->allocate != nullptr) {
-            memory = std::make_shared<Memory>(desc->allocate, desc->free, desc->memory_user);
+            memory = std::make_shared<Memory>(Memory{desc->allocate, desc->free, desc->memory_user});
             adopt.memory = {.allocate = allocate, .free = release, .user = memory.get()};
         }
         auto made = Device::adopt(adopt);
