@@ -16,7 +16,7 @@
 namespace darkroom::fuzz::plan_fuzz {
 namespace {
 
-constexpr std::size_t most_entries = 12;
+constexpr std::size_t most_entries = 5;
 
 Handle handle(Bytes& bytes, const Composer& composer) {
     const std::uint32_t pick = bytes.below(composer.size() + 4);
