@@ -293,11 +293,11 @@ std::vector<std::string> seeds() {
         std::string& seed = out.emplace_back();
         for (int k = 0; k < 40 + 10 * i; ++k) seed += static_cast<char>(random());
     }
-    out.push_back(
-        std::string("\0\2bloom\0\2tonemap\0\x1a"
-                    "bloom_intensity\0"
-                    "0.2\0\x1b\0\x18\x40\x30",
-                    46));
+    constexpr char calls[] =
+        "\0\2bloom\0\2tonemap\0\x1a"
+        "bloom_intensity\0"
+        "0.2\0\x1b\0\x18\x40\x30";
+    out.emplace_back(calls, sizeof calls - 1);
     return out;
 }
 
