@@ -165,7 +165,7 @@ TEST_F(CliLut, WhatCannotBeDoneIsOneLine) {
     expect_refused({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path("bad.cube")}, 1, "bad.cube:2: ");
     expect_refused({"develop", path("frame.exr"), "-o", path("out.png"), "--lut", path("none.cube")}, 1, "none.cube");
     write("blur.toml", "[[stack]]\neffect = \"gaussian_blur\"\n");
-    expect_refused({"lut", "export", path("blur.toml"), "-o", path("out.cube")}, 1, "nothing of it is a function");
+    expect_refused({"lut", "export", path("blur.toml"), "-o", path("out.cube")}, 1, "no effect in it is a function");
 }
 
 }  // namespace

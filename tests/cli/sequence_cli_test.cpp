@@ -197,14 +197,6 @@ TEST_F(CliSequence, ThePatternSaysWhichNumberIsTheFrames) {
     EXPECT_EQ(none.err, "darkroom: --frames 1-3: none of the 3 inputs has such a number\n");
 }
 
-TEST_F(CliSequence, TwoInputsOfOneNumberAreRefused) {
-    for (const char* const name : {"a.0001.exr", "b.0001.exr"}) fs::copy_file(path(in(1)), path(name));
-    const Outcome outcome = run_lines("darkroom develop a.0001.exr b.0001.exr -o out.####.png");
-    EXPECT_EQ(outcome.code, 1);
-    EXPECT_EQ(outcome.err, "darkroom: out.0001.png: would be made of a.0001.exr and of b.0001.exr\n");
-    EXPECT_FALSE(fs::exists(path("out.0001.png")));
-}
-
 TEST_F(CliSequence, FramesBeforeTheFirstOneAndEverySecondOne) {
     for (int number = 1; number <= 4; ++number)
         fs::copy_file(path(in(number)), path(fmt::format("n.{:04}.exr", number - 3)));
