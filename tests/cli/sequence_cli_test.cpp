@@ -197,6 +197,18 @@ TEST_F(CliSequence, ThePatternSaysWhichNumberIsTheFrames) {
     EXPECT_EQ(none.err, "darkroom: --frames 1-3: none of the 3 inputs has such a number\n");
 }
 
+// Of several sequences a number says nothing: pictures are counted as the inputs come.
+TEST_F(CliSequence, InputsThatShareANumberAreCounted) {
+    fs::copy_file(path(in(1)), path("a.0001.exr"));
+    fs::copy_file(path(in(2)), path("b.0001.exr"));
+    const Outcome outcome = run_lines("darkroom develop a.0001.exr b.0001.exr -o out.####.png");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    ASSERT_EQ(run_lines("darkroom develop a.0001.exr -o a.png && darkroom develop b.0001.exr -o b.png").code, 0);
+    EXPECT_EQ(picture("out.0001.png").pixels, picture("a.png").pixels);
+    EXPECT_EQ(picture("out.0002.png").pixels, picture("b.png").pixels);
+    EXPECT_NE(picture("a.png").pixels, picture("b.png").pixels);
+}
+
 TEST_F(CliSequence, FramesBeforeTheFirstOneAndEverySecondOne) {
     for (int number = 1; number <= 4; ++number)
         fs::copy_file(path(in(number)), path(fmt::format("n.{:04}.exr", number - 3)));
