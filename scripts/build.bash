@@ -101,11 +101,12 @@ show_progress() {
 # What the program is made of. A folder counts as well as the files in it: one that came or went changed it.
 program_sources=(CMakeLists.txt CMakePresets.json packages.txt cmake include src effects apps samples scenes looks)
 
-# Was `program` built in folder $1 from what the tree holds now? It costs one walk over the sources and starts no CMake.
+# Was target $2 built in folder $1 from what the tree holds now? It costs one walk over the sources and starts no CMake.
 # The stamp is as old as the start of that build, so a file saved while it ran is newer. Pictures in samples/, and models
 # and pictures in scenes/, are made by the build itself.
 is_current() {
-    local stamp=$1/.built
+    local stamp=$1/.built-$2
+    [[ ! $1/.built-all -nt $stamp ]] || stamp=$1/.built-all
     [[ -x $1/bin/darkroom && -f $stamp && $(<"$stamp") == "$root" ]] || return 1
     compgen -G "$root/samples/*.exr" >/dev/null && compgen -G "$root/scenes/models/*.glb" >/dev/null || return 1
     local made=('(' -path "$root/samples" -o -path "$root/scenes" -o -path "$root/scenes/models" -o -name '*.exr' -o
@@ -122,10 +123,11 @@ say_cache_hits() {
     say "$hits of $((hits + misses)) compiled files from the cache"
 }
 
-# build FOLDER TARGET CMAKE_OPTION...: configures and builds TARGET. One build at a time in a folder. The environment has
-# further options in DARKROOM_CMAKE_OPTIONS, parted by blanks.
+# build FOLDER TARGETS CMAKE_OPTION...: configures and builds TARGETS, which are parted by blanks. One build at a time in a
+# folder. The environment has further options in DARKROOM_CMAKE_OPTIONS, parted by blanks, too.
 build() {
-    local folder=$1 target=$2
+    local folder=$1 targets target
+    read -ra targets <<<"$2"
     shift 2
     mkdir -p "$folder" 2>/dev/null && [[ -w $folder ]] ||
         die "$folder cannot be written: name a folder for the build in DARKROOM_BUILD"
@@ -141,25 +143,29 @@ build() {
 
     # A folder that was configured for a tree elsewhere (moved, copied) starts anew.
     if [[ -f $folder/CMakeCache.txt ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
-        rm -rf "$folder/CMakeCache.txt" "$folder/CMakeFiles" "$folder/.built"
+        rm -rf "$folder/CMakeCache.txt" "$folder/CMakeFiles" "$folder"/.built-*
     fi
-    [[ -x $folder/bin/darkroom ]] || say "building in $folder, some minutes the first time"
+    if [[ ! -x $folder/bin/darkroom ]]; then
+        say "building in $folder, some minutes the first time"
+    elif [[ ! -f $folder/.built-${targets[-1]} && ! -f $folder/.built-all ]]; then
+        say "building ${targets[-1]}, a part that is built when it is first asked for"
+    fi
     printf '%s' "$root" >"$folder/.building"
     cmake -S "$root" -B "$folder" "$@" ${DARKROOM_CMAKE_OPTIONS:-} >>"$log" 2>&1 || failed "configuring"
     # What progress is measured by; ninja writes its log anew as it builds. Of build.ninja itself a dry run plans no more
     # than to look for new files, as CMake wants that done first, so it reads a copy.
     cp "$folder/build.ninja" "$folder/.plan.ninja" 2>/dev/null || true
-    ninja -C "$folder" -f .plan.ninja -n "$target" >"$folder/.plan" 2>/dev/null || true
+    ninja -C "$folder" -f .plan.ninja -n "${targets[@]}" >"$folder/.plan" 2>/dev/null || true
     cp "$folder/.ninja_log" "$folder/.last_log" 2>/dev/null || : >"$folder/.last_log"
     # Without the lock, which a compiler cache's server would keep.
     rm -f "$folder/.ccache"
-    CCACHE_STATSLOG=$(cd "$folder" && pwd)/.ccache cmake --build "$folder" --target "$target" >>"$log" 2>&1 9>&- &
+    CCACHE_STATSLOG=$(cd "$folder" && pwd)/.ccache cmake --build "$folder" --target "${targets[@]}" >>"$log" 2>&1 9>&- &
     local builder=$!
     trap 'kill "$builder" 2>/dev/null; exit 130' INT TERM
     show_progress "$folder" "$builder"
     wait "$builder" || failed "building"
     trap - INT TERM
-    mv "$folder/.building" "$folder/.built"
+    for target in "${targets[@]}"; do cp -p "$folder/.building" "$folder/.built-$target"; done
     say_cache_hits "$folder/.ccache"
     exec 9>&-
 }

@@ -42,7 +42,11 @@ struct Command {
 [[nodiscard]] Command add_api(CommandFlags program);
 [[nodiscard]] Command add_completion(CommandFlags program);
 [[nodiscard]] Command add_man(CommandFlags program);
+struct ViewFlags;
+/// Shows what the flags ask for. Returns the exit code.
+using View = std::function<int(const ViewFlags&)>;
 /// play and edit.
-[[nodiscard]] std::vector<Command> add_viewer(CommandFlags program, std::span<const darkroom::LookEntry> named);
+[[nodiscard]] std::vector<Command> add_view(CommandFlags program, std::span<const darkroom::LookEntry> named,
+                                            const View& view);
 
 }  // namespace app

@@ -1,28 +1,38 @@
 // SPDX-License-Identifier: MIT
-// darkroom: renders scenes and develops raw HDR frames into finished pictures. Arguments to library calls, and errors
-// to exit codes; no effect is named here and no picture is touched.
+// darkroom: renders scenes and develops raw HDR frames into finished pictures. No effect is named here and no picture
+// is touched.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
+#include <cstring>
 #include <functional>
 #include <iterator>
-#include <new>
-#include <optional>
 
-#include "apps/darkroom/effects/named_effects.hpp"
-#include "apps/darkroom/flags/program.hpp"
-#include "apps/darkroom/help/help.hpp"
+#include "apps/darkroom/flags/run_program.hpp"
 #include "apps/darkroom/run/report.hpp"
-#include "commands.hpp"
-#include "core/files.hpp"
+#include "core/program_module.hpp"
+#include "core/system/spawn.hpp"
+#include "core/text/param_text.hpp"
 
 namespace {
+
+#ifdef DARKROOM_VIEWER
+/// The windows are a program of their own, which nobody waits for who wants a picture: this process becomes it. The
+/// flags are right, and that program reads them again.
+int start_viewer(std::span<char* const> arguments) {
+    const std::string program = darkroom::program_module("darkroom_viewer").string();
+    const int reason = darkroom::become(program, arguments);
+    app::complain(
+        fmt::format("{} {}: {}; `cmake --build BUILD --target darkroom_viewer` builds it, and ./darkroom does, too",
+                    arguments[1], darkroom::printable(program), std::strerror(reason)));
+    return app::exit_machine;
+}
+#endif
 
 /// The command that is called `asked`, or all of them where none is. Flags of all effects in seven commands take longer
 /// to make than everything else before the work.
 std::vector<app::Command> add_commands(app::CommandFlags program, std::span<const darkroom::LookEntry> named,
-                                       std::string_view asked) {
+                                       std::string_view asked, std::span<char* const> arguments) {
     using Commands = std::vector<app::Command>;
     struct Adding {
         std::vector<std::string_view> names;
@@ -43,7 +53,8 @@ std::vector<app::Command> add_commands(app::CommandFlags program, std::span<cons
         {{"lut"}, [&] { return app::add_lut(program, named); }},
         {{"farm"}, [&] { return app::add_farm(program, named); }},
 #ifdef DARKROOM_VIEWER
-        {{"play", "edit"}, [&] { return app::add_viewer(program, named); }},
+        {{"play", "edit"},
+         [&] { return app::add_view(program, named, [=](const auto&) { return start_viewer(arguments); }); }},
 #endif
         {{"new"}, [&] { return Commands{app::add_new(program)}; }},
         {{"api"}, [&] { return Commands{app::add_api(program)}; }},
@@ -60,33 +71,11 @@ std::vector<app::Command> add_commands(app::CommandFlags program, std::span<cons
     return out;
 }
 
-int run(int argc, char** argv) {
-    const app::Program program;
-    const std::span<char* const> arguments(argv, static_cast<std::size_t>(argc));
-    app::add_help_flags(program.flags().parser());
-    const std::vector<darkroom::LookEntry> named = app::effects_named_by(arguments);
-    const std::vector<app::Command> commands = add_commands(program.flags(), named, argc > 1 ? argv[1] : "");
-    for (const app::Command& command : commands) app::add_voice(command.flags);
-    if (const std::optional<int> code = app::answer_help(program.flags().parser(), arguments)) return *code;
-    const darkroom::Result<std::optional<int>> answered = program.parse(arguments);
-    if (!answered) return app::fail(answered.error());
-    if (*answered) return **answered;
-    const auto chosen = std::ranges::find_if(commands, app::is_asked, &app::Command::flags);
-    if (const darkroom::Result<> done = app::check_values(chosen->flags); !done) return app::fail(done.error());
-    return chosen->run();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    darkroom::AtomicPath::remove_on_signals();
-    // Exceptions come from third parties and from the allocator alone.
-    try {
-        return app::end_output(run(argc, argv));
-    } catch (const std::bad_alloc&) {
-        app::complain("out of memory");
-    } catch (const std::exception& error) {
-        app::complain(error.what());
-    }
-    return app::exit_machine;
+    const std::span<char* const> arguments(argv, static_cast<std::size_t>(argc));
+    return app::run_program(argc, argv, [arguments](auto program, auto named, auto asked) {
+        return add_commands(program, named, asked, arguments);
+    });
 }

@@ -15,7 +15,7 @@ function title(name) {
         sub(/_shared$/, "", name)
         return "lib" name ".so"
     }
-    return folder[name] (name in more ? ", " more[name] : "")
+    return folder[name]
 }
 function subtitle(name) {
     if (kind[name] == "shared") return name
@@ -23,12 +23,10 @@ function subtitle(name) {
 }
 
 $1 == "target" { kind[$2] = $3; folder[$2] = $4; names[++count] = $2 }
-$1 == "folder" { more[$2] = $3 }
 $1 == "room" {
     room = short($3)
     if (room == "*") room = "one folder an effect"
-    # Lines of some words, so that boxes are as wide as they are high; a second folder of a target begins one.
-    if (index($3, folder[$2] "/") != 1 && !($2 in second)) { second[$2] = 1; room = short(more[$2]) ": " room; line[$2] = line[$2] sprintf("%30s", "") }
+    # Lines of some words, so that boxes are as wide as they are high.
     if (length(line[$2] room) > 28) { rooms[$2] = rooms[$2] "<BR/>"; line[$2] = "" }
     else if (line[$2] != "") { rooms[$2] = rooms[$2] " &#183; "; line[$2] = line[$2] "   " }
     rooms[$2] = rooms[$2] room

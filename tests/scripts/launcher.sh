@@ -84,6 +84,19 @@ rm "$tree/samples/a.exr" && before=$(calls) && "$tree/darkroom" >"$work/out" 2>"
 touch "$tree/samples/a.exr" && before=$(calls) && "$tree/darkroom" >"$work/out" 2>"$work/said"
 [[ $(calls) == "$before" ]] || fail "a build because of a sample"
 
+# What one command alone needs is built when that is first asked for, and again when sources changed since.
+builds_viewer() {
+    : >"$STUB_LOG"
+    "$tree/darkroom" "$1" >"$work/out" 2>"$work/said"
+    [[ $(grep -c -- '--target darkroom_program darkroom_viewer$' "$STUB_LOG") == "$2" ]] || fail "$3"
+}
+builds_viewer play 1 "the viewer is not built when it is first asked for"
+grep -q 'building darkroom_viewer, a part' "$work/said" || fail "the first window does not say what it waits for"
+builds_viewer edit 0 "the viewer is built twice"
+builds_viewer render 0 "render builds the viewer"
+touch "$tree/effects/two.glsl" && builds_viewer render 0 "render builds the viewer after a source changed"
+builds_viewer play 1 "the viewer is not built again after a source changed"
+
 # A tree that moved is built anew.
 mv "$tree" "$work/moved" && tree=$work/moved && rebuilds "the tree moved"
 

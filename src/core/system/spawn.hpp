@@ -36,4 +36,7 @@ class Spawn {
     posix_spawn_file_actions_t actions_{};
 };
 
+/// This process becomes `program`, with these arguments. Returns only where that failed: why, as errno has it.
+[[nodiscard]] int become(const std::string& program, std::span<char* const> arguments);
+
 }  // namespace darkroom

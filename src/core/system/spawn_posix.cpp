@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <vector>
 
 namespace darkroom {
@@ -32,6 +33,13 @@ int Spawn::start(pid_t& process, const std::string& program, std::span<const std
     for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
     pointers.push_back(nullptr);
     return posix_spawnp(&process, program.c_str(), &actions_, nullptr, pointers.data(), environ);
+}
+
+int become(const std::string& program, std::span<char* const> arguments) {
+    std::vector<char*> pointers(arguments.begin(), arguments.end());
+    pointers.push_back(nullptr);
+    ::execv(program.c_str(), pointers.data());
+    return errno;
 }
 
 }  // namespace darkroom

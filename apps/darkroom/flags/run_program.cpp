@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "run_program.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <optional>
+
+#include "apps/darkroom/effects/named_effects.hpp"
+#include "apps/darkroom/help/help.hpp"
+#include "apps/darkroom/run/report.hpp"
+#include "core/files.hpp"
+#include "program.hpp"
+
+namespace app {
+
+namespace {
+
+int run(int argc, char** argv, const AddCommands& add_commands) {
+    const Program program;
+    const std::span<char* const> arguments(argv, static_cast<std::size_t>(argc));
+    add_help_flags(program.flags().parser());
+    const std::vector<darkroom::LookEntry> named = effects_named_by(arguments);
+    const std::vector<Command> commands = add_commands(program.flags(), named, argc > 1 ? argv[1] : "");
+    for (const Command& command : commands) add_voice(command.flags);
+    if (const std::optional<int> code = answer_help(program.flags().parser(), arguments)) return *code;
+    const darkroom::Result<std::optional<int>> answered = program.parse(arguments);
+    if (!answered) return fail(answered.error());
+    if (*answered) return **answered;
+    const auto chosen = std::ranges::find_if(commands, is_asked, &Command::flags);
+    if (const darkroom::Result<> done = check_values(chosen->flags); !done) return fail(done.error());
+    return chosen->run();
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const AddCommands& add_commands) {
+    darkroom::AtomicPath::remove_on_signals();
+    // Exceptions come from third parties and from the allocator alone.
+    try {
+        return end_output(run(argc, argv, add_commands));
+    } catch (const std::bad_alloc&) {
+        complain("out of memory");
+    } catch (const std::exception& error) {
+        complain(error.what());
+    }
+    return exit_machine;
+}
+
+}  // namespace app
