@@ -90,6 +90,7 @@ struct Renderer::State {
     Targets targets;
     std::optional<Resolve> resolve;        ///< Output::Hdr
     std::optional<Accumulate> accumulate;  ///< where there is more than one position
+    std::vector<scene::vec2> positions;    ///< in a pixel, of accumulate
     std::vector<FrameBuffers> slots;
 
     // Of the prepared frame.
@@ -143,6 +144,7 @@ Result<> Renderer::State::create() {
             made =
                 take(Accumulate::create(*context, formats().color, desc.positions, desc.is_mean_weighed), accumulate);
         if (!made) return made;
+        positions = positions_in_pixel(desc.positions);
     }
     if (Result<> done = create_targets(desc.extent); !done) return done;
     if (Result<> done = create_passes(); !done) return done;
@@ -271,9 +273,9 @@ Result<> Renderer::State::fill_buffers(FrameBuffers& buffers) {
 
     buffers.frame() = frame_block(*snapshot, settings);
     if (accumulate) {
-        if (Result<> done = buffers.reserve_positions(*context, desc.positions); !done) return done;
-        for (std::uint32_t i = 0; i < desc.positions; ++i)
-            buffers.position(i) = moved_block(buffers.frame(), position_in_pixel(i));
+        if (Result<> done = buffers.reserve_positions(*context, positions.size()); !done) return done;
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            buffers.position(i) = moved_block(buffers.frame(), positions[i]);
     }
     buffers.lights() = light_block(*snapshot, shadows->casting_lights(), shadows->lamps());
     shadows->fill(buffers.shadows());

@@ -93,10 +93,9 @@ mat4 jitter_matrix(const std::array<float, 2>& jitter, VkExtent2D extent) {
 blocks::Frame moved_block(const blocks::Frame& frame, scene::vec2 pixels) {
     blocks::Frame moved = frame;
     const scene::vec2 clip = 2.0F * pixels * scene::vec2(frame.target_size.z, frame.target_size.w);
-    for (int column = 0; column < 4; ++column) {
-        moved.projection[column].x -= clip.x * frame.projection[column].w;
-        moved.projection[column].y -= clip.y * frame.projection[column].w;
-    }
+    // Both alike, so that none of it is left in motion.
+    for (mat4* const matrix : {&moved.projection, &moved.previous_view_projection})
+        for (int column = 0; column < 4; ++column) (*matrix)[column] -= (*matrix)[column].w * vec4(clip, 0, 0);
     moved.view_projection = moved.projection * frame.view;
     moved.inverse_view_projection = glm::inverse(moved.view_projection);
     return moved;

@@ -24,7 +24,7 @@ namespace {
 
 constexpr VkExtent2D default_extent{1920, 1080};
 constexpr const char* moment_group = "The moment";
-constexpr std::uint32_t usual_samples = 2;
+constexpr std::uint32_t usual_samples = 3;
 
 }  // namespace
 

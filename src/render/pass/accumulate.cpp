@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "render/pass/accumulate.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/assert.hpp"
 #include "render/shader_text.hpp"
@@ -39,11 +41,25 @@ gpu::Binding bound(const gpu::Image& image) { return {.view = image.view, .regio
 
 }  // namespace
 
-scene::vec2 position_in_pixel(std::uint32_t index) {
-    // The plastic number's powers, the plane's golden ratio.
-    constexpr double along = 0.7548776662466927, down = 0.5698402909980532;
-    const auto place = [&](double step) { return static_cast<float>(std::fmod(0.5 + index * step, 1.0) - 0.5); };
-    return {place(along), place(down)};
+std::vector<scene::vec2> positions_in_pixel(std::uint32_t count) {
+    // Points of an even lattice lie between the rows and columns of the next odd one, whose origin is left out.
+    const auto half = static_cast<std::int32_t>(count / 2), size = 2 * half + 1;
+    const bool has_centre = count % 2 == 1;
+    auto step = static_cast<std::int32_t>(std::lround(size * 0.6180339887498949));  // the golden ratio
+    while (std::gcd(step, size) != 1) ++step;
+    const auto place = [&](std::int32_t cell) {
+        const float shift = has_centre || cell == 0 ? 0.0F : std::copysign(0.5F, static_cast<float>(cell));
+        return (static_cast<float>(cell) - shift) / static_cast<float>(count);
+    };
+    std::vector<scene::vec2> out;
+    for (std::int32_t x = -half; x <= half; ++x) {
+        if (x == 0 && !has_centre) continue;
+        const std::int32_t y = (x * step % size + size + half) % size - half;
+        out.emplace_back(place(x), place(y));
+    }
+    std::ranges::iter_swap(out.begin(),
+                           std::ranges::min_element(out, {}, [](scene::vec2 at) { return glm::dot(at, at); }));
+    return out;
 }
 
 Result<Accumulate> Accumulate::create(gpu::Context& context, VkFormat color, std::uint32_t positions, bool is_weighed) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "gpu/kernel/kernel.hpp"
 #include "render/targets.hpp"
@@ -12,10 +13,11 @@
 
 namespace darkroom::render {
 
-/// Where position `index` lies in the pixel, from its centre, in [-0.5, 0.5) pixels, x right and y down; 0 is the
-/// centre. Any first N cover the pixel evenly: Martin Roberts, "The Unreasonable Effectiveness of Quasirandom
-/// Sequences", 2018.
-[[nodiscard]] scene::vec2 position_in_pixel(std::uint32_t index);
+/// So many places in a pixel, from its centre, in (-0.5, 0.5) pixels, x right and y down, the one nearest to the centre
+/// first: the centre itself where their count is odd. They cover the pixel evenly, no two in one row or column, and their
+/// mean is the centre, so that few of them move no edge: a lattice of rank 1 (Korobov 1959) about its origin, of 4 the
+/// rotated grid.
+[[nodiscard]] std::vector<scene::vec2> positions_in_pixel(std::uint32_t count);
 
 class Accumulate {
   public:

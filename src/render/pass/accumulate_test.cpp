@@ -4,6 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <set>
+
 #include "render/renderer_test_support.hpp"
 
 namespace darkroom::render {
@@ -35,8 +39,8 @@ Shot shot_of(RenderDesc desc) {
 /// Of a pixel's positions, those that meet the wall when its edges are moved outward by so many pixels.
 std::uint32_t covered(std::uint32_t positions, std::uint32_t x, std::uint32_t y, double outward) {
     std::uint32_t count = 0;
-    for (std::uint32_t i = 0; i < positions; ++i) {
-        const vec2 place = vec2(x, y) + 0.5F + position_in_pixel(i);
+    for (const vec2& position : positions_in_pixel(positions)) {
+        const vec2 place = vec2(x, y) + 0.5F + position;
         count += place.x > left_edge - outward && place.y > top_edge - outward ? 1 : 0;
     }
     return count;
@@ -48,20 +52,44 @@ float light_of(std::uint32_t count, std::uint32_t positions) {
     return mean / (1 - mean);
 }
 
+TEST(RenderAccumulate, PositionsAreCentredAndShareNoRowOrColumn) {
+    for (const std::uint32_t count : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 16U, 33U, 64U, 256U, 1024U}) {
+        const std::vector<vec2> places = positions_in_pixel(count);
+        ASSERT_EQ(places.size(), count);
+        std::vector<int> rows(count), columns(count);
+        vec2 sum(0);
+        for (const vec2& place : places) {
+            const vec2 cell = (place + 0.5F) * float(count) - 0.5F;
+            ASSERT_TRUE(cell.x > -0.1F && cell.x < float(count) && cell.y > -0.1F && cell.y < float(count)) << count;
+            ++columns[std::size_t(std::lround(cell.x))];
+            ++rows[std::size_t(std::lround(cell.y))];
+            sum += place;
+            EXPECT_GE(glm::dot(place, place), glm::dot(places[0], places[0])) << count;
+        }
+        EXPECT_NEAR(sum.x, 0, 1e-3F) << count;
+        EXPECT_NEAR(sum.y, 0, 1e-3F) << count;
+        EXPECT_EQ(std::ranges::count(rows, 1), count);
+        EXPECT_EQ(std::ranges::count(columns, 1), count);
+        EXPECT_EQ(places[0] == vec2(0), count % 2 == 1) << count;
+    }
+}
+
 TEST(RenderAccumulate, PositionsCoverThePixelEvenly) {
-    EXPECT_EQ(position_in_pixel(0), vec2(0));
     std::array<int, 16> cells{};
-    for (std::uint32_t i = 0; i < 256; ++i) {
-        const vec2 place = position_in_pixel(i) + 0.5F;
-        ASSERT_TRUE(place.x >= 0 && place.x < 1 && place.y >= 0 && place.y < 1) << i;
+    for (const vec2& position : positions_in_pixel(256)) {
+        const vec2 place = position + 0.5F;
         ++cells[static_cast<std::size_t>(place.x * 4) + 4 * static_cast<std::size_t>(place.y * 4)];
     }
     // Random ones would stray by 8.
     for (const int count : cells) EXPECT_NEAR(count, 16, 3);
+    // Edges at 45 degrees see the four one after another, too.
+    std::set<int> diagonals;
+    for (const vec2& place : positions_in_pixel(4)) diagonals.insert(int(std::lround(place.x * 8 + place.y * 8)));
+    EXPECT_EQ(diagonals.size(), 4U);
 }
 
 TEST(RenderGpuAccumulate, EdgesAreTheMeanOfThePositions) {
-    for (const std::uint32_t positions : {2U, 5U, 32U}) {
+    for (const std::uint32_t positions : {2U, 7U, 32U}) {
         const Shot shot = shot_of({.positions = positions});
         for (const auto& [x, y] : {std::pair(20U, 30U), {40U, 15U}, {20U, 15U}, {19U, 30U}, {40U, 14U}, {21U, 16U}}) {
             // The wall's edges are as far off as its vertices.
@@ -79,6 +107,10 @@ TEST(RenderGpuAccumulate, TheLayersAreThoseOfTheCentre) {
     EXPECT_EQ(one.normals.rgba, many.normals.rgba);
     EXPECT_EQ(one.velocity.rgba, many.velocity.rgba);
     EXPECT_NE(one.color.rgba, many.color.rgba);
+    // Of an even number none is the centre, and what moves does so as much beside it.
+    const Shot two = shot_of({.positions = 2});
+    for (int channel = 0; channel < 2; ++channel)
+        EXPECT_NEAR(two.velocity.at(30, 30)[channel], one.velocity.at(30, 30)[channel], 1e-4F);
 }
 
 TEST(RenderGpuAccumulate, WhatIsOnlyDrawnOnceIsLeftAlone) {
