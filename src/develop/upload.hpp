@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
-// Internal to src/develop: layers in main memory, what they become on the device, and the way there.
+// Internal to src/develop and src/verify: layers in main memory, what they become on the device, and the way there.
 
 #include <array>
 #include <cstdint>
