@@ -33,6 +33,10 @@ struct Command {
 [[nodiscard]] Command add_compare(CommandFlags program);
 [[nodiscard]] Command add_capture(CommandFlags program);
 [[nodiscard]] Command add_judge(CommandFlags program);
+struct VerifyFlags;
+/// Verifies what the flags ask for. Returns the exit code.
+using Verify = std::function<int(const VerifyFlags&)>;
+[[nodiscard]] Command add_verify(CommandFlags program, const Verify& verify);
 [[nodiscard]] Command add_info(CommandFlags program);
 /// One for each command below it.
 [[nodiscard]] std::vector<Command> add_lut(CommandFlags program, std::span<const darkroom::LookEntry> named);

@@ -16,18 +16,15 @@
 
 namespace {
 
-#ifdef DARKROOM_VIEWER
-/// The windows are a program of their own, which nobody waits for who wants a picture: this process becomes it. The
-/// flags are right, and that program reads them again.
-int start_viewer(std::span<char* const> arguments) {
-    const std::string program = darkroom::program_module("darkroom_viewer").string();
+/// Windows and references are programs of their own, which nobody waits for who wants a picture: this process becomes
+/// the one that is called `name`. The flags are right, and that program reads them again.
+int start(const char* name, std::span<char* const> arguments) {
+    const std::string program = darkroom::program_module(name).string();
     const int reason = darkroom::become(program, arguments);
-    app::complain(
-        fmt::format("{} {}: {}; `cmake --build BUILD --target darkroom_viewer` builds it, and ./darkroom does, too",
-                    arguments[1], darkroom::printable(program), std::strerror(reason)));
+    app::complain(fmt::format("{} {}: {}; `cmake --build BUILD --target {}` builds it, and ./darkroom does, too",
+                              arguments[1], darkroom::printable(program), std::strerror(reason), name));
     return app::exit_machine;
 }
-#endif
 
 /// The command that is called `asked`, or all of them where none is. Flags of all effects in seven commands take longer
 /// to make than everything else before the work.
@@ -49,12 +46,19 @@ std::vector<app::Command> add_commands(app::CommandFlags program, std::span<cons
         {{"compare"}, [&] { return Commands{app::add_compare(program)}; }},
         {{"capture"}, [&] { return Commands{app::add_capture(program)}; }},
         {{"judge"}, [&] { return Commands{app::add_judge(program)}; }},
+        {{"verify"},
+         [&] {
+             return Commands{
+                 app::add_verify(program, [=](const auto&) { return start("darkroom_verifier", arguments); })};
+         }},
         {{"info"}, [&] { return Commands{app::add_info(program)}; }},
         {{"lut"}, [&] { return app::add_lut(program, named); }},
         {{"farm"}, [&] { return app::add_farm(program, named); }},
 #ifdef DARKROOM_VIEWER
         {{"play", "edit"},
-         [&] { return app::add_view(program, named, [=](const auto&) { return start_viewer(arguments); }); }},
+         [&] {
+             return app::add_view(program, named, [=](const auto&) { return start("darkroom_viewer", arguments); });
+         }},
 #endif
         {{"new"}, [&] { return Commands{app::add_new(program)}; }},
         {{"api"}, [&] { return Commands{app::add_api(program)}; }},

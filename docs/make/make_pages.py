@@ -114,6 +114,7 @@ literal = r'"((?:[^"\\\n]|\\.)*)"'
 areas = {
     "apps/darkroom": "The command line",
     "apps/viewer": "Play and edit",
+    "apps/verify": "Verifying",
     "src/verify": "Verifying: the kernels",
     "effects": "Effects",
     "src/looks": "Looks",

@@ -96,6 +96,9 @@ builds_viewer edit 0 "the viewer is built twice"
 builds_viewer render 0 "render builds the viewer"
 touch "$tree/effects/two.glsl" && builds_viewer render 0 "render builds the viewer after a source changed"
 builds_viewer play 1 "the viewer is not built again after a source changed"
+: >"$STUB_LOG"
+"$tree/darkroom" verify >"$work/out" 2>"$work/said"
+grep -q -- '--target darkroom_program darkroom_verifier$' "$STUB_LOG" || fail "verify does not build its program"
 
 # A tree that moved is built anew.
 mv "$tree" "$work/moved" && tree=$work/moved && rebuilds "the tree moved"

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+// The flags of `verify`.
+
+#include <string>
+#include <vector>
+
+#include "apps/darkroom/flags/flags.hpp"
+#include "apps/darkroom/flags/number_flag.hpp"
+
+namespace app {
+
+struct VerifyFlags {
+    void add_to(CommandFlags command);
+
+    std::string device, report, folder;
+    std::vector<std::string> effects;
+    NumberFlag seconds{"--seconds", {.least = 1, .most = 86400, .unit = "s"}};
+    bool is_json = false;
+};
+
+}  // namespace app
