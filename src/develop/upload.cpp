@@ -134,16 +134,18 @@ ImageRef reference_to(const gpu::Image& image, VkImageLayout before, VkImageLayo
             .final_layout = after};
 }
 
+/// They are filled, and read back by who stores the frame.
+constexpr VkImageUsageFlags copied = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+
 Result<FrameUpload::Layers> FrameUpload::make_layers(gpu::Context& context, const UploadLayers& layers) {
     Layers made;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const UploadLayer& layer = layers[i];
         if (!layer.is_given()) continue;
-        auto image = gpu::Image::create(
-            context, {.name = layer.name,
-                      .format = layer.format,
-                      .extent = {layer.extent.width, layer.extent.height, 1},
-                      .usage = shader_usage(context, layer.format) | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+        auto image = gpu::Image::create(context, {.name = layer.name,
+                                                  .format = layer.format,
+                                                  .extent = {layer.extent.width, layer.extent.height, 1},
+                                                  .usage = shader_usage(context, layer.format) | copied});
         if (!image) return failure(std::move(image));
         auto buffer =
             gpu::Buffer::create(context, VkDeviceSize{layer.extent.width} * layer.extent.height * layer.texel(),
@@ -162,7 +164,7 @@ Result<FrameUpload::Shadow> FrameUpload::make_shadow(gpu::Context& context, cons
                                      .format = VK_FORMAT_D32_SFLOAT,
                                      .extent = {light.resolution, light.resolution, 1},
                                      .array_layers = std::max(made.count, 2U),  // a view of one would be no array
-                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | copied});
     if (!image) return failure(std::move(image));
     const VkDeviceSize bytes = VkDeviceSize{light.resolution} * light.resolution * made.count * sizeof(float);
     auto buffer =

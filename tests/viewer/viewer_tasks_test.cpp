@@ -145,6 +145,8 @@ TEST_F(CliViewerTasks, TheListOfEffectsShowsWhatTheyDo) {
         return most - least > 0.2F;
     };
     EXPECT_TRUE(wait_until(has_picture, 240));
+    press("Escape");
+    leave();
 }
 
 TEST_F(CliViewerTasks, WhatWasNotSavedIsOfferedAgain) {
