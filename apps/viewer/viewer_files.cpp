@@ -253,7 +253,7 @@ void Viewer::finish_stores(bool waits) {
             write = [frame = std::make_shared<darkroom::FrameFile>(frame_file(store.of, store.layers->layers())),
                      path = store.path] { return darkroom::write_frame(path, *frame); };
         }
-        writing_.push_back(std::async(std::launch::async, [write = std::move(write), path = store.path] {
+        writing_.push_back(start_beside([write = std::move(write), path = store.path] {
             try {
                 const Result<> done = write();
                 std::error_code error;

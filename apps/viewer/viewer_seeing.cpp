@@ -115,8 +115,9 @@ void Viewer::show_thumbnails(const darkroom::window::PresentFrame& frame) {
     if (!thumbnails_) return;
     if (thumbnails_frame_ && presenter_->is_finished(*thumbnails_frame_)) {
         thumbnails_frame_.reset();
-        thumbnails_->begin();
+        settle("thumbnails", thumbnails_->begin());
     }
+    if (const std::optional<darkroom::Error> error = thumbnails_->take_error()) settle("thumbnails", failure(*error));
     thumbnails_->record(frame.commands);
 }
 

@@ -69,7 +69,7 @@ void Viewer::reload_source() {
     if (opening_.valid()) return take_opened();
     if (!coming_.valid()) {
         if (!source_files_.take_change()) return;
-        coming_ = std::async(std::launch::async, [this, desc = job_.scene_desc, file = job_.scene] {
+        coming_ = start_beside([this, desc = job_.scene_desc, file = job_.scene] {
             return caught(file, [&] { return SceneSource::create(*device_, file, desc); });
         });
         return;
@@ -90,7 +90,7 @@ void Viewer::open_subject(const std::filesystem::path& file) {
     if (opening_.valid() || coming_.valid()) return;
     tell(fmt::format("reading {}", darkroom::printable(file.filename().string())));
     const bool is_scene = file.extension() == ".toml" || darkroom::scene::is_model_path(file);
-    opening_ = std::async(std::launch::async, [this, file, is_scene, scene = job_.scene_desc, frame = job_.frame_desc] {
+    opening_ = start_beside([this, file, is_scene, scene = job_.scene_desc, frame = job_.frame_desc] {
         return caught(file, [&]() -> Result<Opened> {
             Opened out{.file = file};
             if (is_scene) {
@@ -114,8 +114,7 @@ void Viewer::take_other(const std::filesystem::path& file) {
     if (!is_picture_file(file)) return take_other_look(file);
     if (other_coming_.valid()) return;
     other_file_ = file;
-    other_coming_ = std::async(std::launch::async,
-                               [file] { return caught(file, [&] { return darkroom::read_comparable(file); }); });
+    other_coming_ = start_beside([file] { return caught(file, [&] { return darkroom::read_comparable(file); }); });
 }
 
 void Viewer::take_other_picture() {

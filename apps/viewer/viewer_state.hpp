@@ -11,6 +11,7 @@
 #include "apps/viewer/input/keys.hpp"
 #include "apps/viewer/input/known_panels.hpp"
 #include "apps/viewer/input/line_input.hpp"
+#include "apps/viewer/source/beside.hpp"
 #include "apps/viewer/source/compared_picture.hpp"
 #include "apps/viewer/source/live_interface.hpp"
 #include "apps/viewer/source/look_view.hpp"
@@ -91,6 +92,16 @@ class Viewer {
     /// Reports what went wrong with `source`, or clears what it said before.
     void settle(std::string_view source, const darkroom::Result<>& done) {
         done ? screen_.clear_error(source) : screen_.tell_error(source, done.error().text);
+    }
+    /// Work on a thread of its own; without one the window waits, and says so.
+    template <class Work>
+    [[nodiscard]] auto start_beside(const Work& work) {
+        bool has_thread = true;
+        auto out = beside(work, has_thread);
+        settle("threads", has_thread ? darkroom::Result<>()
+                                     : darkroom::machine_error("no further thread can be started: the window waits "
+                                                               "while files are read and written"));
+        return out;
     }
 
     // viewer_seeing.cpp

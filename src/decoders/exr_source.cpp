@@ -24,6 +24,7 @@
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -251,7 +252,13 @@ ExrSource::~ExrSource() = default;
 
 void start_exr_threads() {
     static std::once_flag once;
-    std::call_once(once, [] { Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency())); });
+    std::call_once(once, [] {
+        try {
+            Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
+        } catch (const std::exception&) {
+            return;  // where none can be started the caller does the work
+        }
+    });
 }
 
 Result<std::unique_ptr<PictureSource>> ExrSource::open(std::span<const std::byte> bytes, std::size_t max_threads,

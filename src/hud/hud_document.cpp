@@ -15,6 +15,7 @@
 
 #include "core/files.hpp"
 #include "core/text/param_text.hpp"
+#include "core/thread/parallel.hpp"
 #include "hud/svg_process.hpp"
 #include "hud/svg_text.hpp"
 
@@ -69,7 +70,7 @@ struct HudDocument::State {
         }
         process.cancel();
         wakes.notify_all();
-        if (worker.joinable()) worker.join();
+        worker.reset();
     }
 
     [[nodiscard]] std::string placed(std::string_view reason) const {
@@ -138,16 +139,19 @@ struct HudDocument::State {
         }
     }
 
-    void ask(Wish wish) {
-        if (!worker.joinable()) worker = std::thread([this] { work(); });
+    /// False: no thread can be started, so that the caller has to draw.
+    [[nodiscard]] bool ask(Wish wish) {
+        if (!worker) worker = start_thread([this] { work(); });
+        if (!worker) return false;
         {
             const std::lock_guard lock(mutex);
-            if (is_busy) return;
+            if (is_busy) return true;
             job = std::move(wish);
             job_shown = shown;
             is_busy = true;
         }
         wakes.notify_all();
+        return true;
     }
 
     void take_done() {
@@ -204,7 +208,7 @@ struct HudDocument::State {
     Shown job_shown;
     std::optional<Outcome> done;
     bool is_busy = false, is_over = false;
-    std::thread worker;
+    std::optional<std::jthread> worker;
 };
 
 HudDocument::HudDocument(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -263,10 +267,7 @@ std::shared_ptr<const HudPicture> HudDocument::picture(std::uint32_t width, std:
     for (int attempt = 0; attempt < 2; ++attempt) {
         Wish wish{state.latest, width, height, scale, state.value_changes};
         if (wish == state.drawn || wish == state.failed) break;
-        if (!state.options.is_headless) {
-            state.ask(std::move(wish));
-            break;
-        }
+        if (!state.options.is_headless && state.ask(wish)) break;
         auto drawn = state.draw(wish, state.shown);
         state.take({std::move(wish), std::move(drawn)});
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/text/param_text.hpp"
+#include "core/thread/parallel.hpp"
 #include "gpu/device/context.hpp"
 #include "image/frame/sequence.hpp"
 
@@ -32,8 +33,14 @@ Result<std::unique_ptr<FrameSource>> FrameSource::create(darkroom::Device& devic
     out->shown_ = *first;
     out->kept_.push_front(std::move(*first));
     out->warnings_ = out->shown_->file.warnings;
-    if (out->files_.size() > 1) out->thread_ = std::jthread([self = out.get()] { self->work(); });
+    if (out->files_.size() > 1) out->start();
     return out;
+}
+
+void FrameSource::start() {
+    thread_ = darkroom::start_thread([this] { work(); });
+    if (!thread_)
+        warnings_.emplace_back("no further thread can be started: the window waits while frames are read");
 }
 
 // Whatever a file makes a decoder do, the thread that reads goes on.
@@ -85,15 +92,23 @@ void FrameSource::work() {
         lock.unlock();
         Result<std::shared_ptr<Decoded>> made = decode(number);
         lock.lock();
-        if (made) {
-            kept_.push_front(std::move(*made));
-            if (kept_.size() > most_kept) kept_.pop_back();
-        } else {
-            failed_.insert(number);
-            warnings_.push_back(made.error().text);
-        }
+        keep(number, std::move(made));
         changed_.notify_all();
     }
+}
+
+void FrameSource::keep(std::size_t number, Result<std::shared_ptr<Decoded>> made) {
+    if (made) {
+        kept_.push_front(std::move(*made));
+        if (kept_.size() > most_kept) kept_.pop_back();
+    } else {
+        failed_.insert(number);
+        warnings_.push_back(made.error().text);
+    }
+}
+
+void FrameSource::read_here(std::size_t number) {
+    if (find(number) == nullptr && !failed_.contains(number)) keep(number, decode(number));
 }
 
 std::optional<VkExtent2D> FrameSource::extent() const { return shown_->input.extent; }
@@ -108,18 +123,17 @@ bool FrameSource::is_up_to_date() const {
     return shown_->number == wanted_ || failed_.contains(wanted_);
 }
 
-void FrameSource::wait() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return find(wanted_) != nullptr || failed_.contains(wanted_); });
-}
-
 bool FrameSource::is_another(const LiveMoment& moment) const {
     const std::lock_guard lock(mutex_);
     return moment.number != shown_->number && find(moment.number) != nullptr;
 }
 
+// One that is on its way may be there when this has returned.
 bool FrameSource::must_wait(const LiveMoment& moment, VkExtent2D) const {
-    return is_new_ || moment.divisor != divisor_ || is_another(moment);
+    if (is_new_ || moment.divisor != divisor_) return true;
+    const std::lock_guard lock(mutex_);
+    const std::size_t number = std::min(moment.number, files_.size() - 1);
+    return number != shown_->number && !failed_.contains(number);
 }
 
 Result<> FrameSource::prepare(const LiveMoment& moment, VkExtent2D) {
@@ -128,6 +142,7 @@ Result<> FrameSource::prepare(const LiveMoment& moment, VkExtent2D) {
     {
         const std::lock_guard lock(mutex_);
         const std::size_t number = std::min(moment.number, files_.size() - 1);
+        if (!thread_) read_here(number);
         if (wanted_ != number) {
             wanted_ = number;
             changed_.notify_all();

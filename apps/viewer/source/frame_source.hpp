@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 // Frames of files for a viewer: one, or a sequence to scrub through. Files are read and decoded on a thread; until the
-// one that is asked for is there, the one before stays.
+// one that is asked for is there, the one before stays. Where no thread can be started, who asks for one waits for it.
 
 #include <condition_variable>
 #include <list>
@@ -43,8 +43,6 @@ class FrameSource final : public LiveSource {
     [[nodiscard]] std::vector<std::string> take_warnings() override;
     /// Is the frame that was asked for last the one that is shown? For who waits for it.
     [[nodiscard]] bool is_up_to_date() const;
-    /// Waits until it can be.
-    void wait();
     [[nodiscard]] bool is_coming() const override { return !is_up_to_date(); }
 
   private:
@@ -58,6 +56,10 @@ class FrameSource final : public LiveSource {
     FrameSource(darkroom::Device& device, std::vector<darkroom::NumberedFile> files, const Desc& desc);
     [[nodiscard]] darkroom::Result<std::shared_ptr<Decoded>> decode(std::size_t number) const;
     void work();
+    void start();
+    void read_here(std::size_t number);
+    /// With the lock.
+    void keep(std::size_t number, darkroom::Result<std::shared_ptr<Decoded>> made);
     [[nodiscard]] std::shared_ptr<Decoded> find(std::size_t number) const;  ///< with the lock
     [[nodiscard]] const darkroom::DevelopInput& input() const { return reduced_ ? reduced_->input() : shown_->input; }
 
@@ -83,7 +85,7 @@ class FrameSource final : public LiveSource {
     darkroom::FrameUpload upload_;
     darkroom::Frame frame_;  ///< of what was uploaded last
     std::vector<darkroom::Light> lights_;
-    std::jthread thread_;
+    std::optional<std::jthread> thread_;
 };
 
 }  // namespace app

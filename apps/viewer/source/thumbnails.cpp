@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "thumbnails.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <exception>
 
 #include "apps/darkroom/run/frames.hpp"
+#include "core/caught.hpp"
+#include "core/thread/parallel.hpp"
 #include "develop/developer.hpp"
 #include "edit/edits.hpp"
 #include "gpu/device/context.hpp"
@@ -103,18 +106,28 @@ Result<std::unique_ptr<Thumbnails>> Thumbnails::create(darkroom::Device& device,
 
 Thumbnails::~Thumbnails() { stop(); }
 
-// Where one cannot be made the menu does without: who adds the effect is told why.
-void Thumbnails::begin() {
-    thread_ = std::jthread([this](const std::stop_token& token) {
+// On a thread of its own nobody else would catch what is thrown.
+Result<> Thumbnails::begin() {
+    thread_ = darkroom::start_thread([this] {
         try {
-            make_all(token);
-        } catch (const std::exception&) {
-            return;
+            make_all(stop_.get_token());
+        } catch (...) {
+            const darkroom::Failure thrown = darkroom::caught("pictures of effects");
+            const std::lock_guard lock(mutex_);
+            error_ = thrown.value().text;
         }
     });
+    if (thread_) return {};
+    return darkroom::machine_error("no further thread can be started: effects are offered without pictures");
 }
 
-void Thumbnails::stop() { thread_.request_stop(); }
+void Thumbnails::stop() { stop_.request_stop(); }
+
+std::optional<darkroom::Error> Thumbnails::take_error() {
+    const std::lock_guard lock(mutex_);
+    if (error_.empty()) return {};
+    return darkroom::Error{darkroom::Fault::Machine, std::exchange(error_, {})};
+}
 
 float Thumbnails::aspect() const { return static_cast<float>(extent_.width) / static_cast<float>(extent_.height); }
 
@@ -186,14 +199,22 @@ void Thumbnails::make_all(const std::stop_token& token) {
             effect = wanted_.front();
             wanted_.pop_front();
         }
-        Result<Look> with = with_effect(look_, *effect);
-        if (!with || !darkroom::follow(shown, *with, composer)) continue;
-        shown = std::move(*with);
-        if (!composer.compile(darkroom::compile_desc_for(device_, small.input, desc))) continue;
-        Result<darkroom::DevelopedPicture> picture = developer.develop(composer, small.input);
-        if (!picture || picture->extent.width != extent_.width || picture->extent.height != extent_.height) continue;
+        const auto make = [&]() -> Result<darkroom::DevelopedPicture> {
+            Result<Look> with = with_effect(look_, *effect);
+            if (!with) return failure(std::move(with));
+            if (const auto followed = darkroom::follow(shown, *with, composer); !followed)
+                return failure(followed.error());
+            shown = std::move(*with);
+            if (const auto plan = composer.compile(darkroom::compile_desc_for(device_, small.input, desc)); !plan)
+                return failure(plan.error());
+            return developer.develop(composer, small.input);
+        };
+        Result<darkroom::DevelopedPicture> picture = make();
         const std::lock_guard lock(mutex_);
-        made_.emplace_back(effect, std::move(picture->bytes));
+        if (!picture)
+            error_ = fmt::format("the picture of {}: {}", effect->name, picture.error().text);
+        else if (picture->extent.width == extent_.width && picture->extent.height == extent_.height)
+            made_.emplace_back(effect, std::move(picture->bytes));
     }
 }
 

@@ -10,6 +10,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -30,15 +32,17 @@ class Thumbnails {
     Thumbnails& operator=(const Thumbnails&) = delete;
     ~Thumbnails();
 
-    /// Reads the frame, and begins: what record_frame() has recorded has finished.
+    /// Reads the frame, and begins: what record_frame() has recorded has finished. Errors: no thread can be started.
     void record_frame(VkCommandBuffer commands) const { frame_read_.record(commands); }
-    void begin();
+    [[nodiscard]] darkroom::Result<> begin();
     /// Makes no more; does not wait for the one that is being made.
     void stop();
 
     /// Asks for one, which comes with a later frame. The pane stays where it is.
     [[nodiscard]] const darkroom::window::Pane* of(const darkroom::EffectInfo& effect);
     [[nodiscard]] float aspect() const;
+    /// Why one could not be made, once.
+    [[nodiscard]] std::optional<darkroom::Error> take_error();
     /// Has one been made that is in no image yet?
     [[nodiscard]] bool has_new() const;
     /// Copies what is new into the image that panes show.
@@ -71,7 +75,9 @@ class Thumbnails {
     std::deque<const darkroom::EffectInfo*> wanted_;
     std::deque<std::pair<const darkroom::EffectInfo*, std::vector<std::uint8_t>>> made_;
     std::map<const darkroom::EffectInfo*, Cell> cells_;
-    std::jthread thread_;
+    std::string error_;  ///< likewise guarded: why the last ones could not be made
+    std::stop_source stop_;
+    std::optional<std::jthread> thread_;
 };
 
 }  // namespace app

@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <optional>
 #include <thread>
 
 #include "confined/exchange.hpp"
 #include "confined/messages.hpp"
+#include "core/thread/parallel.hpp"
 
 namespace darkroom {
 
@@ -25,7 +27,8 @@ void end_with_program() {
 }  // namespace
 
 bool greet(std::string_view error) {
-    std::thread(end_with_program).detach();
+    // Without it this process ends when it is asked no more.
+    if (std::optional<std::jthread> watching = start_thread(end_with_program)) watching->detach();
     error = error.substr(0, most_error_bytes);
     const ConfinedGreeting greeting{.error_size = static_cast<std::uint32_t>(error.size())};
     return send_all(socket_of_program, &greeting, sizeof greeting) &&
