@@ -127,10 +127,9 @@ TEST_F(CliViewerTasks, TheListOfEffectsShowsWhatTheyDo) {
     start({"edit", frame("frame.exr"), "--size", "1280x720"});
     click("stack/add");
     std::this_thread::sleep_for(std::chrono::seconds(1));
-    type("vignette");
-    const auto [left, top, right, bottom] = place("add/vignette.picture");
     int shots = 0;
-    const auto has_picture = [&] {
+    const auto has_picture = [&](const std::string& effect) {
+        const auto [left, top, right, bottom] = place("add/" + effect + ".picture");
         const std::string file = fmt::format("darkroom-window-{:04}.png", ++shots);
         press("shift+F12", "stored " + file);
         const Picture window = picture(file);
@@ -144,7 +143,13 @@ TEST_F(CliViewerTasks, TheListOfEffectsShowsWhatTheyDo) {
             }
         return most - least > 0.2F;
     };
-    EXPECT_TRUE(wait_until(has_picture, 240));
+    type("vignette");
+    EXPECT_TRUE(wait_until([&] { return has_picture("vignette"); }, 240));
+    press("Escape");
+    click("stack/add");
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    type("second picture");
+    EXPECT_TRUE(wait_until([&] { return has_picture("blend"); }, 60)) << "the scene stands in for the second";
     press("Escape");
     leave();
 }

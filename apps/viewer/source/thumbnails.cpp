@@ -27,13 +27,15 @@ namespace {
 constexpr std::uint32_t most_width = 160;
 constexpr std::size_t columns = 8;
 
-/// With an amount that shows what it does, where its default is to do nothing.
+/// With an amount that shows what it does, where its default is to do nothing. What reads a second picture gets the
+/// scene for it: an entry that was just added names none.
 Result<Look> with_effect(const Look& look, const EffectInfo& effect) {
     Look out = look;
     const Result<std::string> name = darkroom::edit::add_effect(out, effect);
     // What is there already, and once only, is shown as it is.
     if (!name) return effect.flat.is_of_ui ? Result<Look>(out) : failure(name.error());
     darkroom::LookEntry* const entry = find_entry(out, *name);
+    if (entry != nullptr && effect.has_second && entry->second.empty()) entry->second = "scene";
     if (entry == nullptr || effect.is_identity == nullptr || !effect.is_identity(entry->words.data())) return out;
     for (const darkroom::ParamInfo& row : effect.parameters.rows)
         if (row.is_amount && row.kind == darkroom::Kind::Float)
