@@ -59,6 +59,9 @@ Result<> check(const gpu::Context& context, const RenderDesc& desc) {
     if (desc.positions < 1 || desc.positions > scene::most_samples)
         return user_error(
             fmt::format("positions in a pixel: {}, [1, {}] are allowed", desc.positions, scene::most_samples));
+    if (desc.lens.f_stop > 0 && desc.positions == 1)
+        return user_error(fmt::format("lens at f/{}: seen from one place; positions in a pixel: [2, {}] are allowed",
+                                      desc.lens.f_stop, scene::most_samples));
     if (desc.has_transparency && (desc.samples != 1 || desc.positions != 1 || desc.output != Output::Hdr))
         return user_error(
             fmt::format("colour before transparency: with {} samples, {} positions and the {} output; allowed is 1, 1 "
@@ -240,7 +243,8 @@ Result<> Renderer::State::prepare(const scene::Snapshot& next, const FrameJitter
     jitter = next_jitter;
     settings.jitter = jitter.now;
     slot = (slot + 1) % desc.frames_in_flight;
-    list = draw_list(next, jitter_matrix(jitter.now, desc.extent));
+    // From beside the camera more is seen, and what is near moves the farthest: then nothing lies outside.
+    list = draw_list(next, desc.lens.f_stop > 0 ? scene::mat4(0) : jitter_matrix(jitter.now, desc.extent));
     if (desc.draw.has_shadows && desc.draw.debug == DebugView::None) {
         shadows->prepare(next);
     } else {
@@ -274,8 +278,13 @@ Result<> Renderer::State::fill_buffers(FrameBuffers& buffers) {
     buffers.frame() = frame_block(*snapshot, settings);
     if (accumulate) {
         if (Result<> done = buffers.reserve_positions(*context, positions.size()); !done) return done;
-        for (std::size_t i = 0; i < positions.size(); ++i)
-            buffers.position(i) = moved_block(buffers.frame(), positions[i]);
+        const scene::CameraState& camera = snapshot->camera;
+        const Aperture aperture =
+            aperture_of(desc.lens, camera.projection, glm::distance(camera.position, camera.target));
+        for (std::uint32_t i = 0; i < desc.positions; ++i)
+            buffers.position(i) =
+                seen_from(moved_block(buffers.frame(), positions[i]),
+                          aperture.radius * place_in_aperture(i, desc.positions), aperture.focus_distance);
     }
     buffers.lights() = light_block(*snapshot, shadows->casting_lights(), shadows->lamps());
     shadows->fill(buffers.shadows());

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "render/frame_set.hpp"
+#include "render/lens.hpp"
 #include "render/shadow/cascades.hpp"
 #include "scene/assets.hpp"
 #include "scene/pose/snapshot.hpp"
@@ -46,6 +47,8 @@ struct RenderDesc {
     /// That mean is weighed by the inverse of one plus the largest channel, so that edges are as smooth as a display
     /// shows them; else it is of light itself.
     bool is_mean_weighed = true;
+    /// With more than one position: each is seen from another place of the aperture. The layers are those of a pinhole.
+    LensDesc lens;
     Output output = Output::Hdr;
     /// Of the picture for Output::Display; its first channels red, green, blue, alpha, sRGB-encoded by the shader.
     VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;

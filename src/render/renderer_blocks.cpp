@@ -101,6 +101,18 @@ blocks::Frame moved_block(const blocks::Frame& frame, scene::vec2 pixels) {
     return moved;
 }
 
+blocks::Frame seen_from(const blocks::Frame& frame, scene::vec2 place, float focus_distance) {
+    blocks::Frame moved = frame;
+    const scene::mat3 to_world = glm::transpose(scene::mat3(frame.view));
+    moved.camera_position += vec4(to_world * vec3(place, 0), 0);
+    moved.view[3] -= vec4(place, 0, 0);
+    // A shear: points at the focus distance, where z is its negative, come back to where they were.
+    moved.projection[2] -= (frame.projection[0] * place.x + frame.projection[1] * place.y) / focus_distance;
+    moved.view_projection = moved.projection * moved.view;
+    moved.inverse_view_projection = glm::inverse(moved.view_projection);
+    return moved;
+}
+
 blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps,
                            std::span<const LampTiles> lamps) {
     const auto tiles_of_light = [&](const scene::LightState* state) -> vec4 {

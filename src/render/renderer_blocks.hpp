@@ -30,6 +30,9 @@ struct FrameSettings {
 [[nodiscard]] blocks::Frame frame_block(const scene::Snapshot& snapshot, const FrameSettings& settings);
 /// The same frame, drawn so that the centres of pixels see what lies `pixels` beside them, x right and y down.
 [[nodiscard]] blocks::Frame moved_block(const blocks::Frame& frame, scene::vec2 pixels);
+/// The same frame, seen from `place` beside the camera, x right and y up in metres; what lies `focus_distance` metres
+/// away along the view axis stays where it is in the picture.
+[[nodiscard]] blocks::Frame seen_from(const blocks::Frame& frame, scene::vec2 place, float focus_distance);
 /// `shadow_maps`: of the first that many casting directional lights; `lamps`: those that have tiles.
 [[nodiscard]] blocks::Lights light_block(const scene::Snapshot& snapshot, std::uint32_t shadow_maps,
                                          std::span<const LampTiles> lamps = {});

@@ -250,6 +250,43 @@ TEST_F(CliRenderPixels, SamplesAreThoseOfTheFlagThenOfTheScene) {
     EXPECT_NE(refused.err.find("--samples = 1025: allowed is [1, 1024]"), std::string::npos) << refused.err;
 }
 
+TEST_F(CliRenderPixels, ALensIsSampledAndNotBlurredAgain) {
+    const std::vector<std::string> open{"--aperture", "0.5", "--sensor-height", "400", "--samples", "32"};
+    const auto with = [&](std::vector<std::string> flags) {
+        flags.insert(flags.begin(), open.begin(), open.end());
+        return flags;
+    };
+    const Picture pinhole = rendered({"--samples", "32"}), lens = rendered(with({})),
+                  far = rendered(with({"--focus", "1000"}));
+    double blurred = 0, far_off = 0;
+    for_every_pixel([&](std::uint32_t x, std::uint32_t y) {
+        blurred += double{codes_apart(pinhole, lens, x, y)};
+        far_off += double{codes_apart(lens, far, x, y)};
+    });
+    EXPECT_GT(blurred, 2.0 * wide * tall);
+    EXPECT_GT(far_off, 2.0 * wide * tall) << "without --focus it is the target's distance";
+    std::vector<std::string> words{
+        "render", path("yard.scene.toml"), "-o", path("twice.png"), "--size", "96x64", "--msaa", "1"};
+    words.insert(words.end(), open.begin(), open.end());
+    words.insert(words.end(), {"--depth-of-field-enabled", "on", "--depth-of-field-f-stop", "0.5"});
+    const Outcome twice = run(words);
+    EXPECT_EQ(twice.code, 0);
+    EXPECT_NE(twice.told.find("--aperture: the lens blurs, depth_of_field is off"), std::string::npos) << twice.told;
+    EXPECT_EQ(picture("twice.png"), lens);
+    for (const auto& [flags, text] :
+         {std::pair(std::vector<std::string>{"--focus", "3"}, "--focus: there is no lens, --aperture makes one"),
+          {{"--aperture", "2", "--samples", "1"}, "--samples = 1: with --aperture allowed is [2, 1024]"},
+          {{"--aperture", "0"}, "--aperture = 0: allowed is [0.5, 64]"},
+          {{"--aperture", "2", "--no-postprocess"},
+           "--aperture: the scene's own shaders draw the picture from one place"}}) {
+        std::vector<std::string> all{"render", path("yard.scene.toml"), "-o", path("no.png"), "--size", "96x64"};
+        all.insert(all.end(), flags.begin(), flags.end());
+        const Outcome refused = run(all);
+        EXPECT_EQ(refused.code, 1);
+        EXPECT_NE(refused.err.find(text), std::string::npos) << refused.err;
+    }
+}
+
 TEST_F(CliRenderPixels, TheOverlayIsTheEdgesOfTriangles) {
     const Picture plain = rendered({"--no-grid"}), lines = rendered({"--no-grid", "--wireframe-overlay"});
     const Eye eye;

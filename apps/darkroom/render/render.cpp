@@ -54,6 +54,19 @@ bool switch_tone_mapping_off(darkroom::Look& look) {
     return was_there;
 }
 
+// Effects that the lens makes superfluous: those that are told where it is focused. None is known by name.
+void switch_lens_blur_off(darkroom::Look& look) {
+    for (darkroom::LookEntry& entry : look.entries) {
+        const auto& rows = entry.effect->parameters.rows;
+        if (!entry.state.enabled.on ||
+            std::ranges::find(rows, "focus_distance", &darkroom::ParamInfo::name) == rows.end())
+            continue;
+        entry.state.enabled = false;
+        tell(fmt::format("--aperture: the lens blurs, {} is off",
+                         entry.name.empty() ? std::string(entry.effect->name) : darkroom::printable(entry.name)));
+    }
+}
+
 class Render {
   public:
     explicit Render(const RenderFlags& flags) : flags_(flags) {}
@@ -133,6 +146,11 @@ class Render {
             return darkroom::user_error("--render-scale: nothing is post-processed, --size is that of the picture");
         if (job_.color && way_ != Way::Developed)
             return darkroom::user_error("--output-space: nothing is post-processed");
+        if (!flags_.has_lens()) return {};
+        if (way_ == Way::Display)
+            return darkroom::user_error(
+                "--aperture: the scene's own shaders draw the picture from one place, linear light is needed");
+        switch_lens_blur_off(look_);
         return {};
     }
 
@@ -258,7 +276,7 @@ class Render {
             if (!samples) return failure(samples.error());
             is_jittered_ = job_.is_sequence && way_ == Way::Developed && gathers_frames(look_);
             // Frames that are gathered have their other places in the frames before.
-            desc.positions = is_jittered_ && !flags_.has_samples() ? 1 : *samples;
+            desc.positions = is_jittered_ && !flags_.has_samples() && !flags_.has_lens() ? 1 : *samples;
             desc.has_transparency = desc.positions == 1 && desc.samples == 1 && needs_.has_transparency;
             desc.extent = scaled(extent, job_.render_scale);
             scale_ = static_cast<float>(extent.height) / static_cast<float>(desc.extent.height);

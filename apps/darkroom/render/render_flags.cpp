@@ -24,7 +24,7 @@ namespace {
 
 constexpr VkExtent2D default_extent{1920, 1080};
 constexpr const char* moment_group = "The moment";
-constexpr std::uint32_t usual_samples = 3;
+constexpr std::uint32_t usual_samples = 3, usual_samples_of_lens = 256;
 
 }  // namespace
 
@@ -44,7 +44,22 @@ void RenderFlags::add_to(CommandFlags command, std::span<const darkroom::LookEnt
     drawn.add_to(command, default_extent, 1, moment_group);
     samples_.add_to(command, "Number of places within a pixel whose light is averaged, on top of --msaa")
         .type_name("N")
-        .default_str(fmt::format("what the scene says, or {}", usual_samples))
+        .default_str(
+            fmt::format("what the scene says, or {}; with --aperture {}", usual_samples, usual_samples_of_lens))
+        .group(SceneFlags::drawing_group);
+    aperture_
+        .add_to(command,
+                "Draws through a lens of this f-stop: each of --samples sees the scene from another place of its "
+                "aperture")
+        .type_name("N")
+        .group(SceneFlags::drawing_group);
+    focus_.add_to(command, "Distance along the view axis that such a lens is focused at")
+        .type_name("METRES")
+        .default_str("that of the camera's target")
+        .group(SceneFlags::drawing_group);
+    sensor_height_.add_to(command, "Height of the sensor behind it; with the field of view it gives the focal length")
+        .type_name("MM")
+        .default_str(fmt::format("{}", darkroom::render::LensDesc().sensor_height))
         .group(SceneFlags::drawing_group);
     render_scale_
         .add_to(command,
@@ -141,8 +156,25 @@ Result<> RenderFlags::set_target(RenderJob& job) const {
 
 Result<std::uint32_t> RenderFlags::samples(std::uint32_t of_scene) const {
     std::uint32_t samples = of_scene > 0 ? of_scene : usual_samples;
+    if (has_lens()) samples = std::max(samples, usual_samples_of_lens);
     if (Result<> done = samples_.read_to(samples); !done) return failure(std::move(done));
+    if (has_lens() && samples == 1)
+        return user_error(
+            fmt::format("--samples = 1: with --aperture allowed is [2, {}]", darkroom::scene::most_samples));
     return samples;
+}
+
+Result<> RenderFlags::set_lens(RenderJob& job) const {
+    darkroom::render::LensDesc& lens = job.desc.lens;
+    for (const auto& [flag, to] : {std::pair(&aperture_, &lens.f_stop), std::pair(&focus_, &lens.focus_distance),
+                                   std::pair(&sensor_height_, &lens.sensor_height)})
+        if (Result<> done = flag->read_to(*to); !done) return done;
+    if (!has_lens() && (focus_.is_given() || sensor_height_.is_given()))
+        return user_error(fmt::format("{}: there is no lens, --aperture makes one",
+                                      focus_.is_given() ? "--focus" : "--sensor-height"));
+    // So that highlights keep their light.
+    job.desc.is_mean_weighed = !has_lens();
+    return {};
 }
 
 Result<RenderJob> RenderFlags::job() const {
@@ -166,6 +198,7 @@ Result<RenderJob> RenderFlags::job() const {
     job.jobs = *jobs;
     if (Result<> done = frames_per_second_.read_to(job.frames_per_second); !done) return failure(std::move(done));
     if (Result<> done = render_scale_.read_to(job.render_scale); !done) return failure(std::move(done));
+    if (Result<> done = set_lens(job); !done) return failure(std::move(done));
     job.is_sequence = frames_.has_value();
     if (Result<> done = set_target(job); !done) return failure(std::move(done));
     Result<std::vector<Shot>> shots = this->shots(job);

@@ -65,12 +65,14 @@ class RenderFlags {
     /// within 0.02 FLIP of 256.
     [[nodiscard]] darkroom::Result<std::uint32_t> samples(std::uint32_t of_scene) const;
     [[nodiscard]] bool has_samples() const { return samples_.is_given(); }
+    [[nodiscard]] bool has_lens() const { return aperture_.is_given(); }
 
   private:
     void add_moments(CommandFlags command);
     [[nodiscard]] darkroom::Result<std::vector<Shot>> shots(const RenderJob& job) const;
     /// What becomes of the pictures: files or a stream.
     [[nodiscard]] darkroom::Result<> set_target(RenderJob& job) const;
+    [[nodiscard]] darkroom::Result<> set_lens(RenderJob& job) const;
     [[nodiscard]] darkroom::Result<> check_files(const std::vector<Shot>& shots) const;
 
     // Optional, so that an empty text is a wrong value, not a missing one.
@@ -79,6 +81,9 @@ class RenderFlags {
     NumberFlag time_{"--time", {.least = 0, .most = 1e9, .unit = "s"}};
     NumberFlag frames_per_second_{"--fps", {.least = 0.001, .most = 1e6}};
     NumberFlag render_scale_{"--render-scale", {.least = 0.1, .most = 1}};
+    NumberFlag aperture_{"--aperture", {.least = 0.5, .most = 64}};
+    NumberFlag focus_{"--focus", {.least = 0.01, .most = 1e5, .unit = "m"}};
+    NumberFlag sensor_height_{"--sensor-height", {.least = 1, .most = 1000, .unit = "mm"}};
     NumberFlag samples_{"--samples", {.least = 1, .most = darkroom::scene::most_samples, .is_whole = true}};
 };
 
