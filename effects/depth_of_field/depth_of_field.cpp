@@ -49,7 +49,7 @@ void circle_constants(const void* parameters, const PassContext& context, std::s
     out[1] = {static_cast<float>(lens.infinity) / pixels, static_cast<float>(lens.infinity * lens.focus) / pixels,
               limit / pixels, depth.sky};
     const DepthOfFieldBlur blur = depth_of_field_blur(denominator);
-    out[2] = {pixels, static_cast<float>(blur.own), static_cast<float>(blur.least), static_cast<float>(blur.slope)};
+    out[2] = {pixels, static_cast<float>(blur.own), static_cast<float>(blur.sharp), static_cast<float>(blur.slope)};
 }
 
 constexpr std::uint32_t most_pairs = 2 * most_rings * (most_rings + 1);
@@ -62,9 +62,9 @@ void gather_constants(const void* parameters, const PassContext& context, std::s
                  diagonal = std::hypot(width, height);
     const DepthOfFieldBlur blur = depth_of_field_blur(denominator);
     const double shift = 2 * double{field.cats_eye} / diagonal;
-    out[0] = {static_cast<float>(blur.least), static_cast<float>(blur.slope), static_cast<float>(width * shift),
-              static_cast<float>(height * shift)};
-    std::size_t next = 1;
+    out[0] = {static_cast<float>(blur.least), 0, static_cast<float>(width * shift), static_cast<float>(height * shift)};
+    out[1] = {static_cast<float>(blur.own), static_cast<float>(blur.sharp), static_cast<float>(blur.slope), 0};
+    std::size_t next = 2;
     for (std::uint32_t ring = 1; ring <= most_rings; ++ring)
         for (std::uint32_t i = 0; i < 8 * ring; i += 2) {
             const auto one = depth_of_field_place(field, ring, i), other = depth_of_field_place(field, ring, i + 1);
@@ -108,7 +108,7 @@ void build_at(PassBuilder& builder) {
                                     {.name = "depth_of_field_near_tiles", .image = tiles, .is_loaded = true}},
                          .output = create("behind"),
                          .more_outputs = {create("near")},
-                         .custom_vectors = 1 + most_pairs,
+                         .custom_vectors = 2 + most_pairs,
                          .constants = gather_constants<denominator>});
     if (gathered.size() < 2) return;
     const std::vector<PassImage> filled =

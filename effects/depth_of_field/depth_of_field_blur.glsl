@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What is left to blur of a circle where the passes blur by themselves, as one whose radius has the square `own`, in texels.
-// Of large circles their variances are subtracted; small ones stay apart.
-float depth_of_field_left(float radius, float own) { return radius * radius * inversesqrt(radius * radius + own); }
+// What is left to blur of a circle where the passes blur by themselves, as one whose radius has the square `own` does, in
+// texels: variances are subtracted where they are large enough, in a smooth way. Up to half a pixel nothing is, so that what
+// is sharp covers nothing beside itself.
+float depth_of_field_left(float radius, float own, float pixels_a_texel) {
+    float rest = radius * radius - own, beyond = clamp(2.0 * radius * pixels_a_texel - 1.0, 0.0, 1.0);
+    return beyond * sqrt(0.5 * (rest + sqrt(rest * rest + own * own)));
+}
+
+// How much of what is blurred so is laid over the sharp picture: the share of the circle's variance in its own, from
+// `sharp` on, at which a circle is sharp.
+float depth_of_field_weight(float left, float own, float sharp, float slope) {
+    float square = max(left * left, 1e-6);
+    return clamp((1.0 - 0.25 * own * own / (square * (square + own)) - sharp) * slope, 0.0, 1.0);
+}

@@ -2,7 +2,7 @@
 // The circle that a point is seen as, as its radius in texels of the blurred picture: negative before the distance that is
 // sharp. custom[0] = (x, y, z, w) with 1 / distance = (d z + w) / (d x + y), custom[1] = (radius at infinity, that times
 // the distance that is sharp, largest radius, depth of the sky), custom[2] = (pixels a texel, what depth_of_field_left()
-// takes, smallest radius that is a blur, 1 / by how much more a radius is one wholly).
+// takes, and what depth_of_field_weight() does).
 #include "depth_of_field_blur.glsl"
 
 float depth_of_field_circle(float depth) {
@@ -14,6 +14,6 @@ float depth_of_field_circle(float depth) {
 
 // The same with what is left to blur.
 float depth_of_field_to_blur(float circle) {
-    float left = depth_of_field_left(circle, custom[2].y);
+    float left = depth_of_field_left(abs(circle), custom[2].y, custom[2].x);
     return circle < 0.0 ? -left : left;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What reaches a texel: see the page. result[0]: what is seen behind the near field, where that is no sharp pixel;
-// result[1]: the near field. Both premultiplied. custom[0] = (smallest radius that is a blur, 1 / by how much more a radius
-// is one wholly, shift of the barrel's circle from edge to edge of the picture in radii), custom[1] ...: two samples each,
-// rings of radius 1, 2, 3 ... about the centre.
+// result[1]: the near field. Both premultiplied. custom[0] = (smallest radius that is a blur, 0, shift of the barrel's circle
+// from edge to edge of the picture in radii), custom[1] = (what depth_of_field_weight() takes, 0), custom[2] ...: two samples
+// each, rings of radius 1, 2, 3 ... about the centre.
+#include "depth_of_field_blur.glsl"
 #include "depth_of_field_rings.glsl"
 
 const float depth_of_field_pi = 3.14159265;
@@ -17,11 +18,11 @@ ivec4 depth_of_field_texels(Pixel pixel, vec4 places, float spacing) {
     return ivec4(clamp(places * spacing + (vec4(pixel.texel.xyxy) + 0.5), vec4(0.0), vec4(pixel.size.xyxy) - 0.5));
 }
 
-// All that has no circle of the near field around: the far one alone.
+// All that has no blurred circle of the near field around: the far one alone.
 vec4 depth_of_field_far(Pixel pixel, DepthOfFieldRings rings) {
     vec4 behind = vec4(load(depth_of_field_color, pixel.texel).rgb, 1.0) /
                   depth_of_field_samples(rings.circle * rings.rings_a_texel + 0.5);
-    int next = 1;
+    int next = 2;
     for (int ring = 1; ring <= rings.count; ++ring)
         for (int i = 0; i < 4 * ring; ++i) {
             ivec4 texels = depth_of_field_texels(pixel, custom[next++], rings.spacing);
@@ -47,7 +48,7 @@ void depth_of_field_add(inout DepthOfFieldSums sums, vec4 color, float own, vec2
     float radius = (is_near ? -color.a : min(color.a, max(own, 0.0))) * rings_a_texel;
     float away = barrel == vec2(0.0) ? ring : max(ring, length(place + barrel * radius));
     float covers = (ring == 0.0 ? 1.0 : clamp(radius - away + 0.5, 0.0, 1.0)) / depth_of_field_samples(radius + 0.5);
-    float near = covers * clamp((-color.a - custom[0].x) * custom[0].y, 0.0, 1.0);
+    float near = covers * depth_of_field_weight(-color.a, custom[1].x, custom[1].y, custom[1].z);
     sums.near += vec4(color.rgb, 1.0) * (is_near ? near : 0.0);
     sums.behind += vec4(color.rgb, 1.0) * (is_near ? 0.0 : own > 0.0 ? covers : fill);
 }
@@ -58,7 +59,7 @@ void shade(Pixel pixel, out vec4 result[2]) {
     vec2 barrel = (pixel.uv - 0.5) * custom[0].zw;
     result[0] = result[1] = vec4(0.0);
     if (rings.radius <= custom[0].x) return;
-    if (rings.near == 0.0 && barrel == vec2(0.0)) {
+    if (rings.near <= custom[0].x && barrel == vec2(0.0)) {
         result[0] = depth_of_field_far(pixel, rings);
         return;
     }
@@ -67,7 +68,7 @@ void shade(Pixel pixel, out vec4 result[2]) {
     DepthOfFieldSums sums = DepthOfFieldSums(vec4(0.0), vec4(0.0));
     depth_of_field_add(sums, load(depth_of_field_color, pixel.texel), rings.circle, vec2(0.0), 0.0, rings.rings_a_texel,
                        barrel, 1.0);
-    int next = 1;
+    int next = 2;
     for (int ring = 1; ring <= rings.count; ++ring) {
         // Behind a near thing what is close by counts most.
         float nearness = 1.0 - float(ring) / float(rings.count + 1), fill = nearness * nearness;

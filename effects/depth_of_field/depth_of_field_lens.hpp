@@ -30,20 +30,35 @@ struct ThinLens {
     return {aperture / 2 * focal / (focus - focal) * height / sensor, focus};
 }
 
-/// What the passes blur by themselves, in texels of `step` pixels, and from which radius on something counts as
-/// blurred.
+/// What the passes blur by themselves, as a circle whose radius has the square `own` does, in texels of `step` pixels,
+/// and from which radius on something counts as blurred.
 struct DepthOfFieldBlur {
-    double own = 0, least = 0, slope = 1;
-    /// What is left to blur of a circle: of large ones variances are subtracted, small ones stay apart.
-    [[nodiscard]] double left(double radius) const { return radius * radius / std::sqrt(radius * radius + own); }
+    double step = 1, own = 0, least = 0.01, sharp = 0, slope = 1;
+    /// Radius that is left to blur of a circle: variances are subtracted where they are large enough, in a smooth way.
+    /// Up to half a pixel nothing is, so that what is sharp covers nothing beside itself.
+    [[nodiscard]] double left(double radius) const {
+        return full(radius) * std::clamp(2 * radius * step - 1, 0.0, 1.0);
+    }
+    [[nodiscard]] double full(double radius) const {
+        const double rest = radius * radius - own;
+        return std::sqrt(0.5 * (rest + std::hypot(rest, own)));
+    }
+    /// The share of the circle's variance in that of what is blurred so: as much of it laid over the sharp picture
+    /// spreads a point as the circle does.
+    [[nodiscard]] double share(double left) const {
+        const double square = std::max(left * left, 1e-6);
+        return 1 - own * own / 4 / (square * (square + own));
+    }
+    /// How much of the blurred picture is laid over the sharp one.
+    [[nodiscard]] double weight(double left) const { return std::clamp((share(left) - sharp) * slope, 0.0, 1.0); }
 };
 [[nodiscard]] inline DepthOfFieldBlur depth_of_field_blur(std::uint32_t step) {
     // The variance of a disc is a quarter of its radius squared. That of samples at the nearest texel is 1/12; of half
     // a size also 1/16, the mean of two by two pixels, and 3/16, the bilinear mix of texels at quarters.
-    DepthOfFieldBlur blur{.own = step == 1 ? 4.0 / 12 : 4.0 / 12 + 4.0 / 16 + 4 * 3.0 / 16};
-    // A radius of half a pixel is sharp, one of a texel more is blurred.
-    blur.least = blur.left(0.5 / step);
-    blur.slope = 1 / (blur.left(0.5 / step + 1) - blur.least);
+    DepthOfFieldBlur blur{.step = double(step), .own = step == 1 ? 4.0 / 12 : 4.0 / 12 + 4.0 / 16 + 4 * 3.0 / 16};
+    // A radius of half a pixel is sharp. A tenth of a highlight that is left sharp would be seen in its disc.
+    blur.sharp = blur.share(blur.full(0.5 / step));
+    blur.slope = 1 / (0.9 - blur.sharp);
     return blur;
 }
 

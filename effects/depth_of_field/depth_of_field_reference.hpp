@@ -54,7 +54,8 @@ inline ReferenceImage depth_of_field_reference_color(const DepthOfField& field, 
                        sum.a + weight};
             }
             out.at(x, y) = {finite_reference(sum.r / sum.a), finite_reference(sum.g / sum.a),
-                            finite_reference(sum.b / sum.a), std::copysign(depth_of_field_blur(step).left(own), own)};
+                            finite_reference(sum.b / sum.a),
+                            std::copysign(depth_of_field_blur(step).left(std::abs(own)), own)};
         }
     return out;
 }
@@ -96,7 +97,7 @@ inline DepthOfFieldReach depth_of_field_reference_reach(const DepthOfField& fiel
     DepthOfFieldReach reach;
     reach.circle = color.at(x, y).a;
     reach.radius = std::max(tiles.at(x * tiles.width / color.width, y * tiles.height / color.height).r, reach.circle);
-    reach.rings = static_cast<std::uint32_t>(std::clamp(std::ceil(reach.radius), 1.0, double(field.rings)));
+    reach.rings = static_cast<std::uint32_t>(std::clamp(std::ceil(reach.radius), 2.0, double(field.rings)));
     reach.radius = std::max(reach.radius, 1e-3);
     reach.rings_a_texel = reach.rings / reach.radius;
     // The mean square of the samples' distances, that of a disc being half its radius squared.
@@ -151,7 +152,7 @@ inline DepthOfFieldFields depth_of_field_reference_gather(const DepthOfField& fi
                                   depth_of_field_reference_samples(radius, reach.rings);
             const double nearness = 1 - double(ring) / (reach.rings + 1);
             if (is_near)
-                add(sums.near, texel, covers * std::clamp((-texel.a - blur.least) * blur.slope, 0.0, 1.0));
+                add(sums.near, texel, covers * blur.weight(-texel.a));
             else
                 add(sums.behind, texel, reach.circle > 0 ? covers : nearness * nearness);
         }
@@ -205,8 +206,7 @@ inline ReferenceImage depth_of_field_reference(const void* parameters, const Ref
             const Rgba over = sample_reference(near, u, v), far = sample_reference(behind, u, v);
             const double circle =
                 depth_of_field_reference_circle(field, input.camera, input.depth->at(x, y).r, picture.height, step);
-            const double blurred =
-                far.a > 0 ? std::clamp((blur.left(circle) - blur.least) * blur.slope, 0.0, 1.0) : 0.0;
+            const double blurred = far.a > 0 ? blur.weight(blur.left(std::abs(circle))) : 0.0;
             Rgba& pixel = out.at(x, y);
             if (blurred == 0 && over.a == 0) continue;
             const auto laid = [&](double sharp, double seen, double covering) {

@@ -13,7 +13,7 @@ DepthOfFieldRings depth_of_field_rings(Pixel pixel) {
     float circle = load(depth_of_field_color, pixel.texel).a;
     ivec2 tile = pixel.texel * size(depth_of_field_near_tiles) / pixel.size;
     float near = load(depth_of_field_near_tiles, tile).r, radius = max(near, circle);
-    int count = clamp(int(ceil(radius)), 1, depth_of_field_parameters().rings);
+    int count = clamp(int(ceil(radius)), 2, depth_of_field_parameters().rings);
     // Rings of whole weight, and the last of half of it, spread as a disc of this radius does.
     float square = float(count * count), spread = sqrt((1.0 + 4.0 * square) / (4.0 * square * (square + 1.0)));
     radius = max(radius, 1e-3);
