@@ -6,6 +6,9 @@
 #include <darkroom/describe.hpp>
 #include <darkroom/effect.hpp>
 #include <darkroom/effects/auto_exposure.hpp>
+#include <optional>
+#include <variant>
+#include <vector>
 
 #include "auto_exposure/auto_exposure_reference.hpp"
 
@@ -28,7 +31,10 @@ constexpr auto auto_exposure_rows = describe(
                                    stops_per_second),
     field<&AutoExposure::speed_down>("Speed of adaption to a darker picture; at 0 the exposure stays.", {0, 100},
                                      stops_per_second),
-    field<&AutoExposure::center_weight>("Share of weight that the borders lose against the centre.", {0, 1}));
+    field<&AutoExposure::center_weight>("Share of weight that the borders lose against the centre.", {0, 1}),
+    field<&AutoExposure::metering_mask>(
+        "Picture whose red says how much pixels count, from 0 to 1, stretched over the whole; without one all do.")
+        .as_picture());
 
 const AutoExposure& values_of(const void* parameters) { return *static_cast<const AutoExposure*>(parameters); }
 
@@ -49,6 +55,18 @@ void adapt_constants(const void* parameters, const PassContext& context, std::sp
     }
 }
 
+/// What a pixel counts is a sixteenth at most: 8 bits say it.
+std::optional<PassImage> mask_image(PassBuilder& builder) {
+    const ResourceData* const data = builder.resource(values_of(builder.parameters()).metering_mask);
+    const auto* const picture = data == nullptr ? nullptr : std::get_if<ResourceImage>(data);
+    if (picture == nullptr) return {};
+    TableDesc desc{
+        .name = "mask", .format = VK_FORMAT_R8_UNORM, .extent = {picture->width, picture->height, 1}, .data = {}};
+    for (std::size_t i = 0; i < picture->rgba.size(); i += 4)
+        desc.data.push_back(static_cast<std::byte>(auto_exposure_mask_code(picture->rgba[i])));
+    return builder.table(desc);
+}
+
 void build(PassBuilder& builder) {
     using Access = ComputePassDesc::Access;
     const PassBuffer counts = builder.create_buffer("counts", 4 * numbers),
@@ -59,9 +77,13 @@ void build(PassBuilder& builder) {
                          .buffers = {{"auto_exposure_counts", counts, Access::Write}},
                          .workgroup = {invocations, 1},
                          .groups = {numbers / invocations, 1}});
+    const std::optional<PassImage> mask = mask_image(builder);
+    std::vector<KernelPassDesc::Input> inputs{
+        {.name = "auto_exposure_picture", .image = builder.source(), .is_loaded = true}};
+    if (mask) inputs.push_back({.name = "auto_exposure_mask", .image = *mask});
     builder.add_compute({.name = "count",
-                         .shader = "auto_exposure_count.glsl",
-                         .inputs = {{.name = "auto_exposure_picture", .image = builder.source(), .is_loaded = true}},
+                         .shader = mask ? "auto_exposure_count_masked.glsl" : "auto_exposure_count.glsl",
+                         .inputs = inputs,
                          .buffers = {{"auto_exposure_counts", counts, Access::ReadWrite}},
                          .workgroup = {16, 8},
                          .shared_bytes = 4 * bins,

@@ -31,6 +31,8 @@ struct AutoExposure {
     float speed_down = 1.0f;
     /// Share of weight that the borders lose against the centre. [0, 1]
     float center_weight = 0.0f;
+    /// Picture whose red says how much pixels count, from 0 to 1, stretched over the whole; without one all do.
+    Resource metering_mask;
 };
 
 [[nodiscard]] const EffectInfo& effect_info(const AutoExposure&);

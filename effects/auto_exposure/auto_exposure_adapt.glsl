@@ -61,7 +61,8 @@ void run() {
         barrier();
     }
     if (own != 0u) return;
-    float metered = sum.y / max(sum.x, 1e-10) / 8.0 - 16.0 - auto_exposure_grey;
+    // Where the mask leaves nothing, nothing is changed.
+    float metered = all > 0.0 ? sum.y / sum.x / 8.0 - 16.0 - auto_exposure_grey : 0.0;
     float target = parameters.compensation + auto_exposure_curve(metered) -
                    clamp(metered, parameters.darkest, max(parameters.brightest, parameters.darkest));
     // From the frame before on it moved toward what that frame showed.

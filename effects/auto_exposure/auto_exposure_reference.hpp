@@ -4,13 +4,17 @@
 // round(15 (1 - k (1 - n^2))), n = 1 - (x^2 + y^2) / 2 with x and y in [-1, 1]. The metered stops m are the mean
 // between two percentiles, from middle grey, a bin's pixels being where they are on average; the exposure moves toward
 // compensation + curve(m) - clamp(m, darkest, brightest), at constant speed and in the last stop in proportion to what
-// is left. Metering by a histogram's percentiles: Alex Vlachos, "Post Processing in The Orange Box" (2008).
+// is left. A mask multiplies the weight before it is rounded. Metering by a
+// histogram's percentiles: Alex Vlachos, "Post Processing in The Orange Box" (2008).
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <darkroom/effects/auto_exposure.hpp>
 #include <darkroom/reference.hpp>
+#include <darkroom/resource.hpp>
+
+#include "shared/sample_reference.hpp"
 
 namespace darkroom {
 
@@ -19,7 +23,23 @@ struct AutoExposureBin {
 };
 using AutoExposureBins = std::array<AutoExposureBin, 256>;
 
-inline AutoExposureBins auto_exposure_reference_bins(const ReferenceImage& picture, double center_weight) {
+/// Of 8 bits; NaN is 0.
+inline std::uint8_t auto_exposure_mask_code(float weight) {
+    return weight > 0 ? static_cast<std::uint8_t>(std::lround(255 * std::min(weight, 1.0f))) : std::uint8_t{0};
+}
+
+/// The mask as it is sampled; empty: there is none.
+inline ReferenceImage auto_exposure_reference_mask(const AutoExposure& parameters, const ReferenceInput& input) {
+    const ResourceImage* const picture = find_resource<ResourceImage>(input.resources, parameters.metering_mask);
+    if (picture == nullptr) return {};
+    ReferenceImage out(picture->width, picture->height);
+    for (std::size_t i = 0; i < out.pixels.size(); ++i)
+        out.pixels[i].r = auto_exposure_mask_code(picture->rgba[4 * i]) / 255.0;
+    return out;
+}
+
+inline AutoExposureBins auto_exposure_reference_bins(const ReferenceImage& picture, double center_weight,
+                                                     const ReferenceImage& mask = {}) {
     AutoExposureBins bins{};
     for (std::uint32_t y = 0; y < picture.height; ++y)
         for (std::uint32_t x = 0; x < picture.width; ++x) {
@@ -29,7 +49,10 @@ inline AutoExposureBins auto_exposure_reference_bins(const ReferenceImage& pictu
             const double place = 8 * (std::log2(std::clamp(luminance, 0x1p-16, 65504.0)) + 16);
             const double right = (2 * x + 1.0) / picture.width - 1, down = (2 * y + 1.0) / picture.height - 1;
             const double near = 1 - (right * right + down * down) / 2;
-            const double weight = std::floor(15 * (1 - center_weight * (1 - near * near)) + 0.5);
+            const double share = mask.pixels.empty()
+                                     ? 1
+                                     : sample_reference(mask, (x + 0.5) / picture.width, (y + 0.5) / picture.height).r;
+            const double weight = std::floor(15 * (1 - center_weight * (1 - near * near)) * share + 0.5);
             AutoExposureBin& bin = bins[static_cast<std::size_t>(place)];
             bin.count += weight;
             bin.sum += weight * place;
@@ -37,7 +60,7 @@ inline AutoExposureBins auto_exposure_reference_bins(const ReferenceImage& pictu
     return bins;
 }
 
-/// Mean between two percentiles, in stops from middle grey.
+/// Mean between the percentiles, in stops from middle grey; 0 where nothing counts.
 inline double auto_exposure_reference_meter(const AutoExposureBins& bins, double low, double high) {
     double all = 0, through = 0, sum = 0, moment = 0;
     for (const AutoExposureBin& bin : bins) all += bin.count;
@@ -49,7 +72,7 @@ inline double auto_exposure_reference_meter(const AutoExposureBins& bins, double
         sum += part;
         moment += part * bin.sum / bin.count;
     }
-    return moment / sum / 8 - 16 - std::log2(0.18);
+    return all > 0 ? moment / sum / 8 - 16 - std::log2(0.18) : 0;
 }
 
 inline double auto_exposure_reference_curve(const Curve& curve, double at) {
@@ -78,8 +101,10 @@ inline double auto_exposure_reference_moved(const AutoExposure& parameters, doub
 /// The history holds stops in red, and in green those that they move toward.
 inline ReferenceImage auto_exposure_reference(const void* parameters, const ReferenceInput& input) {
     const AutoExposure& own = *static_cast<const AutoExposure*>(parameters);
-    const double metered = auto_exposure_reference_meter(
-        auto_exposure_reference_bins(*input.source, double{own.center_weight}), double{own.low}, double{own.high});
+    const double metered =
+        auto_exposure_reference_meter(auto_exposure_reference_bins(*input.source, double{own.center_weight},
+                                                                   auto_exposure_reference_mask(own, input)),
+                                      double{own.low}, double{own.high});
     const double target = auto_exposure_reference_target(own, metered);
     double stops = target;
     if (input.history != nullptr) {

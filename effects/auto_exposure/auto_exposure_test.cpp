@@ -190,6 +190,41 @@ TEST(EffectAutoExposure, GpuMetersTheCentreMore) {
     EXPECT_GT(central, 1.4 * even);
 }
 
+TEST(EffectAutoExposure, GpuAMaskSaysWhatCounts) {
+    // 12 columns of 10 pixels: a third of the picture counts, a third by half, a third not.
+    ReferenceImage picture(120, 24);
+    ResourceImage mask{.width = 12, .height = 1, .rgba = {}};
+    for (std::uint32_t x = 0; x < 120; ++x)
+        for (std::uint32_t y = 0; y < 24; ++y) {
+            const double light = 0.18 * std::exp2(x < 40 ? 2 : x < 80 ? -1 : 6);
+            picture.at(x, y) = {light, light, light, 1};
+        }
+    for (const float weight : {1.0f, 0.5f, 0.0f})
+        for (int i = 0; i < 4; ++i) mask.rgba.insert(mask.rgba.end(), {weight, 0.3f, 0.7f, 1});
+    picture = test::round_to_float(picture);
+    const auto masked = [](const AutoExposure& exposure, const ResourceImage& by) {
+        return [=](Composer& composer) {
+            AutoExposure own = exposure;
+            own.metering_mask = gpu::test::must(composer.define(by));
+            composer.add(own);
+        };
+    };
+    const std::vector<Shot> shots{{.color = picture}};
+    const AutoExposure all{.low = 0, .high = 1, .darkest = -16, .brightest = 16}, bent{.center_weight = 0.6f};
+    const double seen = stops_of(developed_sequence(masked(all, mask), shots)[0], picture);
+    // Between the middles of two columns of the mask it is mixed.
+    EXPECT_NEAR(-seen, (1.0 * 2 + 0.5 * -1) / 1.5, 0.1);
+    for (const AutoExposure& exposure : {all, bent})
+        EXPECT_NEAR(stops_of(developed_sequence(masked(exposure, mask), shots)[0], picture),
+                    stops_of(reference_sequence(masked(exposure, mask), shots)[0], picture), 0.02);
+    const ResourceImage nothing{.width = 1, .height = 1, .rgba = {0, 1, 1, 1}};
+    EXPECT_NEAR(stops_of(developed_sequence(masked({.compensation = 1}, nothing), shots)[0], picture), 1, 1e-6);
+    const ResourceImage everything{.width = 1, .height = 1, .rgba = {1, 0, 0, 1}};
+    EXPECT_EQ(test::worst_difference(developed_sequence(masked({}, everything), shots)[0],
+                                     developed_sequence(stack_of({}), shots)[0]),
+              0);
+}
+
 TEST(EffectAutoExposure, GpuNanAndInfinityAreBlackAndBright) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     ReferenceImage picture = grey_of(1, 16, 16), clean = picture;
@@ -301,8 +336,8 @@ TEST_F(EffectAutoExposureData, GpuMetersEnvironmentsAsExactlyAsBySorting) {
         }
 }
 
-// A disc of 1 % in the upper half. Indoors, lamps in a black room, it hides so much black that no percentile holds
-// still; there 0.15 is asked for.
+// A disc of 1 % in the upper half. Whatever it hides, pixels of the window move up by a hundredth of all; in a black
+// room with lamps the window spans so many stops that this is 0.12 of them, and no window of percentiles holds still.
 TEST_F(EffectAutoExposureData, GpuASunMovesItLittle) {
     for (const auto& [name, picture] : environments()) {
         ReferenceImage with_sun = picture;
@@ -313,7 +348,7 @@ TEST_F(EffectAutoExposureData, GpuASunMovesItLittle) {
                     with_sun.at(x, y) = {60000, 60000, 60000, 1};
         const bool is_indoors = name.starts_with("studio") || name.starts_with("Stage");
         const double moved = metered_stops(with_sun) - metered_stops(picture);
-        EXPECT_LT(std::abs(moved), is_indoors ? 0.15 : 0.05) << name;
+        EXPECT_LT(std::abs(moved), is_indoors ? 0.13 : 0.05) << name;
     }
 }
 
