@@ -107,6 +107,7 @@ TEST_F(CliOpen, FlagsOfAllCommands) {
                                                {"--lut-fade-to", {".cube"}},
                                                {"--arena-grade-table", {".cube", ".png"}},
                                                {"--lens-dirt-dirt", {".png"}},
+                                               {"--auto-exposure-metering-mask", {".png"}},
                                                {"--perturb-distortion", {".png"}}};
     const std::string frame = path("frame.exr"), scene = path("box.scene.toml");
     const std::map<std::string, Words> commands{
