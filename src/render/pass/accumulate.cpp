@@ -45,16 +45,22 @@ std::vector<scene::vec2> positions_in_pixel(std::uint32_t count) {
     // Points of an even lattice lie between the rows and columns of the next odd one, whose origin is left out.
     const auto half = static_cast<std::int32_t>(count / 2), size = 2 * half + 1;
     const bool has_centre = count % 2 == 1;
-    auto step = static_cast<std::int32_t>(std::lround(size * 0.6180339887498949));  // the golden ratio
-    while (std::gcd(step, size) != 1) ++step;
+    const auto coprime = [&](double share) {
+        auto step = static_cast<std::int32_t>(std::lround(size * share));
+        while (std::gcd(step, size) != 1) ++step;
+        return step;
+    };
+    // The golden ratio spreads the places; the order has another, so that it goes with no other spiral by that one.
+    const std::int32_t down = coprime(0.6180339887498949), next = coprime(0.4142135623730951);
+    const auto centred = [&](std::int32_t cell) { return (cell % size + size + half) % size - half; };
     const auto place = [&](std::int32_t cell) {
         const float shift = has_centre || cell == 0 ? 0.0F : std::copysign(0.5F, static_cast<float>(cell));
         return (static_cast<float>(cell) - shift) / static_cast<float>(count);
     };
     std::vector<scene::vec2> out;
-    for (std::int32_t x = -half; x <= half; ++x) {
+    for (std::int32_t i = 0; i < size; ++i) {
+        const std::int32_t x = centred(i * next), y = centred(x * down);
         if (x == 0 && !has_centre) continue;
-        const std::int32_t y = (x * step % size + size + half) % size - half;
         out.emplace_back(place(x), place(y));
     }
     std::ranges::iter_swap(out.begin(),
