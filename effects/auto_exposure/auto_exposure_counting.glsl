@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // For auto_exposure_count.glsl and auto_exposure_count_masked.glsl, which define auto_exposure_has_mask and
-// auto_exposure_mask_at(). Counts scene-linear pixels by luminance: 256 bins, an eighth of a stop each, from 2^-16, where black counts too.
-// Beside its count a bin has the sum of where in it the pixels lie, so means are finer than bins. All are integers, so
-// they do not depend on the order in which groups add them. A pixel weighs at most 15, and lies in one of 16 parts of its
-// bin: the 1024 of a group fit into 14 and 18 bits, and 2^28 into what all groups add to.
+// auto_exposure_mask_at(). Counts scene-linear pixels by luminance: 256 bins, an eighth of a stop each, from 2^-16, where
+// black counts too. Beside its count a bin has the sum of where in it the pixels lie, so means are finer than bins. All are
+// integers, so they do not depend on the order in which groups add them. A pixel weighs at most 15, and lies in one of 16
+// parts of its bin: the 1024 of a group fit into 14 and 18 bits, and 2^28 into what all groups add to.
 shared uint auto_exposure_part[256];
 
 const ivec2 auto_exposure_group = ivec2(16, 8);

@@ -4,8 +4,8 @@
 // round(15 (1 - k (1 - n^2))), n = 1 - (x^2 + y^2) / 2 with x and y in [-1, 1]. The metered stops m are the mean
 // between two percentiles, from middle grey, a bin's pixels being where they are on average; the exposure moves toward
 // compensation + curve(m) - clamp(m, darkest, brightest), at constant speed and in the last stop in proportion to what
-// is left. A mask multiplies the weight before it is rounded. Metering by a
-// histogram's percentiles: Alex Vlachos, "Post Processing in The Orange Box" (2008).
+// is left. A mask multiplies the weight before it is rounded. Metering by a histogram's
+// percentiles: Alex Vlachos, "Post Processing in The Orange Box" (2008).
 
 #include <algorithm>
 #include <array>
