@@ -45,6 +45,8 @@ struct PlanPass {
     std::string stage;                 ///< "compute" or "raster"
     std::vector<std::string> entries;  ///< that it holds, in order
     std::string boundary;              ///< why a new pass starts here: one sentence
+    /// Passes of one round run side by side: barriers stand only between rounds, which are counted from 0.
+    std::uint32_t round = 0;
     VkExtent2D extent{};
     std::uint64_t invocations = 0;  ///< its threads: one a pixel, but in passes that make tiles
     std::uint64_t bytes_read = 0;   ///< each input texel counted once
@@ -71,6 +73,7 @@ struct Plan {
     std::uint64_t transient_bytes = 0;  ///< after aliasing
     std::uint64_t transient_bytes_unaliased = 0;
 
+    [[nodiscard]] std::uint32_t rounds() const;  ///< their number
     [[nodiscard]] std::uint64_t bytes_read() const;
     [[nodiscard]] std::uint64_t bytes_written() const;
     [[nodiscard]] std::string text() const;

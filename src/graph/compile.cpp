@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "graph/solution.hpp"
 
@@ -39,6 +40,7 @@ class Compiler {
         cull();
         take_over();
         make_slots();
+        order_by_rounds();
         if (auto result = use_slots(); !result) return failure(std::move(result));
         if (auto result = place(measure); !result) return failure(std::move(result));
         find_past();
@@ -215,6 +217,37 @@ class Compiler {
         }
     }
 
+    void order_by_rounds() {
+        Solution& solution = *solution_;
+        const auto count = static_cast<std::uint32_t>(solution.passes.size());
+        std::vector<Touch> touches;
+        for_each_use([&](std::uint32_t pass, Use use, std::uint32_t image) {
+            for (const std::uint32_t slot : solution.images[image].slots)
+                if (solution.slots[slot].kind != Slot::Kind::Constant) touches.push_back({pass, slot, use});
+        });
+        const std::vector<std::uint32_t> rounds =
+            rounds_of(touches, count, static_cast<std::uint32_t>(solution.slots.size()));
+        std::vector<std::uint32_t> order(count), place_of(count);
+        std::iota(order.begin(), order.end(), 0u);
+        std::ranges::stable_sort(order, {}, [&](std::uint32_t pass) { return rounds[pass]; });
+        std::vector<PassDesc> passes;
+        std::vector<std::vector<Version>> made;
+        for (const std::uint32_t pass : order) {
+            place_of[pass] = static_cast<std::uint32_t>(passes.size());
+            solution.rounds.push_back(rounds[pass]);
+            passes.push_back(std::move(solution.passes[pass]));
+            made.push_back(std::move(solution.made[pass]));
+        }
+        solution.passes = std::move(passes);
+        solution.made = std::move(made);
+        const auto move = [&](std::uint32_t& pass) { pass = pass == none ? none : place_of[pass]; };
+        std::ranges::for_each(solution.kept_pass, move);
+        for (VersionRecord& record : solution.versions) {
+            move(record.producer);
+            move(record.killer);
+        }
+    }
+
     static void note(ImageUses& uses, Use use) {
         const VkImageLayout layout = layout_of(use);
         const bool is_first = uses.stages == 0, was_written = (uses.access & all_writes) != 0;
@@ -230,6 +263,15 @@ class Compiler {
         }
     }
 
+    std::uint32_t first_of_round(std::uint32_t pass) const {
+        const auto& rounds = solution_->rounds;
+        return static_cast<std::uint32_t>(std::ranges::lower_bound(rounds, rounds[pass]) - rounds.begin());
+    }
+    std::uint32_t last_of_round(std::uint32_t pass) const {
+        const auto& rounds = solution_->rounds;
+        return static_cast<std::uint32_t>(std::ranges::upper_bound(rounds, rounds[pass]) - rounds.begin()) - 1;
+    }
+
     /// Usage flags, lifetimes, and what passes do to each slot.
     Result<> use_slots() {
         own_past_.resize(solution_->slots.size());
@@ -237,8 +279,8 @@ class Compiler {
             for (const std::uint32_t index : solution_->images[image].slots) {
                 Slot& slot = solution_->slots[index];
                 slot.usage |= usage_of(use);
-                slot.first_pass = std::min(slot.first_pass, pass);
-                slot.last_pass = std::max(slot.last_pass, pass);
+                slot.first_pass = std::min(slot.first_pass, first_of_round(pass));
+                slot.last_pass = std::max(slot.last_pass, last_of_round(pass));
                 own_past_[index].stages |= stages_of(use);
                 own_past_[index].access |= access_of(use);
                 if (!is_write(use)) own_past_[index].reads |= sight_of(use);
@@ -359,6 +401,7 @@ Compiled::Compiled(Compiled&&) noexcept = default;
 Compiled& Compiled::operator=(Compiled&&) noexcept = default;
 
 std::span<const PassDesc> Compiled::passes() const { return solution_->passes; }
+std::span<const std::uint32_t> Compiled::rounds() const { return solution_->rounds; }
 std::span<const std::string> Compiled::culled() const { return solution_->culled; }
 std::span<const Slot> Compiled::slots() const { return solution_->slots; }
 VkDeviceSize Compiled::transient_bytes() const { return solution_->transient_bytes; }

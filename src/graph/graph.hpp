@@ -4,8 +4,8 @@
 // shared memory, and `Schedule` derives every barrier. It knows no effect and no kernel, and needs no device: sizes and
 // memory requirements are data, so its tests run on a null device.
 //
-// 1. Declare: import host images, create transient ones, add passes in the order they shall run.
-// 2. compile(): errors that name both ends, culling, lifetimes, aliasing.
+// 1. Declare: import host images, create transient ones, add passes in the order in which they see each other's work.
+// 2. compile(): errors that name both ends, culling, rounds of passes that run side by side, lifetimes, aliasing.
 // 3. Per frame, Schedule (graph/schedule.hpp): the barriers of the passes that are on.
 
 #include <vulkan/vulkan.h>
@@ -213,7 +213,7 @@ struct Slot {
     std::uint32_t history_parity = 0;  ///< 0: written in even frames, 1: in odd ones
     VkDeviceSize offset = 0;           ///< in the shared allocation of images, or in that of buffers, transients only
     VkDeviceSize size = 0;
-    std::uint32_t first_pass = 0, last_pass = 0;  ///< lifetime, in pass order
+    std::uint32_t first_pass = 0, last_pass = 0;  ///< lifetime, in pass order, whole rounds
     VkExtent2D extent{};                          ///< at the largest frame
     /// Histories: the layout between frames. A reset leaves both images in it.
     VkImageLayout rest_layout = VK_IMAGE_LAYOUT_UNDEFINED;
@@ -227,7 +227,8 @@ class Compiled {
     ~Compiled();
     Compiled(Compiled&&) noexcept;
     Compiled& operator=(Compiled&&) noexcept;
-    [[nodiscard]] std::span<const PassDesc> passes() const;        ///< kept ones, in order
+    [[nodiscard]] std::span<const PassDesc> passes() const;        ///< kept ones, round by round
+    [[nodiscard]] std::span<const std::uint32_t> rounds() const;   ///< of each, ascending
     [[nodiscard]] std::span<const std::string> culled() const;     ///< names of those left out
     [[nodiscard]] std::span<const Slot> slots() const;             ///< the first ones are the imports, in their order
     [[nodiscard]] VkDeviceSize transient_bytes() const;            ///< after aliasing

@@ -279,7 +279,7 @@ TEST(GraphCheck, FindsImagesThatShareMemoryWhileBothLive) {
     schedule.derive({}, {}, 0);
     const auto result = check(broken, schedule, {});
     ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().text, "before pass 'end': the barrier expects 'x' in layout 1, but it is in 0");
+    EXPECT_EQ(result.error().text, "pass 'a' uses 'x' in layout 1, but it is in 0");
 }
 
 TEST(GraphCheck, FindsAPassThatDidNotRun) {

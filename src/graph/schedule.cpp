@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Barriers of one frame. Every mip level of every slot has a small state; a pass states what it wants of it; the
-// difference is a barrier.
+// Barriers of one frame. Every mip level of every slot has a small state; the passes of a round state what they want of
+// it; the difference is a barrier.
 #include <algorithm>
 
 #include "graph/schedule.hpp"
@@ -20,7 +20,7 @@ struct MipState {
     bool is_touched = false;
 };
 
-/// What a pass wants of a mip level.
+/// What the passes of a round want of a mip level.
 struct Wanted {
     std::uint32_t uses = 0;  ///< see sight_of; 0: nothing
     VkPipelineStageFlags2 stages = 0;
@@ -133,7 +133,7 @@ struct Schedule::State {
     std::vector<std::uint8_t> is_history_read;
     std::vector<MipState> mips;
     std::vector<Wanted> wanted;
-    std::vector<std::uint32_t> touched;  ///< slots the pass in hand uses
+    std::vector<std::uint32_t> touched;  ///< slots the round in hand uses
     std::vector<Step> steps;
     std::vector<Barrier> barriers, final_barriers;
 
@@ -150,22 +150,21 @@ struct Schedule::State {
     bool mark_histories();
     void start(std::span<const ImportState> imports);
     void want(std::uint32_t slot, MipMask mask, Use use);
-    void add_step(std::uint32_t pass);
+    void want_all(std::uint32_t pass);
+    void add_round(std::uint32_t first, std::uint32_t last);
     void finish(std::span<const ImportState> imports);
 };
 
 Schedule::State::State(const Solution& compiled) : solution(&compiled) {
     std::int32_t last_gate = -1;
-    std::size_t barrier_bound = 0, access_bound = 0;
+    std::size_t barrier_bound = 0;
     std::uint32_t most_mips = 1;
     for (const Slot& slot : solution->slots) most_mips = std::max(most_mips, slot.desc.mip_levels);
     for (const PassDesc& pass : solution->passes) {
         first_read.push_back(static_cast<std::uint32_t>(read_versions.size()));
         read_versions.resize(read_versions.size() + pass.reads.size(), none);
         last_gate = std::max(last_gate, pass.gate);
-        const std::size_t accesses = pass.reads.size() + pass.writes.size();
-        access_bound = std::max(access_bound, accesses);
-        barrier_bound += accesses * most_mips;
+        barrier_bound += (pass.reads.size() + pass.writes.size()) * most_mips;
     }
     for (const VersionRecord& record : solution->versions) last_gate = std::max(last_gate, record.gate);
     gates.resize(static_cast<std::size_t>(last_gate + 1), 1);
@@ -177,7 +176,7 @@ Schedule::State::State(const Solution& compiled) : solution(&compiled) {
     is_depth_alone.resize(solution->slots.size());
     mips.resize(solution->mip_count);
     wanted.resize(solution->mip_count);
-    touched.reserve(access_bound);
+    touched.reserve(solution->slots.size());
     steps.reserve(solution->passes.size());
     barriers.reserve(barrier_bound);
     final_barriers.reserve(solution->mip_count);
@@ -342,10 +341,8 @@ void Schedule::State::want(std::uint32_t slot, MipMask mask, Use use) {
     }
 }
 
-void Schedule::State::add_step(std::uint32_t pass) {
+void Schedule::State::want_all(std::uint32_t pass) {
     const PassDesc& desc = solution->passes[pass];
-    const std::size_t first = barriers.size();
-    touched.clear();
     for (std::size_t i = 0; i < desc.reads.size(); ++i) {
         const std::uint32_t slot = slot_of(reads_of(pass)[i]);
         if (slot == none) continue;
@@ -355,18 +352,31 @@ void Schedule::State::add_step(std::uint32_t pass) {
         const VersionRecord& record = solution->versions[solution->made[pass][i].index];
         want(solution->images[record.image].slots[frame & 1], record.mips, desc.writes[i].use);
     }
+}
+
+/// The passes from `first` to before `last`. What they want of a mip level is one and the same, so one batch of
+/// barriers before them is enough.
+void Schedule::State::add_round(std::uint32_t first, std::uint32_t last) {
+    const std::size_t first_barrier = barriers.size(), first_step = steps.size();
+    touched.clear();
+    for (std::uint32_t pass = first; pass < last; ++pass) {
+        if (is_live[pass] == 0) continue;
+        want_all(pass);
+        steps.push_back({.pass = pass, .first_barrier = static_cast<std::uint32_t>(first_barrier)});
+    }
     for (const std::uint32_t slot : touched) {
         for (std::uint32_t level = 0; level < solution->slots[slot].desc.mip_levels; ++level) {
             const std::uint32_t index = solution->first_mip[slot] + level;
             if (wanted[index].uses == 0) continue;
             Barrier barrier{.slot = slot, .mips = {level, 1}, .is_depth_alone = is_depth_alone[slot] != 0};
-            if (advance(mips[index], wanted[index], barrier)) append(barriers, first, barrier);
+            if (advance(mips[index], wanted[index], barrier)) append(barriers, first_barrier, barrier);
             wanted[index] = {};
         }
     }
-    steps.push_back({.pass = pass,
-                     .first_barrier = static_cast<std::uint32_t>(first),
-                     .barrier_count = static_cast<std::uint32_t>(barriers.size() - first)});
+    if (first_step == steps.size()) return;
+    steps[first_step].barrier_count = static_cast<std::uint32_t>(barriers.size() - first_barrier);
+    for (std::size_t i = first_step + 1; i < steps.size(); ++i)
+        steps[i].first_barrier = static_cast<std::uint32_t>(barriers.size());
 }
 
 /// Leaves the host's images where the host wants them, and histories at rest: visible to all that may read them.
@@ -419,8 +429,10 @@ void Schedule::derive(std::span<const bool> gates, std::span<const ImportState> 
     state.find_live();
     state.find_read_layouts(imports);
     state.start(imports);
-    for (std::uint32_t pass = 0; pass < state.solution->passes.size(); ++pass) {
-        if (state.is_live[pass] != 0) state.add_step(pass);
+    const std::vector<std::uint32_t>& rounds = state.solution->rounds;
+    for (std::uint32_t first = 0, last = 0; first < rounds.size(); first = last) {
+        while (last < rounds.size() && rounds[last] == rounds[first]) ++last;
+        state.add_round(first, last);
     }
     state.finish(imports);
 }

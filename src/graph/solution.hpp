@@ -113,11 +113,13 @@ struct Past {
     std::uint32_t reads = 0;  ///< uses that only read, see sight_of
 };
 
-/// Result of compile(). Versions keep their declared numbers; passes are numbered anew, without the culled ones.
+/// Result of compile(). Versions keep their declared numbers; passes are numbered anew, without the culled ones and
+/// round by round (rounds.cpp).
 struct Solution {
     std::vector<Image> images;
     std::vector<VersionRecord> versions;
     std::vector<PassDesc> passes;
+    std::vector<std::uint32_t> rounds;       ///< per pass, ascending: those of one round wait for none of each other
     std::vector<std::vector<Version>> made;  ///< per pass
     std::vector<std::string> culled;
     std::vector<std::uint32_t> kept_pass;  ///< declared -> kept, or none
@@ -159,6 +161,15 @@ struct Alternative {
 
 /// All errors of a declaration that need no device.
 [[nodiscard]] Result<> validate(const Declaration& declaration, const Extents& largest);
+
+/// What a pass does to a slot.
+struct Touch {
+    std::uint32_t pass = 0, slot = 0;
+    Use use = Use::SampledCompute;
+};
+/// The round of each of `pass_count` passes, from all that each may do, pass by pass in declared order.
+[[nodiscard]] std::vector<std::uint32_t> rounds_of(std::span<const Touch> touches, std::uint32_t pass_count,
+                                                   std::uint32_t slot_count);
 
 struct Interval {
     VkDeviceSize size = 0, alignment = 1;

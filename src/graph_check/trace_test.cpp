@@ -58,15 +58,23 @@ TEST(GraphTrace, SecondReaderOfTheSameStageNeedsNoBarrier) {
     const Version written = graph.add({.name = "write", .writes = {{middle, Use::StorageWrite}}})[0];
     graph.add({.name = "first", .reads = {{written, Use::SampledCompute}}, .has_side_effect = true});
     graph.add({.name = "second", .reads = {{written, Use::SampledCompute}}, .has_side_effect = true});
-    graph.add({.name = "other stage", .reads = {{written, Use::SampledFragment}}, .has_side_effect = true});
+    const Version late = graph.add({.name = "copy",
+                                    .reads = {{written, Use::SampledCompute}},
+                                    .writes = {{graph.create(image("late")), Use::StorageWrite}}})[0];
+    graph.add({.name = "other stage",
+               .reads = {{written, Use::SampledFragment}, {late, Use::SampledFragment}},
+               .has_side_effect = true});
     graph.add({.name = "other layout", .reads = {{written, Use::StorageRead}}, .has_side_effect = true});
     EXPECT_EQ(trace_of(graph, {}, {}),
               "barrier middle: compute|fragment:store -> compute:store, undefined -> general\n"
               "pass write\n"
               "barrier middle: compute:store -> compute:sample, general -> read-only\n"
+              "barrier late: compute|fragment:store -> compute:store, undefined -> general\n"
               "pass first\n"
               "pass second\n"
+              "pass copy\n"
               "barrier middle: compute -> fragment:sample\n"
+              "barrier late: compute:store -> fragment:sample, general -> read-only\n"
               "pass other stage\n"
               "barrier middle: compute|fragment:sample -> compute:load, read-only -> general\n"
               "pass other layout\n");
@@ -249,9 +257,8 @@ TEST(GraphTrace, DepthIsSampledWhereTheHostHasIt) {
         graph.add({.name = "show", .reads = {{depth, Use::SampledFragment}}, .has_side_effect = true});
         std::array imports{depth_state(layout)};
         EXPECT_EQ(trace_of(graph, {}, imports),
-                  "barrier depth: depth-tests:depth-write -> compute:sample\n"
+                  "barrier depth: depth-tests:depth-write -> compute|fragment:sample\n"
                   "pass fog\n"
-                  "barrier depth: depth-tests:depth-write -> fragment:sample\n"
                   "pass show\n");
         imports[0].final_layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
         const auto compiled = graph.compile(full_hd, measure);

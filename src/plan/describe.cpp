@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "gpu/resource/formats.hpp"
 #include "graph/schedule.hpp"
@@ -137,6 +138,25 @@ std::vector<std::uint32_t> add_images(const Program& program, const graph::Compi
     return out;
 }
 
+/// Numbers in the graph and in the program of what the graph kept, as it is recorded.
+std::map<std::uint32_t, std::uint32_t> passes_in_order(const Program& program, const graph::Compiled& compiled) {
+    std::map<std::uint32_t, std::uint32_t> out;
+    for (std::uint32_t i = 0; i < program.passes.size(); ++i)
+        if (const std::uint32_t kept = compiled.kept_pass_of({i}); kept != ~0u) out.emplace(kept, i);
+    return out;
+}
+
+/// Numbers without those rounds none of whose passes runs.
+void close_up_rounds(Plan& plan) {
+    std::vector<std::uint32_t> rounds;
+    for (const PlanPass& pass : plan.passes) rounds.push_back(pass.round);
+    std::ranges::sort(rounds);
+    const auto rest = std::ranges::unique(rounds);
+    rounds.erase(rest.begin(), rest.end());
+    for (PlanPass& pass : plan.passes)
+        pass.round = static_cast<std::uint32_t>(std::ranges::lower_bound(rounds, pass.round) - rounds.begin());
+}
+
 /// Lifetimes, from what passes read and write.
 void add_lifetimes(Plan& plan) {
     const auto note = [&](const PlanUse& use, std::uint32_t pass) {
@@ -179,14 +199,14 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
                        .mip_level = std::min(mip_level, compiled.slots()[slot].desc.mip_levels - 1),
                        .is_previous = compiled.slots()[slot].history_parity == 1};
     };
-    for (std::uint32_t i = 0; i < program.passes.size(); ++i) {
-        const std::uint32_t kept = compiled.kept_pass_of({i});
-        if (kept == ~0u || !schedule.runs(kept)) continue;
+    for (const auto& [kept, i] : passes_in_order(program, compiled)) {
+        if (!schedule.runs(kept)) continue;
         const ProgramPass& pass = program.passes[i];
         PlanPass out{.name = pass.name,
                      .stage = pass.stage == gpu::Stage::Compute ? "compute" : "raster",
                      .entries = {},
                      .boundary = pass.boundary,
+                     .round = compiled.rounds()[kept],
                      .reads = {},
                      .writes = {.image = PlanImage::never}};
         const auto extent_of = [&](std::uint32_t slot, std::uint32_t mip_level) {
@@ -223,6 +243,7 @@ Plan describe_program(const Program& program, const graph::Compiled& compiled, c
             for (const FusedStep& step : pass.steps()) out.entries.push_back(step.name);
         plan.passes.push_back(std::move(out));
     }
+    close_up_rounds(plan);
     add_lifetimes(plan);
     return plan;
 }

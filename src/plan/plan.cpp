@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <darkroom/plan.hpp>
 
 #include "gpu/resource/formats.hpp"
@@ -64,9 +66,10 @@ std::string json_of(const PlanPass& pass) {
     std::string reads;
     for (const PlanUse& read : pass.reads) reads += (reads.empty() ? "" : ", ") + json_of(read);
     return fmt::format(
-        "{{\"name\": {}, \"stage\": {}, \"entries\": {}, \"boundary\": {}, \"width\": {}, \"height\": {}, "
+        "{{\"name\": {}, \"stage\": {}, \"round\": {}, \"entries\": {}, \"boundary\": {}, \"width\": {}, \"height\": "
+        "{}, "
         "\"bytes_read\": {}, \"bytes_written\": {}, \"reads\": [{}], \"writes\": {}}}",
-        json_string(pass.name), json_string(pass.stage), list(pass.entries), json_string(pass.boundary),
+        json_string(pass.name), json_string(pass.stage), pass.round, list(pass.entries), json_string(pass.boundary),
         pass.extent.width, pass.extent.height, pass.bytes_read, pass.bytes_written, reads, json_of(pass.writes));
 }
 
@@ -92,6 +95,12 @@ std::string lines_of(const std::vector<Item>& items) {
 
 }  // namespace
 
+std::uint32_t Plan::rounds() const {
+    std::uint32_t count = 0;
+    for (const PlanPass& pass : passes) count = std::max(count, pass.round + 1);
+    return count;
+}
+
 std::uint64_t Plan::bytes_read() const {
     std::uint64_t sum = 0;
     for (const PlanPass& pass : passes) sum += pass.bytes_read;
@@ -105,12 +114,14 @@ std::uint64_t Plan::bytes_written() const {
 }
 
 std::string Plan::text() const {
-    std::string out = fmt::format("{} x {}, {} passes\n", extent.width, extent.height, passes.size());
+    const bool has_rounds = rounds() < passes.size();
+    std::string out = fmt::format("{} x {}, {} passes", extent.width, extent.height, passes.size());
+    out += has_rounds ? fmt::format(" in {} rounds\n", rounds()) : "\n";
     for (std::size_t i = 0; i < passes.size(); ++i) {
         const PlanPass& pass = passes[i];
-        out += fmt::format("{:3}  {}  ({}, {} x {}, reads {:.2f} MiB, writes {:.2f} MiB)\n", i + 1, pass.name,
-                           pass.stage, pass.extent.width, pass.extent.height, mebibytes(pass.bytes_read),
-                           mebibytes(pass.bytes_written));
+        out += fmt::format("{:3}  {}  ({}, {}{} x {}, reads {:.2f} MiB, writes {:.2f} MiB)\n", i + 1, pass.name,
+                           pass.stage, has_rounds ? fmt::format("round {}, ", pass.round + 1) : "", pass.extent.width,
+                           pass.extent.height, mebibytes(pass.bytes_read), mebibytes(pass.bytes_written));
         if (pass.entries.size() > 1) {
             out += "     fused:";
             for (const std::string& entry : pass.entries) out += " " + entry;

@@ -42,13 +42,14 @@ std::uint32_t maker(const Plan& plan, std::uint32_t image) {
     return pass == plan.passes.end() ? none : static_cast<std::uint32_t>(pass - plan.passes.begin());
 }
 
-/// Of each pass, which effect's it is, counted along the frame.
+/// Of each pass, which effect's it is, counted along the frame. Passes of several may take turns.
 std::vector<std::uint32_t> effects_of(const Plan& plan) {
+    std::vector<std::string> titles;
     std::vector<std::uint32_t> out;
-    std::uint32_t number = 0;
-    for (std::size_t i = 0; i < plan.passes.size(); ++i) {
-        if (i > 0 && title_of(plan.passes[i]) != title_of(plan.passes[i - 1])) ++number;
-        out.push_back(number);
+    for (const PlanPass& pass : plan.passes) {
+        const auto found = std::ranges::find(titles, title_of(pass));
+        out.push_back(static_cast<std::uint32_t>(found - titles.begin()));
+        if (found == titles.end()) titles.push_back(title_of(pass));
     }
     return out;
 }
