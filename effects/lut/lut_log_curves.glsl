@@ -115,7 +115,11 @@ vec3 davinci_decode(vec3 value) {
 }
 
 // LogShaper: stops above and below a grey of 0.18, from -10 to 6.5.
-vec3 log_shaper_encode(vec3 light) { return (log2(max(light, vec3(0.18 / 1024.0)) / 0.18) + 10.0) / 16.5; }
+// Its first light is 0 by a choice: behind a logarithm that is a bit off, black would be that light.
+vec3 log_shaper_encode(vec3 light) {
+    const vec3 first = vec3(0.18 / 1024.0);
+    return mix((log2(max(light, first) / 0.18) + 10.0) / 16.5, vec3(0.0), lessThanEqual(light, first));
+}
 
 vec3 log_shaper_decode(vec3 value) {
     return mix(vec3(0.0), min(0.18 * exp2(value * 16.5 - 10.0), vec3(65504.0)), greaterThan(value, vec3(0.0)));
