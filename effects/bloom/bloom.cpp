@@ -140,7 +140,9 @@ PassImage add_kernels(PassBuilder& builder, PassImage pyramid, std::uint32_t lev
     return pyramid;
 }
 
-/// Shared memory of the three passes below, in bytes.
+/// Invocations of a workgroup of the last of the three passes below, which has the most to do, and of the others.
+constexpr std::uint32_t join_threads = 256, threads = 128;
+/// Their shared memory, in bytes.
 constexpr std::uint32_t narrow_bytes = 8 * 38 * 38, wide_bytes = 8 * (34 * 34 + 14 * 14),
                         join_bytes = 8 * (36 * 21 + 22 * 14);
 
@@ -152,8 +154,8 @@ PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t 
     const auto name = [&](const char* what, std::uint32_t level) {
         return base == 0 ? std::string(what) : fmt::format("{} {}", what, level);
     };
-    const auto add = [&](ComputePassDesc pass, ConstantsFunction constants) {
-        pass.workgroup = {128, 1};
+    const auto add = [&](ComputePassDesc pass, std::uint32_t invocations, ConstantsFunction constants) {
+        pass.workgroup = {invocations, 1};
         pass.custom_vectors = 1;
         pass.constants = constants;
         pass.condition = is_level_used;
@@ -167,7 +169,7 @@ PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t 
                    .outputs = {{"bloom_level_1", pyramid, base + 1}, {"bloom_level_2", pyramid, base + 2}},
                    .shared_bytes = narrow_bytes,
                    .tile = {32, 32}},
-                  gains[base]);
+                  threads, gains[base]);
     const std::uint32_t behind = levels - base;
     if (behind > 5) pyramid = add_tiles_from(builder, pyramid, base + 2, levels, format);
     KernelPassDesc::Input sum{.name = "bloom_sum", .image = pyramid, .mip_level = base + 2};
@@ -181,7 +183,7 @@ PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t 
                              .outputs = {{"bloom_sum", wide}},
                              .shared_bytes = wide_bytes,
                              .tile = {32, 32}},
-                            wide_gains[base / 2])};
+                            threads, wide_gains[base / 2])};
     }
     return add({.name = name("upsample", base),
                 .shader = "bloom_join.glsl",
@@ -190,7 +192,7 @@ PassImage add_tiles_from(PassBuilder& builder, PassImage pyramid, std::uint32_t 
                 .shared_bytes = join_bytes,
                 .tile = {64, 32},
                 .is_additive = true},
-               gains[base]);
+               join_threads, gains[base]);
 }
 
 /// The same arithmetic with levels between in shared memory.
@@ -226,7 +228,9 @@ void build(PassBuilder& builder) {
     const VkFormat packed = VK_FORMAT_B10G11R11_UFLOAT_PACK32,
                    format = builder.is_stored(packed) ? packed : VK_FORMAT_R16G16B16A16_SFLOAT;
     // With fewer levels they are no more than so many passes anyway.
-    const bool has_tiles = levels > 2 && builder.tiles_pay(format, std::max({narrow_bytes, wide_bytes, join_bytes}));
+    const bool has_tiles =
+        levels > 2 && builder.tiles_pay(format, {.workgroup_invocations = join_threads,
+                                                 .shared_bytes = std::max({narrow_bytes, wide_bytes, join_bytes})});
     const PassImage pyramid = builder.create({.name = "pyramid",
                                               .format = format,
                                               .denominator = 2,

@@ -32,13 +32,13 @@ void bloom_put(int level, ivec2 texel, vec3 glow) {
 
 void run() {
     int thread = int(gl_LocalInvocationIndex);
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 2; ++i) {
         int place = i * bloom_threads + thread;
         ivec2 texel = bloom_raised(2) + ivec2(place % 22, place / 22);
         if (place < 22 * 14 && bloom_is_inside(2, texel)) bloom_keep(2, texel, load(bloom_sum, texel).rgb);
     }
     barrier();
-    if (thread < 36 * 3) bloom_raise(1, bloom_raised(1) + ivec2(thread % 36, thread / 36 * 7), 7);
+    if (thread < 36 * 7) bloom_raise(1, bloom_raised(1) + ivec2(thread % 36, thread / 36 * 3), 3);
     barrier();
-    for (int i = 0; i < 2; ++i) bloom_raise(0, bloom_raised(0) + ivec2(thread % 64, thread / 64 * 16 + i * 8), 8);
+    bloom_raise(0, bloom_raised(0) + ivec2(thread % 64, thread / 64 * 8), 8);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Levels in the shared memory of a workgroup of 128, as halves, which hold all that packed floats do. Of each there are the
+// Levels in the shared memory of a workgroup, as halves, which hold all that packed floats do. Of each there are the
 // texels that the workgroup needs, a tile; what of it lies beyond the level's edge is neither written nor read. Who includes
 // this declares `shared uvec2 bloom_shared[]` before, and bloom_tile_of() and bloom_size() behind.
 #include "bloom_texels.glsl"
@@ -11,7 +11,7 @@ struct BloomTile {
 BloomTile bloom_tile_of(int level);
 ivec2 bloom_size(int level);
 
-const int bloom_threads = 128;
+const int bloom_threads = int(gl_WorkGroupSize.x);
 
 int bloom_index(int level, ivec2 texel) {
     BloomTile tile = bloom_tile_of(level);

@@ -190,6 +190,12 @@ TEST(BloomTilesGpu, WhereTheyDoNotPayThePlanSaysWhy) {
         EXPECT_EQ(remarks(KernelStage::Auto),
                   "bloom has a pass for each step: it needs 11552 bytes of shared memory, and there are 1024.");
     }
+    {
+        const AsGpu gpu(Form::Tiles, true);
+        gpu::test::context().traits.max_workgroup_invocations = 128;
+        EXPECT_EQ(remarks(KernelStage::Auto),
+                  "bloom has a pass for each step: it needs workgroups of 256 invocations, and 128 are allowed.");
+    }
     const AsGpu gpu(Form::Tiles, true);
     EXPECT_EQ(remarks(KernelStage::Raster),
               "bloom has a pass for each step: compute kernels do not write its images here.");

@@ -183,9 +183,9 @@ class PassBuilder {
     /// The same of a pass with several outputs, `output` first; none after an error.
     virtual std::vector<PassImage> add_all(const KernelPassDesc& desc) { return {add(desc)}; }
     [[nodiscard]] virtual ComputeLimits compute_limits() const { return {}; }
-    /// Is a compute pass that writes this format, and keeps what it makes on the way in so much shared memory, faster
-    /// here than a kernel for each step? Where not, the plan remarks why.
-    [[nodiscard]] virtual bool tiles_pay(VkFormat /*format*/, std::uint32_t /*shared_bytes*/) { return false; }
+    /// Are compute passes that write this format, ask for so much, and keep what they make on the way in shared memory
+    /// faster here than a kernel for each step? Where not, the plan remarks why.
+    [[nodiscard]] virtual bool tiles_pay(VkFormat /*format*/, const ComputeLimits& /*asked*/) { return false; }
     /// A buffer of this frame, for passes of the effect alone.
     [[nodiscard]] virtual PassBuffer create_buffer(std::string_view /*name*/, std::uint32_t /*bytes*/) { return {}; }
     /// A few numbers that outlast the frame and have a name, for all entries behind: what a pass wrote, then or in an

@@ -206,9 +206,10 @@ TEST_F(ComposeSchedule, TheDefaultStackHasNoTransientImagesButBlooms) {
     for (const bool is_fused : {true, false}) {
         CompileDesc desc{.max_extent = {1920, 1080}};
         desc.fuse = is_fused;
-        const auto program = plan_program(stack, desc, {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> {
-                                              return gpu::Stage::Compute;
-                                          }});
+        const auto program =
+            plan_program(stack, desc,
+                         {.stage_of = [](const gpu::KernelSpec&) -> Result<gpu::Stage> { return gpu::Stage::Compute; },
+                          .compute = {.workgroup_invocations = 256}});
         ASSERT_TRUE(program) << program.error().text;
         const auto compiled = program->graph.compile(desc.max_extent, measure);
         ASSERT_TRUE(compiled) << compiled.error().text;

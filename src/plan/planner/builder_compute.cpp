@@ -16,16 +16,19 @@ constexpr std::uint32_t first_value_number = 1u << 16u;
 
 }  // namespace
 
-bool Builder::tiles_pay(VkFormat format, std::uint32_t shared_bytes) {
+bool Builder::tiles_pay(VkFormat format, const ComputeLimits& asked) {
     const PlannerTraits& traits = planner_.traits_;
     std::string why;
     if (!traits.packing_pays)
         why = "shared memory does not pay on a software driver";
     else if (!is_stored(format))
         why = "compute kernels do not write its images here";
-    else if (shared_bytes > traits.compute.shared_bytes)
-        why = fmt::format("it needs {} bytes of shared memory, and there are {}", shared_bytes,
+    else if (asked.shared_bytes > traits.compute.shared_bytes)
+        why = fmt::format("it needs {} bytes of shared memory, and there are {}", asked.shared_bytes,
                           traits.compute.shared_bytes);
+    else if (asked.workgroup_invocations > traits.compute.workgroup_invocations)
+        why = fmt::format("it needs workgroups of {} invocations, and {} are allowed", asked.workgroup_invocations,
+                          traits.compute.workgroup_invocations);
     else
         return true;
     planner_.program_.remarks.push_back(
