@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <ctime>
 #include <darkroom/effects.hpp>
 
+#include "core/test_support_small.hpp"
 #include "script/test_controllers.hpp"
 
 namespace darkroom {
@@ -19,7 +19,7 @@ constexpr double budget_ms = 2;
 constexpr int most_runs = 40;
 
 /// A millisecond; under sanitizers, which are told of by this variable, anything that ends.
-double most_over() { return std::getenv("DARKROOM_TEST_SMALL") == nullptr ? 1 : 1000; }
+double most_over() { return test::is_small() ? 1000 : 1; }
 
 /// Of this thread, by a clock that no controller reads.
 double thread_milliseconds() {

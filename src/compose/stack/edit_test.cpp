@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "compose/test_stacks/random_stack.hpp"
+#include "core/test_support_small.hpp"
 
 namespace darkroom {
 namespace {
@@ -372,9 +373,8 @@ TEST_F(ComposeEdit, AThousandRandomEditsKeepThePicture) {
     add(composer, "exposure");
     must(composer.compile(host.compile_desc()));
     const auto pick = [&] { return composer.entry(test::below(random, static_cast<std::uint32_t>(composer.size()))); };
-    const bool is_short = std::getenv("DARKROOM_TEST_SMALL") != nullptr;
     double longest = 0;
-    for (int i = 0; i < (is_short ? 300 : 1000); ++i) {
+    for (int i = 0; i < (test::is_small() ? 300 : 1000); ++i) {
         const EffectInfo& info = *find_effect(effects[test::below(random, effects.size())]);
         switch (test::below(random, 8)) {
             case 0:

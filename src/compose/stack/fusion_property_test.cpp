@@ -8,6 +8,7 @@
 
 #include "compose/test_stacks/effects.hpp"
 #include "compose/test_stacks/random_scene.hpp"
+#include "core/test_support_small.hpp"
 #include "develop/reference_chain.hpp"
 #include "shared/srgb_reference.hpp"
 
@@ -415,14 +416,15 @@ void expect_one_picture(std::uint32_t seed, Effort effort, Count& count) {
 
 TEST_F(ComposeFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {
     Count count;
-    for (std::uint32_t seed = 0; seed < 200; ++seed) expect_one_picture(seed, Effort::Small, count);
-    EXPECT_GE(count.saved, 100U) << "little was fused";
-    EXPECT_GE(count.references, 50U) << "few stacks had a reference";
+    const std::uint32_t graphs = test::is_small() ? 48 : 200;
+    for (std::uint32_t seed = 0; seed < graphs; ++seed) expect_one_picture(seed, Effort::Small, count);
+    EXPECT_GE(count.saved, graphs / 2) << "little was fused";
+    EXPECT_GE(count.references, graphs / 4) << "few stacks had a reference";
 }
 
 TEST_F(ComposeFusionProperty, EffectsOfManyKernelsAreNoException) {
     Count count;
-    for (std::uint32_t seed = 200; seed < 208; ++seed) expect_one_picture(seed, Effort::Thorough, count);
+    for (std::uint32_t seed = 200; seed < (test::is_small() ? 202U : 208U); ++seed) expect_one_picture(seed, Effort::Thorough, count);
 }
 
 TEST_F(SoakFusionProperty, AGraphIsOnePictureHoweverItIsPlanned) {
