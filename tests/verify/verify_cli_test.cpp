@@ -40,6 +40,13 @@ TEST_F(CliVerify, TellsOfDeviceAndKernels) {
     EXPECT_TRUE(report["findings"].empty());
 }
 
+class SoakVerify : public CliVerify {};
+
+TEST_F(SoakVerify, FindsNothingInAnyEffect) {
+    const Outcome done = run({"verify"});
+    EXPECT_EQ(done.code, 0) << done.out << done.err;
+}
+
 TEST_F(CliVerify, RefusesWhatThereIsNot) {
     const Outcome unknown = run({"verify", "--effect", "exposre"});
     EXPECT_EQ(unknown.code, 1);
