@@ -325,8 +325,9 @@ TEST_F(Splice, WhatCannotBeSplicedIsAnError) {
     EXPECT_FALSE(splice_look("[[stack]]\n[[stack]]\n", stack, stack));
 }
 
-TEST_F(Splice, RandomValuesOfEveryShippedFileChangeTheirOwnBytesAlone) {
-    std::mt19937 random(1);
+/// `count` edits of each file that ships.
+void edit_values_at_random(std::uint32_t seed, int count) {
+    std::mt19937 random(seed);
     std::size_t files = 0;
     for (const std::filesystem::path& path : shipped_files()) {
         const LookOptions options = options_of(path);
@@ -335,7 +336,7 @@ TEST_F(Splice, RandomValuesOfEveryShippedFileChangeTheirOwnBytesAlone) {
         if (!first) continue;  // names an effect that this build has not
         ++files;
         Look look = *first;
-        for (int edit = 0; edit < 1000; ++edit) {
+        for (int edit = 0; edit < count; ++edit) {
             const test::RandomEdit one = test::random_value_edit(random, look);
             Look next = look;
             if (!test::apply_edit(next, one)) continue;  // its effect's values contradict each other
@@ -361,7 +362,7 @@ TEST_F(Splice, RandomValuesOfEveryShippedFileChangeTheirOwnBytesAlone) {
                     << path << " " << one.entry << "." << one.row << ": " << line << "\n"
                     << *spliced;
             }
-            if (edit % 25 == 0 || edit == 999) {
+            if (edit % 25 == 0 || edit == count - 1) {
                 const auto again = parse_look(*spliced, path.string(), options);
                 ASSERT_TRUE(again) << again.error().text;
                 ASSERT_TRUE(says_same(*again, next)) << path << " " << one.entry << "." << one.row << "\n" << *spliced;
@@ -372,6 +373,11 @@ TEST_F(Splice, RandomValuesOfEveryShippedFileChangeTheirOwnBytesAlone) {
     }
     EXPECT_GE(files, 5u);
 }
+
+TEST_F(Splice, RandomValuesOfEveryShippedFileChangeTheirOwnBytesAlone) { edit_values_at_random(1, 200); }
+
+class SoakSplice : public Splice {};
+TEST_F(SoakSplice, ManyRandomValuesOfEveryShippedFileChangeTheirOwnBytesAlone) { edit_values_at_random(2, 1000); }
 
 TEST_F(Splice, RandomRestructuringOfEveryShippedFileReadsAsTheEditedLook) {
     std::mt19937 random(2);
