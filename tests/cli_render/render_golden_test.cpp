@@ -79,7 +79,9 @@ TEST_F(CliRenderGolden, WhatDiffersIsOnAPage) {
 // What the bound is worth: occlusion, of all that is seen the least, is missed in every picture, as is a small change
 // of it; rounding is not. What nobody sees (dither, the courtyard's bloom of a code here and there) is left to the
 // tests of effects.
-TEST_F(CliRenderGolden, ABreakageIsSeenAndRoundingIsNot) {
+class SoakRenderGolden : public CliRenderGolden {};
+
+TEST_F(SoakRenderGolden, ABreakageIsSeenAndRoundingIsNot) {
     struct Case {
         std::string picture;
         std::vector<std::string> flags;
