@@ -7,8 +7,10 @@
 #include <random>
 
 #include "compose/test_stacks/host.hpp"
+#include "core/caught.hpp"
 #include "core/files.hpp"
 #include "core/test_support_allocations.hpp"
+#include "gpu/resource/resources.hpp"
 #include "gpu/test_failing/attempts.hpp"
 #include "image/frame/frame_file.hpp"
 #include "image/picture/write.hpp"
@@ -85,6 +87,34 @@ class Allocations : public test::StackTest {
             EXPECT_TRUE(attempt.adopted(host.device));
         };
         fmt::print("adopting: {} allocations, {} failed\n", count, try_each(count, most, call, again));
+    }
+
+    /// Memory that is mapped has more words to say than other.
+    void make_buffers() const {
+        Attempt attempt;
+        const Device device = test::must(attempt.adopted(host.device));
+        const std::size_t alive = gpu::test::failing::alive().size();
+        for (const gpu::MemoryKind kind :
+             {gpu::MemoryKind::Device, gpu::MemoryKind::Upload, gpu::MemoryKind::Readback}) {
+            const auto call = [&]() -> Result<> {
+                try {
+                    const auto made = gpu::Buffer::create(device.context(), 64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                                          kind, "with a name that no string holds in place");
+                    return made ? Result<>{} : failure(made.error());
+                } catch (const std::bad_alloc&) {
+                    return caught("making a buffer");
+                }
+            };
+            const std::uint64_t before = test::allocation_count();
+            test::must(call());
+            const std::uint64_t count = test::allocation_count() - before;
+            EXPECT_GT(count, 3U);
+            const auto again = [&] {
+                test::must(call());
+                EXPECT_EQ(gpu::test::failing::alive().size(), alive) << "objects are left";
+            };
+            fmt::print("a buffer: {} allocations, {} failed\n", count, try_each(count, count, call, again));
+        }
     }
 
     /// Planned and compiled, the kernels of it made, too, where each try has a device of its own.
@@ -176,6 +206,7 @@ class SoakFailedAllocations : public Allocations {};
 
 constexpr std::size_t few = 60, all = ~std::size_t{0};
 TEST_F(GpuFailedAllocations, OfAnAdoptedDevice) { adopt(few); }
+TEST_F(GpuFailedAllocations, OfBuffers) { make_buffers(); }
 TEST_F(GpuFailedAllocations, OfACompile) { compile(false, few); }
 TEST_F(GpuFailedAllocations, OfKernels) { compile(true, 6); }
 TEST_F(GpuFailedAllocations, OfEdits) { edit(few / 4); }

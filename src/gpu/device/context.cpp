@@ -145,10 +145,10 @@ bool Context::is_filterable(VkFormat format) const {
 Result<> Context::allocate_memory(const DeviceMemoryRequest& request, std::string_view what, DeviceMemory& out) const {
     const std::string place = fmt::format("allocating {} bytes of memory for {}", request.size, what);
     if (memory_hooks.allocate == nullptr) return allocate_own(request, place, out);
-    if (auto ok = check(memory_hooks.allocate(memory_hooks.user, device, &request, &out), place); !ok) {
-        out = {};
-        return ok;
-    }
+    // What `out` holds is given back by its owner, also where the text of an error finds no memory.
+    const VkResult result = memory_hooks.allocate(memory_hooks.user, device, &request, &out);
+    if (result != VK_SUCCESS) out = {};
+    if (auto ok = check(result, place); !ok) return ok;
     const bool is_aligned = out.offset % std::max<VkDeviceSize>(request.alignment, 1) == 0;
     if (is_aligned && (out.mapped != nullptr || !request.is_mapped)) return {};
     const std::string given =
@@ -166,13 +166,14 @@ Result<> Context::allocate_own(const DeviceMemoryRequest& request, const std::st
                                            .pNext = is_dedicated ? &dedicated : nullptr,
                                            .allocationSize = request.size,
                                            .memoryTypeIndex = request.memory_type};
-    Result<> done = check(vk.AllocateMemory(device, &create_info, allocator, &out.memory), what);
-    if (done && request.is_mapped) {
-        done = check(vk.MapMemory(device, out.memory, 0, VK_WHOLE_SIZE, 0, &out.mapped), what + ", mapping it");
-        if (!done) vk.FreeMemory(device, out.memory, allocator);
-    }
-    if (!done) out = {};
-    return done;
+    const VkResult made = vk.AllocateMemory(device, &create_info, allocator, &out.memory);
+    if (Result<> done = check(cleared_on_failure(made, out.memory), what); !done || !request.is_mapped) return done;
+    const std::string mapping = what + ", mapping it";
+    const VkResult mapped = vk.MapMemory(device, out.memory, 0, VK_WHOLE_SIZE, 0, &out.mapped);
+    if (mapped == VK_SUCCESS) return {};
+    free_memory(out);
+    out = {};
+    return check(mapped, mapping);
 }
 
 void Context::free_memory(const DeviceMemory& piece) const {

@@ -150,6 +150,7 @@ Result<Image> bind_image(Context& context, Image image, const DeviceMemory& piec
 Result<Memory> Memory::create(Context& context, DeviceMemoryRequest wanted, std::uint32_t type_bits, Kind kind,
                               std::string_view what) {
     Memory memory;
+    memory.context = &context;
     Result<> allocated = machine_error(fmt::format("no type of the device's memory will do for {}", what));
     wanted.is_mapped = kind != Kind::Device;
     // A full heap is no reason to fail while another type would do.
@@ -159,7 +160,6 @@ Result<Memory> Memory::create(Context& context, DeviceMemoryRequest wanted, std:
         if (allocated) break;
     }
     if (!allocated) return failure(std::move(allocated));
-    memory.context = &context;
     memory.size = wanted.size;
     memory.mapped = static_cast<std::byte*>(memory.piece.mapped);
     return memory;
@@ -275,12 +275,12 @@ Result<Buffer> Buffer::create(Context& context, VkDeviceSize size, VkBufferUsage
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
     };
     Buffer buffer;
+    buffer.context = &context;
     Result<> checked = context.check(
         cleared_on_failure(context.vk.CreateBuffer(context.device, &create_info, context.allocator, &buffer.handle),
                            buffer.handle),
         fmt::format("creating the buffer \"{}\", {} bytes", name, size));
     if (!checked) return failure(std::move(checked));
-    buffer.context = &context;
     name_object(context, VK_OBJECT_TYPE_BUFFER, reinterpret_cast<std::uint64_t>(buffer.handle), std::string(name));
     const Needed needed = needed_by(context, buffer.handle);
     Result<Memory> memory =
