@@ -2,11 +2,13 @@
 // darkroom_verifier: what `darkroom verify` starts, with the same arguments.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 #include <span>
 
 #include "apps/darkroom/flags/device_flags.hpp"
 #include "apps/darkroom/flags/run_program.hpp"
+#include "apps/darkroom/run/outputs.hpp"
 #include "apps/darkroom/run/report.hpp"
 #include "apps/darkroom/verify/verify_flags.hpp"
 #include "apps/verify/verify_report.hpp"
@@ -17,6 +19,8 @@ namespace app {
 
 namespace {
 
+namespace fs = std::filesystem;
+using darkroom::printable;
 using darkroom::Result;
 using darkroom::user_error;
 using darkroom::verify::Finding;
@@ -29,9 +33,27 @@ Result<> check_effects(const std::vector<std::string>& names) {
     for (const darkroom::EffectInfo* const info : darkroom::all_effects()) known.emplace_back(info->name);
     for (const std::string& name : names)
         if (darkroom::find_effect(name) == nullptr)
-            return user_error(fmt::format("--effect {}: there is no such effect{}", darkroom::printable(name),
+            return user_error(fmt::format("--effect {}: there is no such effect{}", printable(name),
                                           darkroom::alternatives(name, known)));
     return {};
+}
+
+/// Told before the work, which takes minutes.
+Result<> check_outputs(const VerifyFlags& flags) {
+    const fs::path folder = flags.folder, report = flags.report;
+    const fs::path own = folder / report_name;
+    if (!folder.empty()) {
+        if (Result<> done = check_folder(folder, MissingFolders::Made); !done) return done;
+        if (Result<> done = check_output(own, FileSet({})); !done) return done;
+    }
+    if (report.empty()) return {};
+    std::error_code error;
+    if (!folder.empty() && fs::weakly_canonical(report, error) == fs::weakly_canonical(own, error))
+        return user_error(fmt::format("--report {}: would be written by -o {}, too", printable(report.string()),
+                                      printable(folder.string())));
+    // What is written in place, such as a pipe, is not tried.
+    if (fs::exists(report, error) && fs::is_other(report, error)) return {};
+    return check_output(report, FileSet({}));
 }
 
 Result<> write(const VerifyFlags& flags, const darkroom::verify::Report& report) {
@@ -46,9 +68,11 @@ int verify(const VerifyFlags& flags) {
     const Result<std::optional<double>> seconds = flags.seconds.value();
     if (!seconds) return fail(seconds.error());
     if (const Result<> done = check_effects(flags.effects); !done) return fail(done.error());
+    darkroom::verify::Options wanted{.subjects = {.effects = flags.effects}};
+    if (const Result<> done = flags.seed.read_to(wanted.subjects.seed); !done) return fail(done.error());
+    if (const Result<> done = check_outputs(flags); !done) return fail(done.error());
     Result<darkroom::Device> device = darkroom::Device::create({.select = flags.device, .log = log_sink()});
     if (!device) return fail(device.error());
-    darkroom::verify::Options wanted{.subjects = {.effects = flags.effects}};
     wanted.seconds = seconds->value_or(device->info().is_software ? 0 : usual_seconds);
     const darkroom::verify::Listener listener{
         .begins = [](const std::string& subject, std::size_t done,

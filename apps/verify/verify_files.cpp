@@ -178,7 +178,7 @@ Result<> write_findings(const fs::path& folder, const darkroom::verify::Report& 
         const Finding& finding = report.findings[i];
         if (Result<> done = write_finding(folder / folder_name(finding, i + 1), finding); !done) return done;
     }
-    return write_text(folder / "verify.json", json_of(report).dump(2) + "\n");
+    return write_text(folder / report_name, json_of(report).dump(2) + "\n");
 }
 
 }  // namespace app

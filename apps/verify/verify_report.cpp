@@ -68,6 +68,7 @@ Json json_of(const Report& report) {
                                 {"vulkan", version_of(report.device.api_version)},
                                 {"software", report.device.is_software},
                                 {"traits", traits}}},
+                {"seed", report.seed},
                 {"kernels", report.kernels},
                 {"pictures", report.pictures},
                 {"seconds", report.seconds},

@@ -20,6 +20,9 @@ namespace app {
 /// The subject as a look; tables and pictures that it names are called table.cube and picture.exr.
 [[nodiscard]] darkroom::Look look_of(const darkroom::verify::Subject& subject);
 
+/// The document, in the folder of the findings.
+inline constexpr const char* report_name = "verify.json";
+
 /// Of each finding a folder "01_ssao_compute_lean": made.exr, expected.exr, difference.png, look.toml and frames.
 [[nodiscard]] darkroom::Result<> write_findings(const std::filesystem::path& folder,
                                                 const darkroom::verify::Report& report);

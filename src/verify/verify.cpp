@@ -58,6 +58,7 @@ class Verifying {
 
     Result<Report> run() {
         report_.device = device_.info();
+        report_.seed = options_.subjects.seed;
         note_traits();
         const std::uint64_t built = context_.kernels->counters().built;
         const std::vector<Subject> all = subjects(options_.subjects);

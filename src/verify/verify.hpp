@@ -58,6 +58,7 @@ struct Options {
 
 struct Report {
     DeviceInfo device;
+    std::uint32_t seed = 1;                                   ///< of the values at random
     std::vector<std::pair<std::string, std::string>> traits;  ///< limits and features that kernels depend on
     std::size_t kernels = 0;                                  ///< pipelines that were made
     std::size_t pictures = 0;                                 ///< that were compared with a reference

@@ -205,5 +205,19 @@ TEST(VerifySubjects, HoldEveryEffectAndEveryChoice) {
     }
 }
 
+TEST(VerifySubjects, AnotherSeedHasOtherValuesAtRandom) {
+    const std::vector<Subject> first = subjects(), second = subjects({.seed = 2});
+    ASSERT_EQ(first.size(), second.size());
+    std::size_t random = 0, same = 0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        if (first[i].name.find("[random ") == std::string::npos) continue;
+        ASSERT_EQ(first[i].name, second[i].name);
+        ++random;
+        same += first[i].steps[0].words == second[i].steps[0].words ? 1U : 0U;
+    }
+    EXPECT_GT(random, 20U);
+    EXPECT_LT(same, random / 4) << "effects with few values may draw the same";
+}
+
 }  // namespace
 }  // namespace darkroom::verify

@@ -2,9 +2,11 @@
 // `darkroom verify`: lines for people, a document for programs, and a folder.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <darkroom/effects.hpp>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -55,6 +57,41 @@ TEST_F(CliVerify, RefusesWhatThereIsNot) {
     const Outcome seconds = run({"verify", "--seconds", "0"});
     EXPECT_EQ(seconds.code, 1);
     EXPECT_NE(seconds.err.find("--seconds = 0: allowed is [1, 86400] s"), std::string::npos) << seconds.err;
+}
+
+TEST_F(CliVerify, RefusesWhereItCannotWriteBeforeItWorks) {
+    std::filesystem::create_directory(path("folder"));
+    std::ofstream(path("file")) << "kept";
+    struct Case {
+        std::vector<std::string> flags;
+        std::string says;
+    };
+    const std::string file = path("file"), folder = path("folder"), report = path("new/../new/verify.json");
+    const Case cases[]{{{"-o", file}, file},
+                       {{"-o", file + "/below"}, file + "/below: cannot be made: "},
+                       {{"--report", folder}, folder + ": "},
+                       {{"--report", path("none/report.json")}, path("none") + ": no such folder"},
+                       {{"-o", path("new"), "--report", report},
+                        "--report " + report + ": would be written by -o " + path("new") + ", too"}};
+    for (const auto& [flags, says] : cases) {
+        std::vector<std::string> all{"verify", "--effect", "exposure"};
+        all.insert(all.end(), flags.begin(), flags.end());
+        const Outcome done = run(all);
+        EXPECT_EQ(done.code, 1) << says;
+        EXPECT_TRUE(done.out.empty()) << done.out;
+        EXPECT_NE(done.err.find(says), std::string::npos) << done.err;
+        EXPECT_EQ(std::ranges::count(done.err, '\n'), 1) << "one line, and no effect was begun: " << done.err;
+    }
+    EXPECT_EQ(test::content(file), "kept");
+}
+
+TEST_F(CliVerify, AnotherSeedHasOtherValuesAtRandom) {
+    const Outcome done = run({"verify", "--effect", "exposure", "--json", "--seed", "4294967295"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_EQ(json::parse(done.out)["seed"], 4294967295U);
+    const Outcome wrong = run({"verify", "--seed", "-1"});
+    EXPECT_EQ(wrong.code, 1);
+    EXPECT_NE(wrong.err.find("--seed = -1: allowed is"), std::string::npos) << wrong.err;
 }
 
 void expect_same(const std::string& file, const ReferenceImage& expected) {

@@ -19,6 +19,7 @@ void VerifyFlags::add_to(CommandFlags command) {
                 "Begins nothing later than that, and says what was not tried; default: 60, or no end on a driver "
                 "that runs on the processor")
         .type_name("S");
+    seed.add_to(command, "Of the values at random; default: 1").type_name("N");
     command
         .add_option("-o,--output,--out", folder,
                     "A folder for verify.json and, of each finding, pictures and the smallest look that shows it")

@@ -16,6 +16,7 @@ struct VerifyFlags {
     std::string device, report, folder;
     std::vector<std::string> effects;
     NumberFlag seconds{"--seconds", {.least = 1, .most = 86400, .unit = "s"}};
+    NumberFlag seed{"--seed", {.least = 0, .most = 4294967295, .is_whole = true}};
     bool is_json = false;
 };
 
