@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "edit/follow/moved_values.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <darkroom/effects.hpp>
@@ -151,6 +152,33 @@ TEST_F(MovedValues, TheInterfaceIsWrittenWhereItStands) {
               "[ui]\n[ui.game]\n");
     EXPECT_EQ(edited("[ui]\n[ui.game]\nhealth = 80 # full\n", change([](LookUi& own) { own.game["health"] = 81.0; })),
               "[ui]\n[ui.game]\nhealth = 81 # full\n");
+}
+
+// Its neighbours are others of the same entry, and the same of another entry.
+TEST_F(MovedValues, OneAloneIsTakenFromALayer) {
+    const Look look = read(
+        "[post_process]\nvignette_intensity = 0.2\nfog_density = 0.05\n\n[[layer]]\nname = \"cave\"\nvalues = { "
+        "\"fog.enabled\" = true, \"fog.density\" = 0.25, \"vignette.enabled\" = true, \"vignette.intensity\" = 0.5 "
+        "}\n");
+    ASSERT_EQ(look.layers.size(), 1U);
+    const auto names = [](const Look& of) {
+        std::vector<std::string> out;
+        for (const LookLayer::Value& value : of.layers[0].values) out.push_back(value.entry + "." + value.parameter);
+        return out;
+    };
+    const std::vector<MovedValue> all = values_of(look, {true, 0});
+    std::size_t removed = 0;
+    for (std::size_t number = 0; number < all.size(); ++number) {
+        if (all[number].table != "values") continue;
+        std::vector<std::string> others = names(look);
+        std::erase(others, fmt::format("{}.{}", all[number].entry, all[number].row.name));
+        EXPECT_EQ(others.size(), 3U);
+        Look changed = look;
+        ASSERT_TRUE(remove_layer_value(changed, 0, number));
+        EXPECT_EQ(names(changed), others);
+        ++removed;
+    }
+    EXPECT_EQ(removed, 4U);
 }
 
 }  // namespace
