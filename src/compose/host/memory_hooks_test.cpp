@@ -147,5 +147,40 @@ TEST_F(ComposeMemoryHooks, TheHistoriesOfAPlanShareAPiece) {
     EXPECT_EQ(pieces(3), pieces(1));
 }
 
+TEST_F(ComposeMemoryHooks, WhatWasRetiredBeforeMoreViewsCameStaysAsLongAsTheLast) {
+    SubAllocator memory;
+    {
+        Device device = adopted(memory);
+        const ReferenceImage picture = test::round_to_float(test::random_display(24, 18, 7));
+        const Host host(picture, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, device);
+        // Without a thread, what was put away is freed by the next compile.
+        Composer composer(device, {.frames_in_flight = 2, .max_threads = 0});
+        add(composer, "bloom");
+        add(composer, "encode");
+        CompileDesc desc = host.compile_desc();
+        const auto compile = [&] {
+            const int before = memory.live;
+            test::must(composer.compile(desc));
+            return memory.live - before;
+        };
+        const auto record = [&](int times) {
+            for (int i = 0; i < times; ++i) (void)host.run(composer);
+        };
+        compile();
+        record(1);
+        compile();
+        // The first two are to be kept for six recordings from here, too.
+        desc.views = 3;
+        compile();
+        const int of_one = compile();
+        EXPECT_GT(of_one, 0);
+        record(4);
+        EXPECT_EQ(compile(), of_one) << "one that recordings may still use was freed";
+        record(7);
+        EXPECT_LT(compile(), 0) << "none was freed";
+    }
+    EXPECT_EQ(memory.live, 0);
+}
+
 }  // namespace
 }  // namespace darkroom
