@@ -306,6 +306,19 @@ TEST(EffectLut, GpuOnTinyPictures) {
     }
 }
 
+// No file holds one, but a host may bring it.
+TEST(EffectLut, GpuACubeOfOneEntryIsItsColor) {
+    const ReferenceImage picture = test::round_to_float(test::random_display(9, 5, 4));
+    const ColorTable one{.size = 1, .cube = {0.25f, 0.5f, 0.75f}};
+    ReferenceImage expected = picture;
+    for (Rgba& p : expected.pixels) p = {srgb_decoded(0.25), srgb_decoded(0.5), srgb_decoded(0.75), p.a};
+    for (const LutInterpolation interpolation : both) {
+        const Lut values{.interpolation = interpolation};
+        EXPECT_LE(worst_code(by_reference(values, one, picture), expected, LutSpace::Display), 1e-9);
+        EXPECT_LE(worst_code(on_gpu(values, one, picture), expected, LutSpace::Display), 0.25);
+    }
+}
+
 TEST(EffectLut, GpuALargeTableAndOneThatIsAPicture) {
     const ReferenceImage picture = test::round_to_float(test::random_display(9, 5, 4));
     const ColorTable large = mixed(128);
