@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """check_texts.py BINDINGS SOURCE FOLDER: every name that the header declares stands in the file of every language, each
-begins with the version, and those that no test compiles say so."""
+begins with the version, and those that no test compiles say so. Names in the page's examples of these are declared, too."""
 
 import os
 import re
@@ -22,6 +22,12 @@ def names_of(api):
     for function in api.functions + api.callbacks:
         names.add(function.name)
     return names
+
+
+def examples_of(language):
+    """The page's blocks of a language."""
+    with open(os.path.join(sys.argv[1], "..", "docs", "bindings.md"), encoding="utf-8") as opened:
+        return re.findall(rf"^```{language}\n(.*?)^```", opened.read(), re.M | re.S)
 
 
 def main():
@@ -45,6 +51,11 @@ def main():
         # An alias is its own type in Python, a list of numbers knows it as one.
         left_out = {row["name"] for row in api.aliases} if language == "python" else set()
         faults += [f"{file} has no {name}" for name in sorted(names - left_out - words)]
+    for language in sorted(UNTESTED):
+        used = set(re.findall(r"\b(?:darkroom_|DARKROOM_|Darkroom)\w+", "".join(examples_of(language))))
+        if len(used) < 3:
+            faults.append(f"docs/bindings.md has no example in {language}")
+        faults += [f"docs/bindings.md: {name} of its {language} is not declared" for name in sorted(used - names)]
     print("\n".join(faults[:40]))
     return 1 if faults else 0
 
