@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What pages tell one to type is typed, in the order of the page. What opens a window, asks other programs or works for
-// minutes is run by tests of its own. Pictures are small: they tell as much.
+// What pages tell one to type is typed, in the order of the page. What opens a window is typed where there is no
+// display, so it ends behind the reading of its flags and files. What asks other programs or works for minutes is run
+// by tests of its own. Pictures are small: they tell as much.
 #include <algorithm>
 #include <darkroom/effects.hpp>
+#include <map>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -35,18 +38,46 @@ std::vector<PageBlock> blocks_of_page(const std::string& page) {
     return out;
 }
 
+/// The lines of text, those that end in a backslash joined to the next.
+std::vector<std::string> lines_of(const std::string& text) {
+    std::istringstream all(text);
+    std::vector<std::string> out;
+    bool goes_on = false;
+    for (std::string line; std::getline(all, line);) {
+        if (!goes_on) out.emplace_back();
+        goes_on = line.ends_with('\\');
+        if (goes_on) line.pop_back();
+        out.back() += line;
+    }
+    return out;
+}
+/// Without a remark, and beginning with ./darkroom where a page may leave out the folder.
+std::string command_of(const std::string& line) {
+    const std::string command = line.substr(0, line.find("  #"));
+    return command.starts_with("darkroom ") ? "./" + command : command;
+}
+
+std::vector<std::string> pages_of_docs() {
+    std::vector<std::string> out{"README.md"};
+    for (const auto& page : fs::directory_iterator(fs::path(test::source_folder) / "docs"))
+        if (page.path().extension() == ".md") out.push_back("docs/" + page.path().filename().string());
+    return out;
+}
+
 // Of a few frames and pixels, in place of those that the line asks for.
 constexpr std::string_view small_program = R"(#!/usr/bin/env bash
 words=()
 while (($#)); do
     case $1 in
         --size) [[ ${words[0]} == render ]] && words+=(--size 64x36) || words+=("$1" "$2"); shift ;;
-        --frames) words+=(--frames 0-1) && shift ;;
+        --output-size) words+=("$1" 64x36) && shift ;;
+        --frames | --truth-frames) words+=("$1" 0-1) && shift ;;
         *) words+=("$1") ;;
     esac
     shift
 done
 [[ ${words[0]} != render || " ${words[*]} " == *" --size "* ]] || words+=(--size 64x36)
+[[ ${words[0]} != capture ]] || words+=(--size 64x36 --samples 2)
 exec )";
 
 class CliPages : public test::CliFixture {
@@ -74,12 +105,11 @@ class CliPages : public test::CliFixture {
         for (const auto& [kind, text] : blocks_of_page(page)) {
             if (kind == "toml" && text.starts_with("format = 1")) write("my.toml", text);
             if (kind != "sh") continue;
-            std::istringstream all(text);
             std::string chosen;
-            for (std::string line; std::getline(all, line);) {
-                if (line.starts_with("darkroom ")) line = "./" + line;
-                if (!line.starts_with("./darkroom ") || is_left_out(line)) continue;
-                chosen += line + "\n";
+            for (const std::string& line : lines_of(text)) {
+                const std::string command = command_of(line);
+                if (!command.starts_with("./darkroom ") || is_left_out(command)) continue;
+                chosen += command + "\n";
                 ++run;
             }
             if (chosen.empty()) continue;
@@ -97,7 +127,7 @@ class CliPages : public test::CliFixture {
     static bool is_left_out(const std::string& line) {
         for (const char* const part : {"|", "~", ".3dl", ".glb"})
             if (line.find(part) != std::string::npos) return true;
-        for (const char* const command : {"play", "edit", "bake", "capture", "judge", "farm"})
+        for (const char* const command : {"play", "edit", "bake", "farm"})
             if (line.starts_with(std::string("./darkroom ") + command + " ")) return true;
         return false;
     }
@@ -160,6 +190,109 @@ TEST_F(CliPages, LooksScenesAndProbing) {
     try_page("docs/looks.md", 1);
     try_page("docs/scenes.md", 2);
     try_page("docs/probe.md", 2);
+}
+// Lines that no test types, such as those for another machine, at least have no flag that their command does not know,
+// and name no file of the tree that is not there.
+TEST_F(CliPages, FlagsAndFilesAreThere) {
+    std::map<std::string, std::string> help;
+    std::size_t flags = 0, named = 0;
+    const std::regex command("(?:^|[ /])darkroom ((?:farm |lut )?[a-z]+) ([^|>#]*)"), quoted("'[^']*'");
+    const std::regex flag("--[a-z][a-z-]*"), file(R"((?:looks|scenes|hud|controllers|examples)/[a-z_.]+\.[a-z]+)");
+    for (const std::string& page : pages_of_docs())
+        for (const auto& [kind, text] : blocks_of_page(page)) {
+            if (kind != "sh") continue;
+            for (const std::string& line : lines_of(text)) {
+                const std::string bare = std::regex_replace(line, quoted, "");
+                std::smatch found;
+                if (!std::regex_search(bare, found, command)) continue;
+                const std::string name = found[1], words = found[2];
+                std::string& known = help[name];
+                if (known.empty()) known = run_lines("darkroom " + name + " --help-all").out;
+                // Those of an effect's file are its own; those behind -- are another command's.
+                const std::string own = words.substr(0, std::min(words.find(" -- "), words.find("--effect ")));
+                for (std::sregex_iterator at(own.begin(), own.end(), flag), end; at != end; ++at, ++flags)
+                    EXPECT_TRUE(std::regex_search(known, std::regex("\\s" + at->str() + "[\\s,\\[]")))
+                        << page << ": " << name << " has no flag " << at->str();
+                for (std::sregex_iterator at(words.begin(), words.end(), file), end; at != end; ++at, ++named)
+                    EXPECT_TRUE(fs::exists(path(at->str()))) << page << ": " << at->str();
+            }
+        }
+    EXPECT_GT(help.size(), 15U);
+    EXPECT_GT(flags, 100U);
+    EXPECT_GT(named, 20U);
+}
+TEST_F(CliPages, DocumentsControllersAndCameras) {
+    const auto first = [](const std::string& page, const std::string& kind) {
+        for (const PageBlock& block : blocks_of_page(page))
+            if (block.kind == kind) return block.text;
+        ADD_FAILURE() << page << " has no " << kind;
+        return std::string();
+    };
+    write("page.svg", first("docs/hud.md", "xml"));
+    write("page.lua", first("docs/controllers.md", "lua"));
+    write("page.toml", first("docs/conventions.md", "toml"));
+    write("my.toml", "format = 1\n[post_process]\n[ui]\ndocument = \"page.svg\"\ncontrollers = [\"page.lua\"]\n");
+    const test::Outcome outcome = run_lines(
+        "darkroom develop a.exr --look my.toml --camera page.toml --game health=20 --game name=Ann "
+        "--game has_quad=true -o a.png");
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.err, "");
+}
+TEST_F(CliPages, TemporalLab) {
+    // A look for what has two sizes.
+    write("my.toml", "format = 1\n[[stack]]\neffect = \"taa\"\n");
+    try_page("docs/temporal_lab.md", 3);
+    EXPECT_TRUE(fs::exists(path("judgement/judge.json")));
+}
+TEST_F(CliPages, Bindings) {
+    fs::create_symlink(fs::path(test::source_folder) / "bindings", path("bindings"));
+    fs::create_directory(path("FOLDER"));
+    std::size_t run = 0;
+    for (const auto& [kind, text] : blocks_of_page("docs/bindings.md")) {
+        if (kind != "sh") continue;
+        ++run;
+        const test::Outcome outcome = run_lines("export PYTHONDONTWRITEBYTECODE=1\n" + text);
+        EXPECT_EQ(outcome.code, 0) << text << outcome.err;
+    }
+    EXPECT_EQ(run, 1U);
+    EXPECT_TRUE(fs::exists(path("FOLDER/darkroom.rs")));
+}
+TEST_F(CliPages, Farm) {
+    // Nothing is submitted: the lines that ask for progress tell of what a task has made, and one picture is missing.
+    ASSERT_EQ(run_lines("darkroom farm task 'shot.####.exr' --look my.toml -o out/ --mkdir --frames 1").code, 0);
+    std::size_t run = 0;
+    for (const char* const page : {"docs/farm.md", "docs/command_line.md"})
+        for (const auto& [kind, text] : blocks_of_page(page)) {
+            if (kind != "sh") continue;
+            for (std::string line : lines_of(text)) {
+                if (!line.starts_with("darkroom farm ")) continue;
+                ++run;
+                const bool submits = line.starts_with("darkroom farm slurm ");
+                if (submits && line.find(" --dry-run") == std::string::npos) line += " --dry-run";
+                const test::Outcome outcome = run_lines(line);
+                EXPECT_EQ(outcome.code, 0) << page << ": " << line << "\n" << outcome.err;
+                EXPECT_EQ(outcome.out.find("#SBATCH") != std::string::npos, submits) << outcome.out;
+            }
+        }
+    EXPECT_GE(run, 7U);
+}
+TEST_F(CliPages, Windows) {
+    if (!fs::exists(fs::path(program).parent_path().parent_path() / "lib/darkroom/darkroom_viewer"))
+        GTEST_SKIP() << "darkroom_viewer is not built";
+    std::size_t run = 0;
+    for (const std::string& page : pages_of_docs())
+        for (const auto& [kind, text] : blocks_of_page(page)) {
+            if (kind != "sh") continue;
+            for (const std::string& line : lines_of(text)) {
+                const std::string command = command_of(line);
+                if (!command.starts_with("./darkroom play ") && !command.starts_with("./darkroom edit ")) continue;
+                ++run;
+                const test::Outcome outcome = run_lines("unset DISPLAY WAYLAND_DISPLAY\n" + command);
+                EXPECT_EQ(outcome.code, 2) << page << ": " << command << "\n" << outcome.err;
+                EXPECT_NE(outcome.err.find("display"), std::string::npos) << page << ": " << outcome.err;
+            }
+        }
+    EXPECT_GE(run, 10U);
 }
 TEST_F(CliPages, CommandLine) { try_page("docs/command_line.md", 24); }
 
