@@ -3,7 +3,7 @@
 // version 3.11, 2011.
 #include "shared/sanitize.glsl"
 
-// Luma in units of green's weight, which spares a product at every pixel that is read.
+// Luma in units of green's weight.
 const float fxaa_green = 0.587;
 float fxaa_luma(vec3 color) { return color.r * (0.299 / fxaa_green) + color.g + color.b * (0.114 / fxaa_green); }
 float fxaa_luma_at(int x, int y) { return fxaa_luma(load(picture, ivec2(x, y)).rgb); }
@@ -50,8 +50,7 @@ vec4 fxaa(Pixel pixel, Fxaa parameters) {
     bvec2 is_open = lessThan(abs(found), vec2(enough));
     ivec2 seen = ivec2(is_open), at = 1 + fxaa_step(1, last, dense) * seen;
     int round = 1;
-    // Not do ... while: SwiftShader goes on computing for a pixel that has left the loop while others beside it have not,
-    // and keeps what it was left with where the loop is tested at its top alone.
+    // The condition stands at the top, so that a pixel which has left the loop keeps its values (see docs/limits.md).
     while (any(is_open) && round < last) {
         ivec2 reach = min(at, room), a = texel - (along & reach.x), b = texel + (along & reach.y);
         found = vec2(fxaa_luma(load(picture, a).rgb + load(picture, a + across).rgb),

@@ -4,7 +4,7 @@
 
 vec4 shade(Pixel pixel) {
     float threshold = halation_parameters().threshold;
-    // Numbers of floats: integers divide slowly, and so many are exact.
+    // Whole numbers in floats: they are exact up to 2^24.
     vec2 taps = max(floor(vec2(size(halation_source)) / vec2(2 * pixel.size)), 1.0), apart = 1.0 / (taps * vec2(pixel.size));
     vec3 sum = vec3(0.0);
     for (int j = 0; j < int(taps.y); ++j)

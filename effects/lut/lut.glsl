@@ -72,8 +72,8 @@ vec3 lut_faded(sampler3D shaper, vec3 found, vec3 given, Lut parameters) {
     return mix(found, lut_between(true, edge, place, parameters.interpolation), parameters.fade);
 }
 
-// srgb_encode() to 2e-5 for one square root less: they are what it costs most. The fraction in t = 1 - sqrt(x) is fitted for
-// the smallest absolute error, with 1 kept exact.
+// srgb_encode() within 2e-5, with one square root in place of two. The fraction in t = 1 - sqrt(x) is fitted for the
+// smallest absolute error, with 1 kept exact.
 vec3 lut_display_code(vec3 light) {
     light = srgb_range(light);
     vec3 t = 1.0 - sqrt(light);

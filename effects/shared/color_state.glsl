@@ -8,7 +8,7 @@
 
 // SMPTE ST 2084:2014, with light 1.0 for 10000 cd/m2.
 // log2 of the curve's ratio is taken by the series of 2 atanh(z), with z the ratio's (r - 1) / (r + 1): |z| < 0.09, so three
-// terms reach single precision, which log2 itself does not on all devices, and the exponent 78.84 would multiply its error.
+// terms reach single precision. Vulkan asks less of log2, and the exponent 78.84 would multiply its error.
 vec3 pq_encode(vec3 light) {
     vec3 y = pow(light, vec3(2610.0 / 16384.0));
     // c1 = 107/128, c2 = 2413/128, c3 = 2392/128

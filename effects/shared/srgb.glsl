@@ -7,8 +7,7 @@
 vec3 srgb_range(vec3 color) { return clamp(color, 0.0, 1.0); }
 
 // The power is a polynomial in x^(1/4), fitted by Remez exchange for the smallest relative error of the encoded value over
-// [0.0031308, 1] with 1 kept exact: 3.3e-5 (2^-14.9), less than 1/100 of an 8-bit code. Two square roots and five
-// multiply-adds cost less than half of a pow.
+// [0.0031308, 1] with 1 kept exact: 3.3e-5 (2^-14.9), less than 1/100 of an 8-bit code.
 vec3 srgb_encode(vec3 linear) {
     vec3 light = srgb_range(linear);
     vec3 s = sqrt(sqrt(light));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How far normals count of one surface, by their cosine: in full up to some 18 degrees, not from 37 on. `per_turn`: the
-// normal here times ssao_per_turn, so that a normal costs three fused operations.
+// normal here times ssao_per_turn, so that a normal takes three multiply-adds.
 const float ssao_per_turn = 1.0 / 0.15, ssao_last_turn = 0.8 / 0.15;
 
 float ssao_turned(vec3 normal, vec3 per_turn) {

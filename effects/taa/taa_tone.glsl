@@ -17,8 +17,9 @@ vec3 taa_light(vec3 opponent, float unit) {
     return min(t * unit / max(1.0 - max(t.r, max(t.g, t.b)), 1e-7), vec3(65504.0));
 }
 
-// Halves would stop at what is near, and drivers that cut off would darken: it is rounded up as often as the part that
-// is lost is large. Noise by J. Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014.
+// The history is stored in half floats. Rounding to the nearest would swallow small steps, and truncation would darken the
+// picture frame by frame. So a value is rounded up as often as the part that it loses is large. Noise by J. Jimenez,
+// "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014.
 float taa_dither(ivec2 texel, float frame) {
     vec2 place = vec2(texel) + 5.588238 * frame;
     return fract(52.9829189 * fract(dot(place, vec2(0.06711056, 0.00583715))));

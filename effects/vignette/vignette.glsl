@@ -5,7 +5,7 @@
 vec4 vignette(vec4 color, Pixel pixel, Vignette parameters) {
     vec2 offset = pixel.uv - 0.5;
     float squared = 2.0 * dot(offset, offset);
-    // d^s = (d^2)^(s/2): saves the square root.
+    // d^s = (d^2)^(s/2), so no square root is taken.
     float falloff = vignette_power(squared, 0.5 * parameters.smoothness);
     return vec4(color.rgb * clamp(1.0 - falloff * parameters.intensity, 0.0, 1.0), color.a);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// vignette_power.glsl without what cannot be here, for which a software driver does half of its work for pow(). Fitted by
-// Remez exchange: log2 of the mantissa, from sqrt(1/2) to sqrt(2), within 2.2e-6, and exp2 of the fraction within 2.7e-6, both
-// exact at 1.
+// vignette_power.glsl by two polynomials, for x from 0 to 1 and k above 0 alone: infinity, NaN and a negative x, which pow()
+// handles, do not occur. Fitted by Remez exchange: log2 of the mantissa, from sqrt(1/2) to sqrt(2), within 2.2e-6, and exp2
+// of the fraction within 2.7e-6, both exact at 1.
 float vignette_power(float x, float k) {
     int bits = floatBitsToInt(x), exponent = (bits - 0x3f3504f3) >> 23;
     float t = intBitsToFloat(bits - (exponent << 23)) - 1.0, tt = t * t;
